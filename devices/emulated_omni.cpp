@@ -1,0 +1,96 @@
+#include "devices/emulated_omni.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace palpa {
+namespace {
+
+constexpr double tick_s = 1e-3;
+constexpr int sub_steps = 4;
+constexpr double sub_step_s = tick_s / sub_steps;
+
+// What the ends of the workspace feel like.
+constexpr double stop_stiffness_N_per_m = 2e4;
+constexpr double stop_damping_N_s_per_m = 20;
+
+// Force of the stop on a handle that is `position` from the centre; never pulls.
+double stop_force(double position, double velocity, double half_width) noexcept {
+    const double depth = std::abs(position) - half_width;
+    if (depth <= 0) return 0;
+    const double outward = std::copysign(1.0, position);
+    const double push =
+        stop_stiffness_N_per_m * depth + stop_damping_N_s_per_m * velocity * outward;
+    return -outward * std::max(push, 0.0);
+}
+
+}  // namespace
+
+EmulatedOmni::EmulatedOmni(const EmulatedOmniSettings& settings)
+    : settings_(settings), operator_(settings.script, half_workspace_m.x()) {
+    spec_.name = "emulated Omni";
+    spec_.rate_hz = 1 / tick_s;
+    spec_.peak_force_newton = settings.peak_force_newton;
+    spec_.viscosity_N_s_per_m = settings.dynamics.viscosity_N_s_per_m;
+    spec_.half_workspace_m = half_workspace_m;
+
+    const Plant plant = build_plant(settings.dynamics, settings.hand);
+    plant_ = sample_plant(plant, sub_step_s);
+    handle_mass_kg_ = plant.handle_mass_kg;
+    for (PlantState& axis : state_) axis = PlantState::Zero(plant.A.rows());
+    // Handle and hand begin at rest where the script begins.
+    state_[0](0) = operator_.start_m();
+    if (state_[0].size() > 2) state_[0](2) = operator_.start_m();
+}
+
+Vec3 EmulatedOmni::true_position_m() const noexcept {
+    return {state_[0](0), state_[1](0), state_[2](0)};
+}
+
+DeviceReading EmulatedOmni::read() noexcept {
+    Vec3 position = true_position_m();
+    if (const double step = settings_.encoder_step_m; step > 0) {
+        position = step * (position / step).array().round();
+    }
+    return {static_cast<double>(tick_) * tick_s, position, buttons_, true};
+}
+
+void EmulatedOmni::write(const Vec3& force_newton) noexcept {
+    const double norm = force_newton.stableNorm();
+    const double peak = settings_.peak_force_newton;
+    const Vec3 motors = norm > peak ? Vec3(force_newton * (peak / norm)) : force_newton;
+
+    const ScriptedHand::Wish wish = operator_.step(tick_s);
+    buttons_ = wish.buttons;
+    Vec3 hand_drive = Vec3::Zero();
+    if (settings_.hand) {
+        hand_drive.x() = settings_.hand->stiffness_N_per_m * wish.x_m +
+                         settings_.hand->damping_N_s_per_m * wish.v_m_per_s;
+    }
+    const double kick = operator_.kick_newton(static_cast<double>(tick_) * tick_s);
+    const Vec3 outside = motors + Vec3(kick, 0, 0);
+
+    for (int sub_step = 0; sub_step < sub_steps; ++sub_step) {
+        for (std::size_t axis = 0; axis < state_.size(); ++axis) {
+            const auto i = static_cast<Eigen::Index>(axis);
+            const double stop = stop_force(state_[axis](0), state_[axis](1), half_workspace_m(i));
+            const Eigen::Vector2d inputs(outside(i) + stop, hand_drive(i));
+            state_[axis] = (plant_.A * state_[axis] + plant_.B * inputs).eval();
+        }
+        apply_friction();
+    }
+    ++tick_;
+}
+
+// Takes speed away from the handle, whatever its direction, down to rest.
+void EmulatedOmni::apply_friction() noexcept {
+    const double loss = settings_.friction_newton / handle_mass_kg_ * sub_step_s;
+    if (loss <= 0) return;
+    const Vec3 velocity(state_[0](1), state_[1](1), state_[2](1));
+    const double speed = velocity.norm();
+    const double kept = speed > loss ? 1 - loss / speed : 0;
+    for (PlantState& axis : state_) axis(1) *= kept;
+}
+
+}  // namespace palpa

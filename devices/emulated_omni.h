@@ -1,0 +1,56 @@
+// A Phantom Omni that is not there, and the hand on it: inertia, viscosity, Coulomb friction,
+// encoder steps, saturating motors, stops at the ends of the workspace, buttons.
+#pragma once
+#include "devices/scripted_hand.h"
+#include "haptics/device.h"
+#include "haptics/hand.h"
+#include "haptics/plant.h"
+#include "math/vec.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+namespace palpa {
+
+// Defaults as in the maker's data sheet for the Omni; inertia, friction and encoder step are quoted
+// from memory of it and are to be checked on a device.
+struct EmulatedOmniSettings {
+    DeviceDynamics dynamics;             // 45 g; its viscosity is assumed
+    double friction_newton = 0.26;       // Coulomb, back-drive
+    double encoder_step_m = 0.055e-3;    // 0: positions are read exactly
+    double peak_force_newton = 3.3;      // motors give no more, whatever is written
+    std::optional<HandModel> hand;       // nothing: the handle is free
+    HandScript script;
+};
+
+// Time is the servo's: each write moves device and hand on by one tick, exactly for the linear
+// part, in four sub-steps for friction and stops. The same settings give the same motion, always.
+class EmulatedOmni final : public Device {
+public:
+    // Half of the nominal workspace of 160 x 120 x 70 mm.
+    static inline const Vec3 half_workspace_m{0.080, 0.060, 0.035};
+
+    explicit EmulatedOmni(const EmulatedOmniSettings& settings);
+
+    const DeviceSpec& spec() const noexcept override { return spec_; }
+    DeviceReading read() noexcept override;
+    void write(const Vec3& force_newton) noexcept override;
+
+    // What no device knows: where the handle is between two encoder steps.
+    Vec3 true_position_m() const noexcept;
+
+private:
+    void apply_friction() noexcept;
+
+    EmulatedOmniSettings settings_;
+    DeviceSpec spec_;
+    ScriptedHand operator_;
+    SampledPlant plant_;                 // over one sub-step
+    double handle_mass_kg_ = 0;
+    std::array<PlantState, 3> state_;    // one per axis
+    std::uint64_t tick_ = 0;
+    std::uint32_t buttons_ = 0;          // as pressed during the last tick
+};
+
+}  // namespace palpa

@@ -1,0 +1,159 @@
+#include "charmm/assign.h"
+
+#include "core/text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <fmt/format.h>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace palpa {
+namespace {
+
+// All that an atom lacks, in the order in which it was found; thrown as one error.
+class Missing {
+public:
+    void add(const TextPlace& place, std::string what) {
+        if (!seen_.insert(what).second) return;
+        if (problems_.empty()) {
+            place_ = place;
+        } else {
+            what = to_string(place) + ": " + what;
+        }
+        problems_.push_back(std::move(what));
+    }
+
+    void throw_if_any() const {
+        if (!problems_.empty()) throw LoadError(place_, fmt::format("{}", fmt::join(problems_, "; ")));
+    }
+
+private:
+    TextPlace place_;
+    std::vector<std::string> problems_;
+    std::set<std::string> seen_;
+};
+
+template <class Map>
+std::vector<std::string_view> keys(const Map& map) {
+    std::vector<std::string_view> names;
+    for (const auto& entry : map) names.emplace_back(entry.first);
+    return names;
+}
+
+// The atom's template, or null with the reason noted.
+const ResidueAtom* find_template(const ForceField& force_field, const AtomName& name,
+                                 const TextPlace& place, Missing& missing) {
+    const auto residue = force_field.residues.find(name.residue);
+    if (residue == force_field.residues.end()) {
+        missing.add(place, fmt::format("no residue '{}' in {}{}", name.residue,
+                                       fmt::join(force_field.files, ", "),
+                                       near_name_hint(name.residue, keys(force_field.residues))));
+        return nullptr;
+    }
+    const std::vector<ResidueAtom>& atoms = residue->second.atoms;
+    const auto atom = std::find_if(atoms.begin(), atoms.end(),
+                                   [&](const ResidueAtom& a) { return a.name == name.atom; });
+    if (atom != atoms.end()) return &*atom;
+    std::vector<std::string_view> known;
+    for (const ResidueAtom& a : atoms) known.emplace_back(a.name);
+    missing.add(place, fmt::format("residue '{}' of {} has no atom '{}' (only {})", name.residue,
+                                   to_string(residue->second.place), name.atom,
+                                   fmt::join(known, ", ")));
+    return nullptr;
+}
+
+// A residue that the structure holds only in part would be charged wrongly.
+void check_complete(const ForceField& force_field, const Structure& structure,
+                    std::string_view segment, Missing& missing) {
+    std::map<std::pair<std::string, std::string>, std::set<std::string>> present;
+    std::map<std::pair<std::string, std::string>, std::size_t> lines;
+    for (std::size_t i = 0; i < structure.names.size(); ++i) {
+        const AtomName& name = structure.names[i];
+        if (name.segment != segment) continue;
+        present[{name.number, name.residue}].insert(name.atom);
+        lines.try_emplace({name.number, name.residue}, structure.lines[i]);
+    }
+    for (const auto& [residue, atoms] : present) {
+        const auto found = force_field.residues.find(residue.second);
+        if (found == force_field.residues.end()) continue;
+        for (const ResidueAtom& atom : found->second.atoms) {
+            if (atoms.contains(atom.name)) continue;
+            missing.add({structure.file, lines.at(residue), 0},
+                        fmt::format("residue {} {} {} lacks atom '{}'", segment, residue.second,
+                                    residue.first, atom.name));
+        }
+    }
+}
+
+void check_nbfix(const ForceField& force_field, const std::set<std::string>& used,
+                 Missing& missing) {
+    for (const NbfixPair& pair : force_field.nbfix) {
+        if (used.contains(pair.a) && used.contains(pair.b)) {
+            missing.add(pair.place, fmt::format("NBFIX of '{}' and '{}' is needed here, and is not "
+                                                "supported yet",
+                                                pair.a, pair.b));
+        }
+    }
+}
+
+}  // namespace
+
+AtomRange add_segment_atoms(const ForceField& force_field, const Structure& structure,
+                            std::string_view segment, AtomTable& table) {
+    Missing missing;
+    std::set<std::string> used_types, segments;
+    AtomTable added;
+    for (std::size_t i = 0; i < structure.names.size(); ++i) {
+        const AtomName& name = structure.names[i];
+        segments.insert(name.segment);
+        if (name.segment != segment) continue;
+        const ResidueAtom* const atom =
+            find_template(force_field, name, {structure.file, structure.lines[i], 0}, missing);
+        if (!atom) continue;
+        const auto type = force_field.types.find(atom->type);
+        if (type == force_field.types.end()) {
+            missing.add(atom->place, fmt::format("unknown atom type '{}': no MASS line{}", atom->type,
+                                                 near_name_hint(atom->type, keys(force_field.types))));
+        }
+        const auto nonbonded = force_field.nonbonded.find(atom->type);
+        if (nonbonded == force_field.nonbonded.end()) {
+            missing.add(atom->place, fmt::format("atom type '{}' has no NONBONDED parameters in {}",
+                                                 atom->type, fmt::join(force_field.files, ", ")));
+        }
+        if (type == force_field.types.end() || nonbonded == force_field.nonbonded.end()) continue;
+        used_types.insert(atom->type);
+        added.names.push_back(name);
+        added.positions.push_back(structure.positions[i]);
+        added.mass.push_back(type->second.mass);
+        added.charge.push_back(atom->charge);
+        added.sqrt_epsilon.push_back(std::sqrt(nonbonded->second.epsilon));
+        added.half_rmin.push_back(nonbonded->second.half_rmin);
+    }
+    if (!segments.contains(std::string(segment))) {
+        const std::vector<std::string_view> known(segments.begin(), segments.end());
+        throw LoadError({structure.file},
+                        fmt::format("no segment '{}' (only {})", segment, fmt::join(known, ", ")));
+    }
+    check_complete(force_field, structure, segment, missing);
+    check_nbfix(force_field, used_types, missing);
+    missing.throw_if_any();
+
+    const AtomRange range{static_cast<std::uint32_t>(table.size()),
+                          static_cast<std::uint32_t>(added.size())};
+    const auto append = [](auto& to, auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+    append(table.names, added.names);
+    append(table.positions, added.positions);
+    append(table.mass, added.mass);
+    append(table.charge, added.charge);
+    append(table.sqrt_epsilon, added.sqrt_epsilon);
+    append(table.half_rmin, added.half_rmin);
+    return range;
+}
+
+}  // namespace palpa

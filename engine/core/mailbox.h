@@ -1,0 +1,41 @@
+// Hands the newest value from one thread to another, without locks, waiting or allocation.
+#pragma once
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <type_traits>
+
+namespace palpa {
+
+// A triple buffer: one thread posts, one thread reads. A reader sees whole values only, each at
+// least as new as the one before; values that nobody read in time are overwritten.
+template <class Value>
+class Mailbox {
+    static_assert(std::is_trivially_destructible_v<Value>, "a mailbox copies plain structs, nothing "
+                                                            "that owns memory");
+
+public:
+    void post(const Value& value) noexcept {
+        slots_[write_] = value;
+        // The slot just written becomes the newest; the one that lay there is written next.
+        write_ = newest_.exchange(write_ | fresh, std::memory_order_acq_rel) & slot_mask;
+    }
+
+    // The newest value posted. False, and `value` untouched, if none came since the last read.
+    bool read(Value& value) noexcept {
+        if ((newest_.load(std::memory_order_relaxed) & fresh) == 0) return false;
+        read_ = newest_.exchange(read_, std::memory_order_acq_rel) & slot_mask;
+        value = slots_[read_];
+        return true;
+    }
+
+private:
+    static constexpr std::uint32_t fresh = 4, slot_mask = 3;
+
+    std::array<Value, 3> slots_{};
+    alignas(64) std::atomic<std::uint32_t> newest_{1};
+    alignas(64) std::uint32_t write_ = 0;  // the poster's own
+    alignas(64) std::uint32_t read_ = 2;   // the reader's own
+};
+
+}  // namespace palpa

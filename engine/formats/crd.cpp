@@ -1,0 +1,148 @@
+#include "formats/crd.h"
+
+#include "core/files.h"
+#include "core/load_error.h"
+#include "core/text.h"
+
+#include <cstddef>
+#include <fmt/format.h>
+#include <iterator>
+#include <map>
+#include <optional>
+#include <tuple>
+#include <vector>
+
+namespace palpa {
+namespace {
+
+struct Columns {
+    std::size_t first, count;
+};
+
+// Where the fields of one atom stand, counted from 0.
+struct Layout {
+    Columns residue, atom, x, y, z, segment, number;
+};
+
+// (I5,I5,1X,A4,1X,A4,3F10.5,1X,A4,1X,A4,F10.5) and (2I10,2X,A8,2X,A8,3F20.10,2X,A8,2X,A8,F20.10)
+constexpr Layout normal_layout{{11, 4}, {16, 4}, {20, 10}, {30, 10}, {40, 10}, {51, 4}, {56, 4}};
+constexpr Layout extended_layout{{22, 8},  {32, 8},   {40, 20}, {60, 20},
+                                 {80, 20}, {102, 8}, {112, 8}};
+
+class Reader {
+public:
+    Reader(std::string_view text, std::string file)
+        : lines_(split_lines(text)), structure_{std::move(file), {}, {}, {}} {}
+
+    Structure read() {
+        while (at_ < lines_.size() && lines_[at_].starts_with('*')) ++at_;
+        const std::size_t count = read_atom_count();
+        for (std::size_t atom = 0; atom < count; ++atom) {
+            if (at_ == lines_.size()) {
+                fail(lines_.size(), 0,
+                     fmt::format("ends after {} of {} atoms", atom, count));
+            }
+            read_atom(lines_[at_]);
+            ++at_;
+        }
+        for (; at_ < lines_.size(); ++at_) {
+            if (!trimmed(lines_[at_]).empty()) {
+                fail(at_ + 1, 0, fmt::format("more lines than the {} atoms announced", count));
+            }
+        }
+        return std::move(structure_);
+    }
+
+private:
+    [[noreturn]] void fail(std::size_t line, std::size_t column, const std::string& what) const {
+        throw LoadError({structure_.file, line, column}, what);
+    }
+
+    std::size_t read_atom_count() {
+        if (at_ == lines_.size()) fail(lines_.size(), 0, "ends before the number of atoms");
+        const std::vector<std::string_view> words = split_words(lines_[at_]);
+        const auto count = words.empty() ? std::nullopt : find_integer(words[0]);
+        const bool extended = words.size() == 2 && upper_case(words[1]) == "EXT";
+        if (!count || *count < 1 || (words.size() > 1 && !extended)) {
+            fail(at_ + 1, 0,
+                 fmt::format("'{}' is not a number of atoms; expected a count from 1, with EXT "
+                             "behind it for the extended format",
+                             trimmed(lines_[at_])));
+        }
+        layout_ = extended ? extended_layout : normal_layout;
+        ++at_;
+        return static_cast<std::size_t>(*count);
+    }
+
+    std::string word(std::string_view line, Columns columns, const char* what) const {
+        const std::string_view text =
+            line.size() > columns.first ? trimmed(line.substr(columns.first, columns.count)) : "";
+        if (text.empty()) fail(at_ + 1, columns.first + 1, fmt::format("no {} here", what));
+        return std::string(text);
+    }
+
+    double coordinate(std::string_view line, Columns columns) const {
+        const std::string text = word(line, columns, "coordinate");
+        const std::optional<double> value = find_real(text);
+        if (!value) {
+            fail(at_ + 1, columns.first + 1,
+                 fmt::format("'{}' is not a coordinate; expected a number in Å in columns {} to {}",
+                             text, columns.first + 1, columns.first + columns.count));
+        }
+        return *value;
+    }
+
+    void read_atom(std::string_view line) {
+        AtomName name{word(line, layout_.segment, "segment name"),
+                      word(line, layout_.residue, "residue name"),
+                      word(line, layout_.number, "residue number"),
+                      word(line, layout_.atom, "atom name")};
+        const auto [first, is_new] = seen_.emplace(
+            std::tuple(name.segment, name.residue, name.number, name.atom), at_ + 1);
+        if (!is_new) {
+            fail(at_ + 1, 0,
+                 fmt::format("atom {} again, first on line {}", to_string(name), first->second));
+        }
+        structure_.positions.emplace_back(coordinate(line, layout_.x), coordinate(line, layout_.y),
+                                          coordinate(line, layout_.z));
+        structure_.names.push_back(std::move(name));
+        structure_.lines.push_back(at_ + 1);
+    }
+
+    std::vector<std::string_view> lines_;
+    std::size_t at_ = 0;  // the line to be read next
+    Layout layout_ = normal_layout;
+    Structure structure_;
+    std::map<std::tuple<std::string, std::string, std::string, std::string>, std::size_t> seen_;
+};
+
+}  // namespace
+
+Structure parse_crd(std::string_view text, const std::string& file) {
+    return Reader(text, file).read();
+}
+
+Structure read_crd(const std::filesystem::path& path) {
+    return parse_crd(read_text_file(path), path.string());
+}
+
+std::string format_crd(const Structure& structure, std::string_view title) {
+    std::string text;
+    for (const std::string_view line : split_lines(title)) text += fmt::format("* {}\n", line);
+    text += fmt::format("*\n{:10}  EXT\n", structure.names.size());
+    std::size_t residue = 0;
+    for (std::size_t atom = 0; atom < structure.names.size(); ++atom) {
+        const AtomName& name = structure.names[atom];
+        const bool same = atom > 0 && structure.names[atom - 1].segment == name.segment &&
+                          structure.names[atom - 1].number == name.number;
+        if (!same) ++residue;
+        const Vec3& p = structure.positions[atom];
+        fmt::format_to(std::back_inserter(text),
+                       "{:10}{:10}  {:<8}  {:<8}{:20.10f}{:20.10f}{:20.10f}  {:<8}  {:<8}{:20.10f}\n",
+                       atom + 1, residue, name.residue, name.atom, p.x(), p.y(), p.z(),
+                       name.segment, name.number, 0.0);
+    }
+    return text;
+}
+
+}  // namespace palpa

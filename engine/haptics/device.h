@@ -1,0 +1,50 @@
+// What a haptic device is to the rest of the program: limits, a reading, a force.
+#pragma once
+#include "math/vec.h"
+
+#include <cstdint>
+#include <string>
+
+namespace palpa {
+
+// Limits as the maker or the driver states them. SI; axes: x right, y up, z towards the user.
+struct DeviceSpec {
+    std::string name;
+    double rate_hz = 1000;                // servo ticks a second
+    double peak_force_newton = 0;         // what the motors give at most
+    double viscosity_N_s_per_m = 0;       // what is known of the device's own damping; 0 if nothing
+    Vec3 half_workspace_m = Vec3::Zero(); // the box in which the handle can move, from its centre
+    int sensed_axes = 3, actuated_axes = 3;
+};
+
+// One look at the device. `valid` is false if the device had nothing new or nothing sane to say.
+struct DeviceReading {
+    double time_s = 0;                  // on the device's own clock
+    Vec3 position_m = Vec3::Zero();     // of the handle, from the centre of the workspace
+    std::uint32_t buttons = 0;          // one bit a button, see Button
+    bool valid = false;
+};
+
+enum class Button : std::uint32_t { Clutch = 1, Second = 2 };
+
+inline bool is_pressed(std::uint32_t buttons, Button button) noexcept {
+    return (buttons & static_cast<std::uint32_t>(button)) != 0;
+}
+
+// Used by one thread, the servo's. Neither call waits, locks or allocates.
+class Device {
+public:
+    Device() = default;
+    Device(const Device&) = delete;
+    Device& operator=(const Device&) = delete;
+    virtual ~Device() = default;
+
+    virtual const DeviceSpec& spec() const noexcept = 0;
+    virtual DeviceReading read() noexcept = 0;
+
+    // The force (N) on the hand, held until the next write: one write a tick. An emulated device
+    // lives on the servo's clock and moves on by one tick here.
+    virtual void write(const Vec3& force_newton) noexcept = 0;
+};
+
+}  // namespace palpa

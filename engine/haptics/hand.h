@@ -1,0 +1,53 @@
+// Models of the hand that holds the handle, and the path it wants to follow.
+#pragma once
+#include <array>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace palpa {
+
+// Mass, damping and stiffness of a hand along one axis, held to its target by spring and damper.
+// With a grip, a second spring and damper stand between the handle and the hand's mass; without
+// one the hand moves with the handle. The values are assumed, not measured.
+struct HandModel {
+    double mass_kg = 0;
+    double damping_N_s_per_m = 0;
+    double stiffness_N_per_m = 0;
+    double grip_stiffness_N_per_m = 0;  // 0: no grip between
+    double grip_damping_N_s_per_m = 0;
+};
+
+enum class Grip { None, Light, Slack, Medium, Firm, FirmGrip };
+
+// In the order of Grip, as scene files and the command line spell them.
+inline constexpr std::array<std::string_view, 6> grip_names{"none",   "light", "slack",
+                                                            "medium", "firm",  "firm-grip"};
+
+// The hand of that grip; nothing where nobody holds the handle.
+std::optional<HandModel> hand_model(Grip grip) noexcept;
+
+// Spring between the handle and the place the hand wants, where nothing moves (N/m).
+double static_stiffness(const HandModel& hand) noexcept;
+
+// Where the hand wants the handle at a time. Between two waypoints it goes along a minimum-jerk
+// curve, before the first and after the last it rests.
+struct HandWaypoint {
+    double time_s = 0;
+    double x_m = 0;
+};
+
+// From 0 to 1 for s from 0 to 1, at rest at both ends: 10 s^3 - 15 s^4 + 6 s^5; flat outside.
+double minimum_jerk(double s) noexcept;
+
+double find_target(const std::vector<HandWaypoint>& path, double time_s) noexcept;
+
+// A hand's plan for a session: a path along x, and an impulse that knocks the handle.
+struct HandScript {
+    std::vector<HandWaypoint> path;  // times ascending
+    double kick_N_s = 0;             // along x, spread over `kick_duration_s`
+    double kick_time_s = 1.0;
+    double kick_duration_s = 0.01;
+};
+
+}  // namespace palpa

@@ -1,0 +1,50 @@
+// The table of all atoms, an array per property, and how atoms are named.
+#pragma once
+#include "math/vec.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace palpa {
+
+// How a structure file names one atom. Molecules are found by segment.
+struct AtomName {
+    std::string segment;   // "WATA"
+    std::string residue;   // "TIP3"
+    std::string number;    // residue number, with its insertion code if there is one: "27A"
+    std::string atom;      // "OH2"
+};
+
+// "WATA TIP3 1 OH2", for messages.
+std::string to_string(const AtomName& name);
+
+// Where the atoms of a structure file are, in the order of the file.
+struct Structure {
+    std::string file;
+    std::vector<AtomName> names;
+    std::vector<Vec3> positions;      // Å
+    std::vector<std::size_t> lines;   // the atom's line in the file, for messages
+};
+
+// A range of an atom table.
+struct AtomRange {
+    std::uint32_t first = 0;
+    std::uint32_t count = 0;
+};
+
+// All atoms of a world; every array has one entry per atom. Written once on loading, but for
+// `positions`, which each simulation step updates.
+struct AtomTable {
+    std::vector<AtomName> names;
+    std::vector<Vec3> positions;         // Å
+    std::vector<double> mass;            // amu
+    std::vector<double> charge;          // e
+    std::vector<double> sqrt_epsilon;    // (kcal/mol)^(1/2), root of the Lennard-Jones well depth
+    std::vector<double> half_rmin;       // Å, half the distance of the well's minimum
+
+    std::size_t size() const noexcept { return names.size(); }
+};
+
+}  // namespace palpa

@@ -1,0 +1,97 @@
+// What a scene file says, as plain data with defaults; nothing is loaded yet.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace palpa {
+
+// Every choice of a scene file: its names stand in the order of the enumerators.
+enum class Motion { Fixed, AlongX };
+inline constexpr std::array<std::string_view, 2> motion_names{"fixed", "along-x"};
+
+enum class Stroke { Hold, InOut, Path };
+inline constexpr std::array<std::string_view, 3> stroke_names{"hold", "in-out", "path"};
+
+// The paper's five modes, and the one that is to become the default.
+enum class CouplingMode {
+    VariableForceVariableDisplacement,
+    VariableForceConstantDisplacement,
+    ConstantForceVariableDisplacement,
+    ConstantForceConstantDisplacement,
+    NoForce,
+    Guarded
+};
+inline constexpr std::array<std::string_view, 6> coupling_mode_names{"1", "2", "3",
+                                                                     "4", "5", "guarded"};
+
+// In the order of haptics' Grip.
+inline constexpr std::array<std::string_view, 6> hand_names{"none",   "light", "slack",
+                                                            "medium", "firm",  "firm-grip"};
+
+struct ForceFieldDescription {
+    std::vector<std::filesystem::path> files;
+    double coulomb_constant = 332.0716;  // kcal Å/mol/e^2
+};
+
+struct MoleculeDescription {
+    std::string name;
+    std::filesystem::path structure;
+    std::string segment;
+    std::string reference_atom;  // that stands for the molecule's place
+    Motion motion = Motion::Fixed;
+};
+
+struct GrabDescription {
+    std::string molecule;       // that the hand moves
+    std::string measured_from;  // molecule whose reference atom distances start at
+};
+
+struct HandDescription {
+    std::size_t grip = 3;  // into hand_names: medium
+    Stroke stroke = Stroke::InOut;
+    std::optional<double> start_angstrom;
+    double peak_nN = 3;
+    double stroke_s = 3;
+    double pause_s = 1;
+    std::int64_t cycles = 1;
+    double kick_N_s = 0;
+    std::vector<std::array<double, 2>> path;  // s, mm
+};
+
+struct DeviceDescription {
+    double inertia_kg = 0.045;
+    double viscosity_N_s_per_m = 0.1;
+    double friction_N = 0.26;
+    double encoder_step_mm = 0.055;
+    std::int64_t servo_delay_ticks = 1;
+};
+
+struct CouplingDescription {
+    CouplingMode mode = CouplingMode::VariableForceConstantDisplacement;
+    double clamp_N = 3;
+    double F_h1_N = 1, F_h2_N = 3, F_0_nN = 1.5, A_f_min = 0.64e9, A_f_max = 5.1e9;  // eq. 2
+    double gamma_per_N = 10e11, F_off_pN = 20, A_d_min = 0.005e9, A_d_max = 0.25e9;  // eq. 3
+    double A_f = 0.64e9, A_d = 0.25e9;  // the constant gains
+};
+
+struct SceneDescription {
+    std::filesystem::path file;
+    std::string title, about;
+    ForceFieldDescription force_field;
+    std::vector<MoleculeDescription> molecules;  // in the order of the file
+    GrabDescription grab;
+    HandDescription hand;
+    DeviceDescription device;
+    CouplingDescription coupling;
+    double period_ms = 1;
+    double seconds = 10;
+    std::int64_t every = 1;
+    std::int64_t seed = 1;
+};
+
+}  // namespace palpa

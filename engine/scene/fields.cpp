@@ -1,0 +1,298 @@
+#include "scene/fields.h"
+
+#include <fmt/format.h>
+#include <utility>
+
+namespace palpa {
+namespace {
+
+constexpr double positive = std::numeric_limits<double>::min();
+
+template <class Enum, std::size_t n>
+void choose(FieldVisitor& visitor, const Field& field,
+            const std::array<std::string_view, n>& names, Enum& value) {
+    auto index = static_cast<std::size_t>(value);
+    visitor.choice(field, names, index);
+    value = static_cast<Enum>(index);
+}
+
+void visit_force_field(FieldVisitor& v, ForceFieldDescription& f) {
+    v.enter_table({.key = "force_field", .meaning = "where the forces come from"});
+    v.files({.key = "files",
+             .meaning = "CHARMM topology, parameter and stream files, in the order of reading",
+             .required = true},
+            f.files);
+    v.real({.key = "coulomb_constant",
+            .meaning = "kcal Å/mol/e²; the default is CHARMM's own",
+            .lowest = 0,
+            .highest = 1e6},
+           f.coulomb_constant);
+    v.leave_table();
+}
+
+void visit_molecule(FieldVisitor& v, MoleculeDescription& m) {
+    v.enter_table({.key = m.name, .meaning = "one molecule"});
+    v.file({.key = "structure", .meaning = "CHARMM coordinate file (.crd)", .required = true},
+           m.structure);
+    v.text({.key = "segment",
+            .meaning = "segment of that file whose atoms make up the molecule",
+            .required = true},
+           m.segment);
+    v.text({.key = "reference_atom",
+            .meaning = "name of the atom that stands for the molecule's place",
+            .required = true},
+           m.reference_atom);
+    choose(v,
+           {.key = "motion",
+            .meaning = "what the molecule may do: nothing, or move along x without turning"},
+           motion_names, m.motion);
+    v.leave_table();
+}
+
+void visit_molecules(FieldVisitor& v, std::vector<MoleculeDescription>& molecules) {
+    v.enter_table({.key = "molecules", .meaning = "the molecules", .required = true});
+    std::vector<std::string> names;
+    for (const MoleculeDescription& molecule : molecules) names.push_back(molecule.name);
+    v.list_tables({.key = "NAME", .meaning = "one molecule, under a name of your choice"}, names);
+    molecules.resize(names.size());
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        molecules[i].name = names[i];
+        visit_molecule(v, molecules[i]);
+    }
+    v.leave_table();
+}
+
+void visit_grab(FieldVisitor& v, GrabDescription& g) {
+    v.enter_table({.key = "grab", .meaning = "what the hand holds", .required = true});
+    v.text({.key = "molecule", .meaning = "name of the molecule that the hand moves", .required = true},
+           g.molecule);
+    v.text({.key = "measured_from",
+            .meaning = "name of the molecule whose reference atom distances are measured from",
+            .required = true},
+           g.measured_from);
+    v.leave_table();
+}
+
+void visit_hand(FieldVisitor& v, HandDescription& h) {
+    v.enter_table({.key = "hand", .meaning = "the hand on the emulated device"});
+    v.choice({.key = "grip", .meaning = "how firmly the handle is held; none leaves it free"},
+             hand_names, h.grip);
+    choose(v,
+           {.key = "stroke",
+            .meaning = "what the hand does: keep the handle where the force vanishes, go in to "
+                       "peak_nN and out again, or follow path"},
+           stroke_names, h.stroke);
+    v.optional_real({.key = "start_angstrom",
+                     .meaning = "distance of the reference atoms at the start; unset: for hold the "
+                                "outermost distance without force, else as in the structure",
+                     .lowest = 0,
+                     .highest = 1e3},
+                    h.start_angstrom);
+    v.real({.key = "peak_nN",
+            .meaning = "in-out: repulsion of the molecules at the innermost point",
+            .lowest = 1e-3,
+            .highest = 100},
+           h.peak_nN);
+    v.real({.key = "stroke_s",
+            .meaning = "in-out: time of each way",
+            .lowest = 0.01,
+            .highest = 1e4},
+           h.stroke_s);
+    v.real({.key = "pause_s",
+            .meaning = "in-out: rest at the innermost point",
+            .lowest = 0,
+            .highest = 1e4},
+           h.pause_s);
+    v.integer({.key = "cycles",
+               .meaning = "in-out: how often",
+               .lowest = 1,
+               .highest = 10000},
+              h.cycles);
+    v.real({.key = "kick_N_s",
+            .meaning = "impulse that knocks the handle towards +x, spread over 10 ms at 1 s",
+            .lowest = -0.1,
+            .highest = 0.1},
+           h.kick_N_s);
+    v.pairs({.key = "path",
+             .meaning = "path: [time in s, place in mm] of the hand, minimum jerk in between"},
+            h.path);
+    v.leave_table();
+}
+
+void visit_device(FieldVisitor& v, DeviceDescription& d) {
+    v.enter_table({.key = "device", .meaning = "the emulated Omni"});
+    v.real({.key = "inertia_kg",
+            .meaning = "mass felt at the handle",
+            .lowest = 1e-3,
+            .highest = 10},
+           d.inertia_kg);
+    v.real({.key = "viscosity_N_s_per_m",
+            .meaning = "viscous friction of the device",
+            .lowest = 0,
+            .highest = 100},
+           d.viscosity_N_s_per_m);
+    v.real({.key = "friction_N",
+            .meaning = "Coulomb friction of the device",
+            .lowest = 0,
+            .highest = 10},
+           d.friction_N);
+    v.real({.key = "encoder_step_mm",
+            .meaning = "step of the position sensor; 0 reads exactly",
+            .lowest = 0,
+            .highest = 10},
+           d.encoder_step_mm);
+    v.integer({.key = "servo_delay_ticks",
+               .meaning = "servo ticks from a force to its sending",
+               .lowest = 0,
+               .highest = 7},
+              d.servo_delay_ticks);
+    v.leave_table();
+}
+
+void visit_coupling(FieldVisitor& v, CouplingDescription& c) {
+    v.enter_table({.key = "coupling", .meaning = "from molecule to hand and back"});
+    choose(v,
+           {.key = "mode",
+            .meaning = "1 variable force and displacement gain, 2 variable force gain, 3 variable "
+                       "displacement gain, 4 both constant, 5 no force; guarded is not built yet"},
+           coupling_mode_names, c.mode);
+    v.real({.key = "clamp_N",
+            .meaning = "largest force sent to the device",
+            .lowest = 0,
+            .highest = 3.3},
+           c.clamp_N);
+    v.real({.key = "F_h1_N", .meaning = "eq. 2: force that low forces tend to", .lowest = 1e-3,
+            .highest = 100},
+           c.F_h1_N);
+    v.real({.key = "F_h2_N", .meaning = "eq. 2: force that high forces tend to, above F_h1_N",
+            .lowest = 1e-3, .highest = 100},
+           c.F_h2_N);
+    v.real({.key = "F_0_nN", .meaning = "eq. 2: molecular force between low and high", .lowest = 0,
+            .highest = 1e3},
+           c.F_0_nN);
+    v.real({.key = "A_f_min", .meaning = "eq. 2: gain of high forces", .lowest = positive,
+            .highest = 1e15},
+           c.A_f_min);
+    v.real({.key = "A_f_max", .meaning = "eq. 2: gain of low forces", .lowest = positive,
+            .highest = 1e15},
+           c.A_f_max);
+    v.real({.key = "gamma_per_N", .meaning = "eq. 3: sharpness of the transition",
+            .lowest = positive, .highest = 1e18},
+           c.gamma_per_N);
+    v.real({.key = "F_off_pN", .meaning = "eq. 3: molecular force of the transition", .lowest = 0,
+            .highest = 1e6},
+           c.F_off_pN);
+    v.real({.key = "A_d_min", .meaning = "eq. 3: displacement gain far away, handle metres per "
+                                         "molecule metre",
+            .lowest = 1, .highest = 1e15},
+           c.A_d_min);
+    v.real({.key = "A_d_max", .meaning = "eq. 3: displacement gain in contact", .lowest = 1,
+            .highest = 1e15},
+           c.A_d_max);
+    v.real({.key = "A_f", .meaning = "constant force gain of modes 3 and 4", .lowest = 0,
+            .highest = 1e15},
+           c.A_f);
+    v.real({.key = "A_d", .meaning = "constant displacement gain of modes 2, 4 and 5", .lowest = 1,
+            .highest = 1e15},
+           c.A_d);
+    v.leave_table();
+}
+
+// Gathers the notes; the values visited are the defaults.
+class Lister final : public FieldVisitor {
+public:
+    std::vector<FieldNote> notes;
+
+    void enter_table(const Field& field) override { path_ += std::string(field.key) + "."; }
+    void leave_table() override {
+        path_.pop_back();
+        path_.resize(path_.rfind('.') == std::string::npos ? 0 : path_.rfind('.') + 1);
+    }
+    void list_tables(const Field& field, std::vector<std::string>& names) override {
+        names = {std::string(field.key)};
+    }
+    void real(const Field& field, double& value) override {
+        add(field, fmt::format("number{}", range(field)), fmt::format("{}", value));
+    }
+    void optional_real(const Field& field, std::optional<double>& /*value*/) override {
+        add(field, fmt::format("number{}", range(field)), "unset");
+    }
+    void integer(const Field& field, std::int64_t& value) override {
+        add(field, fmt::format("whole number{}", range(field)), fmt::format("{}", value));
+    }
+    void text(const Field& field, std::string& value) override {
+        add(field, "text", fmt::format("\"{}\"", value));
+    }
+    void choice(const Field& field, std::span<const std::string_view> names,
+                std::size_t& value) override {
+        add(field, fmt::format("\"{}\"", fmt::join(names, "\", \"")),
+            fmt::format("\"{}\"", names[value]));
+    }
+    void file(const Field& field, std::filesystem::path& /*value*/) override {
+        add(field, "file name", "");
+    }
+    void files(const Field& field, std::vector<std::filesystem::path>& /*value*/) override {
+        add(field, "list of file names", "[]");
+    }
+    void pairs(const Field& field, std::vector<std::array<double, 2>>& /*value*/) override {
+        add(field, "list of pairs", "[]");
+    }
+
+private:
+    static std::string range(const Field& field) {
+        const double limit = std::numeric_limits<double>::max();
+        if (field.lowest == positive) return fmt::format(", above 0 to {}", field.highest);
+        if (field.lowest > -limit && field.highest < limit) {
+            return fmt::format(", {} to {}", field.lowest, field.highest);
+        }
+        return "";
+    }
+    void add(const Field& field, std::string type, std::string fallback) {
+        notes.push_back({path_ + std::string(field.key), std::move(type),
+                         field.required ? "required" : std::move(fallback),
+                         std::string(field.meaning)});
+    }
+
+    std::string path_;
+};
+
+}  // namespace
+
+void visit_scene(FieldVisitor& v, SceneDescription& scene) {
+    v.text({.key = "title", .meaning = "name of the scene"}, scene.title);
+    v.text({.key = "about", .meaning = "what it shows, in a few sentences"}, scene.about);
+    visit_force_field(v, scene.force_field);
+    visit_molecules(v, scene.molecules);
+    visit_grab(v, scene.grab);
+    visit_hand(v, scene.hand);
+    visit_device(v, scene.device);
+    visit_coupling(v, scene.coupling);
+    v.enter_table({.key = "run", .meaning = "a headless run"});
+    v.real({.key = "period_ms",
+            .meaning = "declared period of the simulation, a whole number of 1 ms servo ticks",
+            .lowest = 1,
+            .highest = 1e4},
+           scene.period_ms);
+    v.real({.key = "seconds", .meaning = "length of the run", .lowest = 1e-3, .highest = 1e5},
+           scene.seconds);
+    v.integer({.key = "every",
+               .meaning = "the trace keeps one row of this many servo ticks",
+               .lowest = 1,
+               .highest = 1e6},
+              scene.every);
+    v.integer({.key = "seed",
+               .meaning = "of everything random; the strokes so far draw nothing",
+               .lowest = 0,
+               .highest = 1e15},
+              scene.seed);
+    v.leave_table();
+}
+
+std::vector<FieldNote> list_fields() {
+    Lister lister;
+    SceneDescription defaults;
+    visit_scene(lister, defaults);
+    return std::move(lister.notes);
+}
+
+}  // namespace palpa

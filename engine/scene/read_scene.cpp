@@ -1,0 +1,476 @@
+#include "scene/read_scene.h"
+
+#include "core/files.h"
+#include "core/load_error.h"
+#include "core/text.h"
+#include "scene/fields.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <fmt/format.h>
+#include <limits>
+#include <map>
+#include <optional>
+#include <system_error>
+#include <toml++/toml.h>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace palpa {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Problem {
+    TextPlace place;
+    std::string what;
+};
+
+// ---- where a node stands ---------------------------------------------------------------------
+
+TextPlace place_of(const toml::source_region& source) {
+    TextPlace place{source.path ? *source.path : "", source.begin.line, source.begin.column};
+    if (place.file.starts_with("--set ")) place.line = place.column = 0;  // the command line
+    return place;
+}
+
+// What a node holds, as a person would call it.
+std::string kind_of(const toml::node& node) {
+    switch (node.type()) {
+        case toml::node_type::table: return "a table";
+        case toml::node_type::array: return "a list";
+        case toml::node_type::string: return fmt::format("the text \"{}\"", node.ref<std::string>());
+        case toml::node_type::integer: return fmt::format("{}", node.ref<std::int64_t>());
+        case toml::node_type::floating_point: return fmt::format("{}", node.ref<double>());
+        case toml::node_type::boolean: return node.ref<bool>() ? "true" : "false";
+        case toml::node_type::none: break;
+        default: return "a date or time";
+    }
+    return "nothing";
+}
+
+// ---- reading ---------------------------------------------------------------------------------
+
+// Fills a description from a table. Problems are gathered, so that the first one in the file is
+// told and not the first one in our list.
+class Reader final : public FieldVisitor {
+public:
+    Reader(const toml::table& root, fs::path file)
+        : file_(std::move(file)), folder_(file_.parent_path()) {
+        levels_.push_back({&root, "", place_or_start(root), {}, false});
+    }
+
+    void finish() {
+        report_unknown_keys(levels_.back());
+        if (problems_.empty()) return;
+        std::stable_sort(problems_.begin(), problems_.end(), [](const Problem& a, const Problem& b) {
+            return std::tie(a.place.line, a.place.column) < std::tie(b.place.line, b.place.column);
+        });
+        const std::size_t others = problems_.size() - 1;
+        throw LoadError(problems_[0].place,
+                        problems_[0].what + (others == 0   ? ""
+                                             : others == 1 ? " (and 1 more problem)"
+                                                           : fmt::format(" (and {} more problems)",
+                                                                         others)));
+    }
+
+    void problem(const TextPlace& place, std::string what) {
+        problems_.push_back({place, std::move(what)});
+    }
+    void problem(const toml::node& node, std::string what) {
+        problem(place_of(node.source()), std::move(what));
+    }
+
+    // The place of a field that was read, or of the table where it should be.
+    TextPlace place_of_key(const std::string& key) const {
+        const auto found = places_.find(key);
+        return found == places_.end() ? TextPlace{file_.string(), 1, 1} : found->second;
+    }
+
+    void enter_table(const Field& field) override {
+        Level level{nullptr, full_key(field.key) + ".", levels_.back().place, {},
+                    levels_.back().missing};
+        if (const toml::node* const node = find(field)) {
+            level.table = node->as_table();
+            level.place = place_of(node->source());
+            if (!level.table) {
+                problem(*node, fmt::format("'{}' is {}; expected a table, [{}]", full_key(field.key),
+                                           kind_of(*node), full_key(field.key)));
+                level.missing = true;
+            }
+        } else if (field.required && !level.missing) {
+            problem(levels_.back().place, fmt::format("no table [{}]: {}", full_key(field.key),
+                                                      field.meaning));
+            level.missing = true;  // one message is enough for all that it would hold
+        }
+        levels_.push_back(std::move(level));
+    }
+
+    void leave_table() override {
+        report_unknown_keys(levels_.back());
+        levels_.pop_back();
+    }
+
+    void list_tables(const Field& field, std::vector<std::string>& names) override {
+        names.clear();
+        Level& level = levels_.back();
+        if (!level.table) return;
+        std::vector<std::pair<toml::source_position, std::string>> found;
+        for (const auto& [key, node] : *level.table) {
+            found.emplace_back(node.source().begin, std::string(key.str()));
+        }
+        std::stable_sort(found.begin(), found.end(),
+                         [](const auto& a, const auto& b) { return a.first < b.first; });
+        for (auto& [position, name] : found) names.push_back(std::move(name));
+        if (names.empty()) {
+            problem(level.place, fmt::format("[{}] holds no table; expected {}",
+                                             level.path.substr(0, level.path.size() - 1),
+                                             field.meaning));
+        }
+    }
+
+    void real(const Field& field, double& value) override {
+        const toml::node* const node = find_value(field);
+        if (!node) return;
+        if (!node->is_number()) {
+            return problem(*node, expected(field, *node, "a number"));
+        }
+        const double read = node->is_integer() ? static_cast<double>(node->ref<std::int64_t>())
+                                               : node->ref<double>();
+        if (!std::isfinite(read)) return problem(*node, expected(field, *node, "a finite number"));
+        if (read < field.lowest || read > field.highest) {
+            return problem(*node, expected(field, *node, range(field, "a number")));
+        }
+        value = read;
+    }
+
+    void optional_real(const Field& field, std::optional<double>& value) override {
+        double read = NAN;
+        real(field, read);
+        if (!std::isnan(read)) value = read;
+    }
+
+    void integer(const Field& field, std::int64_t& value) override {
+        const toml::node* const node = find_value(field);
+        if (!node) return;
+        const std::int64_t read = node->value_exact<std::int64_t>().value_or(0);
+        const auto real_value = static_cast<double>(read);
+        if (!node->is_integer() || real_value < field.lowest || real_value > field.highest) {
+            return problem(*node, expected(field, *node, range(field, "a whole number")));
+        }
+        value = read;
+    }
+
+    void text(const Field& field, std::string& value) override {
+        const toml::node* const node = find_value(field);
+        if (!node) return;
+        if (!node->is_string()) return problem(*node, expected(field, *node, "text in quotes"));
+        value = node->ref<std::string>();
+    }
+
+    void choice(const Field& field, std::span<const std::string_view> names,
+                std::size_t& value) override {
+        const toml::node* const node = find_value(field);
+        if (!node) return;
+        const std::string read = node->is_string()    ? node->ref<std::string>()
+                                 : node->is_integer() ? fmt::format("{}", node->ref<std::int64_t>())
+                                                      : "";
+        const auto found = std::find(names.begin(), names.end(), read);
+        if (found == names.end()) {
+            return problem(*node, expected(field, *node,
+                                           fmt::format("one of {}{}", fmt::join(names, ", "),
+                                                       near_name_hint(read, names))));
+        }
+        value = static_cast<std::size_t>(found - names.begin());
+    }
+
+    void file(const Field& field, fs::path& value) override {
+        const toml::node* const node = find_value(field);
+        if (node) read_file_name(field, *node, value);
+    }
+
+    void files(const Field& field, std::vector<fs::path>& value) override {
+        const toml::node* const node = find_value(field);
+        if (!node) return;
+        const toml::array* const list = node->as_array();
+        if (!list || list->empty()) {
+            return problem(*node, expected(field, *node, "a list of file names, [\"...\"]"));
+        }
+        value.clear();
+        for (const toml::node& entry : *list) {
+            if (fs::path path; read_file_name(field, entry, path)) value.push_back(path);
+        }
+    }
+
+    void pairs(const Field& field, std::vector<std::array<double, 2>>& value) override {
+        const toml::node* const node = find_value(field);
+        if (!node) return;
+        const toml::array* const list = node->as_array();
+        if (!list) return problem(*node, expected(field, *node, "a list of pairs, [[0.0, 1.0]]"));
+        value.clear();
+        for (const toml::node& entry : *list) {
+            const toml::array* const pair = entry.as_array();
+            const auto number = [&](std::size_t i) {
+                return pair && pair->size() == 2 ? pair->get(i)->value<double>() : std::nullopt;
+            };
+            const std::optional<double> a = number(0), b = number(1);
+            if (!a || !b || !std::isfinite(*a) || !std::isfinite(*b)) {
+                return problem(entry, expected(field, entry, "a pair of finite numbers"));
+            }
+            value.push_back({*a, *b});
+        }
+    }
+
+private:
+    // One table under way. `table` is null where the file has none: defaults, or errors.
+    struct Level {
+        const toml::table* table;
+        std::string path;  // "molecules.fixed."
+        TextPlace place;
+        std::vector<std::string> known;  // keys that were asked for
+        bool missing;                    // told already
+    };
+
+    TextPlace place_or_start(const toml::table& table) const {
+        TextPlace place = place_of(table.source());
+        place.file = file_.string();
+        place.line = std::max<std::size_t>(place.line, 1);
+        place.column = std::max<std::size_t>(place.column, 1);
+        return place;
+    }
+
+    std::string full_key(std::string_view key) const {
+        return levels_.back().path + std::string(key);
+    }
+
+    const toml::node* find(const Field& field) {
+        Level& level = levels_.back();
+        level.known.emplace_back(field.key);
+        const toml::node* const node = level.table ? level.table->get(field.key) : nullptr;
+        if (node) places_[full_key(field.key)] = place_of(node->source());
+        return node;
+    }
+
+    // The node of a field that is no table; tells of a required one that is not there.
+    const toml::node* find_value(const Field& field) {
+        const toml::node* const node = find(field);
+        const Level& level = levels_.back();
+        if (!node && field.required && !level.missing) {
+            problem(level.place, fmt::format("no key '{}': {}", full_key(field.key), field.meaning));
+        }
+        return node;
+    }
+
+    std::string expected(const Field& field, const toml::node& node, std::string_view right) const {
+        return fmt::format("'{}' is {}; expected {}", full_key(field.key), kind_of(node), right);
+    }
+
+    static std::string range(const Field& field, std::string_view kind) {
+        if (field.lowest == std::numeric_limits<double>::min()) {
+            return fmt::format("{} above 0 up to {}", kind, field.highest);
+        }
+        return fmt::format("{} from {} to {}", kind, field.lowest, field.highest);
+    }
+
+    bool read_file_name(const Field& field, const toml::node& node, fs::path& value) {
+        if (!node.is_string() || node.ref<std::string>().empty()) {
+            problem(node, expected(field, node, "a file name in quotes"));
+            return false;
+        }
+        value = folder_ / node.ref<std::string>();
+        std::error_code error;
+        if (fs::is_regular_file(value, error)) return true;
+        problem(node, fmt::format("'{}' names no file: {} is not there; expected a file beside the "
+                                  "scene",
+                                  full_key(field.key), value.string()));
+        return false;
+    }
+
+    void report_unknown_keys(const Level& level) {
+        if (!level.table) return;
+        const std::vector<std::string_view> known(level.known.begin(), level.known.end());
+        for (const auto& [key, node] : *level.table) {
+            if (std::find(known.begin(), known.end(), key.str()) != known.end()) continue;
+            const TextPlace place = place_of(key.source());
+            const std::string name = level.path + std::string(key.str());
+            const std::string hint = near_name_hint(key.str(), known);
+            problem(place, fmt::format("unknown key '{}'{}", name,
+                                       hint.empty() ? fmt::format("; expected one of {}",
+                                                                  fmt::join(known, ", "))
+                                                    : hint));
+        }
+    }
+
+    fs::path file_, folder_;
+    std::vector<Level> levels_;
+    std::vector<Problem> problems_;
+    std::map<std::string, TextPlace> places_;  // by full key
+};
+
+// ---- what fields must be together ------------------------------------------------------------
+
+void check_grab(const SceneDescription& scene, Reader& reader) {
+    std::vector<std::string_view> names;
+    for (const MoleculeDescription& molecule : scene.molecules) names.emplace_back(molecule.name);
+    const auto check = [&](const std::string& key, const std::string& name, Motion motion,
+                           const char* what) {
+        const auto found =
+            std::find_if(scene.molecules.begin(), scene.molecules.end(),
+                         [&](const MoleculeDescription& m) { return m.name == name; });
+        if (name.empty()) return;  // told already
+        if (found == scene.molecules.end()) {
+            reader.problem(reader.place_of_key(key),
+                           fmt::format("'{}' is \"{}\", which is no molecule of this scene; "
+                                       "expected one of {}{}",
+                                       key, name, fmt::join(names, ", "),
+                                       near_name_hint(name, names)));
+        } else if (found->motion != motion) {
+            reader.problem(reader.place_of_key(key),
+                           fmt::format("'{}' is \"{}\", whose motion is \"{}\"; expected {}", key,
+                                       name, motion_names[static_cast<std::size_t>(found->motion)],
+                                       what));
+        }
+    };
+    check("grab.molecule", scene.grab.molecule, Motion::AlongX, "a molecule that moves along-x");
+    check("grab.measured_from", scene.grab.measured_from, Motion::Fixed, "a fixed molecule");
+    for (const MoleculeDescription& molecule : scene.molecules) {
+        if (molecule.motion == Motion::AlongX && molecule.name != scene.grab.molecule) {
+            const std::string key = "molecules." + molecule.name + ".motion";
+            reader.problem(reader.place_of_key(key),
+                           fmt::format("'{}' is \"along-x\", but only grab.molecule moves", key));
+        }
+    }
+}
+
+void check_ranges(const SceneDescription& scene, Reader& reader) {
+    const auto check = [&](bool right, const std::string& key, const std::string& what) {
+        if (!right) reader.problem(reader.place_of_key(key), what);
+    };
+    const CouplingDescription& c = scene.coupling;
+    check(c.F_h2_N > c.F_h1_N, "coupling.F_h2_N",
+          fmt::format("'coupling.F_h2_N' is {}; expected more than F_h1_N, {}", c.F_h2_N, c.F_h1_N));
+    check(c.A_d_max >= c.A_d_min, "coupling.A_d_max",
+          fmt::format("'coupling.A_d_max' is {}; expected A_d_min, {}, or more", c.A_d_max,
+                      c.A_d_min));
+    check(c.mode != CouplingMode::Guarded, "coupling.mode",
+          "'coupling.mode' is \"guarded\", which is not built yet; expected one of 1, 2, 3, 4, 5");
+    check(std::abs(scene.period_ms - std::round(scene.period_ms)) < 1e-9, "run.period_ms",
+          fmt::format("'run.period_ms' is {}; expected a whole number of servo ticks of 1 ms",
+                      scene.period_ms));
+    const HandDescription& h = scene.hand;
+    check(h.stroke != Stroke::InOut || h.grip != 0, "hand.stroke",
+          "'hand.stroke' is \"in-out\" with a grip of \"none\": nobody would move the handle; "
+          "expected \"hold\", or a hand");
+    check(h.stroke != Stroke::Path || !h.path.empty(), "hand.stroke",
+          "'hand.stroke' is \"path\", but 'hand.path' has no point; expected [[time, place], ...]");
+    for (std::size_t i = 1; i < h.path.size(); ++i) {
+        check(h.path[i][0] > h.path[i - 1][0], "hand.path",
+              fmt::format("'hand.path' has the time {} after {}; expected ascending times",
+                          h.path[i][0], h.path[i - 1][0]));
+    }
+}
+
+// ---- settings from the command line ----------------------------------------------------------
+
+// The full key that "mode" or "coupling.mode" means.
+std::string full_setting_key(const std::string& key, const TextPlace& place) {
+    if (key.find('.') != std::string::npos) return key;
+    std::vector<std::string> matches;
+    std::vector<std::string_view> last_parts;
+    const std::vector<FieldNote> fields = list_fields();
+    for (const FieldNote& field : fields) {
+        const std::string_view last = std::string_view(field.key).substr(field.key.rfind('.') + 1);
+        last_parts.push_back(last);
+        if (field.key == key) return key;
+        if (last == key && field.key.find("NAME") == std::string::npos) matches.push_back(field.key);
+    }
+    if (matches.size() == 1) return matches[0];
+    if (matches.empty()) {
+        throw LoadError(place, fmt::format("no field of a scene is called '{}'{}", key,
+                                           near_name_hint(key, last_parts)));
+    }
+    throw LoadError(place,
+                    fmt::format("'{}' could be {}", key, fmt::join(matches, " or ")));
+}
+
+// Lays `from` over `onto`, table by table. Moves, since copies of a node forget where they stood.
+void merge(toml::table from, toml::table& onto) {
+    for (auto&& [key, node] : from) {
+        toml::table* const inner = node.as_table();
+        toml::node* const old = onto.get(key.str());
+        if (inner && old && old->is_table()) {
+            merge(std::move(*inner), *old->as_table());
+        } else {
+            node.visit([&, &k = key](auto& value) { onto.insert_or_assign(k, std::move(value)); });
+        }
+    }
+}
+
+void apply_setting(const std::string& setting, toml::table& root) {
+    const TextPlace place{"--set " + setting};
+    const std::size_t equals = setting.find('=');
+    if (equals == std::string::npos || equals == 0) {
+        throw LoadError(place, "expected KEY=VALUE, such as coupling.mode=2");
+    }
+    const std::string key =
+        full_setting_key(std::string(trimmed(setting.substr(0, equals))), place);
+    const std::string value(trimmed(setting.substr(equals + 1)));
+    const auto parse = [&](const std::string& text) {
+        return toml::parse(std::string_view(text), std::string_view(place.file));
+    };
+    try {
+        merge(parse(key + " = " + value), root);
+    } catch (const toml::parse_error&) {
+        // Not TOML: a word, then.
+        const bool word = !value.empty() && value.find_first_of("\"'\\\n[]{}=#") == std::string::npos;
+        if (!word) throw LoadError(place, "the value is neither TOML nor a bare word");
+        try {
+            merge(parse(key + " = \"" + value + "\""), root);
+        } catch (const toml::parse_error&) {
+            throw LoadError(place, fmt::format("'{}' is no key", key));
+        }
+    }
+}
+
+}  // namespace
+
+SceneDescription parse_scene(std::string_view text, const fs::path& file,
+                             std::span<const std::string> settings) {
+    toml::table root;
+    try {
+        root = toml::parse(text, std::string_view(file.string()));
+    } catch (const toml::parse_error& error) {
+        throw LoadError(place_of(error.source()), std::string(error.description()));
+    }
+    for (const std::string& setting : settings) apply_setting(setting, root);
+
+    SceneDescription scene;
+    scene.file = file;
+    Reader reader(root, file);
+    visit_scene(reader, scene);
+    check_grab(scene, reader);
+    check_ranges(scene, reader);
+    reader.finish();
+    return scene;
+}
+
+SceneDescription read_scene(const fs::path& path, std::span<const std::string> settings) {
+    std::error_code error;
+    if (!fs::exists(path, error)) {
+        throw LoadError({path.string()}, "no such scene; expected a scene folder or a .toml file");
+    }
+    fs::path file = path;
+    if (fs::is_directory(path, error)) {
+        file = path / "scene.toml";
+        if (!fs::exists(file, error)) {
+            throw LoadError({path.string()}, "this folder holds no scene.toml, so it is no scene");
+        }
+    }
+    return parse_scene(read_text_file(file), file, settings);
+}
+
+}  // namespace palpa

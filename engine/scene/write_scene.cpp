@@ -1,0 +1,110 @@
+#include "scene/write_scene.h"
+
+#include "scene/fields.h"
+
+#include <fmt/format.h>
+#include <iterator>
+
+namespace palpa {
+namespace {
+
+// A TOML basic string.
+std::string in_quotes(std::string_view text) {
+    std::string result = "\"";
+    for (const char letter : text) {
+        if (letter == '"' || letter == '\\') {
+            result += '\\';
+            result += letter;
+        } else if (static_cast<unsigned char>(letter) < 0x20 || letter == 0x7f) {
+            result += fmt::format("\\u{:04X}", static_cast<unsigned>(letter));
+        } else {
+            result += letter;
+        }
+    }
+    return result + "\"";
+}
+
+// A key needs no quotes if it is made of letters, digits, '_' and '-'.
+std::string key_text(std::string_view key) {
+    const bool bare = !key.empty() && key.find_first_not_of("abcdefghijklmnopqrstuvwxyz"
+                                                            "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                                            "0123456789_-") == std::string::npos;
+    return bare ? std::string(key) : in_quotes(key);
+}
+
+// The shortest digits that read back as the same number, always with a point or exponent.
+std::string real_text(double value) {
+    std::string text = fmt::format("{}", value);
+    if (text.find_first_of(".e") == std::string::npos) text += ".0";
+    return text;
+}
+
+class Writer final : public FieldVisitor {
+public:
+    explicit Writer(const std::function<std::string(const std::filesystem::path&)>& file_name)
+        : file_name_(file_name) {}
+
+    std::string text_so_far;
+
+    void enter_table(const Field& field) override {
+        path_.push_back(key_text(field.key));
+        header_due_ = true;
+    }
+    void leave_table() override {
+        path_.pop_back();
+        header_due_ = !path_.empty();
+    }
+    void list_tables(const Field& /*field*/, std::vector<std::string>& /*names*/) override {}
+
+    void real(const Field& field, double& value) override { add(field, real_text(value)); }
+    void optional_real(const Field& field, std::optional<double>& value) override {
+        if (value) add(field, real_text(*value));
+    }
+    void integer(const Field& field, std::int64_t& value) override {
+        add(field, fmt::format("{}", value));
+    }
+    void text(const Field& field, std::string& value) override { add(field, in_quotes(value)); }
+    void choice(const Field& field, std::span<const std::string_view> names,
+                std::size_t& value) override {
+        add(field, in_quotes(names[value]));
+    }
+    void file(const Field& field, std::filesystem::path& value) override {
+        add(field, in_quotes(file_name_(value)));
+    }
+    void files(const Field& field, std::vector<std::filesystem::path>& value) override {
+        std::vector<std::string> names;
+        for (const std::filesystem::path& path : value) names.push_back(in_quotes(file_name_(path)));
+        add(field, fmt::format("[{}]", fmt::join(names, ", ")));
+    }
+    void pairs(const Field& field, std::vector<std::array<double, 2>>& value) override {
+        std::vector<std::string> pairs;
+        for (const auto& [a, b] : value) {
+            pairs.push_back(fmt::format("[{}, {}]", real_text(a), real_text(b)));
+        }
+        add(field, fmt::format("[{}]", fmt::join(pairs, ", ")));
+    }
+
+private:
+    void add(const Field& field, const std::string& value) {
+        if (header_due_) text_so_far += fmt::format("\n[{}]\n", fmt::join(path_, "."));
+        header_due_ = false;
+        text_so_far += fmt::format("{} = {}\n", field.key, value);
+    }
+
+    const std::function<std::string(const std::filesystem::path&)>& file_name_;
+    std::vector<std::string> path_;
+    bool header_due_ = false;
+};
+
+}  // namespace
+
+std::string format_scene(
+    const SceneDescription& scene,
+    const std::function<std::string(const std::filesystem::path&)>& file_name) {
+    Writer writer(file_name);
+    SceneDescription copy = scene;  // visitors may write; this one does not
+    visit_scene(writer, copy);
+    return std::move(writer.text_so_far);
+}
+
+}  // namespace palpa

@@ -1,0 +1,181 @@
+#include "session/recording.h"
+
+#include "core/files.h"
+#include "core/load_error.h"
+#include "core/text.h"
+#include "scene/write_scene.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstddef>
+#include <fmt/format.h>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+namespace palpa {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array columns = std::to_array<std::string_view>(
+    {"time_s", "handle_x_m", "handle_y_m", "handle_z_m", "molecule_x_angstrom",
+     "molecule_y_angstrom", "molecule_z_angstrom", "force_x_nN", "force_y_nN", "force_z_nN",
+     "device_force_x_N", "device_force_y_N", "device_force_z_N", "force_gain",
+     "displacement_gain", "stiffness_N_per_m", "hand_energy_J", "potential_kcal_per_mol",
+     "active_joints", "period_ms", "clutch"});
+
+constexpr std::size_t flush_bytes = 1 << 16;
+
+// Every file the scene names, each once.
+std::vector<fs::path> input_files(const SceneDescription& scene) {
+    std::vector<fs::path> files;
+    const auto add = [&](const fs::path& file) {
+        if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
+    };
+    for (const fs::path& file : scene.force_field.files) add(file);
+    for (const MoleculeDescription& molecule : scene.molecules) add(molecule.structure);
+    return files;
+}
+
+// "inputs/NAME"; files of one name from several folders are numbered.
+std::string input_name(const std::vector<fs::path>& files, const fs::path& file) {
+    const auto same_name = [&](const fs::path& other) {
+        return other.filename() == file.filename();
+    };
+    const auto self = std::find(files.begin(), files.end(), file);
+    const auto earlier = std::count_if(files.begin(), self, same_name);
+    const std::string name = file.filename().string();
+    return "inputs/" + (earlier == 0 ? name : fmt::format("{}-{}", earlier + 1, name));
+}
+
+std::string format_session(const SceneDescription& scene) {
+    const std::vector<fs::path> files = input_files(scene);
+    return "# A recorded Palpa session with every field written out. To run it again:\n"
+           "#   palpa run session.toml --headless --record NEW_FOLDER\n" +
+           format_scene(scene, [&](const fs::path& file) { return input_name(files, file); });
+}
+
+void make_folder(const fs::path& folder) {
+    std::error_code error;
+    if (fs::exists(folder, error) && !fs::is_directory(folder, error)) {
+        throw LoadError({folder.string()}, "is a file; expected a folder to record into");
+    }
+    if (fs::is_directory(folder, error) && !fs::is_empty(folder, error) &&
+        !fs::exists(folder / "session.toml", error)) {
+        throw LoadError({folder.string()},
+                        "holds something that is no recording; expected a new or empty folder");
+    }
+    fs::create_directories(folder, error);
+    if (error) throw LoadError({folder.string()}, "cannot be made: " + error.message());
+}
+
+}  // namespace
+
+std::string scene_hash(const SceneDescription& scene) {
+    std::uint64_t hash = content_hash(format_session(scene));
+    for (const fs::path& file : input_files(scene)) {
+        hash = content_hash(read_text_file(file), hash);
+    }
+    return fmt::format("{:016x}", hash);
+}
+
+std::string trace_header() { return fmt::format("{}", fmt::join(columns, ",")); }
+
+std::string format_summary(const SceneDescription& scene, const Summary& summary) {
+    nlohmann::ordered_json json;
+    json["versions"] = {{"palpa", PALPA_VERSION},
+                        {"compiler", __VERSION__},
+                        {"eigen", fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
+                                              EIGEN_MINOR_VERSION)}};
+    json["scene"] = scene.title;
+    json["scene_hash"] = scene_hash(scene);
+    json["device"] = "emulated Omni";
+    json["hand"] = hand_names[scene.hand.grip];
+    json["stroke"] = stroke_names[static_cast<std::size_t>(scene.hand.stroke)];
+    json["mode"] = coupling_mode_names[static_cast<std::size_t>(scene.coupling.mode)];
+    json["period_ms"] = scene.period_ms;
+    json["friction_N"] = scene.device.friction_N;
+    json["seed"] = scene.seed;
+    json["seconds"] = scene.seconds;
+    json["steps"] = summary.steps;
+    json["step_median_us"] = summary.step_median_us;
+    json["step_p99_us"] = summary.step_p99_us;
+    json["steps_not_finite"] = summary.steps_not_finite;
+    json["ripple_N"] = summary.ripple.rms;
+    json["ripple_Hz"] = summary.ripple.hertz;
+    json["net_work_J"] = summary.net_work_J;
+    json["largest_attraction_N"] = summary.largest_attraction_N;
+    json["largest_repulsion_N"] = summary.largest_repulsion_N;
+    json["closest_angstrom"] = summary.closest_angstrom;
+    json["last_angstrom"] = summary.last_angstrom;
+    json["clamped_share"] = summary.clamped_share;
+    json["stopped"] = summary.stopped;
+    json["overruns"] = 0;    // lockstep cannot be late
+    json["neglected"] = nlohmann::ordered_json::array();  // rigid, all pairs: nothing
+    json["warnings"] = summary.warnings;
+    return json.dump(2) + "\n";
+}
+
+Recording::Recording(const fs::path& folder, const SceneDescription& scene)
+    : folder_(folder), scene_(scene) {
+    const std::vector<fs::path> files = input_files(scene);
+    // Read everything before the first byte is written: the folder may hold the inputs themselves.
+    std::vector<std::string> contents;
+    for (const fs::path& file : files) contents.push_back(read_text_file(file));
+    make_folder(folder);
+    std::error_code error;
+    fs::create_directories(folder / "inputs", error);
+    if (error) throw LoadError({folder.string()}, "cannot be written: " + error.message());
+    fs::remove(folder / "summary.json", error);
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        write_text_file(folder / input_name(files, files[i]), contents[i]);
+    }
+    write_text_file(folder / "session.toml", format_session(scene));
+    errno = 0;
+    trace_.open(folder / "trace.csv", std::ios::binary | std::ios::trunc);
+    rows_ = trace_header() + "\n";
+    flush();
+}
+
+void Recording::add(const ServoTick& tick) {
+    if (tick_++ % static_cast<std::uint64_t>(scene_.every) != 0) return;
+    const DeviceReading& device = tick.reading;
+    const TouchModel& touch = tick.touch;
+    // Adding nothing makes -0 a plain 0.
+    const Vec3 zero = Vec3::Zero();
+    const Vec3 force_nN = touch.force_newton * 1e9 + zero;
+    const Vec3 sent = tick.sent_newton + zero;
+    const Vec3 molecule = touch.molecule_angstrom + zero;
+    const Vec3 handle = device.position_m + zero;
+    fmt::format_to(std::back_inserter(rows_),
+                   "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
+                   device.time_s, handle.x(), handle.y(), handle.z(), molecule.x(), molecule.y(),
+                   molecule.z(), force_nN.x(), force_nN.y(), force_nN.z(), sent.x(), sent.y(),
+                   sent.z(), tick.force_gain,
+                   touch.displacement_gain, touch.stiffness_N_per_m, tick.hand_energy_J,
+                   touch.potential_kcal_per_mol, touch.active_freedom, touch.period_s * 1e3,
+                   tick.clutched ? 1 : 0);
+    if (rows_.size() > flush_bytes) flush();
+}
+
+void Recording::finish(const Summary& summary) {
+    flush();
+    write_text_file(folder_ / "summary.json", format_summary(scene_, summary));
+}
+
+void Recording::flush() {
+    trace_.write(rows_.data(), static_cast<std::streamsize>(rows_.size()));
+    trace_.flush();
+    if (!trace_) {
+        throw LoadError({(folder_ / "trace.csv").string()},
+                        "cannot be written: " + std::generic_category().message(errno));
+    }
+    rows_.clear();
+}
+
+}  // namespace palpa

@@ -1,0 +1,46 @@
+// A session on disk: a folder with trace.csv, summary.json, session.toml and the scene's inputs.
+#pragma once
+#include "haptics/servo.h"
+#include "scene/description.h"
+#include "session/statistics.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace palpa {
+
+// A hash of the scene, every field and the content of every file that it names. 16 hex digits.
+std::string scene_hash(const SceneDescription& scene);
+
+// The trace's first line, without its end. One column a value, the unit last in the name.
+std::string trace_header();
+
+// The summary as a JSON object; scripts rely on its keys, which the README of tools lists.
+std::string format_summary(const SceneDescription& scene, const Summary& summary);
+
+class Recording {
+public:
+    // Makes the folder, or takes the place of the recording in it, and writes session.toml and the
+    // inputs: what is needed to run the session again is there from the first moment. Throws
+    // LoadError if the folder cannot be written or holds something else.
+    Recording(const std::filesystem::path& folder, const SceneDescription& scene);
+
+    // Every `every`th tick becomes a row. What was written stays readable if the run is cut off.
+    void add(const ServoTick& tick);
+
+    // Writes what is left of the trace, and the summary.
+    void finish(const Summary& summary);
+
+private:
+    void flush();
+
+    std::filesystem::path folder_;
+    SceneDescription scene_;
+    std::ofstream trace_;
+    std::string rows_;
+    std::uint64_t tick_ = 0;
+};
+
+}  // namespace palpa

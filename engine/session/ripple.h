@@ -1,0 +1,16 @@
+// How much a signal shakes: what is left of it above 3 Hz, and how fast.
+#pragma once
+#include <span>
+
+namespace palpa {
+
+struct Ripple {
+    double rms = 0;   // in the signal's unit
+    double hertz = 0; // of the strongest line; 0 where nothing shakes
+};
+
+// The signal minus its moving mean over 1/3 s, taken twice, both ends padded; a tenth of the signal
+// is then left out at each end. Fewer than 1/3 s of samples give no ripple.
+Ripple find_ripple(std::span<const double> samples, double tick_s);
+
+}  // namespace palpa

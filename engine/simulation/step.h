@@ -1,0 +1,24 @@
+// One step of the simulation: hand pose in, touch model out.
+#pragma once
+#include "haptics/exchange.h"
+#include "simulation/simulation.h"
+
+namespace palpa {
+
+// What a step found. A step that is not finite has not moved anything.
+struct [[nodiscard]] StepReport {
+    TouchModel touch;          // for the hand, one period later
+    double move = 0;           // Å, of the grabbed molecule
+    bool finite = true;
+};
+
+// `felt`: the touch model that the hand feels at this moment; its force decides how far the
+// molecule goes for the handle's travel, dx_m = dx_h / A_d(F_m), the paper's incremental coupling
+// with its one-step delay.
+StepReport step_simulation(Simulation& simulation, const HandPose& hand,
+                           const TouchModel& felt) noexcept;
+
+// The touch model of the molecule where it stands, before any step.
+TouchModel build_touch_model(const Simulation& simulation, const HandPose& hand) noexcept;
+
+}  // namespace palpa

@@ -1,0 +1,167 @@
+#include "tools/bench.h"
+
+#include "core/files.h"
+#include "core/load_error.h"
+#include "core/text.h"
+#include "devices/emulated_omni.h"
+#include "scene/read_scene.h"
+#include "session/run_headless.h"
+#include "simulation/probe.h"
+#include "simulation/simulation.h"
+#include "simulation/step.h"
+#include "tools/commit.h"
+#include "tools/run.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string_view>
+#include <thread>
+
+namespace palpa {
+namespace {
+
+struct Row {
+    std::string name;
+    std::vector<double> samples;  // in `unit`
+    std::string unit;
+    std::optional<double> error;
+    std::string error_unit, reference;
+};
+
+double quantile(std::vector<double> samples, double share) {
+    std::sort(samples.begin(), samples.end());
+    return samples[static_cast<std::size_t>(
+        std::lround(share * static_cast<double>(samples.size() - 1)))];
+}
+
+template <class Work>
+double seconds_of(const Work& work) {
+    const auto begin = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+std::string machine_name() {
+    std::string model = "unknown processor";
+    try {
+        for (const std::string_view line : split_lines(read_text_file("/proc/cpuinfo"))) {
+            if (!line.starts_with("model name")) continue;
+            model = trimmed(line.substr(line.find(':') + 1));
+            break;
+        }
+    } catch (const LoadError&) {  // not Linux
+    }
+    return fmt::format("{}, {} threads", model, std::thread::hardware_concurrency());
+}
+
+// One simulation step, while the hand sweeps the molecule back and forth over 0.4 Å.
+Row bench_step(const std::string& scene_name, Simulation simulation) {
+    constexpr int batch = 200, batches = 101;
+    Row row{"step/" + scene_name, {}, "us", {}, "relative", "central difference of the energy"};
+    TouchModel felt = build_touch_model(simulation, {});
+    HandPose hand;
+    int tick = 0;
+    for (int sample = 0; sample < batches; ++sample) {
+        row.samples.push_back(seconds_of([&] {
+                                  for (int i = 0; i < batch; ++i, ++tick) {
+                                      hand.travel_m.x() = 0.005 * std::sin(0.01 * tick);
+                                      felt = step_simulation(simulation, hand, felt).touch;
+                                  }
+                              }) *
+                              1e6 / batch);
+    }
+    double worst = 0;
+    constexpr double h = 1e-4;
+    for (double distance = 2.4; distance < 8; distance += 0.1) {
+        const double slope = (force_along_line_at(simulation, distance + h).energy -
+                              force_along_line_at(simulation, distance - h).energy) /
+                             (2 * h);
+        const double force = force_along_line_at(simulation, distance).force;
+        worst = std::max(worst, std::abs(force + slope) / std::max(std::abs(force), 1.0));
+    }
+    row.error = worst;
+    return row;
+}
+
+// The scene as `palpa run` plays it, 10 s at its own period, without a recording.
+Row bench_lockstep(const std::string& scene_name, SceneDescription scene) {
+    scene.seconds = 10;
+    Row row{fmt::format("lockstep/{}/period={}ms/seconds=10", scene_name, scene.period_ms),
+            {}, "s", {}, "N", "the first run, at the end"};
+    std::optional<double> first;
+    double worst = 0;
+    for (int run = 0; run < 7; ++run) {
+        Simulation simulation = load_simulation(scene);
+        EmulatedOmni device(build_emulated_omni(scene, simulation));
+        Summary summary;
+        row.samples.push_back(
+            seconds_of([&] { summary = run_headless(scene, simulation, device, nullptr, {}); }));
+        const double work = summary.net_work_J + summary.last_angstrom;
+        worst = std::max(worst, std::abs(work - first.value_or(work)));
+        first = first.value_or(work);
+    }
+    row.error = worst;
+    return row;
+}
+
+Row bench_load(const std::string& scene_name, const std::filesystem::path& path,
+               const std::vector<std::string>& settings) {
+    Row row{"load/" + scene_name, {}, "ms", {}, "", ""};
+    for (int run = 0; run < 21; ++run) {
+        row.samples.push_back(1e3 * seconds_of([&] {
+            const Simulation simulation = load_simulation(read_scene(path, settings));
+        }));
+    }
+    return row;
+}
+
+nlohmann::ordered_json as_json(const Row& row) {
+    nlohmann::ordered_json json;
+    json["name"] = row.name;
+    json["median"] = quantile(row.samples, 0.5);
+    json["p10"] = quantile(row.samples, 0.1);
+    json["p90"] = quantile(row.samples, 0.9);
+    json["unit"] = row.unit;
+    json["error"] = row.error ? nlohmann::ordered_json(*row.error) : nullptr;
+    json["error_unit"] = row.error_unit;
+    json["reference"] = row.reference;
+    return json;
+}
+
+}  // namespace
+
+int bench_command(const BenchOptions& options) {
+    std::vector<Row> rows;
+    for (const std::filesystem::path& path : options.scenes) {
+        const SceneDescription scene = read_scene(path, options.settings);
+        const std::filesystem::path folder = std::filesystem::absolute(scene.file).parent_path();
+        const std::string name = folder.filename().string();
+        fmt::print(stderr, "timing {}\n", name);
+        rows.push_back(bench_load(name, path, options.settings));
+        rows.push_back(bench_step(name, load_simulation(scene)));
+        rows.push_back(bench_lockstep(name, scene));
+    }
+    nlohmann::ordered_json report{{"machine", machine_name()}, {"commit", commit_name}};
+    report["rows"] = nlohmann::ordered_json::array();
+    for (const Row& row : rows) report["rows"].push_back(as_json(row));
+    if (options.json) {
+        fmt::print("{}\n", report.dump(2));
+        return 0;
+    }
+    fmt::print("{}, commit {}\n{:<44}{:>12}{:>12}{:>12}\n", machine_name(), commit_name, "", "median",
+               "p10", "p90");
+    for (const Row& row : rows) {
+        fmt::print("{:<44}{:>12.4g}{:>12.4g}{:>12.4g} {}", row.name, quantile(row.samples, 0.5),
+                   quantile(row.samples, 0.1), quantile(row.samples, 0.9), row.unit);
+        if (row.error) fmt::print(", error {:.2g} {} against {}", *row.error, row.error_unit, row.reference);
+        fmt::print("\n");
+    }
+    return 0;
+}
+
+}  // namespace palpa

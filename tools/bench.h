@@ -1,0 +1,18 @@
+// palpa bench: speed against error of scenes, on this machine.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace palpa {
+
+struct BenchOptions {
+    std::vector<std::filesystem::path> scenes;
+    std::vector<std::string> settings;
+    bool json = false;
+};
+
+// Throws LoadError on bad input. Returns the exit code.
+int bench_command(const BenchOptions& options);
+
+}  // namespace palpa

@@ -1,0 +1,140 @@
+#!/usr/bin/env python3
+"""Holds every #include against the arrows that the CMakeLists.txt files declare.
+
+usage: check_layers.py [ROOT]
+
+An arrow is written in one place only, the DEPENDS of a palpa_module(...). A file may include what
+its own module reaches along the arrows. Fails, with file and line, on an include that no arrow
+allows, on an include of a folder that is no module, on an arrow to a module that does not exist,
+on a source that no palpa_module lists, and on a cycle of arrows.
+"""
+import re
+import sys
+from pathlib import Path
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"')
+KEYWORDS = {"SOURCES", "DEPENDS", "LIBRARIES"}
+FOLDERS = ("engine", "devices", "tools", "tests")
+SUFFIXES = {".h", ".cpp"}
+
+
+def read_modules(root):
+    """Module name -> {folder, sources, depends}, from every palpa_module(...) under root."""
+    modules = {}
+    for folder in FOLDERS:
+        for cmake in sorted((root / folder).rglob("CMakeLists.txt")):
+            text = re.sub(r"#[^\n]*", "", cmake.read_text())
+            for call in re.finditer(r"palpa_module\(([^)]*)\)", text):
+                words = call.group(1).split()
+                module = {"folder": cmake.parent, "SOURCES": [], "DEPENDS": [], "LIBRARIES": []}
+                part = None
+                for word in words[1:]:
+                    if word in KEYWORDS:
+                        part = word
+                    elif part:
+                        module[part].append(word)
+                modules[words[0]] = module
+    return modules
+
+
+def find_cycle(modules):
+    """A list of modules that depend on each other in a circle, or None."""
+    done = set()
+
+    def visit(name, path):
+        if name in path:
+            return path[path.index(name):] + [name]
+        if name in done or name not in modules:
+            return None
+        for other in modules[name]["DEPENDS"]:
+            cycle = visit(other, path + [name])
+            if cycle:
+                return cycle
+        done.add(name)
+        return None
+
+    for name in modules:
+        cycle = visit(name, [])
+        if cycle:
+            return cycle
+    return None
+
+
+def reachable(modules, name):
+    """The module itself and all that its arrows lead to."""
+    found, left = set(), [name]
+    while left:
+        at = left.pop()
+        if at not in found:
+            found.add(at)
+            left += modules[at]["DEPENDS"] if at in modules else []
+    return found
+
+
+def check(root):
+    """All problems as lines of text."""
+    modules = read_modules(root)
+    if not modules:
+        return [f"{root}: no palpa_module(...) found under {', '.join(FOLDERS)}"]
+    problems = []
+    for name, module in modules.items():
+        for other in module["DEPENDS"]:
+            if other not in modules:
+                problems.append(f"{name}: depends on '{other}', which is no module")
+    cycle = find_cycle(modules)
+    if cycle:
+        return problems + ["cycle of arrows: " + " -> ".join(cycle)]
+
+    folders = {module["folder"]: name for name, module in modules.items()}
+    for folder in FOLDERS:
+        for path in sorted((root / folder).rglob("*")):
+            if path.suffix in SUFFIXES and path.is_file():
+                problems += check_file(root, path, folders, modules)
+    return problems
+
+
+def check_file(root, path, folders, modules):
+    owner = next((folders[parent] for parent in path.parents if parent in folders), None)
+    if owner is None:
+        top = path.relative_to(root).parts
+        if top[:1] == ("engine",) and len(top) > 2:
+            return [f"{path.relative_to(root)}: its folder has no palpa_module(...)"]
+        owner = top[0] if top[0] in ("tests",) else None
+    problems = []
+    sources = modules[owner]["SOURCES"] if owner in modules else []
+    if owner in modules and owner not in ("tools", "tests") and path.suffix == ".cpp":
+        if path.relative_to(modules[owner]["folder"]).as_posix() not in sources:
+            problems.append(f"{path.relative_to(root)}: not among the SOURCES of '{owner}'")
+    allowed = reachable(modules, owner) if owner in modules else None
+    for number, line in enumerate(path.read_text().splitlines(), 1):
+        match = INCLUDE.match(line)
+        if not match:
+            continue
+        place = f"{path.relative_to(root)}:{number}"
+        target = match.group(1).split("/")[0]
+        if "/" not in match.group(1):
+            problems.append(f'{place}: "{match.group(1)}" names no module; expected "module/file.h"')
+        elif target == "tests" and owner in ("tests", None):
+            continue
+        elif target not in modules:
+            problems.append(f"{place}: includes '{target}/', which is no module")
+        elif allowed is not None and target not in allowed:
+            problems.append(f"{place}: '{owner}' may not include '{target}'; it reaches "
+                            + ", ".join(sorted(allowed - {owner})))
+    return problems
+
+
+def main():
+    root = Path(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).parent.parent).resolve()
+    problems = check(root)
+    for problem in problems:
+        print(problem)
+    if not problems:
+        modules = read_modules(root)
+        print(f"{len(modules)} modules, {sum(len(m['DEPENDS']) for m in modules.values())} arrows, "
+              "all pointing down")
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

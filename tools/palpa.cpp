@@ -1,0 +1,97 @@
+// The program: reads the command line, calls one command, turns errors into exit codes.
+#include "core/load_error.h"
+#include "tools/bench.h"
+#include "tools/run.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <fmt/format.h>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace {
+
+constexpr int bad_input = 2, own_fault = 3;
+
+// An option that is short for a scene key: "--mode 2" is "--set coupling.mode=2".
+void add_setting(CLI::App& command, const std::string& option, const std::string& key,
+                 const std::string& help, std::vector<std::string>& settings) {
+    command
+        .add_option_function<std::string>(
+            option,
+            [&settings, key](const std::string& value) { settings.push_back(key + "=" + value); },
+            help + " (" + key + ")")
+        ->trigger_on_parse();
+}
+
+void add_set_option(CLI::App& command, std::vector<std::string>& settings) {
+    command
+        .add_option_function<std::string>(
+            "--set", [&settings](const std::string& value) { settings.push_back(value); },
+            "KEY=VALUE: any key of the scene file, in full or by its last part; scenes/README.md "
+            "lists them")
+        ->trigger_on_parse()
+        ->take_last();
+}
+
+void add_run(CLI::App& program, palpa::RunOptions& options) {
+    CLI::App& run = *program.add_subcommand("run", "Feel a scene: a hand on an emulated Omni");
+    run.add_option("scene", options.scene, "scene folder, scene file or recorded session.toml")
+        ->required();
+    run.add_flag("--headless", options.headless, "in lockstep on a virtual clock, without a window");
+    run.add_flag("--check", options.check_only, "only read the scene and say what is wrong with it");
+    run.add_option("--record", options.record, "folder for trace.csv, summary.json, session.toml");
+    run.add_flag("--json", options.json, "print the summary as JSON");
+    std::vector<std::string>& settings = options.settings;
+    add_setting(run, "--mode", "coupling.mode", "1 to 5, as in the paper", settings);
+    add_setting(run, "--period-ms", "run.period_ms", "declared period of the simulation", settings);
+    add_setting(run, "--hand", "hand.grip", "none, light, slack, medium, firm or firm-grip", settings);
+    add_setting(run, "--friction", "device.friction_N", "Coulomb friction of the device", settings);
+    add_setting(run, "--seconds", "run.seconds", "length of the run", settings);
+    add_setting(run, "--seed", "run.seed", "of everything random", settings);
+    add_setting(run, "--every", "run.every", "keep one row of this many in the trace", settings);
+    add_set_option(run, settings);
+    run.final_callback([&run, &options] { options.chose_mode = run.count("--mode") > 0; });
+}
+
+void add_bench(CLI::App& program, palpa::BenchOptions& options) {
+    CLI::App& bench = *program.add_subcommand("bench", "Speed against error on this machine");
+    bench.add_option("scenes", options.scenes, "scene folders or files")->required();
+    bench.add_flag("--json", options.json, "print JSON");
+    add_set_option(bench, options.settings);
+}
+
+int run_program(int argc, char** argv) {
+    CLI::App program("Palpa: feel molecules", "palpa");
+    program.require_subcommand(1);
+    program.set_version_flag("--version", PALPA_VERSION);
+    palpa::RunOptions run;
+    palpa::BenchOptions bench;
+    add_run(program, run);
+    add_bench(program, bench);
+    try {
+        program.parse(argc, argv);
+    } catch (const CLI::Success& success) {  // --help, --version
+        return program.exit(success);
+    } catch (const CLI::ParseError& error) {
+        fmt::print(stderr, "palpa: {}; see palpa --help\n", error.what());
+        return bad_input;
+    }
+    return program.got_subcommand("run") ? palpa::run_command(run) : palpa::bench_command(bench);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return run_program(argc, argv);
+    } catch (const palpa::LoadError& error) {
+        fmt::print(stderr, "{}\n", error.what());
+        return bad_input;
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "palpa: internal error: {}\n", error.what());
+        return own_fault;
+    }
+}

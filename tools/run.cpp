@@ -1,0 +1,92 @@
+#include "tools/run.h"
+
+#include "devices/emulated_omni.h"
+#include "scene/read_scene.h"
+#include "session/plan_hand.h"
+#include "session/recording.h"
+#include "session/run_headless.h"
+#include "simulation/simulation.h"
+
+#include <cstdio>
+#include <fmt/format.h>
+#include <unistd.h>
+
+namespace palpa {
+namespace {
+
+// Shown where a person watches, over a line of its own.
+void show_progress(double share) {
+    fmt::print(stderr, "\r{:3.0f} %", 100 * share);
+    if (share >= 1) fmt::print(stderr, "\r      \r");
+    std::fflush(stderr);
+}
+
+void print_summary(const SceneDescription& scene, const Summary& s) {
+    fmt::print("{}: {} s, mode {}, T_s = {} ms, {} hand, friction {} N, stroke {}\n", scene.title,
+               scene.seconds, coupling_mode_names[static_cast<std::size_t>(scene.coupling.mode)],
+               scene.period_ms, hand_names[scene.hand.grip], scene.device.friction_N,
+               stroke_names[static_cast<std::size_t>(scene.hand.stroke)]);
+    fmt::print("  felt        {:.3f} N of attraction and {:.3f} N of repulsion at most\n",
+               s.largest_attraction_N, s.largest_repulsion_N);
+    fmt::print("  ripple      {:.3f} N rms above 3 Hz in the last 4 s", s.ripple.rms);
+    if (s.ripple.rms > 0.02) fmt::print(", at {:.1f} Hz", s.ripple.hertz);
+    fmt::print("\n");
+    fmt::print("  net work    {:+.4f} J on the hand\n", s.net_work_J);
+    fmt::print("  molecule    {:.3f} Å at the closest, {:.3f} Å at the end\n", s.closest_angstrom,
+               s.last_angstrom);
+    fmt::print("  clamped     {:.1f} % of the time\n", 100 * s.clamped_share);
+    fmt::print("  step        {:.2f} µs median, {:.2f} µs p99 of {} steps\n", s.step_median_us,
+               s.step_p99_us, s.steps);
+}
+
+}  // namespace
+
+EmulatedOmniSettings build_emulated_omni(const SceneDescription& scene,
+                                         const Simulation& simulation) {
+    return {
+        .dynamics = {scene.device.inertia_kg, scene.device.viscosity_N_s_per_m},
+        .friction_newton = scene.device.friction_N,
+        .encoder_step_m = scene.device.encoder_step_mm * 1e-3,
+        .hand = hand_model(static_cast<Grip>(scene.hand.grip)),
+        .script = plan_hand(scene, simulation, EmulatedOmni::half_workspace_m.x()),
+    };
+}
+
+int run_command(const RunOptions& options) {
+    const SceneDescription scene = read_scene(options.scene, options.settings);
+    Simulation simulation = load_simulation(scene);
+    EmulatedOmni device(build_emulated_omni(scene, simulation));
+    if (options.check_only) {
+        fmt::print("{}: nothing wrong found\n", scene.file.string());
+        return 0;
+    }
+    if (!options.headless) {
+        fmt::print(stderr, "there is no window yet: running headless, in lockstep\n");
+    }
+    if (!options.chose_mode) {
+        fmt::print(stderr,
+                   "guarded mode is not built yet: mode {} of the paper at T_s = {} ms with {} N of "
+                   "device friction stands in (--mode, --period-ms, --friction)\n",
+                   coupling_mode_names[static_cast<std::size_t>(scene.coupling.mode)],
+                   scene.period_ms, scene.device.friction_N);
+    }
+    std::optional<Recording> recording;
+    if (options.record) recording.emplace(*options.record, scene);
+
+    const bool watched = isatty(STDERR_FILENO) != 0 && !options.json;
+    const Summary summary =
+        run_headless(scene, simulation, device, recording ? &*recording : nullptr,
+                     watched ? ProgressFunction(show_progress) : ProgressFunction());
+    for (const std::string& warning : summary.warnings) {
+        fmt::print(stderr, "warning: {}\n", warning);
+    }
+    if (options.json) {
+        fmt::print("{}", format_summary(scene, summary));
+    } else {
+        print_summary(scene, summary);
+        if (options.record) fmt::print("recorded in {}\n", options.record->string());
+    }
+    return 0;
+}
+
+}  // namespace palpa

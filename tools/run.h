@@ -1,0 +1,31 @@
+// palpa run: a scene under the emulated hand, headless.
+#pragma once
+#include "devices/emulated_omni.h"
+#include "scene/description.h"
+#include "simulation/simulation.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace palpa {
+
+struct RunOptions {
+    std::filesystem::path scene;
+    std::vector<std::string> settings;  // "key=value", over the scene file
+    std::optional<std::filesystem::path> record;
+    bool check_only = false;
+    bool json = false;      // the summary as JSON on standard output
+    bool headless = false;  // asked for; the only way there is so far
+    bool chose_mode = false;
+};
+
+// The emulated device and hand that a scene describes.
+EmulatedOmniSettings build_emulated_omni(const SceneDescription& scene,
+                                         const Simulation& simulation);
+
+// Throws LoadError on bad input. Returns the exit code.
+int run_command(const RunOptions& options);
+
+}  // namespace palpa
