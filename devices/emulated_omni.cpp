@@ -72,25 +72,32 @@ void EmulatedOmni::write(const Vec3& force_newton) noexcept {
     const Vec3 outside = motors + Vec3(kick, 0, 0);
 
     for (int sub_step = 0; sub_step < sub_steps; ++sub_step) {
+        const Vec3 before = true_position_m();
         for (std::size_t axis = 0; axis < state_.size(); ++axis) {
             const auto i = static_cast<Eigen::Index>(axis);
             const double stop = stop_force(state_[axis](0), state_[axis](1), half_workspace_m(i));
             const Eigen::Vector2d inputs(outside(i) + stop, hand_drive(i));
             state_[axis] = (plant_.A * state_[axis] + plant_.B * inputs).eval();
         }
-        apply_friction();
+        apply_friction(before);
     }
     ++tick_;
 }
 
-// Takes speed away from the handle, whatever its direction, down to rest.
-void EmulatedOmni::apply_friction() noexcept {
+// Takes speed away from the handle, whatever its direction, down to rest. A handle at rest stays
+// where it is until a sub-step's push would give it more speed than that.
+void EmulatedOmni::apply_friction(const Vec3& before) noexcept {
     const double loss = settings_.friction_newton / handle_mass_kg_ * sub_step_s;
     if (loss <= 0) return;
     const Vec3 velocity(state_[0](1), state_[1](1), state_[2](1));
     const double speed = velocity.norm();
-    const double kept = speed > loss ? 1 - loss / speed : 0;
-    for (PlantState& axis : state_) axis(1) *= kept;
+    const bool stops = speed <= loss;
+    const double kept = stops ? 0 : 1 - loss / speed;
+    for (std::size_t axis = 0; axis < state_.size(); ++axis) {
+        state_[axis](1) *= kept;
+        if (stops && resting_) state_[axis](0) = before(static_cast<Eigen::Index>(axis));
+    }
+    resting_ = stops;
 }
 
 }  // namespace palpa

@@ -41,7 +41,8 @@ public:
     Vec3 true_position_m() const noexcept;
 
 private:
-    void apply_friction() noexcept;
+    // `before`: where the handle was a sub-step ago.
+    void apply_friction(const Vec3& before) noexcept;
 
     EmulatedOmniSettings settings_;
     DeviceSpec spec_;
@@ -49,6 +50,7 @@ private:
     SampledPlant plant_;                 // over one sub-step
     double handle_mass_kg_ = 0;
     std::array<PlantState, 3> state_;    // one per axis
+    bool resting_ = true;                // friction held the handle through the last sub-step
     std::uint64_t tick_ = 0;
     std::uint32_t buttons_ = 0;          // as pressed during the last tick
 };

@@ -60,6 +60,7 @@ LineForce force_along_line_at(const Simulation& simulation, double distance) {
 
 std::optional<double> find_repulsion(const Simulation& simulation, double force,
                                      double outermost) {
+    if (force_along_line_at(simulation, outermost).force > force) return std::nullopt;
     for (double distance = outermost; distance > innermost; distance -= scan_step) {
         if (force_along_line_at(simulation, distance).force > force) {
             return bisect(simulation, force, distance, distance + scan_step);

@@ -22,7 +22,7 @@ LineForce force_along_line(const Simulation& simulation) noexcept;
 LineForce force_along_line_at(const Simulation& simulation, double distance);
 
 // The outermost distance (Å) at which the repulsion reaches `force` (kcal/mol/Å), to 1e-12 Å, if
-// it does so between 1 Å and `outermost`.
+// it does so between 1 Å and `outermost`, where it must be weaker.
 std::optional<double> find_repulsion(const Simulation& simulation, double force, double outermost);
 
 // The outermost distance (Å) where repulsion turns into attraction, between 1 and 30 Å.

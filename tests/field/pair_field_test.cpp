@@ -70,8 +70,8 @@ TEST_CASE("two unit charges 2 Å apart repel as Coulomb says", "[field][pair]") 
 
     CHECK(sum.electrostatic == Approx(332.0716 / 2).epsilon(1e-14));
     CHECK(sum.force.y() == Approx(332.0716 / 4).epsilon(1e-14));
-    CHECK(sum.stiffness(1, 1) == Approx(-2 * 332.0716 / 8).epsilon(1e-14));
-    CHECK(sum.stiffness(0, 0) == Approx(332.0716 / 8).epsilon(1e-14));
+    CHECK(sum.stiffness(1, 1) == Approx(2 * 332.0716 / 8).epsilon(1e-14));
+    CHECK(sum.stiffness(0, 0) == Approx(-332.0716 / 8).epsilon(1e-14));
 }
 
 TEST_CASE("force and stiffness of a group are the derivatives of its energy", "[field][pair]") {

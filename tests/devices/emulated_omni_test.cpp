@@ -1,0 +1,132 @@
+#include "devices/emulated_omni.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+using namespace palpa;
+
+namespace {
+
+// No friction, no encoder step, no hand.
+EmulatedOmniSettings bare() {
+    EmulatedOmniSettings settings;
+    settings.friction_newton = 0;
+    settings.encoder_step_m = 0;
+    return settings;
+}
+
+void play(EmulatedOmni& omni, const Vec3& force, int ticks) {
+    for (int i = 0; i < ticks; ++i) omni.write(force);
+}
+
+}  // namespace
+
+TEST_CASE("a free handle under a constant force obeys mass and viscosity", "[devices][omni]") {
+    EmulatedOmni omni(bare());
+    const double M = 0.045, B = 0.1, t = 0.1;
+    const Vec3 force(0.05, -0.02, 0.01);
+
+    play(omni, force, 100);
+
+    // x = F/B (t - M/B (1 - exp(-B t/M)))
+    const double per_newton = (t - M / B * (1 - std::exp(-B * t / M))) / B;
+    CHECK((omni.true_position_m() - per_newton * force).norm() < 1e-12);
+    CHECK(omni.read().time_s == Approx(0.1));
+    CHECK(omni.read().valid);
+}
+
+TEST_CASE("friction holds a handle against less than itself and slows it against more",
+          "[devices][omni]") {
+    EmulatedOmniSettings settings = bare();
+    settings.friction_newton = 0.26;
+    settings.dynamics.viscosity_N_s_per_m = 0;
+    EmulatedOmni held(settings), pushed(settings);
+
+    play(held, {0.15, 0.15, 0.1}, 1000);
+    play(pushed, {0.3, 0.4, 0}, 100);
+
+    CHECK(held.true_position_m().norm() == 0);  // 0.235 N in all
+    // (0.5 - 0.26) N on 45 g for 0.1 s along the push.
+    const double expected = 0.5 * (0.5 - 0.26) / 0.045 * 0.01;
+    CHECK(pushed.true_position_m().norm() == Approx(expected).epsilon(0.02));
+    CHECK(pushed.true_position_m().x() / pushed.true_position_m().y() == Approx(0.75));
+}
+
+TEST_CASE("the encoder shows whole steps", "[devices][omni]") {
+    EmulatedOmniSettings settings = bare();
+    settings.encoder_step_m = 0.055e-3;
+    EmulatedOmni omni(settings);
+
+    for (int i = 0; i < 60; ++i) {
+        omni.write({0.1, 0.05, 0});
+        const Vec3 seen = omni.read().position_m, is = omni.true_position_m();
+        CHECK((seen - is).cwiseAbs().maxCoeff() <= 0.0275e-3 * (1 + 1e-9));
+        const double steps = seen.x() / 0.055e-3;
+        CHECK(steps == Approx(std::round(steps)).margin(1e-9));
+    }
+}
+
+TEST_CASE("motors give no more than their peak force, in any direction", "[devices][omni]") {
+    EmulatedOmni asked(bare()), given(bare());
+
+    play(asked, {30, -40, 0}, 20);
+    play(given, {1.98, -2.64, 0}, 20);
+
+    CHECK((asked.true_position_m() - given.true_position_m()).norm() < 1e-14);
+}
+
+TEST_CASE("stops keep the handle in the workspace of 160 x 120 x 70 mm", "[devices][omni]") {
+    const int axis = GENERATE(0, 1, 2);
+    const double sign = GENERATE(1.0, -1.0);
+    EmulatedOmni omni(bare());
+
+    // Full force into the stop gives 3.3 N / 20 kN/m = 0.165 mm once at rest.
+    play(omni, 3.3 * sign * Vec3::Unit(axis), 3000);
+
+    const double half = EmulatedOmni::half_workspace_m(axis);
+    CHECK(sign * omni.true_position_m()(axis) == Approx(half + 0.165e-3).epsilon(1e-3));
+    CHECK(omni.spec().half_workspace_m == EmulatedOmni::half_workspace_m);
+}
+
+TEST_CASE("a hand pulls the handle along its path", "[devices][omni]") {
+    const auto grip = GENERATE(Grip::Light, Grip::Slack, Grip::Medium, Grip::Firm, Grip::FirmGrip);
+    EmulatedOmniSettings settings = bare();
+    settings.hand = hand_model(grip);
+    settings.script.path = {{0.2, 0.04}, {2.2, -0.03}};
+    EmulatedOmni omni(settings);
+
+    CHECK(omni.read().position_m.x() == 0.04);
+    play(omni, Vec3::Zero(), 12'000);
+    CHECK(omni.true_position_m().x() == Approx(-0.03).margin(1e-5));
+    play(omni, {0.5, 0, 0}, 12'000);
+    CHECK(omni.true_position_m().x() ==
+          Approx(-0.03 + 0.5 / static_stiffness(*settings.hand)).margin(1e-5));
+}
+
+TEST_CASE("a kick moves a free handle by its impulse", "[devices][omni]") {
+    EmulatedOmniSettings settings = bare();
+    settings.script.kick_N_s = 0.005;
+    settings.dynamics.viscosity_N_s_per_m = 0;
+    EmulatedOmni omni(settings);
+
+    play(omni, Vec3::Zero(), 1000);
+    CHECK(omni.true_position_m().norm() == 0);
+    play(omni, Vec3::Zero(), 110);
+    // 5 mN s on 45 g: 0.111 m/s, from the middle of the kick on.
+    CHECK(omni.true_position_m().x() == Approx(0.005 / 0.045 * (0.110 - 0.005)));
+}
+
+TEST_CASE("the same settings give the same motion to the last bit", "[devices][omni]") {
+    EmulatedOmniSettings settings;
+    settings.hand = hand_model(Grip::Medium);
+    settings.script.path = {{0.1, 0.06}, {0.6, -0.3}};
+    EmulatedOmni a(settings), b(settings);
+
+    for (int i = 0; i < 4000; ++i) {
+        const Vec3 force(std::sin(0.01 * i), 0.1, 0);
+        a.write(force);
+        b.write(force);
+        REQUIRE(a.true_position_m() == b.true_position_m());
+        REQUIRE(a.read().buttons == b.read().buttons);
+    }
+}

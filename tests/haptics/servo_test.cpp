@@ -1,0 +1,175 @@
+#include "haptics/servo.h"
+
+#include <algorithm>
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <thread>
+
+using namespace palpa;
+
+namespace {
+
+DeviceReading reading_at(double x, bool clutched = false) {
+    return {0, Vec3(x, 0, 0), clutched ? static_cast<std::uint32_t>(Button::Clutch) : 0, true};
+}
+
+TouchModel touch_of(const Vec3& force_newton) {
+    TouchModel touch;
+    touch.force_newton = force_newton;
+    return touch;
+}
+
+struct Servo {
+    ServoSettings settings{PrintedForceLaw({}), 3.0, 0};
+    ServoState state;
+    Exchange exchange;
+
+    ServoTick tick(const DeviceReading& reading) {
+        return step_servo(settings, state, exchange, reading);
+    }
+};
+
+}  // namespace
+
+TEST_CASE("the hand feels eq. 2 of the newest force, along its direction", "[haptics][servo]") {
+    Servo servo;
+    const Vec3 direction = Vec3(1, -2, 2) / 3;
+    servo.exchange.touch.post(touch_of({9e-9, 0, 0}));
+    servo.exchange.touch.post(touch_of(1.5e-9 * direction));
+
+    const ServoTick tick = servo.tick(reading_at(0));
+
+    CHECK(tick.sent_newton.norm() == Approx(1.5744).epsilon(1e-4));
+    CHECK((tick.sent_newton.normalized() - direction).norm() < 1e-14);
+    CHECK_FALSE(tick.clamped);
+    // Without a new model the last one stays in force.
+    CHECK(servo.tick(reading_at(0)).sent_newton == tick.sent_newton);
+}
+
+TEST_CASE("nothing is felt before the first touch model", "[haptics][servo]") {
+    Servo servo;
+
+    CHECK(servo.tick(reading_at(0.01)).sent_newton == Vec3(Vec3::Zero()));
+}
+
+TEST_CASE("the norm of the force is clamped at 3 N", "[haptics][servo]") {
+    Servo servo;
+    servo.settings.force_law = ConstantForceLaw{5.1e9};
+    servo.exchange.touch.post(touch_of({3e-9, 4e-9, 0}));
+
+    const ServoTick tick = servo.tick(reading_at(0));
+
+    CHECK(tick.clamped);
+    CHECK((tick.sent_newton - Vec3(1.8, 2.4, 0)).norm() < 1e-14);
+}
+
+TEST_CASE("a force that is no number stops the device within the tick and for good",
+          "[haptics][servo]") {
+    const double bad = GENERATE(std::numeric_limits<double>::quiet_NaN(),
+                                std::numeric_limits<double>::infinity());
+    Servo servo;
+    servo.settings.force_law = ConstantForceLaw{1e9};
+    servo.settings.delay_ticks = GENERATE(0, 2);
+    servo.exchange.touch.post(touch_of({1e-9, 0, 0}));
+    for (int i = 0; i < 4; ++i) CHECK(servo.tick(reading_at(0)).sent_newton.x() == 1);
+    servo.exchange.touch.post(touch_of({0, bad, 0}));
+
+    const ServoTick tick = servo.tick(reading_at(0));
+    servo.exchange.touch.post(touch_of({1e-9, 0, 0}));
+    const ServoTick later = servo.tick(reading_at(0));
+
+    CHECK(tick.sent_newton == Vec3(Vec3::Zero()));
+    CHECK(tick.stopped);
+    CHECK(later.sent_newton == Vec3(Vec3::Zero()));
+    CHECK(later.stopped);
+}
+
+TEST_CASE("a delayed force is sent as many ticks later", "[haptics][servo]") {
+    const int delay = GENERATE(0, 1, 3, max_servo_delay_ticks);
+    Servo servo;
+    servo.settings.force_law = ConstantForceLaw{1e9};
+    servo.settings.delay_ticks = delay;
+
+    for (int i = 0; i < 40; ++i) {
+        servo.exchange.touch.post(touch_of({(i + 1) * 1e-11, 0, 0}));
+        const ServoTick tick = servo.tick(reading_at(0));
+        CHECK(tick.sent_newton.x() == Approx((std::max(i - delay, 0) + 1) * 0.01));
+    }
+}
+
+TEST_CASE("travel with the clutch pressed does not reach the molecule", "[haptics][servo]") {
+    Servo servo;
+    HandPose hand;
+    const auto travel_after = [&](const DeviceReading& reading) {
+        (void)servo.tick(reading);
+        REQUIRE(servo.exchange.hand.read(hand));
+        return hand.travel_m.x();
+    };
+
+    CHECK(travel_after(reading_at(0.010)) == 0);  // where the handle begins is no travel
+    CHECK(travel_after(reading_at(0.014)) == Approx(0.004));
+    CHECK(travel_after(reading_at(0.020, true)) == Approx(0.004));
+    CHECK(travel_after(reading_at(-0.050, true)) == Approx(0.004));
+    CHECK(travel_after(reading_at(-0.051)) == Approx(0.003));
+}
+
+TEST_CASE("a reading that is not valid moves nothing", "[haptics][servo]") {
+    Servo servo;
+    HandPose hand;
+    (void)servo.tick(reading_at(0.01));
+    DeviceReading bad = reading_at(std::numeric_limits<double>::quiet_NaN());
+
+    (void)servo.tick(bad);
+    bad = reading_at(0.5);
+    bad.valid = false;
+    (void)servo.tick(bad);
+    (void)servo.tick(reading_at(0.02));
+
+    REQUIRE(servo.exchange.hand.read(hand));
+    CHECK(hand.travel_m.x() == Approx(0.01));
+    CHECK(std::isfinite(servo.state.hand_energy_J));
+}
+
+TEST_CASE("the energy observer sums the force sent times the way it went", "[haptics][servo]") {
+    Servo servo;
+    servo.settings.force_law = ConstantForceLaw{1e9};
+    servo.settings.delay_ticks = GENERATE(0, 2);
+    double work = 0, x = 0;
+    Vec3 sent = Vec3::Zero();
+
+    for (int i = 0; i < 50; ++i) {
+        const double before = x;
+        x = 0.01 * std::sin(0.3 * i);
+        if (i > 0) work += sent.x() * (x - before);
+        servo.exchange.touch.post(touch_of({1e-9 * std::cos(0.2 * i), 0, 0}));
+        const ServoTick tick = servo.tick(reading_at(x));
+        CHECK(tick.hand_energy_J == Approx(work).margin(1e-15));
+        sent = tick.sent_newton;
+    }
+}
+
+TEST_CASE("servo and simulation meet in the exchange without a race", "[haptics][servo]") {
+    Servo servo;
+    std::atomic<bool> done = false;
+    std::atomic<int> answered = 0;
+
+    std::thread simulation([&] {
+        HandPose hand;
+        while (!done) {
+            if (!servo.exchange.hand.read(hand)) continue;
+            servo.exchange.touch.post(touch_of({-1e-8 * hand.travel_m.x(), 0, 0}));
+            ++answered;
+        }
+    });
+    bool finite = true;
+    for (int i = 0; i < 20'000 || answered < 100; ++i) {
+        finite = finite && servo.tick(reading_at(0.05 * std::sin(0.01 * i))).sent_newton.allFinite();
+    }
+    done = true;
+    simulation.join();
+
+    CHECK(finite);
+}

@@ -1,0 +1,65 @@
+#include "session/plan_hand.h"
+
+#include "core/load_error.h"
+#include "simulation/probe.h"
+#include "tests/support/water_run.h"
+
+#include <catch2/catch.hpp>
+#include <algorithm>
+
+using namespace palpa;
+
+namespace {
+
+HandScript plan(const std::vector<std::string>& settings) {
+    const SceneDescription scene = test::water_scene(settings);
+    return plan_hand(scene, load_simulation(scene), EmulatedOmni::half_workspace_m.x());
+}
+
+}  // namespace
+
+TEST_CASE("an in-out stroke is as long as the gain and the hand's bend ask", "[session][hand]") {
+    const HandScript script = plan({"mode=2"});
+
+    REQUIRE(script.path.size() == 5);
+    // 7 to 2.473 Å at 0.25e9, and 2.1198 N on 200 N/m.
+    const double travel = (7 - 2.473) * 1e-10 * 0.25e9 + 2.1198 / 200;
+    CHECK(script.path[0].x_m - script.path[1].x_m == Approx(travel).epsilon(2e-3));
+    CHECK(script.path[0].x_m == script.path[3].x_m);
+    CHECK(script.path[1].time_s - script.path[0].time_s == Approx(3));
+    CHECK(script.path[2].time_s - script.path[1].time_s == Approx(1));
+}
+
+TEST_CASE("without friction or delay a slow stroke peaks at the force it was planned for",
+          "[session][hand]") {
+    const std::string mode = GENERATE("2", "4");
+    const double peak_nN = GENERATE(1.0, 3.0);
+    const Summary summary = test::run_water(
+        {"mode=" + mode, "peak_nN=" + std::to_string(peak_nN), "friction_N=0", "encoder_step_mm=0",
+         "stroke_s=6", "seconds=15"});
+
+    const Simulation simulation = load_simulation(test::water_scene());
+    const double planned = find_repulsion(simulation, peak_nN / 0.0694770, 7).value();
+    CHECK(summary.closest_angstrom == Approx(planned).margin(0.005));
+}
+
+TEST_CASE("a stroke longer than the workspace brings the molecule in by clutching",
+          "[session][hand]") {
+    const Summary summary = test::run_water(
+        {"hand.start_angstrom=14", "stroke_s=10", "seconds=40", "friction_N=0"});
+
+    CHECK(summary.closest_angstrom == Approx(2.473).margin(0.01));
+    CHECK(summary.last_angstrom == Approx(14).margin(0.3));
+}
+
+TEST_CASE("a path is taken as the scene gives it", "[session][hand]") {
+    const HandScript script = plan({"stroke=path", "hand.path=[[0.5, 10.0], [1.5, -20]]"});
+
+    REQUIRE(script.path.size() == 2);
+    CHECK(script.path[1].time_s == 1.5);
+    CHECK(script.path[1].x_m == Approx(-0.020));
+}
+
+TEST_CASE("a force that the molecules never reach is an error", "[session][hand]") {
+    CHECK_THROWS_AS(plan({"hand.start_angstrom=2.4"}), LoadError);
+}

@@ -1,0 +1,88 @@
+// The whole loop, device to simulation to device, with a spring in place of the molecule: where it
+// begins to shake must be where theory says.
+#include "devices/emulated_omni.h"
+#include "haptics/gains.h"
+#include "session/lockstep.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdint>
+#include <tuple>
+#include <vector>
+
+using namespace palpa;
+
+namespace {
+
+constexpr double A_f = 0.25e9, A_d = 0.25e9;  // so that the spring felt is the spring itself
+
+// Whether a handle on a spring of K (N/m) shakes ever more after a small kick.
+bool shakes(double K, double viscosity, Grip grip, std::uint64_t period_ms) {
+    EmulatedOmniSettings settings;
+    settings.dynamics.viscosity_N_s_per_m = viscosity;
+    settings.friction_newton = 0;
+    settings.encoder_step_m = 0;
+    settings.hand = hand_model(grip);
+    settings.script.kick_N_s = 1e-6;
+    settings.script.path = {{0, 0}};
+    EmulatedOmni omni(settings);
+    const ServoSettings servo{ConstantForceLaw{A_f}, 3.0, 0};
+
+    double molecule_m = 0, travel = 0;
+    const auto step = [&](const HandPose& hand, const TouchModel&) {
+        molecule_m += (hand.travel_m.x() - travel) / A_d;
+        travel = hand.travel_m.x();
+        TouchModel touch;
+        touch.force_newton.x() = -K * molecule_m;
+        return touch;
+    };
+    // Loud in an early window against loud in a late one, both many swings long.
+    double early = 0, late = 0;
+    const auto on_tick = [&](const ServoTick& tick) {
+        const double x = std::abs(tick.reading.position_m.x());
+        const double t = tick.reading.time_s;
+        if (t > 3 && t < 9) early = std::max(early, x);
+        if (t > 34) late = std::max(late, x);
+    };
+    run_lockstep({40'000, period_ms}, servo, omni, {}, step, on_tick);
+    // The kick itself moves the handle by microns; what is far above has grown, to its limit even.
+    return late > early || early > 1e-4;
+}
+
+// The K at which shaking begins, by halving between `calm` and `shaking`.
+double find_onset(double calm, double shaking, double viscosity, Grip grip, std::uint64_t period_ms) {
+    for (int halving = 0; halving < 7; ++halving) {
+        const double K = std::sqrt(calm * shaking);
+        (shakes(K, viscosity, grip, period_ms) ? shaking : calm) = K;
+    }
+    return std::sqrt(calm * shaking);
+}
+
+}  // namespace
+
+TEST_CASE("the emulated loop begins to shake within 5 % of the K that theory gives",
+          "[session][coupling]") {
+    const auto [viscosity, grip, period_ms, K] =
+        GENERATE(table<double, Grip, std::uint64_t, double>({
+            {0.1, Grip::None, 1, 66.7},   {0.1, Grip::None, 5, 13.4},   {0.1, Grip::None, 14, 4.80},
+            {0.1, Grip::None, 33, 2.06},  {0.1, Grip::None, 83, 0.842}, {0.5, Grip::None, 1, 334},
+            {0.5, Grip::None, 5, 67.7},   {0.5, Grip::None, 14, 24.8},  {0.5, Grip::None, 33, 11.0},
+            {0.5, Grip::None, 83, 4.80},  {2.0, Grip::None, 1, 1350},   {2.0, Grip::None, 5, 282},
+            {2.0, Grip::None, 14, 109},   {2.0, Grip::None, 33, 51.2},  {2.0, Grip::None, 83, 22.7},
+            {0.1, Grip::Light, 1, 735},   {0.1, Grip::Light, 5, 149},   {0.1, Grip::Light, 14, 55.4},
+            {0.1, Grip::Light, 33, 27.3}, {0.1, Grip::Light, 83, 22.4}, {0.1, Grip::Slack, 1, 734},
+            {0.1, Grip::Slack, 5, 147},   {0.1, Grip::Slack, 14, 53.2}, {0.1, Grip::Slack, 33, 23.6},
+            {0.1, Grip::Slack, 83, 11.9}, {0.1, Grip::Medium, 1, 2750}, {0.1, Grip::Medium, 5, 568},
+            {0.1, Grip::Medium, 14, 226}, {0.1, Grip::Medium, 33, 137}, {0.1, Grip::Medium, 83, 148},
+            {0.1, Grip::Firm, 1, 6792},   {0.1, Grip::Firm, 5, 1419},   {0.1, Grip::Firm, 14, 586},
+            {0.1, Grip::Firm, 33, 385},   {0.1, Grip::Firm, 83, 394},
+        }));
+    INFO("viscosity " << viscosity << ", grip " << static_cast<int>(grip) << ", " << period_ms
+                      << " ms");
+
+    // Halving K/1.5 ... 1.5 K seven times leaves 0.3 %.
+    const double onset = find_onset(K / 1.5, K * 1.5, viscosity, grip, period_ms);
+
+    CHECK(onset == Approx(K).epsilon(0.05));
+}

@@ -1,0 +1,104 @@
+#include "core/load_error.h"
+#include "simulation/components.h"
+#include "simulation/probe.h"
+#include "simulation/simulation.h"
+#include "tests/support/water_scene.h"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+using namespace palpa;
+using Catch::Matchers::Contains;
+
+namespace {
+
+double distance(const Simulation& simulation) {
+    const Grab& grab = *simulation.world.find<Grab>(simulation.hand);
+    return simulation.world.find<LineGuide>(grab.molecule)->distance;
+}
+
+// What loading says of a scene whose parameter file lacks the line that begins with `without`.
+std::string error_without(const std::string& without) {
+    const std::filesystem::path folder = std::filesystem::temp_directory_path() / "palpa_load_test";
+    std::filesystem::remove_all(folder);
+    std::filesystem::copy(PALPA_ROOT "/scenes/water", folder);
+    std::ifstream source(PALPA_ROOT "/scenes/water/tip3p.str");
+    std::ofstream target(folder / "tip3p.str");
+    for (std::string line; std::getline(source, line);) {
+        if (!line.starts_with(without)) target << line << '\n';
+    }
+    target.close();
+    std::string message;
+    try {
+        load_simulation(read_scene(folder));
+    } catch (const LoadError& error) {
+        message = error.what();
+    }
+    std::filesystem::remove_all(folder);
+    return message;
+}
+
+}  // namespace
+
+TEST_CASE("the water scene becomes two molecules and a hand", "[simulation][load]") {
+    Simulation simulation = load_simulation(test::water_scene());
+    int molecules = 0, guided = 0;
+
+    simulation.world.each<Molecule>([&](Entity, Molecule& molecule) {
+        CHECK(molecule.atoms.count == 3);
+        CHECK(simulation.atoms.names[molecule.reference_atom].atom == "OH2");
+        ++molecules;
+    });
+    simulation.world.each<Molecule, LineGuide>([&](Entity, Molecule& molecule, LineGuide&) {
+        CHECK(molecule.name == "moved");
+        ++guided;
+    });
+
+    CHECK(molecules == 2);
+    CHECK(guided == 1);
+    CHECK(simulation.atoms.size() == 6);
+    CHECK(simulation.atoms.mass[0] == 15.9994);
+    CHECK(simulation.atoms.charge[0] + simulation.atoms.charge[1] + simulation.atoms.charge[2] ==
+          Approx(0).margin(1e-15));
+    CHECK(distance(simulation) == 7);
+}
+
+TEST_CASE("a stroke that holds starts where nothing is felt", "[simulation][load]") {
+    const Simulation simulation = load_simulation(test::water_scene({"stroke=hold"}));
+
+    CHECK(distance(simulation) == Approx(2.767).margin(0.001));
+    CHECK(std::abs(force_along_line(simulation).force) < 1e-8);
+}
+
+TEST_CASE("a start in the scene goes before any other", "[simulation][load]") {
+    CHECK(distance(load_simulation(
+              test::water_scene({"stroke=hold", "hand.start_angstrom=3.5"}))) == 3.5);
+    CHECK(distance(load_simulation(test::water_scene({"hand.start_angstrom=9"}))) == 9);
+}
+
+TEST_CASE("parameter files that lack something are told with file and line", "[simulation][load]") {
+    CHECK_THAT(error_without("OT "), Contains("tip3p.str:17: atom type 'OT' has no NONBONDED"));
+    CHECK_THAT(error_without("MASS -1 OT"), Contains("unknown atom type 'OT': no MASS line"));
+    CHECK_THAT(error_without("ATOM H2"), Contains("dimer.crd:11") && Contains("has no atom 'H2'"));
+    CHECK_THAT(error_without("RESI"), Contains("an ATOM line outside of a residue"));
+}
+
+TEST_CASE("each mode has the laws of the paper's table", "[simulation][load]") {
+    const auto laws = [](const std::string& mode) {
+        return build_coupling_laws(test::water_scene({"mode=" + mode}).coupling);
+    };
+    const double F = 1e-9;
+
+    CHECK(hand_force(laws("1").force, F) == Approx(1.3363).epsilon(1e-4));
+    CHECK(displacement_gain(laws("1").displacement, 0) == 0.005e9);
+    CHECK(hand_force(laws("2").force, F) == Approx(1.3363).epsilon(1e-4));
+    CHECK(displacement_gain(laws("2").displacement, 0) == 0.25e9);
+    CHECK(hand_force(laws("3").force, F) == Approx(0.64));
+    CHECK(displacement_gain(laws("3").displacement, 0) == 0.005e9);
+    CHECK(hand_force(laws("4").force, F) == Approx(0.64));
+    CHECK(displacement_gain(laws("4").displacement, 0) == 0.25e9);
+    CHECK(hand_force(laws("5").force, F) == 0);
+    CHECK(displacement_gain(laws("5").displacement, 0) == 0.25e9);
+}
