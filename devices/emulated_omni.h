@@ -16,11 +16,11 @@ namespace palpa {
 // Defaults as in the maker's data sheet for the Omni; inertia, friction and encoder step are quoted
 // from memory of it and are to be checked on a device.
 struct EmulatedOmniSettings {
-    DeviceDynamics dynamics;             // 45 g; its viscosity is assumed
-    double friction_newton = 0.26;       // Coulomb, back-drive
-    double encoder_step_m = 0.055e-3;    // 0: positions are read exactly
-    double peak_force_newton = 3.3;      // motors give no more, whatever is written
-    std::optional<HandModel> hand;       // nothing: the handle is free
+    DeviceDynamics dynamics;           // 45 g; its viscosity is assumed
+    double friction_newton = 0.26;     // Coulomb, back-drive
+    double encoder_step_m = 0.055e-3;  // 0: positions are read exactly
+    double peak_force_newton = 3.3;    // motors give no more, whatever is written
+    std::optional<HandModel> hand;     // nothing: the handle is free
     HandScript script;
 };
 
@@ -47,12 +47,12 @@ private:
     EmulatedOmniSettings settings_;
     DeviceSpec spec_;
     ScriptedHand operator_;
-    SampledPlant plant_;                 // over one sub-step
+    SampledPlant plant_;  // over one sub-step
     double handle_mass_kg_ = 0;
-    std::array<PlantState, 3> state_;    // one per axis
-    bool resting_ = true;                // friction held the handle through the last sub-step
+    std::array<PlantState, 3> state_;  // one per axis
+    bool resting_ = true;              // friction held the handle through the last sub-step
     std::uint64_t tick_ = 0;
-    std::uint32_t buttons_ = 0;          // as pressed during the last tick
+    std::uint32_t buttons_ = 0;  // as pressed during the last tick
 };
 
 }  // namespace palpa

@@ -32,12 +32,12 @@ public:
 
 private:
     HandScript script_;
-    double reach_m_;               // where it clutches
-    double script_time_s_ = 0;     // stands still while clutching
-    double shift_m_ = 0;           // handle place minus script place, from earlier clutching
-    double clutch_time_s_ = -1;    // since the button went down; negative: not clutching
-    double carry_from_m_ = 0;      // the handle is being carried from here
-    double carry_m_ = 0;           // and this far
+    double reach_m_;             // where it clutches
+    double script_time_s_ = 0;   // stands still while clutching
+    double shift_m_ = 0;         // handle place minus script place, from earlier clutching
+    double clutch_time_s_ = -1;  // since the button went down; negative: not clutching
+    double carry_from_m_ = 0;    // the handle is being carried from here
+    double carry_m_ = 0;         // and this far
     double last_x_m_ = 0;
 };
 

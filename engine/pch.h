@@ -1,5 +1,6 @@
 // Headers that most files want, compiled once. Every file still includes what it uses.
 #pragma once
+#include <fmt/format.h>
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
@@ -7,7 +8,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <fmt/format.h>
 #include <functional>
 #include <optional>
 #include <span>

@@ -1,7 +1,7 @@
 // Headers that every test wants, compiled once.
 #pragma once
+#include <fmt/format.h>
 #include <Eigen/Core>
 #include <catch2/catch.hpp>
-#include <fmt/format.h>
 #include <string>
 #include <vector>

@@ -12,11 +12,11 @@
 #include "tools/commit.h"
 #include "tools/run.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstddef>
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
@@ -92,7 +92,11 @@ Row bench_step(const std::string& scene_name, Simulation simulation) {
 Row bench_lockstep(const std::string& scene_name, SceneDescription scene) {
     scene.seconds = 10;
     Row row{fmt::format("lockstep/{}/period={}ms/seconds=10", scene_name, scene.period_ms),
-            {}, "s", {}, "N", "the first run, at the end"};
+            {},
+            "s",
+            {},
+            "N",
+            "the first run, at the end"};
     std::optional<double> first;
     double worst = 0;
     for (int run = 0; run < 7; ++run) {
@@ -114,8 +118,9 @@ Row bench_load(const std::string& scene_name, const std::filesystem::path& path,
     Row row{"load/" + scene_name, {}, "ms", {}, "", ""};
     for (int run = 0; run < 21; ++run) {
         row.samples.push_back(1e3 * seconds_of([&] {
-            const Simulation simulation = load_simulation(read_scene(path, settings));
-        }));
+                                  const Simulation simulation =
+                                      load_simulation(read_scene(path, settings));
+                              }));
     }
     return row;
 }
@@ -153,12 +158,13 @@ int bench_command(const BenchOptions& options) {
         fmt::print("{}\n", report.dump(2));
         return 0;
     }
-    fmt::print("{}, commit {}\n{:<44}{:>12}{:>12}{:>12}\n", machine_name(), commit_name, "", "median",
-               "p10", "p90");
+    fmt::print("{}, commit {}\n{:<44}{:>12}{:>12}{:>12}\n", machine_name(), commit_name, "",
+               "median", "p10", "p90");
     for (const Row& row : rows) {
         fmt::print("{:<44}{:>12.4g}{:>12.4g}{:>12.4g} {}", row.name, quantile(row.samples, 0.5),
                    quantile(row.samples, 0.1), quantile(row.samples, 0.9), row.unit);
-        if (row.error) fmt::print(", error {:.2g} {} against {}", *row.error, row.error_unit, row.reference);
+        if (row.error)
+            fmt::print(", error {:.2g} {} against {}", *row.error, row.error_unit, row.reference);
         fmt::print("\n");
     }
     return 0;

@@ -10,13 +10,13 @@
 #include "math/vec.h"
 #include "molecule/atoms.h"
 
+#include <fmt/format.h>
 #include <Eigen/LU>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <fmt/format.h>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -28,8 +28,8 @@ using palpa::Vec3;
 constexpr double start_distance = 7;  // Å between the oxygens
 
 struct Water {
-    double bond = 0;   // Å
-    double angle = 0;  // rad
+    double bond = 0;                                      // Å
+    double angle = 0;                                     // rad
     std::vector<double> charge, sqrt_epsilon, half_rmin;  // O, H, H
 };
 
@@ -59,10 +59,9 @@ std::vector<Vec3> donor(const Water& water, double distance, double direction) {
 
 double energy(const Water& water, const Variables& v) {
     const std::vector<Vec3> fixed = acceptor(water, v(1)), moved = donor(water, v(0), v(2));
-    return palpa::evaluate_pair_field(
-               {moved, water.charge, water.sqrt_epsilon, water.half_rmin},
-               {fixed, water.charge, water.sqrt_epsilon, water.half_rmin},
-               palpa::units::charmm_coulomb_constant)
+    return palpa::evaluate_pair_field({moved, water.charge, water.sqrt_epsilon, water.half_rmin},
+                                      {fixed, water.charge, water.sqrt_epsilon, water.half_rmin},
+                                      palpa::units::charmm_coulomb_constant)
         .energy();
 }
 
@@ -157,11 +156,13 @@ std::string format_dimer(const Water& water, const Variables& lowest) {
     add("FIX", acceptor(water, lowest(1)));
     add("MOV", donor(water, start_distance, lowest(2)));
     return palpa::format_crd(
-        dimer, fmt::format("Two rigid TIP3P waters (O-H {} A, H-O-H {:.2f} deg), oxygens on the x axis\n"
-                           "{} A apart, turned as in the dimer of lowest energy: {:.4f} kcal/mol at {:.4f} A.\n"
-                           "Made by make_water_scene; see scenes/water/README.md.",
-                           water.bond, water.angle * 180 / std::numbers::pi, start_distance,
-                           energy(water, lowest), lowest(0)));
+        dimer,
+        fmt::format(
+            "Two rigid TIP3P waters (O-H {} A, H-O-H {:.2f} deg), oxygens on the x axis\n"
+            "{} A apart, turned as in the dimer of lowest energy: {:.4f} kcal/mol at {:.4f} A.\n"
+            "Made by make_water_scene; see scenes/water/README.md.",
+            water.bond, water.angle * 180 / std::numbers::pi, start_distance, energy(water, lowest),
+            lowest(0)));
 }
 
 int make_scene(const std::filesystem::path& toppar, const std::filesystem::path& folder) {

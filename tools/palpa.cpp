@@ -3,10 +3,11 @@
 #include "tools/bench.h"
 #include "tools/run.h"
 
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
-#include <fmt/format.h>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,14 +41,24 @@ void add_run(CLI::App& program, palpa::RunOptions& options) {
     CLI::App& run = *program.add_subcommand("run", "Feel a scene: a hand on an emulated Omni");
     run.add_option("scene", options.scene, "scene folder, scene file or recorded session.toml")
         ->required();
-    run.add_flag("--headless", options.headless, "in lockstep on a virtual clock, without a window");
-    run.add_flag("--check", options.check_only, "only read the scene and say what is wrong with it");
+    run.add_flag("--headless", options.headless,
+                 "in lockstep on a virtual clock, without a window");
+    run.add_flag("--check", options.check_only,
+                 "only read the scene and say what is wrong with it");
     run.add_option("--record", options.record, "folder for trace.csv, summary.json, session.toml");
     run.add_flag("--json", options.json, "print the summary as JSON");
+    run.add_flag_callback(
+        "--keys",
+        [] {
+            palpa::print_scene_keys();
+            throw CLI::Success();
+        },
+        "list the keys of scene files, and do nothing else");
     std::vector<std::string>& settings = options.settings;
     add_setting(run, "--mode", "coupling.mode", "1 to 5, as in the paper", settings);
     add_setting(run, "--period-ms", "run.period_ms", "declared period of the simulation", settings);
-    add_setting(run, "--hand", "hand.grip", "none, light, slack, medium, firm or firm-grip", settings);
+    add_setting(run, "--hand", "hand.grip", "none, light, slack, medium, firm or firm-grip",
+                settings);
     add_setting(run, "--friction", "device.friction_N", "Coulomb friction of the device", settings);
     add_setting(run, "--seconds", "run.seconds", "length of the run", settings);
     add_setting(run, "--seed", "run.seed", "of everything random", settings);
@@ -71,6 +82,14 @@ int run_program(int argc, char** argv) {
     palpa::BenchOptions bench;
     add_run(program, run);
     add_bench(program, bench);
+    const std::vector<CLI::App*> commands = program.get_subcommands({});
+    const bool known = std::any_of(commands.begin(), commands.end(), [&](const CLI::App* command) {
+        return argc > 1 && command->check_name(argv[1]);
+    });
+    if (argc > 1 && argv[1][0] != '-' && !known) {
+        fmt::print(stderr, "palpa: no command '{}'; see palpa --help\n", argv[1]);
+        return bad_input;
+    }
     try {
         program.parse(argc, argv);
     } catch (const CLI::Success& success) {  // --help, --version

@@ -1,15 +1,16 @@
 #include "tools/run.h"
 
 #include "devices/emulated_omni.h"
+#include "scene/fields.h"
 #include "scene/read_scene.h"
 #include "session/plan_hand.h"
 #include "session/recording.h"
 #include "session/run_headless.h"
 #include "simulation/simulation.h"
 
-#include <cstdio>
 #include <fmt/format.h>
 #include <unistd.h>
+#include <cstdio>
 
 namespace palpa {
 namespace {
@@ -52,6 +53,14 @@ EmulatedOmniSettings build_emulated_omni(const SceneDescription& scene,
     };
 }
 
+void print_scene_keys() {
+    fmt::print("| key | value | unless given | meaning |\n| --- | --- | --- | --- |\n");
+    for (const FieldNote& field : list_fields()) {
+        fmt::print("| `{}` | {} | {} | {} |\n", field.key, field.type, field.fallback,
+                   field.meaning);
+    }
+}
+
 int run_command(const RunOptions& options) {
     const SceneDescription scene = read_scene(options.scene, options.settings);
     Simulation simulation = load_simulation(scene);
@@ -60,19 +69,20 @@ int run_command(const RunOptions& options) {
         fmt::print("{}: nothing wrong found\n", scene.file.string());
         return 0;
     }
+    std::optional<Recording> recording;
+    if (options.record) recording.emplace(*options.record, scene);
     if (!options.headless) {
         fmt::print(stderr, "there is no window yet: running headless, in lockstep\n");
     }
-    if (!options.chose_mode) {
-        fmt::print(stderr,
-                   "guarded mode is not built yet: mode {} of the paper at T_s = {} ms with {} N of "
-                   "device friction stands in (--mode, --period-ms, --friction)\n",
-                   coupling_mode_names[static_cast<std::size_t>(scene.coupling.mode)],
-                   scene.period_ms, scene.device.friction_N);
+    const SceneDescription defaults;
+    if (!options.chose_mode && scene.coupling.mode == defaults.coupling.mode) {
+        fmt::print(
+            stderr,
+            "guarded mode is not built yet: mode {} of the paper at T_s = {} ms with {} N of "
+            "device friction stands in (--mode, --period-ms, --friction)\n",
+            coupling_mode_names[static_cast<std::size_t>(scene.coupling.mode)], scene.period_ms,
+            scene.device.friction_N);
     }
-    std::optional<Recording> recording;
-    if (options.record) recording.emplace(*options.record, scene);
-
     const bool watched = isatty(STDERR_FILENO) != 0 && !options.json;
     const Summary summary =
         run_headless(scene, simulation, device, recording ? &*recording : nullptr,

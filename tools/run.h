@@ -25,6 +25,9 @@ struct RunOptions {
 EmulatedOmniSettings build_emulated_omni(const SceneDescription& scene,
                                          const Simulation& simulation);
 
+// All keys of a scene file as a Markdown table, as scenes/README.md has it.
+void print_scene_keys();
+
 // Throws LoadError on bad input. Returns the exit code.
 int run_command(const RunOptions& options);
 

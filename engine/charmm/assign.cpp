@@ -2,11 +2,11 @@
 
 #include "core/text.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <fmt/format.h>
 #include <map>
 #include <set>
 #include <string>
@@ -30,7 +30,8 @@ public:
     }
 
     void throw_if_any() const {
-        if (!problems_.empty()) throw LoadError(place_, fmt::format("{}", fmt::join(problems_, "; ")));
+        if (!problems_.empty())
+            throw LoadError(place_, fmt::format("{}", fmt::join(problems_, "; ")));
     }
 
 private:
@@ -46,6 +47,12 @@ std::vector<std::string_view> keys(const Map& map) {
     return names;
 }
 
+const ResidueAtom* find_atom(const Residue& residue, std::string_view name) {
+    const auto atom = std::find_if(residue.atoms.begin(), residue.atoms.end(),
+                                   [&](const ResidueAtom& a) { return a.name == name; });
+    return atom == residue.atoms.end() ? nullptr : &*atom;
+}
+
 // The atom's template, or null with the reason noted.
 const ResidueAtom* find_template(const ForceField& force_field, const AtomName& name,
                                  const TextPlace& place, Missing& missing) {
@@ -56,15 +63,12 @@ const ResidueAtom* find_template(const ForceField& force_field, const AtomName& 
                                        near_name_hint(name.residue, keys(force_field.residues))));
         return nullptr;
     }
-    const std::vector<ResidueAtom>& atoms = residue->second.atoms;
-    const auto atom = std::find_if(atoms.begin(), atoms.end(),
-                                   [&](const ResidueAtom& a) { return a.name == name.atom; });
-    if (atom != atoms.end()) return &*atom;
+    if (const ResidueAtom* const atom = find_atom(residue->second, name.atom)) return atom;
     std::vector<std::string_view> known;
-    for (const ResidueAtom& a : atoms) known.emplace_back(a.name);
-    missing.add(place, fmt::format("residue '{}' of {} has no atom '{}' (only {})", name.residue,
-                                   to_string(residue->second.place), name.atom,
-                                   fmt::join(known, ", ")));
+    for (const ResidueAtom& a : residue->second.atoms) known.emplace_back(a.name);
+    missing.add(place,
+                fmt::format("residue '{}' of {} has no atom '{}' (only {})", name.residue,
+                            to_string(residue->second.place), name.atom, fmt::join(known, ", ")));
     return nullptr;
 }
 
@@ -91,8 +95,16 @@ void check_complete(const ForceField& force_field, const Structure& structure,
     }
 }
 
-void check_nbfix(const ForceField& force_field, const std::set<std::string>& used,
+// Molecules act on each other, so the types of those in the table count as well as the new ones.
+void check_nbfix(const ForceField& force_field, const AtomTable& table, std::set<std::string> used,
                  Missing& missing) {
+    for (const AtomName& name : table.names) {
+        const auto residue = force_field.residues.find(name.residue);
+        if (residue == force_field.residues.end()) continue;
+        if (const ResidueAtom* const atom = find_atom(residue->second, name.atom)) {
+            used.insert(atom->type);
+        }
+    }
     for (const NbfixPair& pair : force_field.nbfix) {
         if (used.contains(pair.a) && used.contains(pair.b)) {
             missing.add(pair.place, fmt::format("NBFIX of '{}' and '{}' is needed here, and is not "
@@ -118,8 +130,9 @@ AtomRange add_segment_atoms(const ForceField& force_field, const Structure& stru
         if (!atom) continue;
         const auto type = force_field.types.find(atom->type);
         if (type == force_field.types.end()) {
-            missing.add(atom->place, fmt::format("unknown atom type '{}': no MASS line{}", atom->type,
-                                                 near_name_hint(atom->type, keys(force_field.types))));
+            missing.add(atom->place,
+                        fmt::format("unknown atom type '{}': no MASS line{}", atom->type,
+                                    near_name_hint(atom->type, keys(force_field.types))));
         }
         const auto nonbonded = force_field.nonbonded.find(atom->type);
         if (nonbonded == force_field.nonbonded.end()) {
@@ -141,7 +154,7 @@ AtomRange add_segment_atoms(const ForceField& force_field, const Structure& stru
                         fmt::format("no segment '{}' (only {})", segment, fmt::join(known, ", ")));
     }
     check_complete(force_field, structure, segment, missing);
-    check_nbfix(force_field, used_types, missing);
+    check_nbfix(force_field, table, std::move(used_types), missing);
     missing.throw_if_any();
 
     const AtomRange range{static_cast<std::uint32_t>(table.size()),

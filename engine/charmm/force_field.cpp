@@ -3,10 +3,10 @@
 #include "core/files.h"
 #include "core/text.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <fmt/format.h>
 #include <optional>
 
 namespace palpa {
@@ -17,8 +17,8 @@ using Words = std::span<const std::string_view>;
 // Keywords count by their first four letters. Those of a topology file that carry nothing a rigid
 // molecule needs.
 constexpr std::array topology_passed_over = std::to_array<std::string_view>(
-    {"GROU", "BOND", "DOUB", "TRIP", "AROM", "ANGL", "THET", "DIHE", "IMPR", "IMPH", "CMAP", "DONO",
-     "ACCE", "IC", "BILD", "PATC", "DELE", "DEFA", "AUTO", "DECL"});
+    {"GROU", "BOND", "DOUB", "TRIP", "AROM", "ANGL", "THET", "DIHE", "IMPR", "IMPH",
+     "CMAP", "DONO", "ACCE", "IC",   "BILD", "PATC", "DELE", "DEFA", "AUTO", "DECL"});
 constexpr std::array script_passed_over =
     std::to_array<std::string_view>({"SET", "IF", "RETU", "BOML", "WRNL"});
 
@@ -54,8 +54,8 @@ public:
                 end_part();
             } else if (keyword == "READ") {
                 start_part(words);
-            } else if (part_ == Part::Parameters ||
-                       (part_ == Part::None && find_section(keyword))) {
+            } else if (part_ == Part::Parameters || (part_ == Part::None && find_section(keyword) &&
+                                                     (keyword != "ATOM" || words.size() == 1))) {
                 part_ = Part::Parameters;
                 parse_parameters(keyword, words);
             } else if (part_ == Part::None && contains(script_passed_over, keyword)) {
@@ -79,14 +79,16 @@ private:
         statement_.clear();
         for (bool continued = true; continued && at_ < lines_.size();) {
             const std::string_view raw = lines_[at_];
-            const std::string_view line = trimmed(raw.substr(0, raw.find('!')));
+            std::string_view line = trimmed(raw.substr(0, raw.find('!')));
             ++at_;
+            const bool ends_open = line.ends_with('-');
+            if (ends_open) line = trimmed(line.substr(0, line.size() - 1));
             if (statement_.empty() && (line.empty() || line.starts_with('*'))) continue;
             if (statement_.empty()) statement_line_ = at_;
-            continued = line.ends_with('-');
-            statement_ += upper_case(line.substr(0, line.size() - (continued ? 1 : 0))) + " ";
+            continued = ends_open;
+            statement_ += upper_case(line) + " ";
         }
-        return !trimmed(statement_).empty();
+        return !statement_.empty();
     }
 
     void start_part(Words words) {
@@ -148,9 +150,10 @@ private:
         if (keyword == "ATOM" && in_patch_) return;
         if (keyword == "ATOM") return parse_residue_atom(words);
         if (!contains(topology_passed_over, keyword)) {
-            fail(fmt::format("'{}' is not a line of a topology file; expected MASS, RESI, ATOM or "
-                             "the like",
-                             words[0]));
+            fail(
+                fmt::format("'{}' is not a line of a topology file; expected MASS, RESI, ATOM or "
+                            "the like",
+                            words[0]));
         }
     }
 
@@ -160,17 +163,20 @@ private:
         const std::string type = name(words, 2, "atom type");
         AtomType entry{real(words, 3, "mass"), words.size() > 4 ? std::string(words[4]) : "",
                        place()};
-        if (!(entry.mass >= 0)) fail(fmt::format("a mass of {} amu; expected 0 or more", entry.mass));
-        // CHARMM's own files round one mass differently in topology and parameters; the first counts.
-        add_once(into_.types, type, entry, fmt::format("mass of type '{}'", type),
-                 [](const AtomType& a, const AtomType& b) { return std::abs(a.mass - b.mass) < 0.01; });
+        if (!(entry.mass >= 0))
+            fail(fmt::format("a mass of {} amu; expected 0 or more", entry.mass));
+        // CHARMM's own files round one mass differently in topology and parameters; the first
+        // counts.
+        add_once(
+            into_.types, type, entry, fmt::format("mass of type '{}'", type),
+            [](const AtomType& a, const AtomType& b) { return std::abs(a.mass - b.mass) < 0.01; });
     }
 
     void start_residue(Words words) {
         end_residue();
         const std::string residue = name(words, 1, "residue name");
-        const auto [added, is_new] =
-            into_.residues.emplace(residue, Residue{real(words, 2, "residue's charge"), {}, place()});
+        const auto [added, is_new] = into_.residues.emplace(
+            residue, Residue{real(words, 2, "residue's charge"), {}, place()});
         if (!is_new) {
             fail(fmt::format("residue '{}' again, first in {}", residue,
                              to_string(added->second.place)));
@@ -184,7 +190,8 @@ private:
                          real(words, 3, "charge"), place()};
         for (const ResidueAtom& other : residue_->atoms) {
             if (other.name == atom.name) {
-                fail(fmt::format("atom '{}' again, first in {}", atom.name, to_string(other.place)));
+                fail(
+                    fmt::format("atom '{}' again, first in {}", atom.name, to_string(other.place)));
             }
         }
         residue_->atoms.push_back(std::move(atom));
@@ -200,20 +207,26 @@ private:
             return;
         }
         switch (section_) {
-            case Section::Bonds: return parse_bond(words);
-            case Section::Angles: return parse_angle(words);
-            case Section::Nonbonded: return parse_nonbonded(words);
+            case Section::Bonds:
+                return parse_bond(words);
+            case Section::Angles:
+                return parse_angle(words);
+            case Section::Nonbonded:
+                return parse_nonbonded(words);
             case Section::Nbfix:
                 into_.nbfix.push_back(
                     {name(words, 0, "atom type"), name(words, 1, "second atom type"), place()});
                 return;
-            case Section::PassedOver: return;
+            case Section::PassedOver:
+                return;
             case Section::Atoms:
-            case Section::None: break;
+            case Section::None:
+                break;
         }
-        fail(fmt::format("'{}' is not a section of a parameter file; expected BONDS, ANGLES, "
-                         "NONBONDED or the like",
-                         words[0]));
+        fail(
+            fmt::format("'{}' is not a section of a parameter file; expected BONDS, ANGLES, "
+                        "NONBONDED or the like",
+                        words[0]));
     }
 
     static bool same_values(const HarmonicParameter& a, const HarmonicParameter& b) {
@@ -224,8 +237,8 @@ private:
         std::pair<std::string, std::string> key(name(words, 0, "atom type"),
                                                 name(words, 1, "second atom type"));
         if (key.second < key.first) std::swap(key.first, key.second);
-        const HarmonicParameter bond{real(words, 2, "force constant"), real(words, 3, "bond length"),
-                                     place()};
+        const HarmonicParameter bond{real(words, 2, "force constant"),
+                                     real(words, 3, "bond length"), place()};
         const std::string what = fmt::format("bond {} {}", key.first, key.second);
         add_once(into_.bonds, std::move(key), bond, what, same_values);
     }
@@ -248,9 +261,10 @@ private:
         const double epsilon = real(words, 2, "well depth");
         const double half_rmin = real(words, 3, "half of Rmin");
         if (epsilon > 0 || half_rmin < 0) {
-            fail(fmt::format("well depth {} and Rmin/2 {} of type '{}'; CHARMM writes the depth as "
-                             "-epsilon and Rmin/2 as 0 or more",
-                             epsilon, half_rmin, type));
+            fail(
+                fmt::format("well depth {} and Rmin/2 {} of type '{}'; CHARMM writes the depth as "
+                            "-epsilon and Rmin/2 as 0 or more",
+                            epsilon, half_rmin, type));
         }
         add_once(into_.nonbonded, type, NonbondedType{-epsilon, half_rmin, place()},
                  fmt::format("non-bonded parameters of type '{}'", type),

@@ -40,8 +40,8 @@ struct NonbondedType {
 };
 
 struct HarmonicParameter {
-    double k = 0;          // kcal/mol/Å^2 or kcal/mol/rad^2; E = k (x - x0)^2
-    double value = 0;      // Å or degree
+    double k = 0;      // kcal/mol/Å^2 or kcal/mol/rad^2; E = k (x - x0)^2
+    double value = 0;  // Å or degree
     TextPlace place;
 };
 
@@ -69,8 +69,9 @@ struct ForceField {
 // different values.
 ForceField read_force_field(std::span<const std::filesystem::path> files);
 
-// Adds the content of one file. Whether a line is topology or parameters follows from its keyword and,
-// for section headers that both kinds know (BONDS, ANGLES), from what came before it in the file.
+// Adds the content of one file. Whether a line is topology or parameters follows from its keyword
+// and, for section headers that both kinds know (BONDS, ANGLES), from what came before it in the
+// file.
 void parse_force_field(std::string_view text, const std::string& file, ForceField& into);
 
 }  // namespace palpa

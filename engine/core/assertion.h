@@ -3,12 +3,12 @@
 #ifdef PALPA_ASSERTIONS
 #include <cstdio>
 #include <cstdlib>
-#define PALPA_ASSERT(condition)                                                                  \
-    do {                                                                                         \
-        if (!(condition)) {                                                                      \
+#define PALPA_ASSERT(condition)                                                                    \
+    do {                                                                                           \
+        if (!(condition)) {                                                                        \
             std::fprintf(stderr, "%s:%d: assertion failed: %s\n", __FILE__, __LINE__, #condition); \
-            std::abort();                                                                        \
-        }                                                                                        \
+            std::abort();                                                                          \
+        }                                                                                          \
     } while (false)
 #else
 #define PALPA_ASSERT(condition) static_cast<void>(0)

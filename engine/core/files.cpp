@@ -43,7 +43,11 @@ void write_text_file(const std::filesystem::path& path, std::string_view text) {
     }
     std::error_code error;
     std::filesystem::rename(draft, path, error);
-    if (error) throw LoadError({path.string()}, "cannot be written: " + error.message());
+    if (error) {
+        std::error_code ignored;
+        std::filesystem::remove(draft, ignored);
+        throw LoadError({path.string()}, "cannot be written: " + error.message());
+    }
 }
 
 }  // namespace palpa

@@ -11,8 +11,9 @@ namespace palpa {
 // least as new as the one before; values that nobody read in time are overwritten.
 template <class Value>
 class Mailbox {
-    static_assert(std::is_trivially_destructible_v<Value>, "a mailbox copies plain structs, nothing "
-                                                            "that owns memory");
+    static_assert(std::is_trivially_destructible_v<Value>,
+                  "a mailbox copies plain structs, nothing "
+                  "that owns memory");
 
 public:
     void post(const Value& value) noexcept {

@@ -75,8 +75,7 @@ std::string upper_case(std::string_view text) {
 
 std::optional<double> find_real(std::string_view text) {
     std::string digits(bare_number(text));
-    std::replace_if(
-        digits.begin(), digits.end(), [](char c) { return c == 'D' || c == 'd'; }, 'e');
+    std::replace_if(digits.begin(), digits.end(), [](char c) { return c == 'D' || c == 'd'; }, 'e');
     double value = 0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (error != std::errc() || end != digits.data() + digits.size()) return std::nullopt;
@@ -93,6 +92,7 @@ std::optional<std::int64_t> find_integer(std::string_view text) {
 }
 
 std::string_view find_near_name(std::string_view name, std::span<const std::string_view> names) {
+    if (name.empty()) return {};
     std::string_view best;
     std::size_t fewest = std::max<std::size_t>(1, name.size() / 3) + 1;
     for (const std::string_view candidate : names) {

@@ -59,8 +59,8 @@ public:
     void each(Visit&& visit) {
         Pool<First>* const first = &pool<First>();
         std::array<const AnyPool*, 1 + sizeof...(Rest)> pools{first, &pool<Rest>()...};
-        const AnyPool& smallest = **std::min_element(
-            pools.begin(), pools.end(), [](const AnyPool* a, const AnyPool* b) {
+        const AnyPool& smallest =
+            **std::min_element(pools.begin(), pools.end(), [](const AnyPool* a, const AnyPool* b) {
                 return a->entities().size() < b->entities().size();
             });
         for (const Entity entity : smallest.entities()) {

@@ -8,25 +8,26 @@ namespace palpa {
 
 // A set of points, an array per property, all of one length.
 struct FieldPoints {
-    std::span<const Vec3> positions;        // Å
-    std::span<const double> charge;         // e
-    std::span<const double> sqrt_epsilon;   // (kcal/mol)^(1/2)
-    std::span<const double> half_rmin;      // Å
+    std::span<const Vec3> positions;       // Å
+    std::span<const double> charge;        // e
+    std::span<const double> sqrt_epsilon;  // (kcal/mol)^(1/2)
+    std::span<const double> half_rmin;     // Å
 };
 
 // What the environment does to the group as a whole.
 struct FieldSum {
-    double van_der_waals = 0;               // kcal/mol
-    double electrostatic = 0;               // kcal/mol
-    Vec3 force = Vec3::Zero();              // on the group, kcal/mol/Å
-    Mat3 stiffness = Mat3::Zero();          // -d(force)/d(translation of the group), kcal/mol/Å^2
+    double van_der_waals = 0;       // kcal/mol
+    double electrostatic = 0;       // kcal/mol
+    Vec3 force = Vec3::Zero();      // on the group, kcal/mol/Å
+    Mat3 stiffness = Mat3::Zero();  // -d(force)/d(translation of the group), kcal/mol/Å^2
 
     double energy() const noexcept { return van_der_waals + electrostatic; }
 };
 
 // Inside this distance (Å) a pair's force falls linearly to zero at zero distance, so that force,
 // energy and stiffness are finite and continuous wherever the points are, on top of each other
-// included. Walls of thousands of nanonewtons keep points far outside it; it is there for accidents.
+// included. Walls of thousands of nanonewtons keep points far outside it; it is there for
+// accidents.
 inline constexpr double pair_core_radius = 0.1;
 
 // Every pair of one point of the group and one of the environment, with CHARMM's combination rules:
@@ -35,7 +36,8 @@ inline constexpr double pair_core_radius = 0.1;
 FieldSum evaluate_pair_field(const FieldPoints& group, const FieldPoints& environment,
                              double coulomb_constant) noexcept;
 
-// The same pairs; adds the force on every point (kcal/mol/Å) to the two spans, of one entry a point.
+// The same pairs; adds the force on every point (kcal/mol/Å) to the two spans, of one entry a
+// point.
 FieldSum add_pair_forces(const FieldPoints& group, const FieldPoints& environment,
                          double coulomb_constant, std::span<Vec3> group_forces,
                          std::span<Vec3> environment_forces) noexcept;

@@ -4,8 +4,8 @@
 #include "core/load_error.h"
 #include "core/text.h"
 
-#include <cstddef>
 #include <fmt/format.h>
+#include <cstddef>
 #include <iterator>
 #include <map>
 #include <optional>
@@ -26,7 +26,7 @@ struct Layout {
 
 // (I5,I5,1X,A4,1X,A4,3F10.5,1X,A4,1X,A4,F10.5) and (2I10,2X,A8,2X,A8,3F20.10,2X,A8,2X,A8,F20.10)
 constexpr Layout normal_layout{{11, 4}, {16, 4}, {20, 10}, {30, 10}, {40, 10}, {51, 4}, {56, 4}};
-constexpr Layout extended_layout{{22, 8},  {32, 8},   {40, 20}, {60, 20},
+constexpr Layout extended_layout{{22, 8},  {32, 8},  {40, 20}, {60, 20},
                                  {80, 20}, {102, 8}, {112, 8}};
 
 class Reader {
@@ -39,8 +39,7 @@ public:
         const std::size_t count = read_atom_count();
         for (std::size_t atom = 0; atom < count; ++atom) {
             if (at_ == lines_.size()) {
-                fail(lines_.size(), 0,
-                     fmt::format("ends after {} of {} atoms", atom, count));
+                fail(lines_.size(), 0, fmt::format("ends after {} of {} atoms", atom, count));
             }
             read_atom(lines_[at_]);
             ++at_;
@@ -97,14 +96,17 @@ private:
                       word(line, layout_.residue, "residue name"),
                       word(line, layout_.number, "residue number"),
                       word(line, layout_.atom, "atom name")};
-        const auto [first, is_new] = seen_.emplace(
-            std::tuple(name.segment, name.residue, name.number, name.atom), at_ + 1);
+        const auto [first, is_new] =
+            seen_.emplace(std::tuple(name.segment, name.residue, name.number, name.atom), at_ + 1);
         if (!is_new) {
             fail(at_ + 1, 0,
                  fmt::format("atom {} again, first on line {}", to_string(name), first->second));
         }
-        structure_.positions.emplace_back(coordinate(line, layout_.x), coordinate(line, layout_.y),
-                                          coordinate(line, layout_.z));
+        // One by one: a call may evaluate its arguments in any order, and the first error counts.
+        const double x = coordinate(line, layout_.x);
+        const double y = coordinate(line, layout_.y);
+        const double z = coordinate(line, layout_.z);
+        structure_.positions.emplace_back(x, y, z);
         structure_.names.push_back(std::move(name));
         structure_.lines.push_back(at_ + 1);
     }
@@ -137,10 +139,11 @@ std::string format_crd(const Structure& structure, std::string_view title) {
                           structure.names[atom - 1].number == name.number;
         if (!same) ++residue;
         const Vec3& p = structure.positions[atom];
-        fmt::format_to(std::back_inserter(text),
-                       "{:10}{:10}  {:<8}  {:<8}{:20.10f}{:20.10f}{:20.10f}  {:<8}  {:<8}{:20.10f}\n",
-                       atom + 1, residue, name.residue, name.atom, p.x(), p.y(), p.z(),
-                       name.segment, name.number, 0.0);
+        fmt::format_to(
+            std::back_inserter(text),
+            "{:10}{:10}  {:<8}  {:<8}{:20.10f}{:20.10f}{:20.10f}  {:<8}  {:<8}{:20.10f}\n",
+            atom + 1, residue, name.residue, name.atom, p.x(), p.y(), p.z(), name.segment,
+            name.number, 0.0);
     }
     return text;
 }

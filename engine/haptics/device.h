@@ -10,18 +10,18 @@ namespace palpa {
 // Limits as the maker or the driver states them. SI; axes: x right, y up, z towards the user.
 struct DeviceSpec {
     std::string name;
-    double rate_hz = 1000;                // servo ticks a second
-    double peak_force_newton = 0;         // what the motors give at most
-    double viscosity_N_s_per_m = 0;       // what is known of the device's own damping; 0 if nothing
-    Vec3 half_workspace_m = Vec3::Zero(); // the box in which the handle can move, from its centre
+    double rate_hz = 1000;           // servo ticks a second
+    double peak_force_newton = 0;    // what the motors give at most
+    double viscosity_N_s_per_m = 0;  // what is known of the device's own damping; 0 if nothing
+    Vec3 half_workspace_m = Vec3::Zero();  // the box in which the handle can move, from its centre
     int sensed_axes = 3, actuated_axes = 3;
 };
 
 // One look at the device. `valid` is false if the device had nothing new or nothing sane to say.
 struct DeviceReading {
-    double time_s = 0;                  // on the device's own clock
-    Vec3 position_m = Vec3::Zero();     // of the handle, from the centre of the workspace
-    std::uint32_t buttons = 0;          // one bit a button, see Button
+    double time_s = 0;               // on the device's own clock
+    Vec3 position_m = Vec3::Zero();  // of the handle, from the centre of the workspace
+    std::uint32_t buttons = 0;       // one bit a button, see Button
     bool valid = false;
 };
 

@@ -40,7 +40,8 @@ double hand_force_slope(const ForceLaw& law, double F_m) noexcept {
 }
 
 double force_gain(const ForceLaw& law, double F_m) noexcept {
-    // Nearer to 0 the arctangents of eq. 2 cancel, and the quotient is the slope to 12 digits anyway.
+    // Nearer to 0 the arctangents of eq. 2 cancel, and the quotient is the slope to 12 digits
+    // anyway.
     constexpr double smallest = 1e-16;  // N
     return std::abs(F_m) < smallest ? hand_force_slope(law, 0) : hand_force(law, F_m) / F_m;
 }

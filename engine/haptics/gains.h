@@ -18,8 +18,8 @@ public:
 
     explicit PrintedForceLaw(const Parameters& parameters) noexcept;
 
-    double value(double F_m) const noexcept;   // N
-    double slope(double F_m) const noexcept;   // dF_h/dF_m
+    double value(double F_m) const noexcept;  // N
+    double slope(double F_m) const noexcept;  // dF_h/dF_m
 
 private:
     double alpha_1_, alpha_2_;  // N

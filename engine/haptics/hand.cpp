@@ -7,12 +7,18 @@ namespace palpa {
 
 std::optional<HandModel> hand_model(Grip grip) noexcept {
     switch (grip) {
-        case Grip::None: return std::nullopt;
-        case Grip::Light: return HandModel{0.10, 1, 50, 0, 0};
-        case Grip::Slack: return HandModel{0.50, 1, 50, 0, 0};
-        case Grip::Medium: return HandModel{0.15, 4, 200, 0, 0};
-        case Grip::Firm: return HandModel{0.30, 10, 500, 0, 0};
-        case Grip::FirmGrip: return HandModel{0.30, 10, 500, 1000, 5};
+        case Grip::None:
+            return std::nullopt;
+        case Grip::Light:
+            return HandModel{0.10, 1, 50, 0, 0};
+        case Grip::Slack:
+            return HandModel{0.50, 1, 50, 0, 0};
+        case Grip::Medium:
+            return HandModel{0.15, 4, 200, 0, 0};
+        case Grip::Firm:
+            return HandModel{0.30, 10, 500, 0, 0};
+        case Grip::FirmGrip:
+            return HandModel{0.30, 10, 500, 1000, 5};
     }
     return std::nullopt;
 }
@@ -29,9 +35,9 @@ double minimum_jerk(double s) noexcept {
 }
 
 double find_target(const std::vector<HandWaypoint>& path, double time_s) noexcept {
-    const auto next =
-        std::find_if(path.begin(), path.end(),
-                     [time_s](const HandWaypoint& point) { return time_s < point.time_s; });
+    const auto next = std::find_if(path.begin(), path.end(), [time_s](const HandWaypoint& point) {
+        return time_s < point.time_s;
+    });
     if (next == path.begin()) return path.empty() ? 0 : path.front().x_m;
     if (next == path.end()) return path.back().x_m;
     const HandWaypoint& from = *(next - 1);

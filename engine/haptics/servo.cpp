@@ -43,7 +43,8 @@ ServoTick step_servo(const ServoSettings& settings, ServoState& state, Exchange&
     const std::uint64_t delay = static_cast<std::uint64_t>(settings.delay_ticks);
 
     if (reading.valid && reading.position_m.allFinite()) {
-        if (state.has_reading) {  // what the last force did while the handle went from there to here
+        if (state
+                .has_reading) {  // what the last force did while the handle went from there to here
             const std::uint64_t last = state.tick - 1 < delay ? 0 : state.tick - 1 - delay;
             state.hand_energy_J +=
                 state.under_way[last % slots].dot(reading.position_m - state.handle_m);

@@ -25,14 +25,14 @@ struct ServoState {
     Vec3 travel_m = Vec3::Zero();  // handle travel outside of the clutch
     bool has_reading = false;
     // touch model
-    TouchModel touch;              // the newest that came
+    TouchModel touch;  // the newest that came
     // safety
-    bool stopped = false;          // a force was not finite; latched
+    bool stopped = false;  // a force was not finite; latched
     // sending
     std::array<Vec3, max_servo_delay_ticks + 1> under_way{};  // ring of forces, by tick
     std::uint64_t tick = 0;
     // energy observer
-    double hand_energy_J = 0;      // work done on the hand so far; + = given to it
+    double hand_energy_J = 0;  // work done on the hand so far; + = given to it
 };
 
 // What a tick did, for the recording and the overlay.
@@ -43,7 +43,7 @@ struct ServoTick {
     double force_gain = 0;            // F_h/F_m of the force law at this tick
     double hand_energy_J = 0;
     bool clutched = false;
-    bool clamped = false;             // the clamp acted
+    bool clamped = false;  // the clamp acted
     bool stopped = false;
 };
 

@@ -11,10 +11,10 @@ namespace palpa {
 
 // How a structure file names one atom. Molecules are found by segment.
 struct AtomName {
-    std::string segment;   // "WATA"
-    std::string residue;   // "TIP3"
-    std::string number;    // residue number, with its insertion code if there is one: "27A"
-    std::string atom;      // "OH2"
+    std::string segment;  // "WATA"
+    std::string residue;  // "TIP3"
+    std::string number;   // residue number, with its insertion code if there is one: "27A"
+    std::string atom;     // "OH2"
 };
 
 // "WATA TIP3 1 OH2", for messages.
@@ -24,8 +24,8 @@ std::string to_string(const AtomName& name);
 struct Structure {
     std::string file;
     std::vector<AtomName> names;
-    std::vector<Vec3> positions;      // Å
-    std::vector<std::size_t> lines;   // the atom's line in the file, for messages
+    std::vector<Vec3> positions;     // Å
+    std::vector<std::size_t> lines;  // the atom's line in the file, for messages
 };
 
 // A range of an atom table.
@@ -38,11 +38,11 @@ struct AtomRange {
 // `positions`, which each simulation step updates.
 struct AtomTable {
     std::vector<AtomName> names;
-    std::vector<Vec3> positions;         // Å
-    std::vector<double> mass;            // amu
-    std::vector<double> charge;          // e
-    std::vector<double> sqrt_epsilon;    // (kcal/mol)^(1/2), root of the Lennard-Jones well depth
-    std::vector<double> half_rmin;       // Å, half the distance of the well's minimum
+    std::vector<Vec3> positions;       // Å
+    std::vector<double> mass;          // amu
+    std::vector<double> charge;        // e
+    std::vector<double> sqrt_epsilon;  // (kcal/mol)^(1/2), root of the Lennard-Jones well depth
+    std::vector<double> half_rmin;     // Å, half the distance of the well's minimum
 
     std::size_t size() const noexcept { return names.size(); }
 };

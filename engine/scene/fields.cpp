@@ -9,15 +9,16 @@ namespace {
 constexpr double positive = std::numeric_limits<double>::min();
 
 template <class Enum, std::size_t n>
-void choose(FieldVisitor& visitor, const Field& field,
-            const std::array<std::string_view, n>& names, Enum& value) {
+void choose(FieldVisitor& visitor, const Field& field, const std::array<std::string_view, n>& names,
+            Enum& value) {
     auto index = static_cast<std::size_t>(value);
     visitor.choice(field, names, index);
     value = static_cast<Enum>(index);
 }
 
 void visit_force_field(FieldVisitor& v, ForceFieldDescription& f) {
-    v.enter_table({.key = "force_field", .meaning = "where the forces come from"});
+    v.enter_table(
+        {.key = "force_field", .meaning = "where the forces come from", .required = true});
     v.files({.key = "files",
              .meaning = "CHARMM topology, parameter and stream files, in the order of reading",
              .required = true},
@@ -64,7 +65,9 @@ void visit_molecules(FieldVisitor& v, std::vector<MoleculeDescription>& molecule
 
 void visit_grab(FieldVisitor& v, GrabDescription& g) {
     v.enter_table({.key = "grab", .meaning = "what the hand holds", .required = true});
-    v.text({.key = "molecule", .meaning = "name of the molecule that the hand moves", .required = true},
+    v.text({.key = "molecule",
+            .meaning = "name of the molecule that the hand moves",
+            .required = true},
            g.molecule);
     v.text({.key = "measured_from",
             .meaning = "name of the molecule whose reference atom distances are measured from",
@@ -93,20 +96,15 @@ void visit_hand(FieldVisitor& v, HandDescription& h) {
             .lowest = 1e-3,
             .highest = 100},
            h.peak_nN);
-    v.real({.key = "stroke_s",
-            .meaning = "in-out: time of each way",
-            .lowest = 0.01,
-            .highest = 1e4},
-           h.stroke_s);
+    v.real(
+        {.key = "stroke_s", .meaning = "in-out: time of each way", .lowest = 0.01, .highest = 1e4},
+        h.stroke_s);
     v.real({.key = "pause_s",
             .meaning = "in-out: rest at the innermost point",
             .lowest = 0,
             .highest = 1e4},
            h.pause_s);
-    v.integer({.key = "cycles",
-               .meaning = "in-out: how often",
-               .lowest = 1,
-               .highest = 10000},
+    v.integer({.key = "cycles", .meaning = "in-out: how often", .lowest = 1, .highest = 10000},
               h.cycles);
     v.real({.key = "kick_N_s",
             .meaning = "impulse that knocks the handle towards +x, spread over 10 ms at 1 s",
@@ -121,11 +119,9 @@ void visit_hand(FieldVisitor& v, HandDescription& h) {
 
 void visit_device(FieldVisitor& v, DeviceDescription& d) {
     v.enter_table({.key = "device", .meaning = "the emulated Omni"});
-    v.real({.key = "inertia_kg",
-            .meaning = "mass felt at the handle",
-            .lowest = 1e-3,
-            .highest = 10},
-           d.inertia_kg);
+    v.real(
+        {.key = "inertia_kg", .meaning = "mass felt at the handle", .lowest = 1e-3, .highest = 10},
+        d.inertia_kg);
     v.real({.key = "viscosity_N_s_per_m",
             .meaning = "viscous friction of the device",
             .lowest = 0,
@@ -161,38 +157,60 @@ void visit_coupling(FieldVisitor& v, CouplingDescription& c) {
             .lowest = 0,
             .highest = 3.3},
            c.clamp_N);
-    v.real({.key = "F_h1_N", .meaning = "eq. 2: force that low forces tend to", .lowest = 1e-3,
+    v.real({.key = "F_h1_N",
+            .meaning = "eq. 2: force that low forces tend to",
+            .lowest = 1e-3,
             .highest = 100},
            c.F_h1_N);
-    v.real({.key = "F_h2_N", .meaning = "eq. 2: force that high forces tend to, above F_h1_N",
-            .lowest = 1e-3, .highest = 100},
+    v.real({.key = "F_h2_N",
+            .meaning = "eq. 2: force that high forces tend to, above F_h1_N",
+            .lowest = 1e-3,
+            .highest = 100},
            c.F_h2_N);
-    v.real({.key = "F_0_nN", .meaning = "eq. 2: molecular force between low and high", .lowest = 0,
+    v.real({.key = "F_0_nN",
+            .meaning = "eq. 2: molecular force between low and high",
+            .lowest = 0,
             .highest = 1e3},
            c.F_0_nN);
-    v.real({.key = "A_f_min", .meaning = "eq. 2: gain of high forces", .lowest = positive,
+    v.real({.key = "A_f_min",
+            .meaning = "eq. 2: gain of high forces",
+            .lowest = positive,
             .highest = 1e15},
            c.A_f_min);
-    v.real({.key = "A_f_max", .meaning = "eq. 2: gain of low forces", .lowest = positive,
+    v.real({.key = "A_f_max",
+            .meaning = "eq. 2: gain of low forces",
+            .lowest = positive,
             .highest = 1e15},
            c.A_f_max);
-    v.real({.key = "gamma_per_N", .meaning = "eq. 3: sharpness of the transition",
-            .lowest = positive, .highest = 1e18},
+    v.real({.key = "gamma_per_N",
+            .meaning = "eq. 3: sharpness of the transition",
+            .lowest = positive,
+            .highest = 1e18},
            c.gamma_per_N);
-    v.real({.key = "F_off_pN", .meaning = "eq. 3: molecular force of the transition", .lowest = 0,
+    v.real({.key = "F_off_pN",
+            .meaning = "eq. 3: molecular force of the transition",
+            .lowest = 0,
             .highest = 1e6},
            c.F_off_pN);
-    v.real({.key = "A_d_min", .meaning = "eq. 3: displacement gain far away, handle metres per "
-                                         "molecule metre",
-            .lowest = 1, .highest = 1e15},
+    v.real({.key = "A_d_min",
+            .meaning = "eq. 3: displacement gain far away, handle metres per "
+                       "molecule metre",
+            .lowest = 1,
+            .highest = 1e15},
            c.A_d_min);
-    v.real({.key = "A_d_max", .meaning = "eq. 3: displacement gain in contact", .lowest = 1,
+    v.real({.key = "A_d_max",
+            .meaning = "eq. 3: displacement gain in contact",
+            .lowest = 1,
             .highest = 1e15},
            c.A_d_max);
-    v.real({.key = "A_f", .meaning = "constant force gain of modes 3 and 4", .lowest = 0,
+    v.real({.key = "A_f",
+            .meaning = "constant force gain of modes 3 and 4",
+            .lowest = 0,
             .highest = 1e15},
            c.A_f);
-    v.real({.key = "A_d", .meaning = "constant displacement gain of modes 2, 4 and 5", .lowest = 1,
+    v.real({.key = "A_d",
+            .meaning = "constant displacement gain of modes 2, 4 and 5",
+            .lowest = 1,
             .highest = 1e15},
            c.A_d);
     v.leave_table();

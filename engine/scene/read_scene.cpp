@@ -5,17 +5,17 @@
 #include "core/text.h"
 #include "scene/fields.h"
 
+#include <fmt/format.h>
+#include <toml++/toml.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <fmt/format.h>
 #include <limits>
 #include <map>
 #include <optional>
 #include <system_error>
-#include <toml++/toml.h>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -41,14 +41,22 @@ TextPlace place_of(const toml::source_region& source) {
 // What a node holds, as a person would call it.
 std::string kind_of(const toml::node& node) {
     switch (node.type()) {
-        case toml::node_type::table: return "a table";
-        case toml::node_type::array: return "a list";
-        case toml::node_type::string: return fmt::format("the text \"{}\"", node.ref<std::string>());
-        case toml::node_type::integer: return fmt::format("{}", node.ref<std::int64_t>());
-        case toml::node_type::floating_point: return fmt::format("{}", node.ref<double>());
-        case toml::node_type::boolean: return node.ref<bool>() ? "true" : "false";
-        case toml::node_type::none: break;
-        default: return "a date or time";
+        case toml::node_type::table:
+            return "a table";
+        case toml::node_type::array:
+            return "a list";
+        case toml::node_type::string:
+            return fmt::format("the text \"{}\"", node.ref<std::string>());
+        case toml::node_type::integer:
+            return fmt::format("{}", node.ref<std::int64_t>());
+        case toml::node_type::floating_point:
+            return fmt::format("{}", node.ref<double>());
+        case toml::node_type::boolean:
+            return node.ref<bool>() ? "true" : "false";
+        case toml::node_type::none:
+            break;
+        default:
+            return "a date or time";
     }
     return "nothing";
 }
@@ -67,15 +75,17 @@ public:
     void finish() {
         report_unknown_keys(levels_.back());
         if (problems_.empty()) return;
-        std::stable_sort(problems_.begin(), problems_.end(), [](const Problem& a, const Problem& b) {
-            return std::tie(a.place.line, a.place.column) < std::tie(b.place.line, b.place.column);
-        });
+        std::stable_sort(problems_.begin(), problems_.end(),
+                         [](const Problem& a, const Problem& b) {
+                             return std::tie(a.place.line, a.place.column) <
+                                    std::tie(b.place.line, b.place.column);
+                         });
         const std::size_t others = problems_.size() - 1;
-        throw LoadError(problems_[0].place,
-                        problems_[0].what + (others == 0   ? ""
-                                             : others == 1 ? " (and 1 more problem)"
-                                                           : fmt::format(" (and {} more problems)",
-                                                                         others)));
+        throw LoadError(
+            problems_[0].place,
+            problems_[0].what + (others == 0   ? ""
+                                 : others == 1 ? " (and 1 more problem)"
+                                               : fmt::format(" (and {} more problems)", others)));
     }
 
     void problem(const TextPlace& place, std::string what) {
@@ -87,24 +97,26 @@ public:
 
     // The place of a field that was read, or of the table where it should be.
     TextPlace place_of_key(const std::string& key) const {
-        const auto found = places_.find(key);
+        auto found = places_.find(key);
+        if (found == places_.end()) found = places_.find(key.substr(0, key.rfind('.')));
         return found == places_.end() ? TextPlace{file_.string(), 1, 1} : found->second;
     }
 
     void enter_table(const Field& field) override {
-        Level level{nullptr, full_key(field.key) + ".", levels_.back().place, {},
-                    levels_.back().missing};
+        Level level{
+            nullptr, full_key(field.key) + ".", levels_.back().place, {}, levels_.back().missing};
         if (const toml::node* const node = find(field)) {
             level.table = node->as_table();
             level.place = place_of(node->source());
             if (!level.table) {
-                problem(*node, fmt::format("'{}' is {}; expected a table, [{}]", full_key(field.key),
-                                           kind_of(*node), full_key(field.key)));
+                problem(*node,
+                        fmt::format("'{}' is {}; expected a table, [{}]", full_key(field.key),
+                                    kind_of(*node), full_key(field.key)));
                 level.missing = true;
             }
         } else if (field.required && !level.missing) {
-            problem(levels_.back().place, fmt::format("no table [{}]: {}", full_key(field.key),
-                                                      field.meaning));
+            problem(levels_.back().place,
+                    fmt::format("no table [{}]: {}", full_key(field.key), field.meaning));
             level.missing = true;  // one message is enough for all that it would hold
         }
         levels_.push_back(std::move(level));
@@ -127,9 +139,9 @@ public:
                          [](const auto& a, const auto& b) { return a.first < b.first; });
         for (auto& [position, name] : found) names.push_back(std::move(name));
         if (names.empty()) {
-            problem(level.place, fmt::format("[{}] holds no table; expected {}",
-                                             level.path.substr(0, level.path.size() - 1),
-                                             field.meaning));
+            problem(level.place,
+                    fmt::format("[{}] holds no table; expected {}",
+                                level.path.substr(0, level.path.size() - 1), field.meaning));
         }
     }
 
@@ -169,6 +181,9 @@ public:
         const toml::node* const node = find_value(field);
         if (!node) return;
         if (!node->is_string()) return problem(*node, expected(field, *node, "text in quotes"));
+        if (field.required && node->ref<std::string>().empty()) {
+            return problem(*node, expected(field, *node, "text that is not empty"));
+        }
         value = node->ref<std::string>();
     }
 
@@ -260,7 +275,8 @@ private:
         const toml::node* const node = find(field);
         const Level& level = levels_.back();
         if (!node && field.required && !level.missing) {
-            problem(level.place, fmt::format("no key '{}': {}", full_key(field.key), field.meaning));
+            problem(level.place,
+                    fmt::format("no key '{}': {}", full_key(field.key), field.meaning));
         }
         return node;
     }
@@ -321,22 +337,29 @@ void check_grab(const SceneDescription& scene, Reader& reader) {
         const auto found =
             std::find_if(scene.molecules.begin(), scene.molecules.end(),
                          [&](const MoleculeDescription& m) { return m.name == name; });
-        if (name.empty()) return;  // told already
+        if (name.empty()) return false;  // told already
         if (found == scene.molecules.end()) {
-            reader.problem(reader.place_of_key(key),
-                           fmt::format("'{}' is \"{}\", which is no molecule of this scene; "
-                                       "expected one of {}{}",
-                                       key, name, fmt::join(names, ", "),
-                                       near_name_hint(name, names)));
+            reader.problem(
+                reader.place_of_key(key),
+                fmt::format("'{}' is \"{}\", which is no molecule of this scene; "
+                            "expected one of {}{}",
+                            key, name, fmt::join(names, ", "), near_name_hint(name, names)));
         } else if (found->motion != motion) {
-            reader.problem(reader.place_of_key(key),
-                           fmt::format("'{}' is \"{}\", whose motion is \"{}\"; expected {}", key,
-                                       name, motion_names[static_cast<std::size_t>(found->motion)],
-                                       what));
+            reader.problem(
+                reader.place_of_key(key),
+                fmt::format("'{}' is \"{}\", whose motion is \"{}\"; expected {}", key, name,
+                            motion_names[static_cast<std::size_t>(found->motion)], what));
+        } else {
+            return true;
         }
+        return false;
     };
-    check("grab.molecule", scene.grab.molecule, Motion::AlongX, "a molecule that moves along-x");
     check("grab.measured_from", scene.grab.measured_from, Motion::Fixed, "a fixed molecule");
+    // Without the right molecule in hand, what the others do is no problem of its own.
+    if (!check("grab.molecule", scene.grab.molecule, Motion::AlongX,
+               "a molecule that moves along-x")) {
+        return;
+    }
     for (const MoleculeDescription& molecule : scene.molecules) {
         if (molecule.motion == Motion::AlongX && molecule.name != scene.grab.molecule) {
             const std::string key = "molecules." + molecule.name + ".motion";
@@ -351,8 +374,9 @@ void check_ranges(const SceneDescription& scene, Reader& reader) {
         if (!right) reader.problem(reader.place_of_key(key), what);
     };
     const CouplingDescription& c = scene.coupling;
-    check(c.F_h2_N > c.F_h1_N, "coupling.F_h2_N",
-          fmt::format("'coupling.F_h2_N' is {}; expected more than F_h1_N, {}", c.F_h2_N, c.F_h1_N));
+    check(
+        c.F_h2_N > c.F_h1_N, "coupling.F_h2_N",
+        fmt::format("'coupling.F_h2_N' is {}; expected more than F_h1_N, {}", c.F_h2_N, c.F_h1_N));
     check(c.A_d_max >= c.A_d_min, "coupling.A_d_max",
           fmt::format("'coupling.A_d_max' is {}; expected A_d_min, {}, or more", c.A_d_max,
                       c.A_d_min));
@@ -386,15 +410,16 @@ std::string full_setting_key(const std::string& key, const TextPlace& place) {
         const std::string_view last = std::string_view(field.key).substr(field.key.rfind('.') + 1);
         last_parts.push_back(last);
         if (field.key == key) return key;
-        if (last == key && field.key.find("NAME") == std::string::npos) matches.push_back(field.key);
+        if (last == key) matches.push_back(field.key);
     }
-    if (matches.size() == 1) return matches[0];
+    // A field of NAME is one of every molecule.
+    if (matches.size() == 1 && matches[0].find("NAME") == std::string::npos) return matches[0];
     if (matches.empty()) {
         throw LoadError(place, fmt::format("no field of a scene is called '{}'{}", key,
                                            near_name_hint(key, last_parts)));
     }
-    throw LoadError(place,
-                    fmt::format("'{}' could be {}", key, fmt::join(matches, " or ")));
+    throw LoadError(place, fmt::format("'{}' could be {}; expected the key in full", key,
+                                       fmt::join(matches, " or ")));
 }
 
 // Lays `from` over `onto`, table by table. Moves, since copies of a node forget where they stood.
@@ -413,12 +438,12 @@ void merge(toml::table from, toml::table& onto) {
 void apply_setting(const std::string& setting, toml::table& root) {
     const TextPlace place{"--set " + setting};
     const std::size_t equals = setting.find('=');
-    if (equals == std::string::npos || equals == 0) {
+    const std::string left(trimmed(std::string_view(setting).substr(0, equals)));
+    if (equals == std::string::npos || left.empty()) {
         throw LoadError(place, "expected KEY=VALUE, such as coupling.mode=2");
     }
-    const std::string key =
-        full_setting_key(std::string(trimmed(setting.substr(0, equals))), place);
-    const std::string value(trimmed(setting.substr(equals + 1)));
+    const std::string key = full_setting_key(left, place);
+    const std::string value(trimmed(std::string_view(setting).substr(equals + 1)));
     const auto parse = [&](const std::string& text) {
         return toml::parse(std::string_view(text), std::string_view(place.file));
     };
@@ -426,7 +451,8 @@ void apply_setting(const std::string& setting, toml::table& root) {
         merge(parse(key + " = " + value), root);
     } catch (const toml::parse_error&) {
         // Not TOML: a word, then.
-        const bool word = !value.empty() && value.find_first_of("\"'\\\n[]{}=#") == std::string::npos;
+        const bool word =
+            !value.empty() && value.find_first_of("\"'\\\n[]{}=#") == std::string::npos;
         if (!word) throw LoadError(place, "the value is neither TOML nor a bare word");
         try {
             merge(parse(key + " = \"" + value + "\""), root);
@@ -444,7 +470,13 @@ SceneDescription parse_scene(std::string_view text, const fs::path& file,
     try {
         root = toml::parse(text, std::string_view(file.string()));
     } catch (const toml::parse_error& error) {
-        throw LoadError(place_of(error.source()), std::string(error.description()));
+        std::string what(error.description());
+        if (what.starts_with("Error")) what[0] = 'e';
+        throw LoadError(place_of(error.source()), what);
+    }
+    if (root.empty()) {
+        throw LoadError({file.string(), 1, 1},
+                        "an empty scene; expected [force_field], [molecules.NAME] and [grab]");
     }
     for (const std::string& setting : settings) apply_setting(setting, root);
 

@@ -26,9 +26,10 @@ std::string in_quotes(std::string_view text) {
 
 // A key needs no quotes if it is made of letters, digits, '_' and '-'.
 std::string key_text(std::string_view key) {
-    const bool bare = !key.empty() && key.find_first_not_of("abcdefghijklmnopqrstuvwxyz"
-                                                            "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                                            "0123456789_-") == std::string::npos;
+    const bool bare = !key.empty() && key.find_first_not_of(
+                                          "abcdefghijklmnopqrstuvwxyz"
+                                          "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                          "0123456789_-") == std::string::npos;
     return bare ? std::string(key) : in_quotes(key);
 }
 
@@ -73,7 +74,8 @@ public:
     }
     void files(const Field& field, std::vector<std::filesystem::path>& value) override {
         std::vector<std::string> names;
-        for (const std::filesystem::path& path : value) names.push_back(in_quotes(file_name_(path)));
+        for (const std::filesystem::path& path : value)
+            names.push_back(in_quotes(file_name_(path)));
         add(field, fmt::format("[{}]", fmt::join(names, ", ")));
     }
     void pairs(const Field& field, std::vector<std::array<double, 2>>& value) override {

@@ -10,8 +10,8 @@
 namespace palpa {
 
 struct LockstepSettings {
-    std::uint64_t ticks = 10000;         // of the servo, 1 ms each
-    std::uint64_t ticks_per_step = 1;    // the declared period of the simulation
+    std::uint64_t ticks = 10000;       // of the servo, 1 ms each
+    std::uint64_t ticks_per_step = 1;  // the declared period of the simulation
 };
 
 // Answers a hand pose; `felt` is the touch model that the hand feels meanwhile.

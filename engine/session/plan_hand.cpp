@@ -5,15 +5,15 @@
 #include "simulation/components.h"
 #include "simulation/probe.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 #include <optional>
 
 namespace palpa {
 namespace {
 
-constexpr double first_rest_s = 0.3;      // before the hand sets out, and between cycles
+constexpr double first_rest_s = 0.3;  // before the hand sets out, and between cycles
 constexpr double centring_margin_m = 0.005;
 
 double newton_at(const Simulation& simulation, double distance) {
@@ -47,8 +47,7 @@ HandScript plan_in_out(const SceneDescription& scene, const Simulation& simulati
                                     scene.hand.peak_nN, start));
     }
     const std::optional<HandModel> hand = hand_model(static_cast<Grip>(scene.hand.grip));
-    const double bend =
-        hand_force(simulation.laws.force, peak_newton) / static_stiffness(*hand);
+    const double bend = hand_force(simulation.laws.force, peak_newton) / static_stiffness(*hand);
     const double travel = handle_travel(simulation, *innermost, start) + bend;
     const double outside = std::min(travel / 2, half_width_m - centring_margin_m);
 
@@ -70,8 +69,12 @@ HandScript plan_hand(const SceneDescription& scene, const Simulation& simulation
                      double half_width_m) {
     HandScript script;
     switch (scene.hand.stroke) {
-        case Stroke::Hold: script.path = {{0, 0}}; break;
-        case Stroke::InOut: script = plan_in_out(scene, simulation, half_width_m); break;
+        case Stroke::Hold:
+            script.path = {{0, 0}};
+            break;
+        case Stroke::InOut:
+            script = plan_in_out(scene, simulation, half_width_m);
+            break;
         case Stroke::Path:
             for (const auto& [time_s, x_mm] : scene.hand.path) {
                 script.path.push_back({time_s, x_mm * 1e-3});

@@ -5,12 +5,12 @@
 #include "core/text.h"
 #include "scene/write_scene.h"
 
+#include <fmt/format.h>
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstddef>
-#include <fmt/format.h>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <string_view>
@@ -22,12 +22,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array columns = std::to_array<std::string_view>(
-    {"time_s", "handle_x_m", "handle_y_m", "handle_z_m", "molecule_x_angstrom",
-     "molecule_y_angstrom", "molecule_z_angstrom", "force_x_nN", "force_y_nN", "force_z_nN",
-     "device_force_x_N", "device_force_y_N", "device_force_z_N", "force_gain",
-     "displacement_gain", "stiffness_N_per_m", "hand_energy_J", "potential_kcal_per_mol",
-     "active_joints", "period_ms", "clutch"});
+constexpr std::array columns = std::to_array<std::string_view>({"time_s",
+                                                                "handle_x_m",
+                                                                "handle_y_m",
+                                                                "handle_z_m",
+                                                                "molecule_x_angstrom",
+                                                                "molecule_y_angstrom",
+                                                                "molecule_z_angstrom",
+                                                                "force_x_nN",
+                                                                "force_y_nN",
+                                                                "force_z_nN",
+                                                                "device_force_x_N",
+                                                                "device_force_y_N",
+                                                                "device_force_z_N",
+                                                                "force_gain",
+                                                                "displacement_gain",
+                                                                "stiffness_N_per_m",
+                                                                "hand_energy_J",
+                                                                "potential_kcal_per_mol",
+                                                                "active_joints",
+                                                                "period_ms",
+                                                                "clutch"});
 
 constexpr std::size_t flush_bytes = 1 << 16;
 
@@ -115,7 +130,7 @@ std::string format_summary(const SceneDescription& scene, const Summary& summary
     json["last_angstrom"] = summary.last_angstrom;
     json["clamped_share"] = summary.clamped_share;
     json["stopped"] = summary.stopped;
-    json["overruns"] = 0;    // lockstep cannot be late
+    json["overruns"] = 0;                                 // lockstep cannot be late
     json["neglected"] = nlohmann::ordered_json::array();  // rigid, all pairs: nothing
     json["warnings"] = summary.warnings;
     return json.dump(2) + "\n";
@@ -156,10 +171,9 @@ void Recording::add(const ServoTick& tick) {
                    "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
                    device.time_s, handle.x(), handle.y(), handle.z(), molecule.x(), molecule.y(),
                    molecule.z(), force_nN.x(), force_nN.y(), force_nN.z(), sent.x(), sent.y(),
-                   sent.z(), tick.force_gain,
-                   touch.displacement_gain, touch.stiffness_N_per_m, tick.hand_energy_J,
-                   touch.potential_kcal_per_mol, touch.active_freedom, touch.period_s * 1e3,
-                   tick.clutched ? 1 : 0);
+                   sent.z(), tick.force_gain, touch.displacement_gain, touch.stiffness_N_per_m,
+                   tick.hand_energy_J, touch.potential_kcal_per_mol, touch.active_freedom,
+                   touch.period_s * 1e3, tick.clutched ? 1 : 0);
     if (rows_.size() > flush_bytes) flush();
 }
 

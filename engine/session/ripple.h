@@ -5,8 +5,8 @@
 namespace palpa {
 
 struct Ripple {
-    double rms = 0;   // in the signal's unit
-    double hertz = 0; // of the strongest line; 0 where nothing shakes
+    double rms = 0;    // in the signal's unit
+    double hertz = 0;  // of the strongest line; 0 where nothing shakes
 };
 
 // The signal minus its moving mean over 1/3 s, taken twice, both ends padded; a tenth of the signal

@@ -7,11 +7,11 @@
 #include "simulation/probe.h"
 #include "simulation/step.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <fmt/format.h>
 #include <optional>
 
 namespace palpa {
@@ -43,13 +43,13 @@ std::vector<std::string> find_warnings(const SceneDescription& scene,
         }
     }
     const std::optional<HandModel> hand = hand_model(static_cast<Grip>(scene.hand.grip));
-    const double damping =
-        scene.device.viscosity_N_s_per_m + (hand ? hand->damping_N_s_per_m : 0);
+    const double damping = scene.device.viscosity_N_s_per_m + (hand ? hand->damping_N_s_per_m : 0);
     const double limit = damping / (1.5 * simulation.period_s);
     if (stiffest <= limit) return {};
-    return {fmt::format("this setting may vibrate: at {:.2f} Å the hand feels {:.0f} N/m, and {} "
-                        "Ns/m of damping calm no more than B/(1.5 T_s) = {:.0f} N/m",
-                        where, stiffest, damping, limit)};
+    return {
+        fmt::format("this setting may vibrate: at {:.2f} Å the hand feels {:.0f} N/m, and {} "
+                    "Ns/m of damping calm no more than B/(1.5 T_s) = {:.0f} N/m",
+                    where, stiffest, damping, limit)};
 }
 
 Summary run_headless(const SceneDescription& scene, Simulation& simulation, Device& device,

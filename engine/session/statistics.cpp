@@ -47,8 +47,8 @@ Summary Statistics::summary() const {
     Summary summary = running_;
     summary.step_median_us = quantile(step_us_, 0.5);
     summary.step_p99_us = quantile(step_us_, 0.99);
-    const auto window = std::min(
-        force_.size(), static_cast<std::size_t>(std::lround(ripple_window_s / tick_s_)));
+    const auto window =
+        std::min(force_.size(), static_cast<std::size_t>(std::lround(ripple_window_s / tick_s_)));
     summary.ripple = find_ripple(std::span(force_).last(window), tick_s_);
     if (summary.ticks > 0) {
         summary.clamped_share =

@@ -7,11 +7,11 @@
 #include "simulation/probe.h"
 #include "simulation/simulation.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <fmt/format.h>
 #include <map>
 #include <optional>
 
@@ -37,11 +37,11 @@ std::uint32_t find_reference_atom(const MoleculeDescription& molecule, const Ato
         ++matches;
     }
     if (matches != 1) {
-        throw LoadError({molecule.structure.string()},
-                        fmt::format("segment '{}' has {} atoms called '{}'; expected one, to be "
-                                    "the reference atom of molecule '{}'",
-                                    molecule.segment, matches, molecule.reference_atom,
-                                    molecule.name));
+        throw LoadError(
+            {molecule.structure.string()},
+            fmt::format("segment '{}' has {} atoms called '{}'; expected one, to be "
+                        "the reference atom of molecule '{}'",
+                        molecule.segment, matches, molecule.reference_atom, molecule.name));
     }
     return reference;
 }
@@ -52,9 +52,8 @@ Entity add_molecule(const MoleculeDescription& molecule, const ForceField& force
         add_segment_atoms(force_field, find_or_read(structures, molecule.structure),
                           molecule.segment, simulation.atoms);
     const Entity entity = simulation.world.create();
-    simulation.world.set(
-        entity, Molecule{molecule.name, range,
-                         find_reference_atom(molecule, simulation.atoms, range)});
+    simulation.world.set(entity, Molecule{molecule.name, range,
+                                          find_reference_atom(molecule, simulation.atoms, range)});
     if (molecule.motion == Motion::AlongX) simulation.world.set(entity, LineGuide{});
     return entity;
 }
@@ -82,11 +81,12 @@ void place_grabbed(const SceneDescription& scene, Simulation& simulation) {
     const Vec3 from_origin = place - simulation.atoms.positions[origin.reference_atom];
     guide.distance = from_origin.dot(guide.axis);
     if ((from_origin - guide.distance * guide.axis).norm() > 1e-6) {
-        throw LoadError({scene.file.string()},
-                        fmt::format("the reference atoms of '{}' and '{}' are not on one line along "
-                                    "x: they are ({}) Å apart",
-                                    grabbed.name, origin.name,
-                                    fmt::join(from_origin.begin(), from_origin.end(), ", ")));
+        throw LoadError(
+            {scene.file.string()},
+            fmt::format("the reference atoms of '{}' and '{}' are not on one line along "
+                        "x: they are ({}) Å apart",
+                        grabbed.name, origin.name,
+                        fmt::join(from_origin.begin(), from_origin.end(), ", ")));
     }
 
     std::optional<double> start = scene.hand.start_angstrom;
@@ -125,7 +125,8 @@ CouplingLaws build_coupling_laws(const CouplingDescription& c) {
         case CouplingMode::ConstantForceConstantDisplacement:
             return {constant_force, constant_displacement};
         case CouplingMode::NoForce:
-        case CouplingMode::Guarded: break;  // read_scene lets no guarded scene pass
+        case CouplingMode::Guarded:
+            break;  // read_scene lets no guarded scene pass
     }
     return {ConstantForceLaw{0}, constant_displacement};
 }

@@ -53,13 +53,12 @@ LineForce force_along_line_at(const Simulation& simulation, double distance) {
     for (const Vec3& offset : simulation.grabbed_shape) positions.push_back(place + offset);
     FieldPoints moved = grabbed_points(simulation);
     moved.positions = positions;
-    const FieldSum field = evaluate_pair_field(moved, environment_points(simulation),
-                                               simulation.coulomb_constant);
+    const FieldSum field =
+        evaluate_pair_field(moved, environment_points(simulation), simulation.coulomb_constant);
     return {field.energy(), field.force.dot(axis), axis.dot(field.stiffness * axis)};
 }
 
-std::optional<double> find_repulsion(const Simulation& simulation, double force,
-                                     double outermost) {
+std::optional<double> find_repulsion(const Simulation& simulation, double force, double outermost) {
     if (force_along_line_at(simulation, outermost).force > force) return std::nullopt;
     for (double distance = outermost; distance > innermost; distance -= scan_step) {
         if (force_along_line_at(simulation, distance).force > force) {

@@ -19,14 +19,14 @@ struct Simulation {
 
     // written on loading
     CouplingLaws laws;
-    double coulomb_constant = 0;        // kcal Å/mol/e^2
-    double period_s = 0;                // declared
-    std::vector<Vec3> grabbed_shape;    // Å, the grabbed molecule's atoms from its reference atom
-    Entity hand;                        // has a Grab
+    double coulomb_constant = 0;      // kcal Å/mol/e^2
+    double period_s = 0;              // declared
+    std::vector<Vec3> grabbed_shape;  // Å, the grabbed molecule's atoms from its reference atom
+    Entity hand;                      // has a Grab
 
     // written by every step
     World world;
-    AtomTable atoms;                    // positions only
+    AtomTable atoms;  // positions only
 };
 
 // The laws that a scene's mode asks for.

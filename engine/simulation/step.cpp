@@ -34,10 +34,9 @@ TouchModel build_touch_model(const Simulation& simulation, const HandPose& hand)
     touch.time_s = hand.time_s;
     touch.molecule_angstrom = guide->distance * guide->axis;
     touch.force_newton = line.force * units::newton_per_kcal_per_mol_angstrom * guide->axis;
-    touch.stiffness_N_per_m =
-        line.stiffness * units::newton_per_metre_per_kcal_per_mol_angstrom2;
-    touch.displacement_gain = displacement_gain(simulation.laws.displacement,
-                                                touch.force_newton.dot(guide->axis));
+    touch.stiffness_N_per_m = line.stiffness * units::newton_per_metre_per_kcal_per_mol_angstrom2;
+    touch.displacement_gain =
+        displacement_gain(simulation.laws.displacement, touch.force_newton.dot(guide->axis));
     touch.potential_kcal_per_mol = line.energy;
     touch.active_freedom = 1;
     touch.period_s = simulation.period_s;

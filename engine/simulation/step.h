@@ -7,8 +7,8 @@ namespace palpa {
 
 // What a step found. A step that is not finite has not moved anything.
 struct [[nodiscard]] StepReport {
-    TouchModel touch;          // for the hand, one period later
-    double move = 0;           // Å, of the grabbed molecule
+    TouchModel touch;  // for the hand, one period later
+    double move = 0;   // Å, of the grabbed molecule
     bool finite = true;
 };
 

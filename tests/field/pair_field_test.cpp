@@ -101,8 +101,8 @@ TEST_CASE("forces on single points add up to the group's, and to nothing over al
     const Points group = random_points(random, 4, 2, {5, 0, 0});
     std::vector<Vec3> on_group(4, Vec3::Zero()), on_environment(9, Vec3::Zero());
 
-    const FieldSum sum = add_pair_forces(group.view(), environment.view(), coulomb, on_group,
-                                         on_environment);
+    const FieldSum sum =
+        add_pair_forces(group.view(), environment.view(), coulomb, on_group, on_environment);
 
     Vec3 total = Vec3::Zero(), torque = Vec3::Zero(), of_group = Vec3::Zero();
     for (std::size_t i = 0; i < 4; ++i) {
@@ -131,7 +131,8 @@ TEST_CASE("the field is finite and continuous at any distance, zero included", "
         return evaluate_pair_field(other.view(), oxygen.view(), coulomb);
     };
 
-    for (const double distance : {0.0, tiny, 1e-300, 1e-12, 1e-3, 0.05, 0.1, 0.5, 1.0, 1e3, 1e150}) {
+    for (const double distance :
+         {0.0, tiny, 1e-300, 1e-12, 1e-3, 0.05, 0.1, 0.5, 1.0, 1e3, 1e150}) {
         INFO("distance " << distance << " Å");
         const FieldSum sum = at(distance);
         CHECK(std::isfinite(sum.energy()));

@@ -20,11 +20,21 @@ constexpr double six_digits = 5e-6;  // half a unit of the sixth digit, at worst
 TEST_CASE("eq. 2 gives the paper's hand force", "[haptics][gains]") {
     const PrintedForceLaw law({});
     const auto [F_m, F_h, four_digits] = GENERATE(table<double, double, double>({
-        {0.02 * nN, 0.1093, 5e-4},   {0.1 * nN, 0.4708, 2e-4},    {0.2 * nN, 0.7265, 1e-4},
-        {0.35 * nN, 0.9251, 1e-4},   {0.5 * nN, 1.0494, 1e-4},    {1.0 * nN, 1.3363, 1e-4},
-        {1.5 * nN, 1.5744, 1e-4},    {2.0 * nN, 1.7880, 1e-4},    {3.0 * nN, 2.1198, 1e-4},
-        {5.0 * nN, 2.4660, 1e-4},    {10.0 * nN, 2.7366, 1e-4},   {30.0 * nN, 2.9128, 1e-4},
-        {100.0 * nN, 2.9739, 1e-4},  {1e-6, 2.997388, 1e-6},      {1.0, 2.999999997, 1e-9},
+        {0.02 * nN, 0.1093, 5e-4},
+        {0.1 * nN, 0.4708, 2e-4},
+        {0.2 * nN, 0.7265, 1e-4},
+        {0.35 * nN, 0.9251, 1e-4},
+        {0.5 * nN, 1.0494, 1e-4},
+        {1.0 * nN, 1.3363, 1e-4},
+        {1.5 * nN, 1.5744, 1e-4},
+        {2.0 * nN, 1.7880, 1e-4},
+        {3.0 * nN, 2.1198, 1e-4},
+        {5.0 * nN, 2.4660, 1e-4},
+        {10.0 * nN, 2.7366, 1e-4},
+        {30.0 * nN, 2.9128, 1e-4},
+        {100.0 * nN, 2.9739, 1e-4},
+        {1e-6, 2.997388, 1e-6},
+        {1.0, 2.999999997, 1e-9},
     }));
     INFO("F_m = " << F_m);
 
@@ -83,11 +93,20 @@ TEST_CASE("the slopes of both laws are their derivatives", "[haptics][gains]") {
 TEST_CASE("eq. 3 gives the paper's displacement gain", "[haptics][gains]") {
     const PrintedDisplacementLaw law({});
     const auto [F_m, A_d] = GENERATE(table<double, double>({
-        {1 * pN, 5.20799e6},   {5 * pN, 6.31626e6},   {10 * pN, 8.93934e6},
-        {15 * pN, 1.66838e7},  {19 * pN, 6.32807e7},  {20 * pN, 1.25520e8},
-        {21 * pN, 1.87760e8},  {25 * pN, 2.34357e8},  {30 * pN, 2.42102e8},
-        {50 * pN, 2.47359e8},  {100 * pN, 2.49009e8}, {350 * pN, 2.49760e8},
-        {1 * nN, 2.49919e8},   {3 * nN, 2.49973e8},
+        {1 * pN, 5.20799e6},
+        {5 * pN, 6.31626e6},
+        {10 * pN, 8.93934e6},
+        {15 * pN, 1.66838e7},
+        {19 * pN, 6.32807e7},
+        {20 * pN, 1.25520e8},
+        {21 * pN, 1.87760e8},
+        {25 * pN, 2.34357e8},
+        {30 * pN, 2.42102e8},
+        {50 * pN, 2.47359e8},
+        {100 * pN, 2.49009e8},
+        {350 * pN, 2.49760e8},
+        {1 * nN, 2.49919e8},
+        {3 * nN, 2.49973e8},
     }));
     INFO("F_m = " << F_m);
 
@@ -108,8 +127,11 @@ TEST_CASE("A_d is exactly A_dmin without force and A_dmax in the limit", "[hapti
 
 TEST_CASE("A_d passes from low to high around F_off", "[haptics][gains]") {
     const PrintedDisplacementLaw law({});
-    const auto [share, F_m] = GENERATE(table<double, double>(
-        {{0.1, 17.34 * pN}, {0.5, 20.02 * pN}, {0.9, 23.13 * pN}, {0.95, 26.42 * pN}, {0.99, 52.34 * pN}}));
+    const auto [share, F_m] = GENERATE(table<double, double>({{0.1, 17.34 * pN},
+                                                              {0.5, 20.02 * pN},
+                                                              {0.9, 23.13 * pN},
+                                                              {0.95, 26.42 * pN},
+                                                              {0.99, 52.34 * pN}}));
 
     const double A_d = 0.005e9 + share * 0.245e9;
     CHECK(law.value(F_m - 0.01 * pN) < A_d);

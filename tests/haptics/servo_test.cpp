@@ -68,8 +68,8 @@ TEST_CASE("the norm of the force is clamped at 3 N", "[haptics][servo]") {
 
 TEST_CASE("a force that is no number stops the device within the tick and for good",
           "[haptics][servo]") {
-    const double bad = GENERATE(std::numeric_limits<double>::quiet_NaN(),
-                                std::numeric_limits<double>::infinity());
+    const double bad =
+        GENERATE(std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity());
     Servo servo;
     servo.settings.force_law = ConstantForceLaw{1e9};
     servo.settings.delay_ticks = GENERATE(0, 2);
@@ -166,7 +166,8 @@ TEST_CASE("servo and simulation meet in the exchange without a race", "[haptics]
     });
     bool finite = true;
     for (int i = 0; i < 20'000 || answered < 100; ++i) {
-        finite = finite && servo.tick(reading_at(0.05 * std::sin(0.01 * i))).sent_newton.allFinite();
+        finite =
+            finite && servo.tick(reading_at(0.05 * std::sin(0.01 * i))).sent_newton.allFinite();
     }
     done = true;
     simulation.join();

@@ -13,13 +13,14 @@ namespace {
 
 std::vector<std::string> held(const std::string& period_ms, const std::string& hand,
                               const std::string& friction = "0") {
-    return {"mode=2",       "period_ms=" + period_ms, "grip=" + hand, "friction_N=" + friction,
-            "stroke=hold",  "kick_N_s=0.005",         "seconds=10"};
+    return {"mode=2",      "period_ms=" + period_ms, "grip=" + hand, "friction_N=" + friction,
+            "stroke=hold", "kick_N_s=0.005",         "seconds=10"};
 }
 
 }  // namespace
 
-TEST_CASE("held at rest, the plain loop at 14 ms oscillates in a medium hand", "[session][coupling]") {
+TEST_CASE("held at rest, the plain loop at 14 ms oscillates in a medium hand",
+          "[session][coupling]") {
     const Summary summary = test::run_water(held("14", "medium"));
 
     CHECK_THAT(summary.ripple.rms, WithinAbs(1.08, 0.1));

@@ -4,8 +4,8 @@
 #include "simulation/probe.h"
 #include "tests/support/water_run.h"
 
-#include <catch2/catch.hpp>
 #include <algorithm>
+#include <catch2/catch.hpp>
 
 using namespace palpa;
 
@@ -34,9 +34,9 @@ TEST_CASE("without friction or delay a slow stroke peaks at the force it was pla
           "[session][hand]") {
     const std::string mode = GENERATE("2", "4");
     const double peak_nN = GENERATE(1.0, 3.0);
-    const Summary summary = test::run_water(
-        {"mode=" + mode, "peak_nN=" + std::to_string(peak_nN), "friction_N=0", "encoder_step_mm=0",
-         "stroke_s=6", "seconds=15"});
+    const Summary summary =
+        test::run_water({"mode=" + mode, "peak_nN=" + std::to_string(peak_nN), "friction_N=0",
+                         "encoder_step_mm=0", "stroke_s=6", "seconds=15"});
 
     const Simulation simulation = load_simulation(test::water_scene());
     const double planned = find_repulsion(simulation, peak_nN / 0.0694770, 7).value();
@@ -45,8 +45,8 @@ TEST_CASE("without friction or delay a slow stroke peaks at the force it was pla
 
 TEST_CASE("a stroke longer than the workspace brings the molecule in by clutching",
           "[session][hand]") {
-    const Summary summary = test::run_water(
-        {"hand.start_angstrom=14", "stroke_s=10", "seconds=40", "friction_N=0"});
+    const Summary summary =
+        test::run_water({"hand.start_angstrom=14", "stroke_s=10", "seconds=40", "friction_N=0"});
 
     CHECK(summary.closest_angstrom == Approx(2.473).margin(0.01));
     CHECK(summary.last_angstrom == Approx(14).margin(0.3));

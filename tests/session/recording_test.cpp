@@ -3,6 +3,7 @@
 #include "core/files.h"
 #include "core/load_error.h"
 #include "core/text.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/support/water_run.h"
 
 #include <catch2/catch.hpp>
@@ -14,15 +15,6 @@ using namespace palpa;
 namespace fs = std::filesystem;
 
 namespace {
-
-// A folder of its own for each test, gone afterwards.
-struct Folder {
-    fs::path path = fs::temp_directory_path() /
-                    ("palpa_recording_test_" + std::to_string(std::hash<std::string>{}(
-                                                   Catch::getResultCapture().getCurrentTestName())));
-    Folder() { fs::remove_all(path); }
-    ~Folder() { fs::remove_all(path); }
-};
 
 Summary record(const fs::path& scene_path, const fs::path& folder,
                const std::vector<std::string>& settings) {
@@ -39,36 +31,36 @@ const fs::path water = PALPA_ROOT "/scenes/water";
 
 TEST_CASE("the same run twice, and its session run again, give one trace to the byte",
           "[session][recording]") {
-    const Folder folder;
-    const std::vector<std::string> settings{"mode=1", "period_ms=14", "seconds=2", "stroke_s=0.7",
-                                            "every=3", "kick_N_s=0.002"};
-    record(water, folder.path / "a", settings);
-    record(water, folder.path / "b", settings);
-    record(folder.path / "a" / "session.toml", folder.path / "c", {});
+    const test::TemporaryFolder folder;
+    const std::vector<std::string> settings{"mode=1",       "period_ms=14", "seconds=2",
+                                            "stroke_s=0.7", "every=3",      "kick_N_s=0.002"};
+    record(water, folder.path() / "a", settings);
+    record(water, folder.path() / "b", settings);
+    record(folder.path() / "a" / "session.toml", folder.path() / "c", {});
 
-    const std::string trace = read_text_file(folder.path / "a" / "trace.csv");
-    CHECK(trace == read_text_file(folder.path / "b" / "trace.csv"));
-    CHECK(trace == read_text_file(folder.path / "c" / "trace.csv"));
-    CHECK(read_text_file(folder.path / "a" / "session.toml") ==
-          read_text_file(folder.path / "c" / "session.toml"));
+    const std::string trace = read_text_file(folder.path() / "a" / "trace.csv");
+    CHECK(trace == read_text_file(folder.path() / "b" / "trace.csv"));
+    CHECK(trace == read_text_file(folder.path() / "c" / "trace.csv"));
+    CHECK(read_text_file(folder.path() / "a" / "session.toml") ==
+          read_text_file(folder.path() / "c" / "session.toml"));
     CHECK(split_lines(trace).size() == 1 + 667);
 }
 
 TEST_CASE("a recording can be run again in its own place", "[session][recording]") {
-    const Folder folder;
-    record(water, folder.path, {"seconds=0.3"});
-    const std::string trace = read_text_file(folder.path / "trace.csv");
+    const test::TemporaryFolder folder;
+    record(water, folder.path(), {"seconds=0.3"});
+    const std::string trace = read_text_file(folder.path() / "trace.csv");
 
-    record(folder.path / "session.toml", folder.path, {});
+    record(folder.path() / "session.toml", folder.path(), {});
 
-    CHECK(read_text_file(folder.path / "trace.csv") == trace);
+    CHECK(read_text_file(folder.path() / "trace.csv") == trace);
 }
 
 TEST_CASE("the trace has the columns that scripts rely on, in SI where the name says so",
           "[session][recording]") {
-    const Folder folder;
-    record(water, folder.path, {"seconds=0.1"});
-    const std::string text = read_text_file(folder.path / "trace.csv");
+    const test::TemporaryFolder folder;
+    record(water, folder.path(), {"seconds=0.1"});
+    const std::string text = read_text_file(folder.path() / "trace.csv");
     const std::vector<std::string_view> lines = split_lines(text);
 
     for (const char* const column :
@@ -80,16 +72,17 @@ TEST_CASE("the trace has the columns that scripts rely on, in SI where the name 
     }
     CHECK(lines.size() == 101);
     const auto commas = std::count(lines[0].begin(), lines[0].end(), ',');
-    for (const std::string_view line : lines) CHECK(std::count(line.begin(), line.end(), ',') == commas);
+    for (const std::string_view line : lines)
+        CHECK(std::count(line.begin(), line.end(), ',') == commas);
     CHECK(lines[1].starts_with("0,"));
     CHECK(lines[100].starts_with("0.099,"));
 }
 
 TEST_CASE("the summary tells scene, settings and results", "[session][recording]") {
-    const Folder folder;
-    record(water, folder.path, {"mode=3", "seconds=0.5", "seed=7"});
+    const test::TemporaryFolder folder;
+    record(water, folder.path(), {"mode=3", "seconds=0.5", "seed=7"});
 
-    const auto json = nlohmann::json::parse(read_text_file(folder.path / "summary.json"));
+    const auto json = nlohmann::json::parse(read_text_file(folder.path() / "summary.json"));
 
     CHECK(json["scene"] == "Two waters");
     CHECK(json["scene_hash"].get<std::string>().size() == 16);
@@ -97,32 +90,31 @@ TEST_CASE("the summary tells scene, settings and results", "[session][recording]
     CHECK(json["seed"] == 7);
     CHECK(json["steps"] == 500);
     CHECK(json["overruns"] == 0);
-    for (const char* const key : {"versions", "device", "hand", "period_ms", "step_median_us",
-                                  "step_p99_us", "ripple_N", "net_work_J", "largest_attraction_N",
-                                  "clamped_share", "neglected", "warnings"}) {
+    for (const char* const key :
+         {"versions", "device", "hand", "period_ms", "step_median_us", "step_p99_us", "ripple_N",
+          "net_work_J", "largest_attraction_N", "clamped_share", "neglected", "warnings"}) {
         CHECK(json.contains(key));
     }
 }
 
 TEST_CASE("another scene has another hash, wherever the difference is", "[session][recording]") {
-    const Folder folder;
-    fs::create_directories(folder.path.parent_path());
-    fs::copy(water, folder.path);
+    const test::TemporaryFolder folder;
+    fs::copy(water, folder.path());
     const std::string same = scene_hash(test::water_scene());
-    CHECK(scene_hash(read_scene(folder.path)) == same);
+    CHECK(scene_hash(read_scene(folder.path())) == same);
 
     CHECK(scene_hash(test::water_scene({"mode=4"})) != same);
-    std::ofstream(folder.path / "tip3p.str", std::ios::app) << "! a remark\n";
-    CHECK(scene_hash(read_scene(folder.path)) != same);
+    std::ofstream(folder.path() / "tip3p.str", std::ios::app) << "! a remark\n";
+    CHECK(scene_hash(read_scene(folder.path())) != same);
 }
 
 TEST_CASE("a folder that holds something else is left alone", "[session][recording]") {
-    const Folder folder;
-    fs::create_directories(folder.path);
-    std::ofstream(folder.path / "thesis.tex") << "years of work";
+    const test::TemporaryFolder folder;
+    std::ofstream(folder.path() / "thesis.tex") << "years of work";
 
-    CHECK_THROWS_AS(Recording(folder.path, test::water_scene()), LoadError);
-    CHECK(std::distance(fs::directory_iterator(folder.path), {}) == 1);
-    CHECK_THROWS_AS(Recording(folder.path / "thesis.tex", test::water_scene()), LoadError);
-    CHECK_THROWS_AS(Recording(folder.path / "thesis.tex" / "run", test::water_scene()), LoadError);
+    CHECK_THROWS_AS(Recording(folder.path(), test::water_scene()), LoadError);
+    CHECK(std::distance(fs::directory_iterator(folder.path()), {}) == 1);
+    CHECK_THROWS_AS(Recording(folder.path() / "thesis.tex", test::water_scene()), LoadError);
+    CHECK_THROWS_AS(Recording(folder.path() / "thesis.tex" / "run", test::water_scene()),
+                    LoadError);
 }

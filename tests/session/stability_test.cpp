@@ -3,13 +3,13 @@
 #include "devices/emulated_omni.h"
 #include "haptics/gains.h"
 #include "session/lockstep.h"
+#include "tests/support/critical_stiffness.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
-#include <tuple>
-#include <vector>
 
 using namespace palpa;
 
@@ -51,7 +51,8 @@ bool shakes(double K, double viscosity, Grip grip, std::uint64_t period_ms) {
 }
 
 // The K at which shaking begins, by halving between `calm` and `shaking`.
-double find_onset(double calm, double shaking, double viscosity, Grip grip, std::uint64_t period_ms) {
+double find_onset(double calm, double shaking, double viscosity, Grip grip,
+                  std::uint64_t period_ms) {
     for (int halving = 0; halving < 7; ++halving) {
         const double K = std::sqrt(calm * shaking);
         (shakes(K, viscosity, grip, period_ms) ? shaking : calm) = K;
@@ -63,23 +64,9 @@ double find_onset(double calm, double shaking, double viscosity, Grip grip, std:
 
 TEST_CASE("the emulated loop begins to shake within 5 % of the K that theory gives",
           "[session][coupling]") {
-    const auto [viscosity, grip, period_ms, K] =
-        GENERATE(table<double, Grip, std::uint64_t, double>({
-            {0.1, Grip::None, 1, 66.7},   {0.1, Grip::None, 5, 13.4},   {0.1, Grip::None, 14, 4.80},
-            {0.1, Grip::None, 33, 2.06},  {0.1, Grip::None, 83, 0.842}, {0.5, Grip::None, 1, 334},
-            {0.5, Grip::None, 5, 67.7},   {0.5, Grip::None, 14, 24.8},  {0.5, Grip::None, 33, 11.0},
-            {0.5, Grip::None, 83, 4.80},  {2.0, Grip::None, 1, 1350},   {2.0, Grip::None, 5, 282},
-            {2.0, Grip::None, 14, 109},   {2.0, Grip::None, 33, 51.2},  {2.0, Grip::None, 83, 22.7},
-            {0.1, Grip::Light, 1, 735},   {0.1, Grip::Light, 5, 149},   {0.1, Grip::Light, 14, 55.4},
-            {0.1, Grip::Light, 33, 27.3}, {0.1, Grip::Light, 83, 22.4}, {0.1, Grip::Slack, 1, 734},
-            {0.1, Grip::Slack, 5, 147},   {0.1, Grip::Slack, 14, 53.2}, {0.1, Grip::Slack, 33, 23.6},
-            {0.1, Grip::Slack, 83, 11.9}, {0.1, Grip::Medium, 1, 2750}, {0.1, Grip::Medium, 5, 568},
-            {0.1, Grip::Medium, 14, 226}, {0.1, Grip::Medium, 33, 137}, {0.1, Grip::Medium, 83, 148},
-            {0.1, Grip::Firm, 1, 6792},   {0.1, Grip::Firm, 5, 1419},   {0.1, Grip::Firm, 14, 586},
-            {0.1, Grip::Firm, 33, 385},   {0.1, Grip::Firm, 83, 394},
-        }));
-    INFO("viscosity " << viscosity << ", grip " << static_cast<int>(grip) << ", " << period_ms
-                      << " ms");
+    const auto [viscosity, grip, period_ms, K] = GENERATE(from_range(test::critical_stiffness));
+    INFO(viscosity << " Ns/m, " << grip_names[static_cast<std::size_t>(grip)] << ", " << period_ms
+                   << " ms");
 
     // Halving K/1.5 ... 1.5 K seven times leaves 0.3 %.
     const double onset = find_onset(K / 1.5, K * 1.5, viscosity, grip, period_ms);

@@ -2,6 +2,7 @@
 #include "simulation/components.h"
 #include "simulation/probe.h"
 #include "simulation/simulation.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/support/water_scene.h"
 
 #include <catch2/catch.hpp>
@@ -21,8 +22,8 @@ double distance(const Simulation& simulation) {
 
 // What loading says of a scene whose parameter file lacks the line that begins with `without`.
 std::string error_without(const std::string& without) {
-    const std::filesystem::path folder = std::filesystem::temp_directory_path() / "palpa_load_test";
-    std::filesystem::remove_all(folder);
+    const test::TemporaryFolder temporary;
+    const std::filesystem::path& folder = temporary.path();
     std::filesystem::copy(PALPA_ROOT "/scenes/water", folder);
     std::ifstream source(PALPA_ROOT "/scenes/water/tip3p.str");
     std::ofstream target(folder / "tip3p.str");
@@ -30,14 +31,12 @@ std::string error_without(const std::string& without) {
         if (!line.starts_with(without)) target << line << '\n';
     }
     target.close();
-    std::string message;
     try {
         load_simulation(read_scene(folder));
     } catch (const LoadError& error) {
-        message = error.what();
+        return error.what();
     }
-    std::filesystem::remove_all(folder);
-    return message;
+    return "";
 }
 
 }  // namespace

@@ -20,7 +20,8 @@ HandPose hand_at(double travel_m) {
 
 }  // namespace
 
-TEST_CASE("the molecule goes the handle's travel divided by A_d, step by step", "[simulation][step]") {
+TEST_CASE("the molecule goes the handle's travel divided by A_d, step by step",
+          "[simulation][step]") {
     Simulation simulation = load_simulation(test::water_scene({"mode=2"}));
     TouchModel felt = build_touch_model(simulation, {});
 
@@ -47,7 +48,8 @@ TEST_CASE("A_d follows the force that is felt, not the one just computed", "[sim
     CHECK(report.touch.molecule_angstrom.x() == Approx(6).margin(1e-4));
 }
 
-TEST_CASE("a touch model tells force, stiffness and energy of the line in SI", "[simulation][step]") {
+TEST_CASE("a touch model tells force, stiffness and energy of the line in SI",
+          "[simulation][step]") {
     Simulation simulation = load_simulation(test::water_scene());
     move_grabbed(simulation, 3.1);
 
@@ -62,9 +64,11 @@ TEST_CASE("a touch model tells force, stiffness and energy of the line in SI", "
     const auto newton = [&](double r) {
         return force_along_line_at(simulation, r).force * units::newton_per_kcal_per_mol_angstrom;
     };
-    CHECK(touch.stiffness_N_per_m == Approx(-(newton(3.1 + 1e-5) - newton(3.1 - 1e-5)) / 2e-15).epsilon(1e-5));
+    CHECK(touch.stiffness_N_per_m ==
+          Approx(-(newton(3.1 + 1e-5) - newton(3.1 - 1e-5)) / 2e-15).epsilon(1e-5));
     double work = 0;
-    for (double r = 3.1 + 5e-4; r < 200; r += 1e-3) work += force_along_line_at(simulation, r).force * 1e-3;
+    for (double r = 3.1 + 5e-4; r < 200; r += 1e-3)
+        work += force_along_line_at(simulation, r).force * 1e-3;
     CHECK(touch.potential_kcal_per_mol == Approx(work).epsilon(1e-4));
 }
 

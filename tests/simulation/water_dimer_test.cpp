@@ -25,9 +25,9 @@ constexpr double N_per_m = units::newton_per_metre_per_kcal_per_mol_angstrom2;
 
 struct Frame {
     std::string name;
-    double lj, coulomb;             // kJ/mol
-    std::vector<Vec3> places;       // nm
-    std::vector<Vec3> forces;       // kJ/mol/nm
+    double lj, coulomb;        // kJ/mol
+    std::vector<Vec3> places;  // nm
+    std::vector<Vec3> forces;  // kJ/mol/nm
 };
 
 std::vector<Frame> read_frames(const std::string& variant) {
@@ -80,10 +80,10 @@ TEST_CASE("every reference pose of two waters has OpenMM's energies and forces",
         const std::span<const Vec3> all(places);
         std::vector<Vec3> forces(6, Vec3::Zero());
 
-        const FieldSum sum = add_pair_forces(
-            {all.first(3), water.charge, sqrt_epsilon, half_rmin},
-            {all.last(3), water.charge, sqrt_epsilon, half_rmin}, reference_coulomb,
-            std::span(forces).first(3), std::span(forces).last(3));
+        const FieldSum sum =
+            add_pair_forces({all.first(3), water.charge, sqrt_epsilon, half_rmin},
+                            {all.last(3), water.charge, sqrt_epsilon, half_rmin}, reference_coulomb,
+                            std::span(forces).first(3), std::span(forces).last(3));
 
         CHECK_THAT(sum.van_der_waals * 4.184, WithinRel(frame.lj, 1e-9));
         CHECK_THAT(sum.electrostatic * 4.184, WithinRel(frame.coulomb, 1e-9));
@@ -133,8 +133,9 @@ TEST_CASE("the line's force is as steep inward as the table says", "[simulation]
     CHECK_THAT(force_along_line_at(simulation, r).force * nN, WithinRel(F_nN, 1e-3));
 }
 
-TEST_CASE("the force along the line is finite wherever the hand pushes, through the other water too",
-          "[simulation][water]") {
+TEST_CASE(
+    "the force along the line is finite wherever the hand pushes, through the other water too",
+    "[simulation][water]") {
     const Simulation simulation = load_simulation(test::water_scene());
 
     for (double r = -3; r < 3; r += 1e-3) {

@@ -1,8 +1,8 @@
 // A folder of its own for a test that needs files; gone when the test ends.
 #pragma once
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <random>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -13,9 +13,11 @@ namespace palpa::test {
 class TemporaryFolder {
 public:
     TemporaryFolder() {
-        std::string name = (std::filesystem::temp_directory_path() / "palpa-test-XXXXXX").string();
-        if (!mkdtemp(name.data())) throw std::runtime_error("no temporary folder: " + name);
-        path_ = name;
+        std::random_device random;  // tests run beside each other
+        do {
+            path_ =
+                std::filesystem::temp_directory_path() / ("palpa-test-" + std::to_string(random()));
+        } while (!std::filesystem::create_directory(path_));
     }
     TemporaryFolder(const TemporaryFolder&) = delete;
     TemporaryFolder& operator=(const TemporaryFolder&) = delete;

@@ -1,0 +1,186 @@
+#include "charmm/assign.h"
+
+#include "formats/crd.h"
+#include "tests/support/load_error_of.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <string>
+#include <vector>
+
+using namespace palpa;
+using Catch::Contains;
+using Catch::StartsWith;
+using test::load_error_of;
+
+namespace {
+
+constexpr std::string_view water_and_ions = R"(read rtf
+MASS -1 HT 1.00800 H
+MASS -1 OT 15.99940 O
+MASS -1 SOD 22.98977 NA
+MASS -1 CLA 35.45000 CL
+RESI TIP3 0.000
+ATOM OH2 OT -0.834
+ATOM H1 HT 0.417
+ATOM H2 HT 0.417
+RESI SOD 1.00
+ATOM SOD SOD 1.00
+RESI CLA -1.00
+ATOM CLA CLA -1.00
+END
+read para
+NONBONDED
+HT 0.0 -0.046 0.2245
+OT 0.0 -0.1521 1.7682
+SOD 0.0 -0.0469 1.41075
+CLA 0.0 -0.150 2.27
+)";
+
+ForceField parsed(const std::string& text) {
+    ForceField force_field;
+    parse_force_field(text, "a.str", force_field);
+    return force_field;
+}
+
+ForceField water_with(const std::string& more = "") {
+    return parsed(std::string(water_and_ions) + more + "END\n");
+}
+
+// A structure as if read from s.crd, atoms on lines 4, 5, ...; names are {segment, residue, number,
+// atom}, the x coordinate counts the atoms.
+Structure structure_of(const std::vector<AtomName>& names) {
+    Structure structure{.file = "s.crd", .names = names, .positions = {}, .lines = {}};
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        structure.positions.emplace_back(static_cast<double>(i), 0, 0);
+        structure.lines.push_back(i + 4);
+    }
+    return structure;
+}
+
+const std::vector<AtomName> two_waters{{"A", "TIP3", "1", "OH2"}, {"A", "TIP3", "1", "H1"},
+                                       {"A", "TIP3", "1", "H2"},  {"B", "TIP3", "1", "H2"},
+                                       {"B", "TIP3", "1", "OH2"}, {"B", "TIP3", "1", "H1"}};
+
+std::string error_of(const ForceField& force_field, const std::vector<AtomName>& names,
+                     const std::string& segment) {
+    AtomTable table;
+    const std::string error =
+        load_error_of([&] { add_segment_atoms(force_field, structure_of(names), segment, table); });
+    // A failure adds nothing.
+    if (error != "no error") CHECK(table.size() == 0);
+    return error;
+}
+
+}  // namespace
+
+TEST_CASE("atoms get their numbers by name, in the order of the structure", "[charmm][assign]") {
+    AtomTable table;
+
+    const AtomRange b = add_segment_atoms(water_with(), structure_of(two_waters), "B", table);
+    const AtomRange a = add_segment_atoms(water_with(), structure_of(two_waters), "A", table);
+
+    CHECK(b.first == 0);
+    CHECK(b.count == 3);
+    CHECK(a.first == 3);
+    CHECK(a.count == 3);
+    REQUIRE(table.size() == 6);
+    const std::vector<std::string> atoms{"H2", "OH2", "H1", "OH2", "H1", "H2"};
+    const std::vector<double> x{3, 4, 5, 0, 1, 2};
+    for (std::size_t i = 0; i < 6; ++i) {
+        const bool oxygen = atoms[i] == "OH2";
+        INFO(i);
+        CHECK(table.names[i].atom == atoms[i]);
+        CHECK(table.names[i].segment == (i < 3 ? "B" : "A"));
+        CHECK(table.positions[i] == Vec3(x[i], 0, 0));
+        CHECK(table.mass[i] == (oxygen ? 15.9994 : 1.008));
+        CHECK(table.charge[i] == (oxygen ? -0.834 : 0.417));
+        // sqrt(0.1521) = 0.39 exactly, sqrt(0.046) by hand.
+        CHECK(table.sqrt_epsilon[i] == Approx(oxygen ? 0.39 : 0.214476106).epsilon(1e-9));
+        CHECK(table.half_rmin[i] == (oxygen ? 1.7682 : 0.2245));
+    }
+    CHECK(table.charge[3] + table.charge[4] + table.charge[5] == Approx(0).margin(1e-15));
+}
+
+TEST_CASE("a segment that is not there is told with those that are", "[charmm][assign]") {
+    CHECK(error_of(water_with(), two_waters, "C") == "s.crd: no segment 'C' (only A, B)");
+}
+
+TEST_CASE("an unknown residue is told with its near name", "[charmm][assign]") {
+    const std::string error = error_of(water_with(), {{"A", "TIP4", "1", "OH2"}}, "A");
+
+    CHECK_THAT(error, StartsWith("s.crd:4: no residue 'TIP4' in a.str") && Contains("'TIP3'?"));
+    // Nothing is near to this one.
+    CHECK_THAT(error_of(water_with(), {{"A", "HEXANE", "1", "C1"}}, "A"),
+               !Contains("did you mean"));
+}
+
+TEST_CASE("an unknown atom is told with those that its residue has", "[charmm][assign]") {
+    std::vector<AtomName> names = two_waters;
+    names[1].atom = "HW1";
+
+    CHECK_THAT(
+        error_of(water_with(), names, "A"),
+        StartsWith("s.crd:5: residue 'TIP3' of a.str:6 has no atom 'HW1' (only OH2, H1, H2)") &&
+            Contains("lacks atom 'H1'"));
+    // The other segment is whole.
+    CHECK(error_of(water_with(), names, "B") == "no error");
+}
+
+TEST_CASE("a residue that is there only in part is told", "[charmm][assign]") {
+    const std::vector<AtomName> names{{"A", "TIP3", "1", "OH2"},
+                                      {"A", "TIP3", "1", "H1"},
+                                      {"A", "TIP3", "1", "H2"},
+                                      {"A", "TIP3", "2", "OH2"},
+                                      {"A", "TIP3", "2", "H2"}};
+
+    CHECK(error_of(water_with(), names, "A") == "s.crd:7: residue A TIP3 2 lacks atom 'H1'");
+}
+
+TEST_CASE("all that is missing is told at once, each thing once", "[charmm][assign]") {
+    const ForceField force_field = parsed(
+        "MASS -1 CG331 12.011 C\nMASS -1 HG 1.008 H\nRESI LIG 0.0\nATOM C1 CG332 0.0\nATOM C2 "
+        "CG332 0.0\n"
+        "ATOM H1 HG 0.0\nEND\nread para\nNONBONDED\nCG331 0.0 -0.1 2.0\nCG332 0.0 -0.1 2.0\n");
+    const std::string error = error_of(force_field,
+                                       {{"A", "LIG", "1", "C1"},
+                                        {"A", "LIG", "1", "C2"},
+                                        {"A", "LIG", "1", "H1"},
+                                        {"A", "UNK", "2", "X"}},
+                                       "A");
+
+    CHECK_THAT(error, StartsWith("a.str:4: unknown atom type 'CG332'") && Contains("'CG331'?"));
+    CHECK_THAT(error, Contains("; a.str:6: atom type 'HG' has no NONBONDED parameters"));
+    CHECK_THAT(error, Contains("; s.crd:7: no residue 'UNK'"));
+    const std::size_t once = error.find("unknown atom type 'CG332'");
+    CHECK(error.find("unknown atom type 'CG332'", once + 1) == std::string::npos);
+}
+
+TEST_CASE("a pair that NBFIX would change is refused where it is needed", "[charmm][assign]") {
+    const ForceField force_field = water_with("NBFIX\nSOD CLA -0.083875 3.731\n");
+    const std::vector<AtomName> salt{{"A", "SOD", "1", "SOD"},  {"A", "CLA", "2", "CLA"},
+                                     {"B", "SOD", "1", "SOD"},  {"C", "CLA", "1", "CLA"},
+                                     {"D", "TIP3", "1", "OH2"}, {"D", "TIP3", "1", "H1"},
+                                     {"D", "TIP3", "1", "H2"}};
+    const std::string refusal = "a.str:22: NBFIX of 'SOD' and 'CLA' is needed here";
+
+    SECTION("in one segment") {
+        CHECK_THAT(error_of(force_field, salt, "A"), StartsWith(refusal));
+        // Without the NBFIX line the same segment is fine.
+        CHECK(error_of(water_with(), salt, "A") == "no error");
+    }
+    SECTION("between two segments") {
+        AtomTable table;
+        add_segment_atoms(force_field, structure_of(salt), "B", table);
+        CHECK_THAT(
+            load_error_of([&] { add_segment_atoms(force_field, structure_of(salt), "C", table); }),
+            StartsWith(refusal));
+        CHECK(table.size() == 1);
+    }
+    SECTION("not where only one of the types occurs") {
+        AtomTable table;
+        add_segment_atoms(force_field, structure_of(salt), "B", table);
+        add_segment_atoms(force_field, structure_of(salt), "D", table);
+        CHECK(table.size() == 4);
+    }
+}

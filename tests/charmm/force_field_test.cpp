@@ -1,0 +1,363 @@
+#include "charmm/force_field.h"
+
+#include "tests/support/load_error_of.h"
+#include "tests/support/temporary_folder.h"
+
+#include <array>
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <string>
+#include <vector>
+
+using namespace palpa;
+using Catch::Contains;
+using Catch::StartsWith;
+using test::load_error_of;
+
+namespace {
+
+// The lines on TIP3P of CHARMM's toppar_water_ions.str, with what stands around them there.
+constexpr std::string_view tip3p = R"(* Toplogy and parameter information for water and ions.
+*
+
+!set nothing here
+set nat ?NATC
+set app
+if "@NAT" ne "?NATC" if @nat ne 0 set app append
+
+read rtf card @app
+* Topology for water and ions
+*
+31  1
+
+MASS  -1  HT         1.00800 H ! TIPS3P WATER HYDROGEN
+MASS  -1  OT        15.99940 O ! TIPS3P WATER OXYGEN
+
+default first none last none
+AUTO ANGLE DIHE
+
+RESI TIP3         0.000 NOANG NODIH ! tip3p water model
+GROUP
+ATOM OH2  OT     -0.834
+ATOM H1   HT      0.417
+ATOM H2   HT      0.417
+BOND OH2 H1 OH2 H2 H1 H2    ! the last bond is needed for shake
+ANGLE H1 OH2 H2             ! required
+DONOR H1 OH2
+ACCEPTOR OH2
+PATCHING FIRS NONE LAST NONE
+
+PRES CUT         0.10 ! a patch
+DELETE ATOM H2
+ATOM OH2  OT     -0.734
+END
+
+read para card flex @app
+* Parameters for water and ions
+*
+
+ATOMS
+MASS  -1  HT         1.00800 ! TIPS3P WATER HYDROGEN
+MASS  -1  OT        15.99940 ! TIPS3P WATER OXYGEN
+
+BONDS
+!V(bond) = Kb(b - b0)**2
+HT    HT      0.0       1.5139  ! from TIPS3P geometry (for SHAKE w/PARAM)
+OT    HT    450.0       0.9572  ! from TIPS3P geometry
+
+ANGLES
+HT   OT   HT     55.0      104.52   ! FROM TIPS3P GEOMETRY
+
+DIHEDRALS
+HT  OT  OT  HT   2.02     2     0.0
+
+IMPROPER
+HT  X  X  HT   2.02     0     0.0
+
+NONBONDED nbxmod  5 atom cdiel fshift vatom vdistance vfswitch - ! continued
+cutnb 14.0 ctofnb 12.0 ctonnb 10.0 eps 1.0 e14fac 1.0 wmin 1.5
+
+HT       0.0       -0.046     0.2245
+OT       0.0       -0.1521    1.7682   0.0 -0.01 1.9 ! of 1-4 pairs
+
+NBFIX
+!              Emin         Rmin
+HT     OT      -0.05   2.0
+HBOND CUTHB 0.5
+END
+return
+)";
+
+ForceField parsed(std::string_view text) {
+    ForceField force_field;
+    parse_force_field(text, "a.str", force_field);
+    return force_field;
+}
+
+std::string error_of(std::string_view text) {
+    return load_error_of([&] { parsed(text); });
+}
+
+void check_is_tip3p(const ForceField& force_field) {
+    REQUIRE(force_field.residues.count("TIP3") == 1);
+    const Residue& water = force_field.residues.at("TIP3");
+    REQUIRE(water.atoms.size() == 3);
+    CHECK(water.charge == 0);
+    CHECK(water.atoms[0].name == "OH2");
+    CHECK(water.atoms[0].type == "OT");
+    CHECK(water.atoms[0].charge == -0.834);
+    CHECK(water.atoms[1].name == "H1");
+    CHECK(water.atoms[2].name == "H2");
+    CHECK(water.atoms[2].type == "HT");
+    CHECK(water.atoms[2].charge == 0.417);
+    CHECK(force_field.types.at("OT").mass == 15.9994);
+    CHECK(force_field.types.at("OT").element == "O");
+    CHECK(force_field.types.at("HT").mass == 1.008);
+    CHECK(force_field.nonbonded.at("OT").epsilon == 0.1521);
+    CHECK(force_field.nonbonded.at("OT").half_rmin == 1.7682);
+    CHECK(force_field.nonbonded.at("HT").epsilon == 0.046);
+    CHECK(force_field.nonbonded.at("HT").half_rmin == 0.2245);
+    CHECK(force_field.bonds.at({"HT", "OT"}).k == 450);
+    CHECK(force_field.bonds.at({"HT", "OT"}).value == 0.9572);
+    CHECK(force_field.bonds.at({"HT", "HT"}).value == 1.5139);
+    CHECK(force_field.angles.at({"HT", "OT", "HT"}).k == 55);
+    CHECK(force_field.angles.at({"HT", "OT", "HT"}).value == 104.52);
+}
+
+}  // namespace
+
+TEST_CASE("a stream file of TIP3P is read, topology and parameters in one",
+          "[charmm][force_field]") {
+    const ForceField force_field = parsed(tip3p);
+
+    check_is_tip3p(force_field);
+    // Nothing beside: no residue from the patch, no type from a dihedral or an option line.
+    CHECK(force_field.residues.size() == 1);
+    CHECK(force_field.types.size() == 2);
+    CHECK(force_field.nonbonded.size() == 2);
+    CHECK(force_field.bonds.size() == 2);
+    CHECK(force_field.angles.size() == 1);
+    REQUIRE(force_field.nbfix.size() == 1);
+    CHECK(force_field.nbfix[0].a == "HT");
+    CHECK(force_field.nbfix[0].b == "OT");
+    CHECK(force_field.files == std::vector<std::string>{"a.str"});
+}
+
+TEST_CASE("every entry knows the line it came from", "[charmm][force_field]") {
+    const ForceField force_field = parsed(tip3p);
+
+    // Counted in the text above.
+    CHECK(to_string(force_field.types.at("HT").place) == "a.str:14");
+    CHECK(to_string(force_field.residues.at("TIP3").place) == "a.str:20");
+    CHECK(to_string(force_field.residues.at("TIP3").atoms[2].place) == "a.str:24");
+    CHECK(to_string(force_field.bonds.at({"HT", "OT"}).place) == "a.str:47");
+    CHECK(to_string(force_field.angles.at({"HT", "OT", "HT"}).place) == "a.str:50");
+    CHECK(to_string(force_field.nonbonded.at("OT").place) == "a.str:62");
+    CHECK(to_string(force_field.nbfix[0].place) == "a.str:66");
+}
+
+TEST_CASE("CHARMM's own file of water and ions gives TIP3P's published numbers",
+          "[charmm][force_field]") {
+    const char* const data = std::getenv("PALPA_DATA");
+    if (!data) {
+        std::cout << "SKIPPED: PALPA_DATA is not set, so CHARMM's own files are not at hand\n";
+        return;
+    }
+    const std::filesystem::path file =
+        std::filesystem::path(data) / "data/charmm/toppar_water_ions.str";
+
+    const ForceField force_field = read_force_field(std::array{file});
+
+    check_is_tip3p(force_field);
+    CHECK(force_field.residues.at("SOD").charge == 1);
+    CHECK(force_field.nonbonded.at("CLA").half_rmin == 2.27);
+    // The file ends with NBFIX lines for sodium, in a second parameter part.
+    CHECK_FALSE(force_field.nbfix.empty());
+}
+
+TEST_CASE("the scene's own TIP3P file says the same as CHARMM's", "[charmm][force_field]") {
+    const std::filesystem::path file = PALPA_ROOT "/scenes/water/tip3p.str";
+
+    const ForceField force_field = read_force_field(std::array{file});
+
+    REQUIRE(force_field.residues.at("TIP3").atoms.size() == 3);
+    CHECK(force_field.residues.at("TIP3").atoms[0].charge == -0.834);
+    CHECK(force_field.nonbonded.at("OT").epsilon == 0.1521);
+    CHECK(force_field.nonbonded.at("HT").half_rmin == 0.2245);
+}
+
+TEST_CASE("case counts nowhere", "[charmm][force_field]") {
+    std::string lower(tip3p);
+    for (char& letter : lower) {
+        if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
+    }
+
+    check_is_tip3p(parsed(lower));
+}
+
+TEST_CASE("carriage returns and tabs are blanks", "[charmm][force_field]") {
+    std::string text;
+    for (const char letter : tip3p) {
+        if (letter == '\n') text += '\r';
+        text += letter == ' ' ? '\t' : letter;
+    }
+
+    check_is_tip3p(parsed(text));
+}
+
+TEST_CASE("a '-' at the end continues a line, behind it only a comment", "[charmm][force_field]") {
+    const ForceField force_field = parsed(
+        "read para\nBONDS\nHT - ! first\n  OT -\n450.0 0.9572\n"
+        "OT OT 1.0 -1.5\n");
+
+    REQUIRE(force_field.bonds.size() == 2);
+    CHECK(force_field.bonds.at({"HT", "OT"}).value == 0.9572);
+    CHECK(to_string(force_field.bonds.at({"HT", "OT"}).place) == "a.str:3");
+    // A minus sign before a number is none of that.
+    CHECK(force_field.bonds.at({"OT", "OT"}).value == -1.5);
+}
+
+TEST_CASE("a lone '-' hides nothing of what follows", "[charmm][force_field]") {
+    const ForceField after_blank = parsed("-\n\nMASS -1 OT 15.9994 O\n");
+    const ForceField after_comment = parsed("-\n! comment\nMASS -1 OT 15.9994 O\n");
+
+    CHECK(after_blank.types.count("OT") == 1);
+    CHECK(after_comment.types.count("OT") == 1);
+    CHECK_THAT(error_of("- \n - ! more\n\nNONSENSE\n"), StartsWith("a.str:4: "));
+    CHECK(error_of("-") == "no error");
+}
+
+TEST_CASE("topology and parameters may come as plain files without read lines",
+          "[charmm][force_field]") {
+    ForceField force_field;
+    parse_force_field("* title\n36 1\nMASS 1 OT 15.9994 O\nRESI X 0.0\nATOM O OT 0.0\nEND\n",
+                      "a.rtf", force_field);
+    parse_force_field("* title\nBONDS\nOT OT 1.0 1.2\nNONBONDED\nOT 0.0 -0.1 1.7\nEND\n", "a.prm",
+                      force_field);
+
+    CHECK(force_field.residues.at("X").atoms.size() == 1);
+    CHECK(force_field.bonds.size() == 1);
+    CHECK(force_field.nonbonded.at("OT").epsilon == 0.1);
+    CHECK(force_field.files == std::vector<std::string>{"a.rtf", "a.prm"});
+    CHECK(to_string(force_field.bonds.begin()->second.place) == "a.prm:3");
+}
+
+TEST_CASE("an empty text adds nothing but its name", "[charmm][force_field]") {
+    const ForceField force_field = parsed(GENERATE("", "\n", "* title\n*\n", "! comment"));
+
+    CHECK(force_field.types.empty());
+    CHECK(force_field.residues.empty());
+    CHECK(force_field.files.size() == 1);
+}
+
+TEST_CASE("several files are read in order, and errors name theirs", "[charmm][force_field]") {
+    const test::TemporaryFolder folder;
+    const auto first = folder.add_file("first.rtf", "MASS -1 OT 15.9994 O\n");
+    const auto second = folder.add_file("second.rtf", "MASS -1 HT 1.008 H\nMASS -1 OT 15.9994\n");
+    const auto third = folder.add_file("third.rtf", "\nMASS -1 OT 17.0\n");
+
+    const ForceField force_field = read_force_field(std::array{first, second});
+
+    CHECK(force_field.types.size() == 2);
+    CHECK(force_field.types.at("OT").element == "O");
+    CHECK(force_field.files == std::vector<std::string>{first.string(), second.string()});
+    CHECK_THAT(load_error_of([&] { read_force_field(std::array{first, second, third}); }),
+               StartsWith(third.string() + ":2: ") && Contains(first.string() + ":1"));
+    CHECK(load_error_of([&] { read_force_field(std::array{folder.path() / "none.prm"}); }) ==
+          (folder.path() / "none.prm").string() + ": no such file");
+}
+
+TEST_CASE("a value that does not parse is told with its line", "[charmm][force_field]") {
+    struct Row {
+        const char* text;
+        const char* line;
+        const char* what;
+    };
+    const auto row = GENERATE(values<Row>({
+        {"\nMASS -1 OT 15.9.94 O\n", "2", "'15.9.94' is not a number; expected the mass"},
+        {"MASS x OT 15.9994 O\n", "1", "'X' is not a number"},
+        {"MASS -1 OT nan O\n", "1", "'NAN' is not a number"},
+        {"MASS -1 OT -1.0 O\n", "1", "expected 0 or more"},
+        {"MASS -1\n", "1", "no atom type here"},
+        {"MASS -1 OT\n", "1", "no mass here"},
+        {"RESI\n", "1", "no residue name here"},
+        {"RESI TIP3\n", "1", "no residue's charge here"},
+        {"RESI TIP3 neutral\n", "1", "'NEUTRAL' is not a number"},
+        {"RESI TIP3 0.0\nATOM OH2 OT\n", "2", "no charge here"},
+        {"RESI TIP3 0.0\nATOM OH2\n", "2", "no atom type here"},
+        {"RESI TIP3 0.0\n\nATOM OH2 OT inf\n", "3", "'INF' is not a number; expected the charge"},
+        {"BONDS\nHT OT 450.0\n", "2", "no bond length here"},
+        {"BONDS\nHT\n", "2", "no second atom type here"},
+        {"BONDS\nHT OT 450.0 long\n", "2", "'LONG' is not a number"},
+        {"ANGLES\nHT OT HT 55.0\n", "2", "no angle here"},
+        {"ANGLES\nHT OT\n", "2", "no third atom type here"},
+        {"NONBONDED\nOT 0.0 -0.1\n", "2", "no half of Rmin here"},
+        {"NONBONDED\nOT 0.0 -0.1 -\n1e999\n", "2", "'1E999' is not a number"},
+        {"NONBONDED\nOT 0.0 0.1521 1.7682\n", "2", "CHARMM writes the depth as -epsilon"},
+        {"NONBONDED\nOT 0.0 -0.1521 -1.7682\n", "2", "Rmin/2 as 0 or more"},
+        {"NBFIX\nHT\n", "2", "no second atom type here"},
+    }));
+    INFO(row.text);
+
+    CHECK_THAT(error_of(row.text),
+               StartsWith(std::string("a.str:") + row.line + ": ") && Contains(row.what));
+}
+
+TEST_CASE("a line that nobody knows is told, in topology, parameters and script",
+          "[charmm][force_field]") {
+    CHECK_THAT(error_of("MASS -1 OT 15.9994\nRESIDUUM X 0.0\nCHARGE OT 1.0\n"),
+               StartsWith("a.str:3: 'CHARGE' is not a line of a topology file"));
+    CHECK_THAT(error_of("read para\n\nCHARGES\n"),
+               StartsWith("a.str:3: 'CHARGES' is not a section of a parameter file"));
+    CHECK_THAT(error_of("read para\nATOMS\nOT HT 450.0 1.0\n"), StartsWith("a.str:3: "));
+    CHECK_THAT(error_of("stream other.str\n"), StartsWith("a.str:1: 'STREAM'"));
+    CHECK_THAT(error_of("\nread psf card\n"),
+               StartsWith("a.str:2: 'READ PSF CARD' cannot be read"));
+    CHECK_THAT(error_of("read\n"), StartsWith("a.str:1: 'READ' cannot be read"));
+}
+
+TEST_CASE("an atom line needs a residue before it", "[charmm][force_field]") {
+    CHECK_THAT(error_of("read rtf\nATOM OH2 OT 0.0\n"),
+               StartsWith("a.str:2: an ATOM line outside"));
+    CHECK_THAT(error_of("RESI A 0.0\nEND\nread rtf\nATOM OH2 OT 0.0\n"),
+               StartsWith("a.str:4: an ATOM line outside"));
+    CHECK_THAT(error_of("ATOM OH2 OT 0.0\n"), StartsWith("a.str:1: an ATOM line outside"));
+}
+
+TEST_CASE("one name with two values is told with both places", "[charmm][force_field]") {
+    struct Row {
+        const char* text;
+        const char* line;
+    };
+    const auto row = GENERATE(values<Row>({
+        {"MASS 1 OT 15.9994\nMASS 2 OT 16.5\n", "2"},
+        {"RESI A 0.0\nRESI A 0.0\n", "2"},
+        {"RESI A 0.0\nATOM O OT 0.1\nATOM O OT 0.1\n", "3"},
+        {"BONDS\nHT OT 450.0 1.0\nOT HT 450.0 1.1\n", "3"},
+        {"BONDS\nHT OT 450.0 1.0\nOT HT 451.0 1.0\n", "3"},
+        {"ANGLES\nHT OT CT 55.0 100.0\nCT OT HT 55.0 101.0\n", "3"},
+        {"NONBONDED\nOT 0.0 -0.1 1.7\nOT 0.0 -0.2 1.7\n", "3"},
+        {"NONBONDED\nOT 0.0 -0.1 1.7\nOT 0.0 -0.1 1.8\n", "3"},
+    }));
+    INFO(row.text);
+    const int first = std::stoi(row.line) - 1;
+
+    CHECK_THAT(error_of(row.text), StartsWith(std::string("a.str:") + row.line + ": ") &&
+                                       Contains("first in a.str:" + std::to_string(first)));
+}
+
+TEST_CASE("the same once more is no mistake, in either order of its types",
+          "[charmm][force_field]") {
+    const ForceField force_field = parsed(
+        "read para\nATOMS\nMASS 1 OT 15.9994 O\nMASS 2 OT 15.9990\n"
+        "BONDS\nHT OT 450.0 1.0\nOT HT 450.0 1.0\n"
+        "ANGLES\nHT OT CT 55.0 100.0\nCT OT HT 55.0 100.0\n"
+        "NONBONDED\nOT 0.0 -0.1 1.7\nOT 0.0 -0.1 1.7\n");
+
+    CHECK(force_field.types.at("OT").mass == 15.9994);
+    CHECK(force_field.bonds.size() == 1);
+    CHECK(force_field.angles.size() == 1);
+    CHECK(to_string(force_field.nonbonded.at("OT").place) == "a.str:12");
+}

@@ -1,0 +1,77 @@
+#include "core/files.h"
+
+#include "tests/support/load_error_of.h"
+#include "tests/support/temporary_folder.h"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+using namespace palpa;
+using Catch::StartsWith;
+using test::load_error_of;
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::size_t files_in(const fs::path& folder) {
+    return static_cast<std::size_t>(
+        std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+}
+
+}  // namespace
+
+TEST_CASE("a file is read byte for byte", "[core][files]") {
+    const test::TemporaryFolder folder;
+    const std::string text("a\r\nb\0c\xff\n\n", 9);
+
+    CHECK(read_text_file(folder.add_file("bytes", text)) == text);
+    CHECK(read_text_file(folder.add_file("empty", "")).empty());
+}
+
+TEST_CASE("a file that cannot be read is named with the reason", "[core][files]") {
+    const test::TemporaryFolder folder;
+    const std::string missing = (folder.path() / "missing.toml").string();
+
+    CHECK(load_error_of([&] { read_text_file(missing); }) == missing + ": no such file");
+    CHECK_THAT(load_error_of([&] { read_text_file(folder.path()); }),
+               StartsWith(folder.path().string() + ": is a folder"));
+}
+
+TEST_CASE("writing makes a file, then replaces it, and leaves nothing else", "[core][files]") {
+    const test::TemporaryFolder folder;
+    const fs::path path = folder.path() / "out.csv";
+    const std::string longer(100'000, 'x');
+    const std::string shorter("b\r\n\0", 4);
+
+    for (const std::string& text : {longer, shorter}) {
+        write_text_file(path, text);
+        std::ifstream file(path, std::ios::binary);
+        CHECK(std::string(std::istreambuf_iterator<char>(file), {}) == text);
+    }
+
+    CHECK(files_in(folder.path()) == 1);
+}
+
+TEST_CASE("a failed write tells why, harms nothing and leaves nothing behind", "[core][files]") {
+    const test::TemporaryFolder folder;
+
+    SECTION("into a folder that is not there") {
+        const std::string path = (folder.path() / "missing" / "out.csv").string();
+        CHECK_THAT(load_error_of([&] { write_text_file(path, "text"); }),
+                   StartsWith(path + ": cannot be written: "));
+        CHECK(files_in(folder.path()) == 0);
+    }
+    SECTION("onto a folder") {
+        const fs::path path = folder.path() / "taken";
+        fs::create_directory(path);
+        folder.add_file("taken/inside", "kept");
+        CHECK_THAT(load_error_of([&] { write_text_file(path, "text"); }),
+                   StartsWith(path.string() + ": cannot be written: "));
+        CHECK(read_text_file(path / "inside") == "kept");
+        CHECK(files_in(folder.path()) == 1);
+    }
+}

@@ -1,0 +1,24 @@
+#include "core/load_error.h"
+
+#include <catch2/catch.hpp>
+#include <stdexcept>
+#include <string>
+
+using namespace palpa;
+
+TEST_CASE("a place is written as file, line and column, as far as they are known",
+          "[core][load_error]") {
+    CHECK(to_string(TextPlace{"scene.toml", 12, 7}) == "scene.toml:12:7");
+    CHECK(to_string(TextPlace{"scene.toml", 12, 0}) == "scene.toml:12");
+    CHECK(to_string(TextPlace{"scene.toml", 0, 0}) == "scene.toml");
+    // A column of no line says nothing.
+    CHECK(to_string(TextPlace{"scene.toml", 0, 7}) == "scene.toml");
+}
+
+TEST_CASE("a load error tells its place before its message", "[core][load_error]") {
+    const LoadError error({"water.str", 3, 0}, "no {} here");
+
+    const std::runtime_error& as_any_handler_sees_it = error;
+
+    CHECK(std::string(as_any_handler_sees_it.what()) == "water.str:3: no {} here");
+}

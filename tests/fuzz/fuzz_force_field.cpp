@@ -1,0 +1,114 @@
+// Any text is a CHARMM file or a LoadError; what was read is finite, and its residues get their
+// numbers or another LoadError.
+#include "charmm/assign.h"
+#include "charmm/force_field.h"
+#include "core/load_error.h"
+#include "core/text.h"
+#include "tests/fuzz/expect.h"
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+
+using namespace palpa;
+
+namespace {
+
+std::optional<ForceField> read_or_refuse(std::string_view text) {
+    ForceField force_field;
+    try {
+        parse_force_field(text, "fuzz.str", force_field);
+    } catch (const LoadError&) {
+        return std::nullopt;
+    }
+    return force_field;
+}
+
+void expect_name(const std::string& name) {
+    PALPA_EXPECT(!name.empty());
+    PALPA_EXPECT(upper_case(name) == name);
+    PALPA_EXPECT(name.find_first_of(" \t\r\n!") == std::string::npos);
+}
+
+void expect_place(const TextPlace& place, std::size_t line_count) {
+    PALPA_EXPECT(place.file == "fuzz.str" && place.line >= 1 && place.line <= line_count);
+}
+
+void expect_consistent(const ForceField& force_field, std::size_t line_count) {
+    for (const auto& [name, type] : force_field.types) {
+        expect_name(name);
+        expect_place(type.place, line_count);
+        PALPA_EXPECT(std::isfinite(type.mass) && type.mass >= 0);
+    }
+    for (const auto& [name, residue] : force_field.residues) {
+        expect_name(name);
+        expect_place(residue.place, line_count);
+        PALPA_EXPECT(std::isfinite(residue.charge));
+        std::set<std::string> atoms;
+        for (const ResidueAtom& atom : residue.atoms) {
+            expect_name(atom.name);
+            expect_name(atom.type);
+            expect_place(atom.place, line_count);
+            PALPA_EXPECT(std::isfinite(atom.charge));
+            PALPA_EXPECT(atoms.insert(atom.name).second);
+        }
+    }
+    for (const auto& [name, type] : force_field.nonbonded) {
+        expect_name(name);
+        expect_place(type.place, line_count);
+        PALPA_EXPECT(std::isfinite(type.epsilon) && type.epsilon >= 0);
+        PALPA_EXPECT(std::isfinite(type.half_rmin) && type.half_rmin >= 0);
+    }
+    for (const auto& [types, bond] : force_field.bonds) {
+        PALPA_EXPECT(types.first <= types.second);
+        PALPA_EXPECT(std::isfinite(bond.k) && std::isfinite(bond.value));
+    }
+    for (const auto& [types, angle] : force_field.angles) {
+        PALPA_EXPECT(types[0] <= types[2]);
+        PALPA_EXPECT(std::isfinite(angle.k) && std::isfinite(angle.value));
+    }
+    for (const NbfixPair& pair : force_field.nbfix) expect_place(pair.place, line_count);
+}
+
+// One whole residue of each kind, all in one segment.
+Structure one_of_each(const ForceField& force_field) {
+    Structure structure;
+    structure.file = "fuzz.crd";
+    for (const auto& [name, residue] : force_field.residues) {
+        for (const ResidueAtom& atom : residue.atoms) {
+            structure.names.push_back({"A", name, "1", atom.name});
+            structure.positions.push_back(Vec3::Zero());
+            structure.lines.push_back(structure.names.size());
+        }
+    }
+    return structure;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const std::string_view text(reinterpret_cast<const char*>(data), size);
+    const std::optional<ForceField> force_field = read_or_refuse(text);
+    if (!force_field) return 0;
+    expect_consistent(*force_field, split_lines(text).size());
+
+    const Structure structure = one_of_each(*force_field);
+    AtomTable table;
+    try {
+        const AtomRange range = add_segment_atoms(*force_field, structure, "A", table);
+        PALPA_EXPECT(range.first == 0 && range.count == structure.names.size());
+    } catch (const LoadError&) {
+        PALPA_EXPECT(table.size() == 0);
+        return 0;
+    }
+    PALPA_EXPECT(table.size() == structure.names.size());
+    for (std::size_t i = 0; i < table.size(); ++i) {
+        PALPA_EXPECT(std::isfinite(table.mass[i]) && std::isfinite(table.charge[i]));
+        PALPA_EXPECT(std::isfinite(table.sqrt_epsilon[i]) && std::isfinite(table.half_rmin[i]));
+    }
+    return 0;
+}

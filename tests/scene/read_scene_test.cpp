@@ -1,0 +1,449 @@
+#include "scene/read_scene.h"
+
+#include "tests/support/load_error_of.h"
+#include "tests/support/temporary_folder.h"
+
+#include <fmt/format.h>
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+using namespace palpa;
+using Catch::Contains;
+using Catch::EndsWith;
+using Catch::StartsWith;
+using test::load_error_of;
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// A file of this name need not exist, those that a scene names must.
+const std::string file = PALPA_ROOT "/scenes/water/test.toml";
+
+// 16 lines, so that what is added stands from line 17 on.
+const std::string base = R"(title = "Two waters"
+[force_field]
+files = ["tip3p.str"]
+[molecules.fixed]
+structure = "dimer.crd"
+segment = "FIX"
+reference_atom = "OH2"
+[molecules.moved]
+structure = "dimer.crd"
+segment = "MOV"
+reference_atom = "OH2"
+motion = "along-x"
+[grab]
+molecule = "moved"
+measured_from = "fixed"
+
+)";
+
+std::string at(int line, int column) { return fmt::format("{}:{}:{}: ", file, line, column); }
+
+std::string replaced(std::string text, const std::string& old, const std::string& by) {
+    const std::size_t place = text.find(old);
+    REQUIRE(place != std::string::npos);
+    return text.replace(place, old.size(), by);
+}
+
+std::string error_of(const std::string& text, const std::vector<std::string>& settings = {}) {
+    return load_error_of([&] { parse_scene(text, file, settings); });
+}
+
+SceneDescription with(const std::vector<std::string>& settings) {
+    return parse_scene(base, file, settings);
+}
+
+}  // namespace
+
+TEST_CASE("a scene says what it says, and defaults for the rest", "[scene][read]") {
+    const SceneDescription scene = parse_scene(base, file);
+
+    CHECK(scene.file == file);
+    CHECK(scene.title == "Two waters");
+    CHECK(scene.about.empty());
+    REQUIRE(scene.force_field.files.size() == 1);
+    CHECK(scene.force_field.files[0] == fs::path(PALPA_ROOT) / "scenes/water/tip3p.str");
+    CHECK(scene.force_field.coulomb_constant == 332.0716);
+    REQUIRE(scene.molecules.size() == 2);
+    CHECK(scene.molecules[0].name == "fixed");
+    CHECK(scene.molecules[0].motion == Motion::Fixed);
+    CHECK(scene.molecules[1].name == "moved");
+    CHECK(scene.molecules[1].structure == fs::path(PALPA_ROOT) / "scenes/water/dimer.crd");
+    CHECK(scene.molecules[1].segment == "MOV");
+    CHECK(scene.molecules[1].reference_atom == "OH2");
+    CHECK(scene.molecules[1].motion == Motion::AlongX);
+    CHECK(scene.grab.molecule == "moved");
+    CHECK(scene.grab.measured_from == "fixed");
+    CHECK(scene.hand.grip == 3);
+    CHECK_FALSE(scene.hand.start_angstrom.has_value());
+    CHECK(scene.coupling.mode == CouplingMode::VariableForceConstantDisplacement);
+    CHECK(scene.device.servo_delay_ticks == 1);
+    CHECK(scene.period_ms == 1);
+}
+
+TEST_CASE("every kind of field is read", "[scene][read]") {
+    const SceneDescription scene = parse_scene(base + R"([hand]
+grip = "firm-grip"
+stroke = "path"
+start_angstrom = 7
+path = [[0, 0.5], [1.5, -2]]
+[device]
+servo_delay_ticks = 7
+[coupling]
+mode = 4
+A_d = 2.5e8
+[run]
+period_ms = 20
+)",
+                                               file);
+
+    CHECK(hand_names[scene.hand.grip] == "firm-grip");
+    CHECK(scene.hand.stroke == Stroke::Path);
+    CHECK(scene.hand.start_angstrom == 7.0);
+    REQUIRE(scene.hand.path.size() == 2);
+    CHECK(scene.hand.path[0] == std::array{0.0, 0.5});
+    CHECK(scene.hand.path[1] == std::array{1.5, -2.0});
+    CHECK(scene.device.servo_delay_ticks == 7);
+    CHECK(scene.coupling.mode == CouplingMode::ConstantForceConstantDisplacement);
+    CHECK(scene.coupling.A_d == 2.5e8);
+    CHECK(scene.period_ms == 20);
+}
+
+TEST_CASE("molecules keep the order of the file, not of their names", "[scene][read]") {
+    const SceneDescription scene =
+        parse_scene(base +
+                        "[molecules.\"a third, odd one\"]\nstructure = \"dimer.crd\"\n"
+                        "segment = \"FIX\"\nreference_atom = \"H1\"\n",
+                    file);
+
+    REQUIRE(scene.molecules.size() == 3);
+    CHECK(scene.molecules[0].name == "fixed");
+    CHECK(scene.molecules[1].name == "moved");
+    CHECK(scene.molecules[2].name == "a third, odd one");
+}
+
+TEST_CASE("the ends of a range are inside it", "[scene][read]") {
+    CHECK(with({"coupling.clamp_N=0"}).coupling.clamp_N == 0);
+    CHECK(with({"coupling.clamp_N=3.3"}).coupling.clamp_N == 3.3);
+    CHECK(with({"device.servo_delay_ticks=0"}).device.servo_delay_ticks == 0);
+    CHECK(with({"run.seed=1000000000000000"}).seed == 1'000'000'000'000'000);
+}
+
+TEST_CASE("an unknown key is told with its near name, or with those that are known",
+          "[scene][errors]") {
+    CHECK(error_of(base + "[coupling]\nmod = 2\n") ==
+          at(18, 1) + "unknown key 'coupling.mod'; did you mean 'mode'?");
+    CHECK(error_of(base + "[hand]\n  gripp = \"firm\"\n") ==
+          at(18, 3) + "unknown key 'hand.gripp'; did you mean 'grip'?");
+    CHECK_THAT(error_of(base + "[run]\nfriction_N = 1.0\n"),
+               StartsWith(at(18, 1) + "unknown key 'run.friction_N'; expected one of period_ms"));
+    CHECK_THAT(error_of("titl = 1\n" + base),
+               StartsWith(at(1, 1) + "unknown key 'titl'; did you mean 'title'?"));
+    // First comes what lacks for it, at the table.
+    CHECK_THAT(error_of(replaced(base, "segment", "segmemt")),
+               StartsWith(at(4, 1) + "no key 'molecules.fixed.segment'") &&
+                   EndsWith("(and 1 more problem)"));
+    CHECK_THAT(error_of(base + "[couplings]\nmode = 2\n"),
+               Contains("unknown key 'couplings'; did you mean 'coupling'?"));
+}
+
+TEST_CASE("a value of the wrong type is told with what it is and should be", "[scene][errors]") {
+    struct Row {
+        const char* lines;
+        int line, column;
+        const char* what;
+    };
+    const auto row = GENERATE(values<Row>({
+        {"[coupling]\nclamp_N = \"3\"", 18, 11,
+         "'coupling.clamp_N' is the text \"3\"; expected a number"},
+        {"[coupling]\nclamp_N = true", 18, 11, "'coupling.clamp_N' is true; expected a number"},
+        {"[coupling]\nclamp_N = [1]", 18, 11, "'coupling.clamp_N' is a list; expected a number"},
+        {"[coupling]\nclamp_N = 2020-01-01", 18, 11, "is a date or time; expected a number"},
+        {"[hand]\nstart_angstrom = \"far\"", 18, 18, "expected a number"},
+        {"[hand]\ncycles = 1.0", 18, 10,
+         "'hand.cycles' is 1; expected a whole number from 1 to 10000"},
+        {"[hand]\ncycles = \"1\"", 18, 10, "expected a whole number"},
+        {"[hand]\ngrip = 2", 18, 8, "'hand.grip' is 2; expected one of none, light"},
+        {"[hand]\ngrip = \"frim\"", 18, 8, "expected one of none, light, slack, medium, firm"},
+        {"[hand]\ngrip = \"fir\"", 18, 8, "did you mean 'firm'?"},
+        {"[coupling]\nmode = 6", 18, 8, "'coupling.mode' is 6; expected one of 1, 2, 3, 4, 5"},
+        {"[coupling]\nmode = 2.0", 18, 8, "expected one of 1, 2, 3, 4, 5"},
+        {"[hand]\npath = 3", 18, 8, "expected a list of pairs"},
+        {"[hand]\npath = [[0, 1], 3]", 18, 17,
+         "'hand.path' is 3; expected a pair of finite numbers"},
+        {"[hand]\npath = [[0, 1], [3]]", 18, 17, "expected a pair of finite numbers"},
+        {"[hand]\npath = [[0, 1, 2]]", 18, 9, "expected a pair of finite numbers"},
+        {"[hand]\npath = [[0, \"1\"]]", 18, 9, "expected a pair of finite numbers"},
+        {"[hand]\npath = [[0, true]]", 18, 9, "expected a pair of finite numbers"},
+    }));
+    INFO(row.lines);
+
+    CHECK_THAT(error_of(base + row.lines + "\n"),
+               StartsWith(at(row.line, row.column)) && Contains(row.what));
+}
+
+TEST_CASE("a wrong type in the base of a scene is told as well", "[scene][errors]") {
+    CHECK_THAT(error_of(replaced(base, "\"Two waters\"", "2")),
+               StartsWith(at(1, 9) + "'title' is 2; expected text in quotes"));
+    CHECK_THAT(
+        error_of(replaced(base, "[\"tip3p.str\"]", "\"tip3p.str\"")),
+        StartsWith(at(3, 9) + "'force_field.files' is the text \"tip3p.str\"; expected a list"));
+    CHECK_THAT(error_of(replaced(base, "[\"tip3p.str\"]", "[]")), StartsWith(at(3, 9)));
+    CHECK_THAT(error_of(replaced(base, "[\"tip3p.str\"]", "[\"tip3p.str\", 3]")),
+               StartsWith(at(3, 23) + "'force_field.files' is 3; expected a file name in quotes"));
+    CHECK_THAT(error_of(replaced(base, "\"dimer.crd\"", "5")),
+               StartsWith(at(5, 13) + "'molecules.fixed.structure' is 5; expected a file name"));
+    CHECK_THAT(error_of("hand = 3\n" + base),
+               StartsWith(at(1, 8) + "'hand' is 3; expected a table, [hand]"));
+    CHECK_THAT(error_of("molecules = 3\n[force_field]\nfiles = [\"tip3p.str\"]\n" +
+                        base.substr(base.find("[grab]"))),
+               StartsWith(at(1, 13) + "'molecules' is 3; expected a table"));
+    CHECK_THAT(error_of(replaced(base, "[grab]", "[molecules]\nthird = 1\n[grab]")),
+               StartsWith(at(14, 9) + "'molecules.third' is 1; expected a table"));
+}
+
+TEST_CASE("a number out of its range or not finite is told with the range", "[scene][errors]") {
+    struct Row {
+        const char* lines;
+        int line, column;
+        const char* what;
+    };
+    const auto row = GENERATE(values<Row>({
+        {"[coupling]\nclamp_N = 3.31", 18, 11,
+         "'coupling.clamp_N' is 3.31; expected a number from 0 to 3.3"},
+        {"[coupling]\nclamp_N = -0.1", 18, 11, "expected a number from 0 to 3.3"},
+        {"[coupling]\n\nA_f_min = 0", 19, 11,
+         "'coupling.A_f_min' is 0; expected a number above 0 up to 1000000000000000"},
+        {"[device]\nservo_delay_ticks = 8", 18, 21, "expected a whole number from 0 to 7"},
+        {"[device]\nservo_delay_ticks = -1", 18, 21, "expected a whole number from 0 to 7"},
+        {"[run]\nseed = 9223372036854775807", 18, 8, "expected a whole number from 0"},
+        {"[run]\nseconds = nan", 18, 11, "'run.seconds' is nan; expected a finite number"},
+        {"[run]\nseconds = inf", 18, 11, "'run.seconds' is inf; expected a finite number"},
+        {"[run]\nseconds = -inf", 18, 11, "expected a finite number"},
+        {"[hand]\nstart_angstrom = nan", 18, 18, "expected a finite number"},
+        {"[hand]\nstart_angstrom = -1", 18, 18, "expected a number from 0 to 1000"},
+        {"[hand]\npath = [[0, nan]]", 18, 9, "expected a pair of finite numbers"},
+        {"[hand]\npath = [[inf, 0]]", 18, 9, "expected a pair of finite numbers"},
+    }));
+    INFO(row.lines);
+
+    CHECK_THAT(error_of(base + row.lines + "\n"),
+               StartsWith(at(row.line, row.column)) && Contains(row.what));
+}
+
+TEST_CASE("a file that a scene names must be there", "[scene][errors]") {
+    const std::string folder = PALPA_ROOT "/scenes/water/";
+
+    CHECK_THAT(error_of(replaced(base, "tip3p.str", "tip4p.str")),
+               StartsWith(at(3, 10) + "'force_field.files' names no file: " + folder +
+                          "tip4p.str is not there"));
+    CHECK_THAT(error_of(replaced(base, "\"dimer.crd\"", "\"\"")), StartsWith(at(5, 13)));
+    // A folder is no file.
+    CHECK_THAT(error_of(replaced(base, "dimer.crd", "../water")), StartsWith(at(5, 13)));
+}
+
+TEST_CASE("what is required and missing is told where it should be", "[scene][errors]") {
+    CHECK_THAT(error_of(""), StartsWith(at(1, 1) + "an empty scene; expected [force_field]"));
+    CHECK_THAT(error_of("title = \"x\"\n"), StartsWith(at(1, 1) + "no table [force_field]: ") &&
+                                                EndsWith("(and 2 more problems)"));
+    CHECK_THAT(error_of("# a comment only\n"), StartsWith(at(1, 1)));
+    CHECK_THAT(error_of(replaced(base, "segment = \"FIX\"\n", "")),
+               StartsWith(at(4, 1) + "no key 'molecules.fixed.segment': "));
+    CHECK_THAT(error_of(replaced(base, "molecule = \"moved\"\n", "")),
+               StartsWith(at(13, 1) + "no key 'grab.molecule': ") && !Contains("more problem"));
+    CHECK_THAT(error_of(replaced(base, "files = [\"tip3p.str\"]\n", "")),
+               StartsWith(at(2, 1) + "no key 'force_field.files': "));
+    CHECK_THAT(error_of(base.substr(0, base.find("[grab]"))),
+               StartsWith(at(1, 1) + "no table [grab]: "));
+    CHECK_THAT(error_of("[force_field]\nfiles = [\"tip3p.str\"]\n[molecules]\n"),
+               Contains("no table [grab]"));
+    CHECK_THAT(
+        error_of("[force_field]\nfiles = [\"tip3p.str\"]\n[molecules]\n[grab]\nmolecule = \"a\"\n"
+                 "measured_from = \"b\"\n"),
+        StartsWith(at(3, 1) + "[molecules] holds no table"));
+}
+
+TEST_CASE("required text may not be empty", "[scene][errors]") {
+    CHECK_THAT(
+        error_of(replaced(base, "\"moved\"", "\"\"")),
+        StartsWith(at(14, 12) + "'grab.molecule' is the text \"\"") && !Contains("more problem"));
+    CHECK_THAT(error_of(replaced(base, "\"fixed\"", "\"\"")),
+               StartsWith(at(15, 17) + "'grab.measured_from' is the text \"\""));
+    CHECK_THAT(error_of(replaced(base, "\"OH2\"", "\"\"")), StartsWith(at(7, 18)));
+    CHECK(error_of(replaced(base, "\"Two waters\"", "\"\"")) == "no error");
+}
+
+TEST_CASE("bad TOML is told with line and column", "[scene][errors]") {
+    CHECK_THAT(error_of(base + "[coupling\n"), StartsWith(file + ":17:"));
+    CHECK_THAT(error_of(base + "[coupling]\nmode 2\n"), StartsWith(file + ":18:"));
+    CHECK_THAT(error_of(base + "[coupling]\nmode = 2\nmode = 3\n"), StartsWith(file + ":19:"));
+    CHECK_THAT(error_of(base + "[run]\nseconds = 1e999\n"), StartsWith(file + ":18:"));
+    CHECK_THAT(error_of("title = \"never closed"), StartsWith(file + ":1:"));
+    CHECK_THAT(error_of("title = \"\xff\xfe\"\n"), StartsWith(file + ":1:"));
+    CHECK_THAT(error_of(std::string(3000, '[')), StartsWith(file + ":1:"));
+    CHECK_THAT(error_of("a = " + std::string(3000, '[')), StartsWith(file + ":1:"));
+}
+
+TEST_CASE("a message of the TOML reader begins in lower case like ours", "[scene][errors]") {
+    CHECK_THAT(error_of(base + "[coupling]\nmode 2\n"), Contains(": error while parsing"));
+}
+
+TEST_CASE("fields that contradict each other are told at one of them", "[scene][errors]") {
+    CHECK_THAT(error_of(replaced(base, "\"moved\"", "\"move\"")),
+               StartsWith(at(14, 12) + "'grab.molecule' is \"move\", which is no molecule") &&
+                   Contains("did you mean 'moved'?") && !Contains("more problem"));
+    CHECK_THAT(error_of(base + "[molecules.third]\nstructure = \"dimer.crd\"\nsegment = \"FIX\"\n"
+                               "reference_atom = \"OH2\"\nmotion = \"along-x\"\n"),
+               StartsWith(at(21, 10) + "'molecules.third.motion' is \"along-x\", but only"));
+    CHECK_THAT(error_of(replaced(base, "\"fixed\"", "\"fixd\"")),
+               StartsWith(at(15, 17) + "'grab.measured_from' is \"fixd\", which is no molecule") &&
+                   Contains("expected one of fixed, moved; did you mean 'fixed'?"));
+    CHECK_THAT(
+        error_of(replaced(base, "measured_from = \"fixed\"", "measured_from = \"moved\"")),
+        StartsWith(at(15, 17) + "'grab.measured_from' is \"moved\", whose motion is \"along-x\""));
+    CHECK_THAT(error_of(replaced(base, "motion = \"along-x\"\n", "")),
+               StartsWith(at(13, 12) + "'grab.molecule' is \"moved\", whose motion is \"fixed\""));
+
+    struct Row {
+        const char* lines;
+        int line, column;
+        const char* what;
+    };
+    const auto row = GENERATE(values<Row>({
+        {"[coupling]\nF_h2_N = 1.0", 18, 10,
+         "'coupling.F_h2_N' is 1; expected more than F_h1_N, 1"},
+        // The other of the two is a default: told at the table that should hold it.
+        {"[coupling]\nF_h1_N = 3.0", 17, 1, "'coupling.F_h2_N' is 3; expected more than F_h1_N, 3"},
+        {"[coupling]\nA_d_max = 1.0", 18, 11, "expected A_d_min, 5000000, or more"},
+        {"[coupling]\nmode = \"guarded\"", 18, 8, "which is not built yet"},
+        {"[run]\nperiod_ms = 1.5", 18, 13, "expected a whole number of servo ticks"},
+        {"[hand]\ngrip = \"none\"", 17, 1, "nobody would move the handle"},
+        {"[hand]\ngrip = \"none\"\nstroke = \"in-out\"", 19, 10, "nobody would move the handle"},
+        {"[hand]\nstroke = \"path\"", 18, 10, "'hand.path' has no point"},
+        {"[hand]\npath = [[1, 0], [1, 2]]", 18, 8, "'hand.path' has the time 1 after 1"},
+    }));
+    INFO(row.lines);
+    CHECK_THAT(error_of(base + row.lines + "\n"),
+               StartsWith(at(row.line, row.column)) && Contains(row.what));
+}
+
+TEST_CASE("what looks like a contradiction and is none passes", "[scene][read]") {
+    const std::string lines = GENERATE(
+        "[hand]\ngrip = \"none\"\nstroke = \"hold\"", "[coupling]\nA_d_min = 1e8\nA_d_max = 1e8",
+        "[hand]\npath = [[0, 1]]\nstroke = \"path\"", "[run]\nperiod_ms = 2.0");
+    INFO(lines);
+
+    CHECK(error_of(base + lines + "\n") == "no error");
+}
+
+TEST_CASE("of several problems the first in the file is told, the others are counted",
+          "[scene][errors]") {
+    CHECK(error_of(base + "[run]\nseconds = -1\n[coupling]\nmod = 2\n[hand]\ncycles = 0\n") ==
+          at(18, 11) +
+              "'run.seconds' is -1; expected a number from 0.001 to 100000 (and 2 more problems)");
+}
+
+TEST_CASE("settings lie over the file", "[scene][settings]") {
+    const std::string text = base + "[coupling]\nmode = 1\nclamp_N = 2.0\n";
+    const auto coupling = [&](const std::vector<std::string>& settings) {
+        return parse_scene(text, file, settings).coupling;
+    };
+
+    CHECK(coupling({}).mode == CouplingMode::VariableForceVariableDisplacement);
+    CHECK(coupling({"coupling.mode=3"}).mode == CouplingMode::ConstantForceVariableDisplacement);
+    CHECK(coupling({"mode=3"}).mode == CouplingMode::ConstantForceVariableDisplacement);
+    CHECK(coupling({" mode = \"3\" "}).mode == CouplingMode::ConstantForceVariableDisplacement);
+    // The rest of the table stays.
+    CHECK(coupling({"mode=3"}).clamp_N == 2);
+    // The last one counts.
+    CHECK(coupling({"mode=3", "clamp_N=1.5", "coupling.mode=4"}).mode ==
+          CouplingMode::ConstantForceConstantDisplacement);
+    CHECK(coupling({"mode=3", "clamp_N=1.5", "coupling.mode=4"}).clamp_N == 1.5);
+}
+
+TEST_CASE("a setting's value is TOML or a bare word", "[scene][settings]") {
+    CHECK(with({"title=Two"}).title == "Two");
+    CHECK(with({"title=two words, with a comma"}).title == "two words, with a comma");
+    CHECK(with({"title=\"quoted # text\""}).title == "quoted # text");
+    CHECK(with({"title=\"a=b\""}).title == "a=b");
+    CHECK(hand_names[with({"grip=firm-grip"}).hand.grip] == "firm-grip");
+    CHECK(with({"start_angstrom=2.5"}).hand.start_angstrom == 2.5);
+    CHECK(with({"path=[[0, 1], [2, 3.5]]", "stroke=path"}).hand.path[1] == std::array{2.0, 3.5});
+    CHECK(with({"molecules.fixed.reference_atom=H1"}).molecules[0].reference_atom == "H1");
+}
+
+TEST_CASE("settings bring their own tables where the file has none", "[scene][settings]") {
+    const SceneDescription scene = with({"device.inertia_kg=0.1", "run.seconds=3"});
+
+    CHECK(scene.device.inertia_kg == 0.1);
+    CHECK(scene.seconds == 3);
+    CHECK(scene.molecules[0].name == "fixed");
+    CHECK(scene.molecules[1].name == "moved");
+}
+
+TEST_CASE("what is wrong with a setting is told with the setting as place", "[scene][settings]") {
+    struct Row {
+        const char* setting;
+        const char* message;
+    };
+    const auto row = GENERATE(values<Row>({
+        {"coupling.mod=2", "unknown key 'coupling.mod'; did you mean 'mode'?"},
+        {"clampN=2", "no field of a scene is called 'clampN'; did you mean 'clamp_N'?"},
+        {"nonsense=2", "no field of a scene is called 'nonsense'"},
+        {"coupling.clamp_N=4", "'coupling.clamp_N' is 4; expected a number from 0 to 3.3"},
+        {"clamp_N=nan", "'coupling.clamp_N' is nan; expected a finite number"},
+        {"clamp_N=1e999", "'coupling.clamp_N' is the text \"1e999\"; expected a number"},
+        {"clamp_N=high", "'coupling.clamp_N' is the text \"high\"; expected a number"},
+        {"grip=frm", "'hand.grip' is the text \"frm\"; expected one of"},
+        {"mode=[1", "the value is neither TOML nor a bare word"},
+        {"mode=", "the value is neither TOML nor a bare word"},
+        {"title=\"open", "the value is neither TOML nor a bare word"},
+        {"mode", "expected KEY=VALUE"},
+        {"=2", "expected KEY=VALUE"},
+        {" =2", "expected KEY=VALUE"},
+        {"coupling.=2", "'coupling.' is no key"},
+        {"hand.grip.x=2", "'hand.grip' is a table; expected one of"},
+        {"coupling.mode.=word", "'coupling.mode.' is no key"},
+        {"F_h1_N=3.5", "'coupling.F_h2_N' is 3; expected more than F_h1_N, 3.5"},
+        {"structure=x", "'structure' could be molecules.NAME.structure; expected the key in full"},
+        {"motion=fixed", "'motion' could be molecules.NAME.motion; expected the key in full"},
+    }));
+    INFO(row.setting);
+
+    CHECK_THAT(error_of(base, {row.setting}),
+               StartsWith(std::string("--set ") + row.setting + ": " + row.message));
+}
+
+TEST_CASE("a scene is a folder with its scene.toml, or a file", "[scene][read]") {
+    const test::TemporaryFolder folder;
+    const fs::path water = PALPA_ROOT "/scenes/water";
+    const std::string missing = (folder.path() / "missing").string();
+
+    CHECK(read_scene(water).file == water / "scene.toml");
+    CHECK(read_scene(water / "scene.toml").molecules.size() == 2);
+    CHECK(read_scene(water, std::vector<std::string>{"title=Other"}).title == "Other");
+    CHECK_THAT(load_error_of([&] { read_scene(missing); }),
+               StartsWith(missing + ": no such scene"));
+    CHECK_THAT(load_error_of([&] { read_scene(folder.path()); }),
+               StartsWith(folder.path().string() + ": this folder holds no scene.toml"));
+    const fs::path broken = folder.add_file("scene.toml", "title = 1\n");
+    CHECK_THAT(load_error_of([&] { read_scene(folder.path()); }),
+               StartsWith(broken.string() + ":1:"));
+}
+
+TEST_CASE("files of a scene are sought beside it, wherever one stands", "[scene][read]") {
+    const test::TemporaryFolder folder;
+    folder.add_file("tip3p.str", "");
+    folder.add_file("dimer.crd", "");
+    const fs::path own = folder.add_file("own.toml", base);
+
+    const SceneDescription scene = read_scene(own);
+
+    CHECK(scene.force_field.files[0] == folder.path() / "tip3p.str");
+    CHECK(scene.molecules[0].structure == folder.path() / "dimer.crd");
+}

@@ -1,0 +1,150 @@
+#include "scene/write_scene.h"
+
+#include "core/files.h"
+#include "scene/fields.h"
+#include "scene/read_scene.h"
+
+#include <catch2/catch.hpp>
+#include <cstddef>
+#include <filesystem>
+#include <limits>
+#include <set>
+#include <string>
+#include <vector>
+
+using namespace palpa;
+
+namespace fs = std::filesystem;
+
+namespace {
+
+const fs::path folder = PALPA_ROOT "/scenes/water";
+
+std::string formatted(const SceneDescription& scene) {
+    return format_scene(
+        scene, [](const fs::path& file) { return file.lexically_relative(folder).string(); });
+}
+
+SceneDescription parsed(const std::string& text) { return parse_scene(text, folder / "test.toml"); }
+
+SceneDescription water() { return read_scene(folder); }
+
+}  // namespace
+
+TEST_CASE("a scene that is written reads the same", "[scene][write]") {
+    const std::string text = formatted(water());
+
+    CHECK(formatted(parsed(text)) == text);
+    CHECK(parsed(text).about == water().about);
+}
+
+TEST_CASE("odd values survive being written and read, to the last bit", "[scene][write]") {
+    SceneDescription scene = water();
+    scene.title = "quotes \" and \\ and \t\r\n\x01\x7f, Å and 水";
+    scene.about = "'''\"\"\"\n[hand]\ntitle = 1 # no comment";
+    scene.force_field.files.push_back(folder / "dimer.crd");
+    scene.force_field.coulomb_constant = 332.06371329919216;
+    scene.molecules[0].name = "a.b \"c\"\n";
+    scene.molecules[0].segment = " FIX ";
+    scene.molecules[1].name = "";
+    scene.molecules[1].segment = "#";
+    scene.grab = {"x", scene.molecules[0].name};
+    scene.molecules[1].name = "x";
+    scene.hand.grip = 5;
+    scene.hand.stroke = Stroke::Path;
+    scene.hand.start_angstrom = std::numeric_limits<double>::denorm_min();
+    scene.hand.kick_N_s = -0.0;
+    scene.hand.peak_nN = 0.1 + 0.2;
+    scene.hand.path = {
+        {-1e308, 1.0 / 3}, {-0.0, 5e-324}, {1e16, -1e22}, {123456789012345678.0, 1e300}};
+    scene.device.servo_delay_ticks = 7;
+    scene.coupling.mode = CouplingMode::NoForce;
+    scene.coupling.A_f_min = std::numeric_limits<double>::min();
+    scene.coupling.gamma_per_N = 1e18;
+    scene.period_ms = 10000;
+    scene.seed = 1'000'000'000'000'000;
+
+    const std::string text = formatted(scene);
+    INFO(text);
+    const SceneDescription back = parsed(text);
+
+    CHECK(formatted(back) == text);
+    CHECK(back.title == scene.title);
+    CHECK(back.about == scene.about);
+    CHECK(back.force_field.files == scene.force_field.files);
+    CHECK(back.force_field.coulomb_constant == scene.force_field.coulomb_constant);
+    REQUIRE(back.molecules.size() == 2);
+    CHECK(back.molecules[0].name == scene.molecules[0].name);
+    CHECK(back.molecules[0].segment == " FIX ");
+    CHECK(back.molecules[1].motion == Motion::AlongX);
+    CHECK(back.hand.start_angstrom == scene.hand.start_angstrom);
+    CHECK(std::signbit(back.hand.kick_N_s));
+    CHECK(back.hand.peak_nN == scene.hand.peak_nN);
+    CHECK(back.hand.path == scene.hand.path);
+    CHECK(back.coupling.mode == CouplingMode::NoForce);
+    CHECK(back.coupling.A_f_min == scene.coupling.A_f_min);
+    CHECK(back.seed == scene.seed);
+}
+
+TEST_CASE("every field is written, under its full key", "[scene][write]") {
+    SceneDescription scene = water();
+    scene.hand.start_angstrom = 3;
+
+    const std::string text = formatted(scene);
+
+    for (const FieldNote& field : list_fields()) {
+        INFO(field.key);
+        const std::size_t dot = field.key.rfind('.');
+        const std::string last = field.key.substr(dot == std::string::npos ? 0 : dot + 1);
+        CHECK(("\n" + text).find("\n" + last + " = ") != std::string::npos);
+        if (dot == std::string::npos) continue;
+        std::string table = field.key.substr(0, dot);
+        if (table == "molecules.NAME") table = "molecules.fixed";
+        CHECK(text.find("\n[" + table + "]\n") != std::string::npos);
+    }
+}
+
+TEST_CASE("files are called what the caller calls them", "[scene][write]") {
+    std::set<fs::path> asked;
+
+    const std::string text = format_scene(water(), [&](const fs::path& file) {
+        asked.insert(file);
+        return "../x/" + file.filename().string();
+    });
+
+    CHECK(asked == std::set{folder / "tip3p.str", folder / "dimer.crd"});
+    CHECK(text.find("files = [\"../x/tip3p.str\"]\n") != std::string::npos);
+    CHECK(text.find("structure = \"../x/dimer.crd\"\n") != std::string::npos);
+}
+
+TEST_CASE("the list of fields names each key once, with its default and range", "[scene][fields]") {
+    std::set<std::string> keys;
+
+    for (const FieldNote& field : list_fields()) {
+        INFO(field.key);
+        CHECK(keys.insert(field.key).second);
+        CHECK_FALSE(field.meaning.empty());
+        if (field.key == "coupling.clamp_N") {
+            CHECK(field.type == "number, 0 to 3.3");
+            CHECK(field.fallback == "3");
+        }
+        if (field.key == "molecules.NAME.motion") CHECK(field.fallback == "\"fixed\"");
+        if (field.key == "grab.molecule") CHECK(field.fallback == "required");
+        if (field.key == "coupling.A_f_min")
+            CHECK(field.type == "number, above 0 to 1000000000000000");
+    }
+
+    CHECK(keys.count("title") == 1);
+    CHECK(keys.count("molecules.NAME.segment") == 1);
+    CHECK(keys.count("hand.path") == 1);
+    CHECK(keys.count("run.seed") == 1);
+}
+
+TEST_CASE("every field of a scene is documented", "[scene][fields]") {
+    const std::string readme = read_text_file(PALPA_ROOT "/scenes/README.md");
+
+    for (const FieldNote& field : list_fields()) {
+        INFO("scenes/README.md lacks `" << field.key << "`");
+        CHECK(readme.find("`" + field.key + "`") != std::string::npos);
+    }
+}

@@ -1,0 +1,94 @@
+"""tools/check_layers.py: the repository passes, and each kind of wrong arrow fails."""
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(os.environ["PALPA_ROOT"])
+
+
+def check(root):
+    result = subprocess.run([sys.executable, ROOT / "tools" / "check_layers.py", root],
+                            capture_output=True, text=True)
+    return result.returncode, result.stdout
+
+
+class CheckLayers(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.root = Path(self.folder.name)
+        self.module("core", [])
+        self.module("math", ["core"])
+        self.module("haptics", ["math"])
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def module(self, name, depends, include=None):
+        folder = self.root / "engine" / name
+        folder.mkdir(parents=True, exist_ok=True)
+        arrows = f"\n    DEPENDS {' '.join(depends)}" if depends else ""
+        (folder / "CMakeLists.txt").write_text(f"palpa_module({name}\n    SOURCES a.cpp{arrows})\n")
+        (folder / "a.h").write_text("#pragma once\n#include <vector>\n")
+        line = f'#include "{include}"\n' if include else ""
+        (folder / "a.cpp").write_text(f'#include "{name}/a.h"\n{line}')
+
+    def test_the_repository_passes(self):
+        code, output = check(ROOT)
+        self.assertEqual(code, 0, output)
+        self.assertIn("all pointing down", output)
+
+    def test_includes_along_the_arrows_pass_directly_or_not(self):
+        self.module("haptics", ["math"], "core/a.h")
+        code, output = check(self.root)
+        self.assertEqual(code, 0, output)
+
+    def test_an_include_against_the_arrows_fails_with_its_line(self):
+        self.module("core", [], "haptics/a.h")
+        code, output = check(self.root)
+        self.assertEqual(code, 1)
+        self.assertIn("engine/core/a.cpp:2: 'core' may not include 'haptics'", output)
+
+    def test_a_cycle_fails_and_is_spelled_out(self):
+        self.module("core", ["haptics"])
+        code, output = check(self.root)
+        self.assertEqual(code, 1)
+        self.assertIn("cycle of arrows: ", output)
+        self.assertIn("core -> haptics -> math -> core", output)
+
+    def test_an_arrow_to_no_module_fails(self):
+        self.module("math", ["core", "maths"])
+        code, output = check(self.root)
+        self.assertEqual(code, 1)
+        self.assertIn("'maths', which is no module", output)
+
+    def test_an_include_of_no_module_fails(self):
+        for include, complaint in (("physics/a.h", "no module"), ("a.h", "names no module")):
+            with self.subTest(include=include):
+                self.module("math", ["core"], include)
+                code, output = check(self.root)
+                self.assertEqual(code, 1)
+                self.assertIn(complaint, output)
+
+    def test_a_source_that_no_module_lists_fails(self):
+        (self.root / "engine" / "math" / "b.cpp").write_text("")
+        code, output = check(self.root)
+        self.assertEqual(code, 1)
+        self.assertIn("engine/math/b.cpp: not among the SOURCES", output)
+
+    def test_a_folder_without_a_module_fails(self):
+        (self.root / "engine" / "extra").mkdir()
+        (self.root / "engine" / "extra" / "a.cpp").write_text("")
+        code, output = check(self.root)
+        self.assertEqual(code, 1)
+        self.assertIn("engine/extra/a.cpp: its folder has no palpa_module", output)
+
+    def test_an_empty_tree_fails(self):
+        with tempfile.TemporaryDirectory() as empty:
+            self.assertEqual(check(empty)[0], 1)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,209 @@
+"""The program from outside: exit codes, one clear line on bad input, recordings that repeat."""
+import json
+import os
+import re
+import shutil
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+PROGRAM = os.environ["PALPA_PROGRAM"]
+ROOT = Path(os.environ["PALPA_ROOT"])
+WATER = ROOT / "scenes" / "water"
+
+
+class Cli(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.tmp = Path(self.folder.name)
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def palpa(self, *arguments, cwd=None):
+        return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True,
+                              cwd=cwd or self.tmp, stdin=subprocess.DEVNULL)
+
+    def run_water(self, *arguments):
+        result = self.palpa("run", WATER, "--headless", *arguments)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return result
+
+    def assert_bad_input(self, result, *expected):
+        self.assertEqual(result.returncode, 2, result.stdout + result.stderr)
+        self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
+        for text in expected:
+            self.assertIn(text, result.stderr)
+
+    def copy_of_water(self):
+        return Path(shutil.copytree(WATER, self.tmp / "scene"))
+
+    # ---- help and usage
+
+    def test_every_command_has_help(self):
+        for arguments in (["--help"], ["run", "--help"], ["bench", "--help"], ["--version"],
+                          ["run", "--keys"]):
+            with self.subTest(arguments=arguments):
+                result = self.palpa(*arguments)
+                self.assertEqual(result.returncode, 0)
+                self.assertTrue(result.stdout.strip())
+
+    def test_wrong_usage_is_bad_input(self):
+        for arguments in ([], ["fly"], ["run"], ["run", WATER, "--speed", "3"], ["bench"]):
+            with self.subTest(arguments=arguments):
+                self.assert_bad_input(self.palpa(*arguments), "palpa: ")
+
+    # ---- running
+
+    def test_a_run_says_what_stands_in_for_guarded_mode(self):
+        result = self.run_water("--seconds", "0.1")
+        self.assertIn("guarded mode is not built yet: mode 2", result.stderr)
+        self.assertIn("T_s = 1 ms with 0.26 N", result.stderr)
+        self.assertNotIn("guarded", self.run_water("--seconds", "0.1", "--mode", "2").stderr)
+
+    def test_the_options_are_the_scene_keys_they_name(self):
+        by_option = self.run_water("--seconds", "0.5", "--mode", "3", "--period-ms", "14", "--hand",
+                                   "firm", "--friction", "0.1", "--seed", "5", "--json")
+        by_key = self.run_water("--set", "run.seconds=0.5", "--set", "mode=3", "--set",
+                                "run.period_ms=14", "--set", "hand.grip=firm", "--set",
+                                "friction_N=0.1", "--set", "seed=5", "--json")
+        first, second = json.loads(by_option.stdout), json.loads(by_key.stdout)
+        for summary in (first, second):
+            for key in ("step_median_us", "step_p99_us"):
+                del summary[key]
+        self.assertEqual(first, second)
+        self.assertEqual(first["steps"], 36)
+
+    def test_the_plain_loop_at_14_ms_oscillates(self):
+        summary = json.loads(self.run_water(
+            "--mode", "2", "--period-ms", "14", "--friction", "0", "--hand", "medium", "--set",
+            "stroke=hold", "--set", "kick_N_s=0.005", "--json").stdout)
+        self.assertAlmostEqual(summary["ripple_N"], 1.08, delta=0.1)
+        self.assertAlmostEqual(summary["ripple_Hz"], 6.6, delta=0.4)
+        self.assertTrue(any("may vibrate" in warning for warning in summary["warnings"]))
+
+    def test_the_same_command_twice_and_its_session_give_the_same_bytes(self):
+        for name in ("a", "b"):
+            self.run_water("--mode", "1", "--period-ms", "14", "--seconds", "4", "--record",
+                           self.tmp / name)
+        again = self.palpa("run", self.tmp / "a" / "session.toml", "--headless", "--record",
+                           self.tmp / "c")
+        self.assertEqual(again.returncode, 0, again.stderr)
+        traces = [(self.tmp / name / "trace.csv").read_bytes() for name in "abc"]
+        self.assertEqual(traces[0], traces[1])
+        self.assertEqual(traces[0], traces[2])
+
+    def test_a_recording_can_be_moved_and_run_again(self):
+        self.run_water("--seconds", "0.2", "--record", self.tmp / "first")
+        trace = (self.tmp / "first" / "trace.csv").read_bytes()
+        shutil.move(self.tmp / "first", self.tmp / "elsewhere")
+        result = self.palpa("run", "elsewhere/session.toml", "--record", "again")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual((self.tmp / "again" / "trace.csv").read_bytes(), trace)
+
+    def test_check_only_checks(self):
+        result = self.palpa("run", "--check", WATER, "--record", self.tmp / "none")
+        self.assertEqual(result.returncode, 0)
+        self.assertIn("nothing wrong", result.stdout)
+        self.assertFalse((self.tmp / "none").exists())
+
+    def test_every_thins_the_trace(self):
+        self.run_water("--seconds", "0.1", "--every", "10", "--record", self.tmp / "thin")
+        rows = (self.tmp / "thin" / "trace.csv").read_text().splitlines()
+        self.assertEqual([row.split(",")[0] for row in rows[:4]], ["time_s", "0", "0.01", "0.02"])
+        self.assertEqual(len(rows), 11)
+
+    def test_bench_prints_rows_with_their_errors(self):
+        result = self.palpa("bench", WATER, "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        report = json.loads(result.stdout)
+        self.assertEqual(set(report), {"machine", "commit", "rows"})
+        names = {row["name"] for row in report["rows"]}
+        self.assertIn("step/water", names)
+        self.assertTrue(any(name.startswith("lockstep/water") for name in names))
+        for row in report["rows"]:
+            self.assertEqual(set(row), {"name", "median", "p10", "p90", "unit", "error",
+                                        "error_unit", "reference"})
+            self.assertLessEqual(row["p10"], row["median"])
+            if row["name"] == "step/water":
+                self.assertLess(row["error"], 1e-5)
+
+    # ---- bad input: one line, exit code 2, nothing half-written
+
+    def test_guarded_mode_is_refused_in_a_sentence(self):
+        result = self.palpa("run", WATER, "--mode", "guarded", "--record", self.tmp / "r")
+        self.assert_bad_input(result, "guarded", "not built yet")
+        self.assertFalse((self.tmp / "r").exists())
+
+    def test_a_scene_that_is_not_there(self):
+        self.assert_bad_input(self.palpa("run", "nowhere"), "nowhere: no such scene")
+        (self.tmp / "folder").mkdir()
+        self.assert_bad_input(self.palpa("run", "folder"), "folder: ", "no scene.toml")
+
+    def test_an_empty_scene(self):
+        (self.tmp / "empty.toml").write_text("")
+        self.assert_bad_input(self.palpa("run", "empty.toml"), "empty.toml:1:1: ", "molecules")
+
+    def test_values_that_are_no_numbers(self):
+        scene = self.copy_of_water()
+        file = scene / "scene.toml"
+        text = file.read_text()
+        for value in ("nan", "inf", '"fast"', "-1.0", "1.0.0"):
+            with self.subTest(value=value):
+                file.write_text(text.replace("seconds = 10.0", f"seconds = {value}"))
+                line = text[:text.index("seconds =")].count("\n") + 1
+                result = self.palpa("run", scene, "--record", self.tmp / "r")
+                self.assert_bad_input(result, f"scene.toml:{line}:")
+                self.assertFalse((self.tmp / "r").exists())
+
+    def test_a_misspelt_key_gets_the_near_name(self):
+        scene = self.copy_of_water()
+        file = scene / "scene.toml"
+        file.write_text(file.read_text().replace("peak_nN", "peak_Nn"))
+        self.assert_bad_input(self.palpa("run", "--check", scene), "scene.toml:29:1: ",
+                              "unknown key 'hand.peak_Nn'; did you mean 'peak_nN'?")
+
+    def test_a_parameter_file_without_the_type(self):
+        scene = self.copy_of_water()
+        file = scene / "tip3p.str"
+        file.write_text("".join(line for line in file.read_text().splitlines(True)
+                                if not line.startswith("HT ")))
+        result = self.palpa("run", scene, "--record", self.tmp / "r")
+        self.assert_bad_input(result, "tip3p.str:", "'HT' has no NONBONDED parameters")
+        self.assertRegex(result.stderr, r"tip3p\.str:\d+: ")
+        self.assertFalse((self.tmp / "r").exists())
+
+    def test_a_coordinate_that_is_no_number(self):
+        scene = self.copy_of_water()
+        file = scene / "dimer.crd"
+        file.write_text(file.read_text().replace("0.7569500000", "0.75x9500000", 1))
+        self.assert_bad_input(self.palpa("run", scene), "dimer.crd:7:", "'0.75x9500000'")
+
+    def test_a_folder_that_cannot_be_written(self):
+        (self.tmp / "file").write_text("mine")
+        self.assert_bad_input(self.palpa("run", WATER, "--record", self.tmp / "file" / "r"), "file")
+        self.assert_bad_input(self.palpa("run", WATER, "--record", self.tmp / "file"), "is a file")
+        self.assert_bad_input(self.palpa("run", WATER, "--record", "/proc/palpa"), "/proc/palpa")
+        self.assertEqual((self.tmp / "file").read_text(), "mine")
+
+    def test_a_folder_with_other_things_is_not_recorded_into(self):
+        (self.tmp / "mine").mkdir()
+        (self.tmp / "mine" / "trace.csv").write_text("not a recording's")
+        self.assert_bad_input(self.palpa("run", WATER, "--record", self.tmp / "mine"), "mine")
+        self.assertEqual((self.tmp / "mine" / "trace.csv").read_text(), "not a recording's")
+
+    def test_settings_that_name_nothing(self):
+        for setting, expected in (("speed=3", "no field"), ("hand.strok=hold", "unknown key"),
+                                  ("seconds", "KEY=VALUE"), ("mode=six", "expected one of"),
+                                  ("hand.grip=[1", "neither TOML nor a bare word")):
+            with self.subTest(setting=setting):
+                self.assert_bad_input(self.palpa("run", WATER, "--set", setting), "--set", expected)
+
+    def test_no_message_names_a_place_in_our_sources(self):
+        result = self.palpa("run", "nowhere")
+        self.assertIsNone(re.search(r"\.cpp|\.h:", result.stderr))
+
+
+if __name__ == "__main__":
+    unittest.main()

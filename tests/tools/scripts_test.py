@@ -1,0 +1,67 @@
+"""The shell tools and the documentation: help, usage, the figure, the list of keys."""
+import os
+import re
+import struct
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+PROGRAM = os.environ["PALPA_PROGRAM"]
+ROOT = Path(os.environ["PALPA_ROOT"])
+
+
+def run(*command, **options):
+    return subprocess.run([str(word) for word in command], capture_output=True, text=True,
+                          stdin=subprocess.DEVNULL, **options)
+
+
+class Scripts(unittest.TestCase):
+    def test_every_tool_explains_itself(self):
+        for name in ("build", "run", "test", "plot_stroke", "check_style", "check_windows"):
+            with self.subTest(tool=name):
+                result = run(ROOT / "tools" / name, "--help")
+                self.assertEqual(result.returncode, 0)
+                self.assertTrue(result.stdout.strip())
+
+    def test_the_figure_is_drawn_from_a_recording(self):
+        with tempfile.TemporaryDirectory() as folder:
+            recording, image = Path(folder) / "recording", Path(folder) / "stroke.png"
+            self.assertEqual(run(PROGRAM, "run", ROOT / "scenes" / "water", "--headless",
+                                 "--record", recording).returncode, 0)
+            result = run(ROOT / "tools" / "plot_stroke", recording, image)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            data = image.read_bytes()
+            self.assertEqual(data[:8], b"\x89PNG\r\n\x1a\n")
+            self.assertEqual(struct.unpack(">II", data[16:24]), (1200, 480))
+            self.assertEqual(run(ROOT / "tools" / "plot_stroke", folder, image).returncode, 2)
+
+    def test_scenes_readme_has_the_list_of_keys_as_the_program_prints_it(self):
+        keys = run(PROGRAM, "run", "--keys").stdout
+        self.assertIn(keys.strip(), (ROOT / "scenes" / "README.md").read_text())
+
+    def test_readmes_link_to_what_is_there(self):
+        for readme in ROOT.glob("**/README.md"):
+            if "build" in readme.relative_to(ROOT).parts:
+                continue
+            for target in re.findall(r"\]\(([^)#]+)\)", readme.read_text()):
+                if not target.startswith("http"):
+                    with self.subTest(readme=str(readme), target=target):
+                        self.assertTrue((readme.parent / target).exists())
+
+    def test_every_folder_of_the_top_level_has_a_readme(self):
+        for folder in ("engine", "shaders", "scenes", "devices", "tools", "tests"):
+            self.assertTrue((ROOT / folder / "README.md").is_file(), folder)
+
+    def test_vcpkg_lists_the_libraries_we_build_with(self):
+        vcpkg = (ROOT / "vcpkg.json").read_text()
+        found = set(re.findall(r"find_package\((\w+)", (ROOT / "CMakeLists.txt").read_text() +
+                               (ROOT / "tests" / "CMakeLists.txt").read_text()))
+        names = {"CLI11": "cli11", "Eigen3": "eigen3", "fmt": "fmt", "Catch2": "catch2",
+                 "nlohmann_json": "nlohmann-json", "tomlplusplus": "tomlplusplus"}
+        for package in found - {"Threads", "Python3"}:
+            self.assertIn(f'"{names[package]}"', vcpkg)
+
+
+if __name__ == "__main__":
+    unittest.main()
