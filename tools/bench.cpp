@@ -1,7 +1,5 @@
 #include "tools/bench.h"
 
-#include "core/files.h"
-#include "core/load_error.h"
 #include "core/text.h"
 #include "devices/emulated_omni.h"
 #include "scene/read_scene.h"
@@ -17,6 +15,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
@@ -48,13 +47,11 @@ double seconds_of(const Work& work) {
 
 std::string machine_name() {
     std::string model = "unknown processor";
-    try {
-        for (const std::string_view line : split_lines(read_text_file("/proc/cpuinfo"))) {
-            if (!line.starts_with("model name")) continue;
-            model = trimmed(line.substr(line.find(':') + 1));
-            break;
-        }
-    } catch (const LoadError&) {  // not Linux
+    std::ifstream processors("/proc/cpuinfo");  // Linux alone has it
+    for (std::string line; std::getline(processors, line);) {
+        if (!line.starts_with("model name")) continue;
+        model = trimmed(std::string_view(line).substr(line.find(':') + 1));
+        break;
     }
     return fmt::format("{}, {} threads", model, std::thread::hardware_concurrency());
 }

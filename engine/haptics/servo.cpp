@@ -22,7 +22,7 @@ Vec3 law_force(const ForceLaw& law, const Vec3& molecular_newton) noexcept {
 }
 
 // The last stages before the device. A force that is no number stops the session's forces for good.
-Vec3 safe_force(const ServoSettings& settings, ServoState& state, Vec3 force,
+Vec3 safe_force(const ServoSettings& settings, ServoState& state, const Vec3& force,
                 bool& clamped) noexcept {
     if (!force.allFinite()) {
         state.stopped = true;

@@ -8,9 +8,9 @@ namespace {
 
 constexpr double positive = std::numeric_limits<double>::min();
 
-template <class Enum, std::size_t n>
-void choose(FieldVisitor& visitor, const Field& field, const std::array<std::string_view, n>& names,
-            Enum& value) {
+template <class Enum, std::size_t Count>
+void choose(FieldVisitor& visitor, const Field& field,
+            const std::array<std::string_view, Count>& names, Enum& value) {
     auto index = static_cast<std::size_t>(value);
     visitor.choice(field, names, index);
     value = static_cast<Enum>(index);

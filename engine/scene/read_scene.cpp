@@ -302,7 +302,7 @@ private:
         if (fs::is_regular_file(value, error)) return true;
         problem(node, fmt::format("'{}' names no file: {} is not there; expected a file beside the "
                                   "scene",
-                                  full_key(field.key), value.string()));
+                                  full_key(field.key), value.generic_string()));
         return false;
     }
 
@@ -443,6 +443,9 @@ void apply_setting(const std::string& setting, toml::table& root) {
         throw LoadError(place, "expected KEY=VALUE, such as coupling.mode=2");
     }
     const std::string key = full_setting_key(left, place);
+    if (key.starts_with('.') || key.ends_with('.') || key.find("..") != std::string::npos) {
+        throw LoadError(place, fmt::format("'{}' is no key", key));
+    }
     const std::string value(trimmed(std::string_view(setting).substr(equals + 1)));
     const auto parse = [&](const std::string& text) {
         return toml::parse(std::string_view(text), std::string_view(place.file));

@@ -47,7 +47,8 @@ HandScript plan_in_out(const SceneDescription& scene, const Simulation& simulati
                                     scene.hand.peak_nN, start));
     }
     const std::optional<HandModel> hand = hand_model(static_cast<Grip>(scene.hand.grip));
-    const double bend = hand_force(simulation.laws.force, peak_newton) / static_stiffness(*hand);
+    const double peak_felt = hand_force(simulation.laws.force, peak_newton);
+    const double bend = hand ? peak_felt / static_stiffness(*hand) : 0;
     const double travel = handle_travel(simulation, *innermost, start) + bend;
     const double outside = std::min(travel / 2, half_width_m - centring_margin_m);
 

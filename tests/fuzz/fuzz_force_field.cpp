@@ -90,6 +90,7 @@ Structure one_of_each(const ForceField& force_field) {
 
 }  // namespace
 
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view text(reinterpret_cast<const char*>(data), size);
     const std::optional<ForceField> force_field = read_or_refuse(text);

@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <utility>
 
@@ -48,9 +49,10 @@ TEST_CASE("eq. 2 has the slopes that were computed for it, not those the paper's
     CHECK_THAT(law.slope(0), WithinRel(5.508036e9, six_digits));
     CHECK_THAT(law.slope(1.5 * nN), WithinRel(4.528171e8, six_digits));
     // α1, δ1, α2, δ2 show through the limits of value and slope: 5.1e9 + 0.64e9/(1 + (δ2 F0)²).
-    const double delta_2_F_0 = 0.64e9 / (4 / M_PI) * 1.5 * nN;
-    CHECK_THAT(delta_2_F_0, WithinRel(0.7540, 1e-4));
-    CHECK_THAT(law.slope(0), WithinRel(5.1e9 + 0.64e9 / (1 + delta_2_F_0 * delta_2_F_0), 1e-14));
+    const double delta_2_times_F_0 = 0.64e9 / (4 / std::numbers::pi) * 1.5 * nN;
+    CHECK_THAT(delta_2_times_F_0, WithinRel(0.7540, 1e-4));
+    CHECK_THAT(law.slope(0),
+               WithinRel(5.1e9 + 0.64e9 / (1 + delta_2_times_F_0 * delta_2_times_F_0), 1e-14));
 }
 
 TEST_CASE("eq. 2 is odd to the last bit, monotone, and stays under F_h2", "[haptics][gains]") {

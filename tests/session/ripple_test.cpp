@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 using namespace palpa;
@@ -12,7 +13,8 @@ std::vector<double> wave(double hertz, double amplitude, double offset, double s
     std::vector<double> samples;
     for (int i = 0; i < 4000; ++i) {
         const double t = i * 1e-3;
-        samples.push_back(offset + slope * t + amplitude * std::sin(2 * M_PI * hertz * t));
+        samples.push_back(offset + slope * t +
+                          amplitude * std::sin(2 * std::numbers::pi * hertz * t));
     }
     return samples;
 }
