@@ -7,7 +7,8 @@
 namespace palpa {
 namespace {
 
-constexpr double tick_s = 1e-3;
+constexpr double rate_hz = 1000;
+constexpr double tick_s = 1 / rate_hz;
 constexpr int sub_steps = 4;
 constexpr double sub_step_s = tick_s / sub_steps;
 
@@ -15,14 +16,16 @@ constexpr double sub_step_s = tick_s / sub_steps;
 constexpr double stop_stiffness_N_per_m = 2e4;
 constexpr double stop_damping_N_s_per_m = 20;
 
-// Force of the stop on a handle that is `position` from the centre; never pulls.
-double stop_force(double position, double velocity, double half_width) noexcept {
+// Force of the stop on a handle that is `position` from the centre; never pulls. A light handle
+// gets a softer stop: a sub-step of it must not throw the handle further than it came.
+double stop_force(double position, double velocity, double half_width, double mass) noexcept {
     const double depth = std::abs(position) - half_width;
     if (depth <= 0) return 0;
+    const double stiffness =
+        std::min(stop_stiffness_N_per_m, 0.1 * mass / (sub_step_s * sub_step_s));
+    const double damping = std::min(stop_damping_N_s_per_m, 0.3 * mass / sub_step_s);
     const double outward = std::copysign(1.0, position);
-    const double push =
-        stop_stiffness_N_per_m * depth + stop_damping_N_s_per_m * velocity * outward;
-    return -outward * std::max(push, 0.0);
+    return -outward * std::max(stiffness * depth + damping * velocity * outward, 0.0);
 }
 
 }  // namespace
@@ -30,7 +33,7 @@ double stop_force(double position, double velocity, double half_width) noexcept 
 EmulatedOmni::EmulatedOmni(const EmulatedOmniSettings& settings)
     : settings_(settings), operator_(settings.script, half_workspace_m.x()) {
     spec_.name = "emulated Omni";
-    spec_.rate_hz = 1 / tick_s;
+    spec_.rate_hz = rate_hz;
     spec_.peak_force_newton = settings.peak_force_newton;
     spec_.viscosity_N_s_per_m = settings.dynamics.viscosity_N_s_per_m;
     spec_.half_workspace_m = half_workspace_m;
@@ -53,7 +56,7 @@ DeviceReading EmulatedOmni::read() noexcept {
     if (const double step = settings_.encoder_step_m; step > 0) {
         position = step * (position / step).array().round();
     }
-    return {static_cast<double>(tick_) * tick_s, position, buttons_, true};
+    return {static_cast<double>(tick_) / spec_.rate_hz, position, buttons_, true};
 }
 
 void EmulatedOmni::write(const Vec3& force_newton) noexcept {
@@ -75,7 +78,8 @@ void EmulatedOmni::write(const Vec3& force_newton) noexcept {
         const Vec3 before = true_position_m();
         for (std::size_t axis = 0; axis < state_.size(); ++axis) {
             const auto i = static_cast<Eigen::Index>(axis);
-            const double stop = stop_force(state_[axis](0), state_[axis](1), half_workspace_m(i));
+            const double stop =
+                stop_force(state_[axis](0), state_[axis](1), half_workspace_m(i), handle_mass_kg_);
             const Eigen::Vector2d inputs(outside(i) + stop, hand_drive(i));
             state_[axis] = (plant_.A * state_[axis] + plant_.B * inputs).eval();
         }

@@ -1,13 +1,15 @@
 #include "devices/scripted_hand.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 namespace palpa {
 namespace {
 
-// A clutch takes 0.8 s: press, carry, let the hand settle, release.
-constexpr double press_s = 0.1, carry_s = 0.5, settle_s = 0.2;
+// A clutch takes a second: wait until the handle has caught up, press, carry, let it settle,
+// release.
+constexpr double wait_s = 0.2, press_s = 0.1, carry_s = 0.5, settle_s = 0.2;
 // The hand turns back this far before the stop, and carries the handle to as far from the other.
 constexpr double margin_m = 0.005;
 
@@ -15,18 +17,19 @@ constexpr double margin_m = 0.005;
 
 ScriptedHand::ScriptedHand(HandScript script, double half_width_m)
     : script_(std::move(script)), reach_m_(half_width_m - margin_m) {
-    last_x_m_ = find_target(script_.path, 0);
+    const double start = find_target(script_.path, 0);
+    last_x_m_ = std::clamp(start, -reach_m_, reach_m_);
+    shift_m_ = last_x_m_ - start;
 }
 
 ScriptedHand::Wish ScriptedHand::step(double tick_s) noexcept {
     const double before = last_x_m_;
     if (clutch_time_s_ < 0) {
         const double next = find_target(script_.path, script_time_s_) + shift_m_;
-        const bool outward = std::abs(next) > std::abs(before);
-        if (std::abs(next) > reach_m_ && outward) {
+        if (std::abs(next) > reach_m_ && std::abs(next) > std::abs(before)) {
             clutch_time_s_ = 0;
             carry_from_m_ = before;
-            carry_m_ = std::copysign(2 * reach_m_, -next);
+            carry_m_ = std::copysign(reach_m_, -next) - before;
         } else {
             script_time_s_ += tick_s;
             last_x_m_ = next;
@@ -34,10 +37,11 @@ ScriptedHand::Wish ScriptedHand::step(double tick_s) noexcept {
     }
     std::uint32_t buttons = 0;
     if (clutch_time_s_ >= 0) {
-        buttons = static_cast<std::uint32_t>(Button::Clutch);
-        last_x_m_ = carry_from_m_ + carry_m_ * minimum_jerk((clutch_time_s_ - press_s) / carry_s);
+        const double since_press = clutch_time_s_ - wait_s;
+        if (since_press >= 0) buttons = static_cast<std::uint32_t>(Button::Clutch);
+        last_x_m_ = carry_from_m_ + carry_m_ * minimum_jerk((since_press - press_s) / carry_s);
         clutch_time_s_ += tick_s;
-        if (clutch_time_s_ > press_s + carry_s + settle_s) {
+        if (since_press > press_s + carry_s + settle_s) {
             clutch_time_s_ = -1;
             shift_m_ += carry_m_;
         }

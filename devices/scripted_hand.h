@@ -8,7 +8,9 @@
 namespace palpa {
 
 // A hand whose path is longer than the workspace does what a person does: near the end of the box
-// it presses the clutch, carries the handle back across, lets go, and goes on where it stopped.
+// it waits for the handle, presses the clutch, carries it to the other side, lets go, and goes on
+// where it stopped. A path that begins outside of the box is begun at its edge. The path must be
+// slower than the width of the box in a tick (a hand's few metres per second are).
 class ScriptedHand {
 public:
     // `half_width_m`: how far the handle can go either way along x.

@@ -1,5 +1,6 @@
 // The program: reads the command line, calls one command, turns errors into exit codes.
 #include "core/load_error.h"
+#include "core/version.h"
 #include "tools/bench.h"
 #include "tools/run.h"
 
@@ -64,7 +65,6 @@ void add_run(CLI::App& program, palpa::RunOptions& options) {
     add_setting(run, "--seed", "run.seed", "of everything random", settings);
     add_setting(run, "--every", "run.every", "keep one row of this many in the trace", settings);
     add_set_option(run, settings);
-    run.final_callback([&run, &options] { options.chose_mode = run.count("--mode") > 0; });
 }
 
 void add_bench(CLI::App& program, palpa::BenchOptions& options) {
@@ -77,7 +77,8 @@ void add_bench(CLI::App& program, palpa::BenchOptions& options) {
 int run_program(int argc, char** argv) {
     CLI::App program("Palpa: feel molecules", "palpa");
     program.require_subcommand(1);
-    program.set_version_flag("--version", PALPA_VERSION);
+    program.set_version_flag("--version",
+                             std::string(palpa::version_name) + " (" + palpa::commit_name + ")");
     palpa::RunOptions run;
     palpa::BenchOptions bench;
     add_run(program, run);

@@ -1,16 +1,23 @@
 #include "tools/run.h"
 
+#include "core/units.h"
 #include "devices/emulated_omni.h"
+#include "haptics/gains.h"
 #include "scene/fields.h"
 #include "scene/read_scene.h"
 #include "session/plan_hand.h"
 #include "session/recording.h"
 #include "session/run_headless.h"
+#include "simulation/probe.h"
 #include "simulation/simulation.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
+#include <cstddef>
 #include <cstdio>
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace palpa {
 namespace {
@@ -22,6 +29,34 @@ void show_progress(double share) {
     std::fflush(stderr);
 }
 
+// What the molecule will meet on its line, found by looking along it.
+void print_line(const SceneDescription& scene, const Simulation& simulation) {
+    constexpr double nN = units::newton_per_kcal_per_mol_angstrom * 1e9;
+    if (const std::optional<double> rest = equilibrium_distance(simulation)) {
+        const LineForce line = force_along_line_at(simulation, *rest);
+        fmt::print("  rest        {:.3f} kcal/mol at {:.3f} Å, {:.1f} N/m\n", line.energy, *rest,
+                   line.stiffness * units::newton_per_metre_per_kcal_per_mol_angstrom2);
+        double strongest = 0, where = 0;
+        for (double distance = *rest; distance < 30; distance += 0.001) {
+            const double attraction = -force_along_line_at(simulation, distance).force * nN;
+            if (attraction > strongest) {
+                strongest = attraction;
+                where = distance;
+            }
+        }
+        fmt::print("  attraction  {:.3f} nN at {:.2f} Å, felt as {:.3f} N\n", strongest, where,
+                   hand_force(simulation.laws.force, strongest * 1e-9));
+    }
+    if (const std::optional<double> wall =
+            repulsion_distance(simulation, scene.hand.peak_nN / nN, 30)) {
+        fmt::print("  repulsion   {} nN at {:.3f} Å, felt as {:.3f} N\n", scene.hand.peak_nN, *wall,
+                   hand_force(simulation.laws.force, scene.hand.peak_nN * 1e-9));
+    }
+    const FeltStiffness stiffest = stiffest_place(scene, simulation);
+    fmt::print("  stiffest    {:.3g} N/m felt at {:.3f} Å\n", stiffest.newton_per_metre,
+               stiffest.angstrom);
+}
+
 void print_summary(const SceneDescription& scene, const Summary& s) {
     fmt::print("{}: {} s, mode {}, T_s = {} ms, {} hand, friction {} N, stroke {}\n", scene.title,
                scene.seconds, coupling_mode_names[static_cast<std::size_t>(scene.coupling.mode)],
@@ -29,9 +64,13 @@ void print_summary(const SceneDescription& scene, const Summary& s) {
                stroke_names[static_cast<std::size_t>(scene.hand.stroke)]);
     fmt::print("  felt        {:.3f} N of attraction and {:.3f} N of repulsion at most\n",
                s.largest_attraction_N, s.largest_repulsion_N);
-    fmt::print("  ripple      {:.3f} N rms above 3 Hz in the last 4 s", s.ripple.rms);
-    if (s.ripple.rms > 0.02) fmt::print(", at {:.1f} Hz", s.ripple.hertz);
-    fmt::print("\n");
+    if (!s.ripple) {
+        fmt::print("  ripple      too short a run to tell\n");
+    } else {
+        fmt::print("  ripple      {:.3f} N rms above 3 Hz towards the end", s.ripple->rms);
+        if (s.ripple->rms > 0.02) fmt::print(", at {:.1f} Hz", s.ripple->hertz);
+        fmt::print("\n");
+    }
     fmt::print("  net work    {:+.4f} J on the hand\n", s.net_work_J);
     fmt::print("  molecule    {:.3f} Å at the closest, {:.3f} Å at the end\n", s.closest_angstrom,
                s.last_angstrom);
@@ -64,9 +103,12 @@ void print_scene_keys() {
 int run_command(const RunOptions& options) {
     const SceneDescription scene = read_scene(options.scene, options.settings);
     Simulation simulation = load_simulation(scene);
-    EmulatedOmni device(build_emulated_omni(scene, simulation));
+    const EmulatedOmniSettings settings = build_emulated_omni(scene, simulation);
+    const std::vector<std::string> warnings = list_warnings(scene, simulation, settings.script);
     if (options.check_only) {
         fmt::print("{}: nothing wrong found\n", scene.file.string());
+        print_line(scene, simulation);
+        for (const std::string& warning : warnings) fmt::print("  warning: {}\n", warning);
         return 0;
     }
     std::optional<Recording> recording;
@@ -74,8 +116,7 @@ int run_command(const RunOptions& options) {
     if (!options.headless) {
         fmt::print(stderr, "there is no window yet: running headless, in lockstep\n");
     }
-    const SceneDescription defaults;
-    if (!options.chose_mode && scene.coupling.mode == defaults.coupling.mode) {
+    if (!scene.places.contains("coupling.mode")) {
         fmt::print(
             stderr,
             "guarded mode is not built yet: mode {} of the paper at T_s = {} ms with {} N of "
@@ -83,12 +124,15 @@ int run_command(const RunOptions& options) {
             coupling_mode_names[static_cast<std::size_t>(scene.coupling.mode)], scene.period_ms,
             scene.device.friction_N);
     }
+    for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
+
+    EmulatedOmni device(settings);
     const bool watched = isatty(STDERR_FILENO) != 0 && !options.json;
     const Summary summary =
-        run_headless(scene, simulation, device, recording ? &*recording : nullptr,
+        run_headless(scene, simulation, device, warnings, recording ? &*recording : nullptr,
                      watched ? ProgressFunction(show_progress) : ProgressFunction());
-    for (const std::string& warning : summary.warnings) {
-        fmt::print(stderr, "warning: {}\n", warning);
+    for (std::size_t i = warnings.size(); i < summary.warnings.size(); ++i) {
+        fmt::print(stderr, "warning: {}\n", summary.warnings[i]);
     }
     if (options.json) {
         fmt::print("{}", format_summary(scene, summary));

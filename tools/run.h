@@ -18,7 +18,6 @@ struct RunOptions {
     bool check_only = false;
     bool json = false;      // the summary as JSON on standard output
     bool headless = false;  // asked for; the only way there is so far
-    bool chose_mode = false;
 };
 
 // The emulated device and hand that a scene describes.

@@ -24,10 +24,10 @@ struct FieldSum {
     double energy() const noexcept { return van_der_waals + electrostatic; }
 };
 
-// Inside this distance (Å) a pair's force falls linearly to zero at zero distance, so that force,
-// energy and stiffness are finite and continuous wherever the points are, on top of each other
-// included. Walls of thousands of nanonewtons keep points far outside it; it is there for
-// accidents.
+// Inside this distance (Å) a pair's force falls linearly to zero at zero distance, so that energy,
+// force and stiffness are finite wherever the points are, on top of each other included; energy and
+// force are continuous there. Walls of thousands of nanonewtons keep points far outside it; it is
+// there for accidents.
 inline constexpr double pair_core_radius = 0.1;
 
 // Every pair of one point of the group and one of the environment, with CHARMM's combination rules:

@@ -14,7 +14,6 @@ struct DeviceSpec {
     double peak_force_newton = 0;    // what the motors give at most
     double viscosity_N_s_per_m = 0;  // what is known of the device's own damping; 0 if nothing
     Vec3 half_workspace_m = Vec3::Zero();  // the box in which the handle can move, from its centre
-    int sensed_axes = 3, actuated_axes = 3;
 };
 
 // One look at the device. `valid` is false if the device had nothing new or nothing sane to say.
@@ -25,7 +24,7 @@ struct DeviceReading {
     bool valid = false;
 };
 
-enum class Button : std::uint32_t { Clutch = 1, Second = 2 };
+enum class Button : std::uint32_t { Clutch = 1 };
 
 inline bool is_pressed(std::uint32_t buttons, Button button) noexcept {
     return (buttons & static_cast<std::uint32_t>(button)) != 0;

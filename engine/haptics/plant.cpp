@@ -9,14 +9,33 @@
 namespace palpa {
 namespace {
 
-// Largest |eigenvalue| of the loop; its states are the plant's and the force under way.
-double loop_radius(const SampledPlant& plant, double K) {
+// One period of the loop without its spring: the plant, and the forces that are under way. In a
+// period the force of `whole` + 2 samples ago acts first, for the broken part of the delay, then
+// that of `whole` + 1 samples ago.
+struct DelayedLoop {
+    Eigen::MatrixXd matrix;   // state: plant, then forces under way, the newest first
+    Eigen::Index newest = 0;  // row of the force computed now, -K times the handle's position
+};
+
+DelayedLoop build_loop(const Plant& plant, double period_s, double delay_s) {
+    const double periods = std::floor(delay_s / period_s + 1e-9);
+    const double broken = std::max(delay_s - periods * period_s, 0.0);
+    const SampledPlant early = sample_plant(plant, broken);
+    const SampledPlant late = sample_plant(plant, period_s - broken);
     const Eigen::Index n = plant.A.rows();
-    Eigen::MatrixXd loop = Eigen::MatrixXd::Zero(n + 1, n + 1);
-    loop.topLeftCorner(n, n) = plant.A;
-    loop.topRightCorner(n, 1) = plant.B.col(0);
-    loop(n, 0) = -K;
-    return loop.eigenvalues().cwiseAbs().maxCoeff();
+    const auto forces = static_cast<Eigen::Index>(periods) + 2;
+    DelayedLoop loop{Eigen::MatrixXd::Zero(n + forces, n + forces), n};
+    loop.matrix.topLeftCorner(n, n) = late.A * early.A;
+    loop.matrix.block(0, n + forces - 2, n, 1) = late.B.col(0);
+    loop.matrix.block(0, n + forces - 1, n, 1) = late.A * early.B.col(0);
+    for (Eigen::Index i = 1; i < forces; ++i) loop.matrix(n + i, n + i - 1) = 1;
+    return loop;
+}
+
+// Largest |eigenvalue| of the loop with a spring of K.
+double loop_radius(DelayedLoop loop, double K) {
+    loop.matrix(loop.newest, 0) = -K;
+    return loop.matrix.eigenvalues().cwiseAbs().maxCoeff();
 }
 
 }  // namespace
@@ -58,9 +77,9 @@ SampledPlant sample_plant(const Plant& plant, double period_s) {
     return {step.topLeftCorner(n, n), step.topRightCorner(n, 2)};
 }
 
-double find_critical_stiffness(const Plant& plant, double period_s) {
-    const SampledPlant sampled = sample_plant(plant, period_s);
-    const auto is_unstable = [&](double K) { return loop_radius(sampled, K) > 1 + 1e-12; };
+double critical_stiffness(const Plant& plant, double period_s, double delay_s) {
+    const DelayedLoop loop = build_loop(plant, period_s, delay_s);
+    const auto is_unstable = [&](double K) { return loop_radius(loop, K) > 1 + 1e-12; };
     double stable = 0;
     for (double K = 1e-4; K < 1e7; K *= 1.01) {
         if (is_unstable(K)) {

@@ -38,9 +38,10 @@ struct SampledPlant {
 SampledPlant sample_plant(const Plant& plant, double period_s);
 
 // The largest spring K (N/m) felt at the handle that the paper's loop keeps stable: position
-// sampled every `period_s`, force -K x sent one period later and held (z^-1 and hold). K =
-// A_f k_e / A_d. Found as the first K for which an eigenvalue of the sampled loop leaves the unit
-// circle; infinity if none below 1e7 N/m does. Eq. 1 of the paper, K < M/period^2, is not this.
-double find_critical_stiffness(const Plant& plant, double period_s);
+// sampled every `period_s`, force -K x sent one period and `delay_s` later and held (z^-1 and
+// hold). K = A_f k_e / A_d. Found as the first K for which an eigenvalue of the sampled loop leaves
+// the unit circle; infinity if none below 1e7 N/m does. Eq. 1 of the paper, K < M/period^2, is not
+// this.
+double critical_stiffness(const Plant& plant, double period_s, double delay_s = 0);
 
 }  // namespace palpa

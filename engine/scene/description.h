@@ -1,8 +1,13 @@
 // What a scene file says, as plain data with defaults; nothing is loaded yet.
 #pragma once
+#include "core/load_error.h"
+#include "core/units.h"
+
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -35,7 +40,7 @@ inline constexpr std::array<std::string_view, 6> hand_names{"none",   "light", "
 
 struct ForceFieldDescription {
     std::vector<std::filesystem::path> files;
-    double coulomb_constant = 332.0716;  // kcal Å/mol/e^2
+    double coulomb_constant = units::charmm_coulomb_constant;  // kcal Å/mol/e^2
 };
 
 struct MoleculeDescription {
@@ -92,6 +97,12 @@ struct SceneDescription {
     double seconds = 10;
     std::int64_t every = 1;
     std::int64_t seed = 1;
+
+    // Where the file (or a setting over it) says a field, by its key in full.
+    std::map<std::string, TextPlace, std::less<>> places;
+
+    // The place of a field for messages: its own, or the file where the default holds.
+    TextPlace place_of(std::string_view key) const;
 };
 
 }  // namespace palpa

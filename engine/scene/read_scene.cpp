@@ -72,9 +72,10 @@ public:
         levels_.push_back({&root, "", place_or_start(root), {}, false});
     }
 
-    void finish() {
+    // Throws what was found, or gives the places of all fields that the file has.
+    std::map<std::string, TextPlace, std::less<>> finish() {
         report_unknown_keys(levels_.back());
-        if (problems_.empty()) return;
+        if (problems_.empty()) return std::move(places_);
         std::stable_sort(problems_.begin(), problems_.end(),
                          [](const Problem& a, const Problem& b) {
                              return std::tie(a.place.line, a.place.column) <
@@ -324,7 +325,7 @@ private:
     fs::path file_, folder_;
     std::vector<Level> levels_;
     std::vector<Problem> problems_;
-    std::map<std::string, TextPlace> places_;  // by full key
+    std::map<std::string, TextPlace, std::less<>> places_;  // by full key
 };
 
 // ---- what fields must be together ------------------------------------------------------------
@@ -489,7 +490,7 @@ SceneDescription parse_scene(std::string_view text, const fs::path& file,
     visit_scene(reader, scene);
     check_grab(scene, reader);
     check_ranges(scene, reader);
-    reader.finish();
+    scene.places = reader.finish();
     return scene;
 }
 

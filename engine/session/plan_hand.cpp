@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 
 namespace palpa {
@@ -15,6 +17,7 @@ namespace {
 
 constexpr double first_rest_s = 0.3;  // before the hand sets out, and between cycles
 constexpr double centring_margin_m = 0.005;
+constexpr double fastest_hand_m_per_s = 3;
 
 double newton_at(const Simulation& simulation, double distance) {
     return force_along_line_at(simulation, distance).force *
@@ -38,10 +41,10 @@ HandScript plan_in_out(const SceneDescription& scene, const Simulation& simulati
     const Grab& grab = *simulation.world.find<Grab>(simulation.hand);
     const double start = simulation.world.find<LineGuide>(grab.molecule)->distance;
     const double peak_newton = scene.hand.peak_nN * 1e-9;
-    const std::optional<double> innermost =
-        find_repulsion(simulation, peak_newton / units::newton_per_kcal_per_mol_angstrom, start);
+    const std::optional<double> innermost = repulsion_distance(
+        simulation, peak_newton / units::newton_per_kcal_per_mol_angstrom, start);
     if (!innermost) {
-        throw LoadError({scene.file.string()},
+        throw LoadError(scene.place_of("hand.peak_nN"),
                         fmt::format("the repulsion reaches {} nN nowhere inside of {} Å; expected "
                                     "another hand.peak_nN or hand.start_angstrom",
                                     scene.hand.peak_nN, start));
@@ -64,10 +67,26 @@ HandScript plan_in_out(const SceneDescription& scene, const Simulation& simulati
     return script;
 }
 
+// A path that no hand could follow would end somewhere else than it says.
+void check_speed(const SceneDescription& scene, const HandScript& script) {
+    for (std::size_t i = 1; i < script.path.size(); ++i) {
+        const HandWaypoint &from = script.path[i - 1], &to = script.path[i];
+        // Minimum jerk is fastest in the middle, at 15/8 of the mean.
+        const double speed = 15.0 / 8 * std::abs(to.x_m - from.x_m) / (to.time_s - from.time_s);
+        if (speed <= fastest_hand_m_per_s) continue;
+        const bool own_path = scene.hand.stroke == Stroke::Path;
+        throw LoadError(scene.place_of(own_path ? "hand.path" : "hand.stroke_s"),
+                        fmt::format("the stroke asks the hand for {:.3g} m/s; expected {} m/s at "
+                                    "most, so more time",
+                                    speed, fastest_hand_m_per_s));
+    }
+}
+
 }  // namespace
 
 HandScript plan_hand(const SceneDescription& scene, const Simulation& simulation,
                      double half_width_m) {
+    static_assert(grip_names == hand_names, "a scene's grips are the hand's");
     HandScript script;
     switch (scene.hand.stroke) {
         case Stroke::Hold:
@@ -83,6 +102,7 @@ HandScript plan_hand(const SceneDescription& scene, const Simulation& simulation
             break;
     }
     script.kick_N_s = scene.hand.kick_N_s;
+    check_speed(scene, script);
     return script;
 }
 

@@ -3,6 +3,7 @@
 #include "core/files.h"
 #include "core/load_error.h"
 #include "core/text.h"
+#include "core/version.h"
 #include "scene/write_scene.h"
 
 #include <fmt/format.h>
@@ -12,7 +13,9 @@
 #include <cerrno>
 #include <cstddef>
 #include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string_view>
 #include <system_error>
 #include <vector>
@@ -57,22 +60,35 @@ std::vector<fs::path> input_files(const SceneDescription& scene) {
     return files;
 }
 
-// "inputs/NAME"; files of one name from several folders are numbered.
-std::string input_name(const std::vector<fs::path>& files, const fs::path& file) {
-    const auto same_name = [&](const fs::path& other) {
-        return other.filename() == file.filename();
-    };
-    const auto self = std::find(files.begin(), files.end(), file);
-    const auto earlier = std::count_if(files.begin(), self, same_name);
-    const std::string name = file.filename().string();
-    return "inputs/" + (earlier == 0 ? name : fmt::format("{}-{}", earlier + 1, name));
+// What each file is called in the recording: "inputs/NAME", numbered where a name is taken.
+std::map<fs::path, std::string> input_names(const std::vector<fs::path>& files) {
+    std::map<fs::path, std::string> names;
+    std::set<std::string> taken;
+    for (const fs::path& file : files) {
+        const std::string own = file.filename().string();
+        std::string name = own;
+        for (int number = 2; !taken.insert(name).second; ++number) {
+            name = fmt::format("{}-{}", number, own);
+        }
+        names[file] = "inputs/" + name;
+    }
+    return names;
 }
 
+constexpr std::string_view session_mark = "# A recorded Palpa session";
+
 std::string format_session(const SceneDescription& scene) {
-    const std::vector<fs::path> files = input_files(scene);
-    return "# A recorded Palpa session with every field written out. To run it again:\n"
-           "#   palpa run session.toml --headless --record NEW_FOLDER\n" +
-           format_scene(scene, [&](const fs::path& file) { return input_name(files, file); });
+    const std::map<fs::path, std::string> names = input_names(input_files(scene));
+    return fmt::format(
+        "{}, every field written out. To run it again:\n"
+        "#   palpa run session.toml --headless --record NEW_FOLDER\n{}",
+        session_mark, format_scene(scene, [&](const fs::path& file) { return names.at(file); }));
+}
+
+bool is_recording(const fs::path& folder) {
+    std::ifstream session(folder / "session.toml");
+    std::string line;
+    return std::getline(session, line) && line.starts_with(session_mark);
 }
 
 void make_folder(const fs::path& folder) {
@@ -80,10 +96,14 @@ void make_folder(const fs::path& folder) {
     if (fs::exists(folder, error) && !fs::is_directory(folder, error)) {
         throw LoadError({folder.string()}, "is a file; expected a folder to record into");
     }
-    if (fs::is_directory(folder, error) && !fs::is_empty(folder, error) &&
-        !fs::exists(folder / "session.toml", error)) {
+    if (fs::is_directory(folder, error) && !fs::is_empty(folder, error) && !is_recording(folder)) {
         throw LoadError({folder.string()},
                         "holds something that is no recording; expected a new or empty folder");
+    }
+    for (const char* const name : {"trace.csv", "summary.json"}) {
+        if (fs::is_directory(folder / name, error)) {
+            throw LoadError({(folder / name).string()}, "is a folder; expected a recording's file");
+        }
     }
     fs::create_directories(folder, error);
     if (error) throw LoadError({folder.string()}, "cannot be made: " + error.message());
@@ -103,7 +123,8 @@ std::string trace_header() { return fmt::format("{}", fmt::join(columns, ",")); 
 
 std::string format_summary(const SceneDescription& scene, const Summary& summary) {
     nlohmann::ordered_json json;
-    json["versions"] = {{"palpa", PALPA_VERSION},
+    json["versions"] = {{"palpa", version_name},
+                        {"commit", commit_name},
                         {"compiler", __VERSION__},
                         {"eigen", fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
                                               EIGEN_MINOR_VERSION)}};
@@ -121,8 +142,12 @@ std::string format_summary(const SceneDescription& scene, const Summary& summary
     json["step_median_us"] = summary.step_median_us;
     json["step_p99_us"] = summary.step_p99_us;
     json["steps_not_finite"] = summary.steps_not_finite;
-    json["ripple_N"] = summary.ripple.rms;
-    json["ripple_Hz"] = summary.ripple.hertz;
+    if (summary.ripple) {
+        json["ripple_N"] = summary.ripple->rms;
+        json["ripple_Hz"] = summary.ripple->hertz;
+    } else {  // too short a run to tell
+        json["ripple_N"] = json["ripple_Hz"] = nullptr;
+    }
     json["net_work_J"] = summary.net_work_J;
     json["largest_attraction_N"] = summary.largest_attraction_N;
     json["largest_repulsion_N"] = summary.largest_repulsion_N;
@@ -143,18 +168,21 @@ Recording::Recording(const fs::path& folder, const SceneDescription& scene)
     std::vector<std::string> contents;
     for (const fs::path& file : files) contents.push_back(read_text_file(file));
     make_folder(folder);
-    std::error_code error;
-    fs::create_directories(folder / "inputs", error);
-    if (error) throw LoadError({folder.string()}, "cannot be written: " + error.message());
-    fs::remove(folder / "summary.json", error);
-    for (std::size_t i = 0; i < files.size(); ++i) {
-        write_text_file(folder / input_name(files, files[i]), contents[i]);
-    }
-    write_text_file(folder / "session.toml", format_session(scene));
+    // The trace first: where it cannot be written, nothing is.
     errno = 0;
     trace_.open(folder / "trace.csv", std::ios::binary | std::ios::trunc);
     rows_ = trace_header() + "\n";
     flush();
+    std::error_code error;
+    fs::remove(folder / "summary.json", error);
+    fs::remove_all(folder / "inputs", error);
+    fs::create_directories(folder / "inputs", error);
+    if (error) throw LoadError({folder.string()}, "cannot be written: " + error.message());
+    const std::map<fs::path, std::string> names = input_names(files);
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        write_text_file(folder / names.at(files[i]), contents[i]);
+    }
+    write_text_file(folder / "session.toml", format_session(scene));
 }
 
 void Recording::add(const ServoTick& tick) {

@@ -45,9 +45,9 @@ double power(std::span<const double> signal, double frequency) {
 
 }  // namespace
 
-Ripple find_ripple(std::span<const double> samples, double tick_s) {
+std::optional<Ripple> measure_ripple(std::span<const double> samples, double tick_s) {
     const auto width = static_cast<std::size_t>(std::lround(1 / cut_hz / tick_s)) | 1;
-    if (samples.size() < width) return {};
+    if (samples.size() < width) return std::nullopt;
     const std::vector<double> signal(samples.begin(), samples.end());
     const std::vector<double> slow = moving_mean(moving_mean(signal, width), width);
     const std::size_t cut = signal.size() / 10;

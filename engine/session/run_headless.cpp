@@ -2,6 +2,7 @@
 
 #include "core/units.h"
 #include "haptics/hand.h"
+#include "haptics/plant.h"
 #include "session/lockstep.h"
 #include "simulation/components.h"
 #include "simulation/probe.h"
@@ -12,7 +13,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <optional>
 
 namespace palpa {
 namespace {
@@ -27,37 +27,53 @@ ServoSettings build_servo_settings(const SceneDescription& scene, const Simulati
             static_cast<int>(scene.device.servo_delay_ticks)};
 }
 
-std::vector<std::string> find_warnings(const SceneDescription& scene,
-                                       const Simulation& simulation) {
-    double stiffest = 0, where = 0;
-    for (double distance = 2; distance < 12; distance += 0.002) {
+FeltStiffness stiffest_place(const SceneDescription& scene, const Simulation& simulation) {
+    FeltStiffness stiffest;
+    const auto look_at = [&](double distance) {
         const LineForce line = force_along_line_at(simulation, distance);
         const double F_m = line.force * units::newton_per_kcal_per_mol_angstrom;
-        if (F_m > scene.hand.peak_nN * 1e-9) continue;  // further in than the hand goes
+        if (F_m > scene.hand.peak_nN * 1e-9) return;  // further in than the hand goes
         const double K = hand_force_slope(simulation.laws.force, F_m) * line.stiffness *
                          units::newton_per_metre_per_kcal_per_mol_angstrom2 /
                          displacement_gain(simulation.laws.displacement, F_m);
-        if (K > stiffest) {
-            stiffest = K;
-            where = distance;
-        }
+        if (K > stiffest.newton_per_metre) stiffest = {K, distance};
+    };
+    for (double distance = 2; distance < 12; distance += 0.002) look_at(distance);
+    // Eq. 3 makes the rest place the stiffest, in a notch narrower than the scan.
+    if (const auto rest = equilibrium_distance(simulation)) look_at(*rest);
+    return stiffest;
+}
+
+std::vector<std::string> list_warnings(const SceneDescription& scene, const Simulation& simulation,
+                                       const HandScript& script) {
+    std::vector<std::string> warnings;
+    const FeltStiffness stiffest = stiffest_place(scene, simulation);
+    const Plant plant = build_plant({scene.device.inertia_kg, scene.device.viscosity_N_s_per_m},
+                                    hand_model(static_cast<Grip>(scene.hand.grip)));
+    const double limit = critical_stiffness(
+        plant, simulation.period_s, static_cast<double>(scene.device.servo_delay_ticks) * tick_s);
+    if (stiffest.newton_per_metre > limit) {
+        warnings.push_back(
+            fmt::format("this setting vibrates unless friction holds it: at {:.2f} Å the hand "
+                        "feels {:.3g} N/m, "
+                        "and this hand on this device is calm up to {:.3g} N/m at T_s = {} ms",
+                        stiffest.angstrom, stiffest.newton_per_metre, limit, scene.period_ms));
     }
-    const std::optional<HandModel> hand = hand_model(static_cast<Grip>(scene.hand.grip));
-    const double damping = scene.device.viscosity_N_s_per_m + (hand ? hand->damping_N_s_per_m : 0);
-    const double limit = damping / (1.5 * simulation.period_s);
-    if (stiffest <= limit) return {};
-    return {
-        fmt::format("this setting may vibrate: at {:.2f} Å the hand feels {:.0f} N/m, and {} "
-                    "Ns/m of damping calm no more than B/(1.5 T_s) = {:.0f} N/m",
-                    where, stiffest, damping, limit)};
+    const double last_move = script.path.empty() ? 0 : script.path.back().time_s;
+    if (last_move > scene.seconds) {
+        warnings.push_back(fmt::format("the stroke takes {} s, the run only {} s (run.seconds)",
+                                       last_move, scene.seconds));
+    }
+    return warnings;
 }
 
 Summary run_headless(const SceneDescription& scene, Simulation& simulation, Device& device,
-                     Recording* recording, const ProgressFunction& progress) {
+                     const std::vector<std::string>& warnings, Recording* recording,
+                     const ProgressFunction& progress) {
     const auto ticks = static_cast<std::uint64_t>(std::ceil(scene.seconds / tick_s - 1e-9));
     const auto ticks_per_step =
         static_cast<std::uint64_t>(std::lround(simulation.period_s / tick_s));
-    Statistics statistics(tick_s, ticks);
+    Statistics statistics(tick_s);
 
     const auto step = [&](const HandPose& hand, const TouchModel& felt) {
         const auto begin = std::chrono::steady_clock::now();
@@ -70,16 +86,19 @@ Summary run_headless(const SceneDescription& scene, Simulation& simulation, Devi
     const auto on_tick = [&](const ServoTick& tick) {
         statistics.add(tick);
         if (recording) recording->add(tick);
-        if (progress && ++done % ticks_between_progress == 0) {
+        if (progress && ++done % ticks_between_progress == 0 && done < ticks) {
             progress(static_cast<double>(done) / static_cast<double>(ticks));
         }
     };
-    const std::vector<std::string> warnings = find_warnings(scene, simulation);
     run_lockstep({ticks, ticks_per_step}, build_servo_settings(scene, simulation), device,
                  build_touch_model(simulation, {}), step, on_tick);
 
+    if (progress) progress(1);
     Summary summary = statistics.summary();
     summary.warnings = warnings;
+    if (summary.went_through) {
+        summary.warnings.emplace_back("the hand pushed the molecule through the other one");
+    }
     if (summary.stopped) {
         summary.warnings.emplace_back("a force was not finite: the device was stopped");
     }

@@ -1,6 +1,7 @@
 // A whole scene without a window: loaded, felt by a device in lockstep, summed up, recorded.
 #pragma once
 #include "haptics/device.h"
+#include "haptics/hand.h"
 #include "haptics/servo.h"
 #include "scene/description.h"
 #include "session/recording.h"
@@ -8,6 +9,8 @@
 #include "simulation/simulation.h"
 
 #include <functional>
+#include <string>
+#include <vector>
 
 namespace palpa {
 
@@ -16,12 +19,23 @@ using ProgressFunction = std::function<void(double share)>;
 
 ServoSettings build_servo_settings(const SceneDescription& scene, const Simulation& simulation);
 
-// In words, what about the scene's settings makes trouble: the stiffness felt where it is largest
-// along the line, K = A_f k_e / A_d, against what damping allows, B/(1.5 T_s).
-std::vector<std::string> find_warnings(const SceneDescription& scene, const Simulation& simulation);
+// Where along the line the hand feels the stiffest spring, K = A_f k_e / A_d, up to the scene's
+// peak force.
+struct FeltStiffness {
+    double newton_per_metre = 0;
+    double angstrom = 0;
+};
+FeltStiffness stiffest_place(const SceneDescription& scene, const Simulation& simulation);
 
-// `recording` and `progress` may be null or empty. The simulation ends where the run leaves it.
+// In words, what about the scene's settings makes trouble: a spring stiffer than this hand, device,
+// period and servo delay keep calm (haptics/plant.h), a stroke longer than the run.
+std::vector<std::string> list_warnings(const SceneDescription& scene, const Simulation& simulation,
+                                       const HandScript& script);
+
+// `warnings` are put at the head of the summary's. `recording` and `progress` may be null or empty.
+// The simulation ends where the run leaves it.
 Summary run_headless(const SceneDescription& scene, Simulation& simulation, Device& device,
-                     Recording* recording, const ProgressFunction& progress);
+                     const std::vector<std::string>& warnings, Recording* recording,
+                     const ProgressFunction& progress);
 
 }  // namespace palpa

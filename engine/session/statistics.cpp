@@ -3,58 +3,81 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <span>
 
 namespace palpa {
 namespace {
 
 constexpr double ripple_window_s = 4;
 
-double quantile(std::vector<double> values, double share) {
-    if (values.empty()) return 0;
-    const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), values.begin() + at, values.end());
-    return values[static_cast<std::size_t>(at)];
+// Step times fall into classes 1 % wide, from a nanosecond up to three hours.
+constexpr double shortest_us = 1e-3, class_width = 1.01;
+constexpr std::size_t class_count = 3000;
+
+std::size_t class_of(double time_us) {
+    const double place = std::log(std::max(time_us, shortest_us) / shortest_us);
+    return std::min(static_cast<std::size_t>(place / std::log(class_width)), class_count - 1);
 }
 
 }  // namespace
 
-Statistics::Statistics(double tick_s, std::uint64_t ticks) : tick_s_(tick_s) {
-    force_.reserve(ticks);
+Statistics::Statistics(double tick_s) : tick_s_(tick_s), step_counts_(class_count, 0) {
+    recent_force_.resize(static_cast<std::size_t>(std::lround(ripple_window_s / tick_s)), 0.0);
 }
 
 void Statistics::add(const ServoTick& tick) {
     const double distance = tick.touch.molecule_angstrom.x();
-    if (running_.ticks == 0) running_.closest_angstrom = distance;
-    ++running_.ticks;
-    running_.closest_angstrom = std::min(running_.closest_angstrom, distance);
+    if (running_.ticks == 0) {
+        first_angstrom_ = distance;
+        running_.closest_angstrom = std::abs(distance);
+    }
+    running_.closest_angstrom = std::min(running_.closest_angstrom, std::abs(distance));
+    running_.went_through = running_.went_through || distance * first_angstrom_ < 0;
     running_.last_angstrom = distance;
     running_.net_work_J = tick.hand_energy_J;
     running_.largest_attraction_N = std::max(running_.largest_attraction_N, -tick.sent_newton.x());
     running_.largest_repulsion_N = std::max(running_.largest_repulsion_N, tick.sent_newton.x());
     running_.stopped = tick.stopped;
     if (tick.clamped) ++clamped_ticks_;
-    force_.push_back(tick.sent_newton.x());
+    recent_force_[running_.ticks % recent_force_.size()] = tick.sent_newton.x();
+    ++running_.ticks;
 }
 
 void Statistics::add_step(double seconds, bool finite) {
     ++running_.steps;
     if (!finite) ++running_.steps_not_finite;
-    step_us_.push_back(seconds * 1e6);
+    ++step_counts_[class_of(seconds * 1e6)];
 }
 
 Summary Statistics::summary() const {
     Summary summary = running_;
-    summary.step_median_us = quantile(step_us_, 0.5);
-    summary.step_p99_us = quantile(step_us_, 0.99);
-    const auto window =
-        std::min(force_.size(), static_cast<std::size_t>(std::lround(ripple_window_s / tick_s_)));
-    summary.ripple = find_ripple(std::span(force_).last(window), tick_s_);
+    summary.step_median_us = quantile_us(0.5);
+    summary.step_p99_us = quantile_us(0.99);
+    std::vector<double> force = recent_force_;
+    const auto oldest = static_cast<std::ptrdiff_t>(running_.ticks % force.size());
+    if (running_.ticks >= force.size()) {
+        std::rotate(force.begin(), force.begin() + oldest, force.end());
+    } else {
+        force.resize(running_.ticks);
+    }
+    summary.ripple = measure_ripple(force, tick_s_);
     if (summary.ticks > 0) {
         summary.clamped_share =
             static_cast<double>(clamped_ticks_) / static_cast<double>(summary.ticks);
     }
     return summary;
+}
+
+// The middle of the class in which that share of the steps is reached.
+double Statistics::quantile_us(double share) const {
+    if (running_.steps == 0) return 0;
+    const double wanted = share * static_cast<double>(running_.steps);
+    double seen = 0;
+    std::size_t at = 0;
+    for (; at + 1 < class_count; ++at) {
+        seen += static_cast<double>(step_counts_[at]);
+        if (seen >= wanted) break;
+    }
+    return shortest_us * std::pow(class_width, static_cast<double>(at) + 0.5);
 }
 
 }  // namespace palpa

@@ -4,6 +4,7 @@
 #include "session/ripple.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,20 +14,23 @@ struct Summary {
     std::uint64_t ticks = 0, steps = 0;
     std::uint64_t steps_not_finite = 0;
     double step_median_us = 0, step_p99_us = 0;  // wall time
-    Ripple ripple;                               // of the device force along x, last 4 s
+    std::optional<Ripple> ripple;                // of the device force along x, last 4 s
     double net_work_J = 0;                       // done on the hand; + = generated
     double largest_attraction_N = 0;             // felt, along -x
     double largest_repulsion_N = 0;              // felt, along +x
-    double closest_angstrom = 0, last_angstrom = 0;
-    double clamped_share = 0;  // of the time
-    bool stopped = false;      // a force was not finite
+    double closest_angstrom = 0;                 // smallest distance, whatever its sign
+    double last_angstrom = 0;
+    bool went_through = false;  // the molecule came out on the other side
+    double clamped_share = 0;   // of the time
+    bool stopped = false;       // a force was not finite
     std::vector<std::string> warnings;
 };
 
+// Takes the same memory however long the run is.
 class Statistics {
 public:
-    // `tick_s`: of the servo; `ticks`: how many are expected, for the memory.
-    Statistics(double tick_s, std::uint64_t ticks);
+    // `tick_s`: of the servo.
+    explicit Statistics(double tick_s);
 
     void add(const ServoTick& tick);
     void add_step(double seconds, bool finite);
@@ -34,11 +38,14 @@ public:
     Summary summary() const;
 
 private:
+    double quantile_us(double share) const;
+
     double tick_s_;
     Summary running_;
+    double first_angstrom_ = 0;
     std::uint64_t clamped_ticks_ = 0;
-    std::vector<double> force_;  // along x, N
-    std::vector<double> step_us_;
+    std::vector<double> recent_force_;        // along x, N: a ring of the last 4 s
+    std::vector<std::uint64_t> step_counts_;  // of step times, in classes 1 % wide
 };
 
 }  // namespace palpa

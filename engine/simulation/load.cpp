@@ -82,7 +82,7 @@ void place_grabbed(const SceneDescription& scene, Simulation& simulation) {
     guide.distance = from_origin.dot(guide.axis);
     if ((from_origin - guide.distance * guide.axis).norm() > 1e-6) {
         throw LoadError(
-            {scene.file.string()},
+            scene.place_of("grab.measured_from"),
             fmt::format("the reference atoms of '{}' and '{}' are not on one line along "
                         "x: they are ({}) Å apart",
                         grabbed.name, origin.name,
@@ -91,9 +91,9 @@ void place_grabbed(const SceneDescription& scene, Simulation& simulation) {
 
     std::optional<double> start = scene.hand.start_angstrom;
     if (!start && scene.hand.stroke == Stroke::Hold) {
-        start = find_equilibrium(simulation);
+        start = equilibrium_distance(simulation);
         if (!start) {
-            throw LoadError({scene.file.string()},
+            throw LoadError(scene.place_of("hand.stroke"),
                             "'hand.stroke' is \"hold\", but there is no distance where the force "
                             "vanishes; set hand.start_angstrom");
         }

@@ -58,7 +58,8 @@ LineForce force_along_line_at(const Simulation& simulation, double distance) {
     return {field.energy(), field.force.dot(axis), axis.dot(field.stiffness * axis)};
 }
 
-std::optional<double> find_repulsion(const Simulation& simulation, double force, double outermost) {
+std::optional<double> repulsion_distance(const Simulation& simulation, double force,
+                                         double outermost) {
     if (force_along_line_at(simulation, outermost).force > force) return std::nullopt;
     for (double distance = outermost; distance > innermost; distance -= scan_step) {
         if (force_along_line_at(simulation, distance).force > force) {
@@ -68,7 +69,7 @@ std::optional<double> find_repulsion(const Simulation& simulation, double force,
     return std::nullopt;
 }
 
-std::optional<double> find_equilibrium(const Simulation& simulation) {
+std::optional<double> equilibrium_distance(const Simulation& simulation) {
     bool attracted = false;
     for (double distance = 30; distance > innermost; distance -= scan_step) {
         const double force = force_along_line_at(simulation, distance).force;

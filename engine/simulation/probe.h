@@ -23,9 +23,10 @@ LineForce force_along_line_at(const Simulation& simulation, double distance);
 
 // The outermost distance (Å) at which the repulsion reaches `force` (kcal/mol/Å), to 1e-12 Å, if
 // it does so between 1 Å and `outermost`, where it must be weaker.
-std::optional<double> find_repulsion(const Simulation& simulation, double force, double outermost);
+std::optional<double> repulsion_distance(const Simulation& simulation, double force,
+                                         double outermost);
 
 // The outermost distance (Å) where repulsion turns into attraction, between 1 and 30 Å.
-std::optional<double> find_equilibrium(const Simulation& simulation);
+std::optional<double> equilibrium_distance(const Simulation& simulation);
 
 }  // namespace palpa

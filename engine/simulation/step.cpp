@@ -52,10 +52,14 @@ StepReport step_simulation(Simulation& simulation, const HandPose& hand,
     grab->travel_m = hand.travel_m;
     if (!std::isfinite(distance)) return {felt, 0, false};
 
+    const double before = guide->distance;
     move_grabbed(simulation, distance);
     StepReport report{build_touch_model(simulation, hand), move.distance, true};
     report.touch.displacement_gain = move.displacement_gain;
-    report.finite = report.touch.force_newton.allFinite();
+    if (!report.touch.force_newton.allFinite()) {
+        move_grabbed(simulation, before);
+        report.finite = false;
+    }
     return report;
 }
 

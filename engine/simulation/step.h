@@ -5,7 +5,8 @@
 
 namespace palpa {
 
-// What a step found. A step that is not finite has not moved anything.
+// What a step found. A step that is not finite has moved nothing; its touch model says what was not
+// finite, so that the servo stops, unless it was the hand's pose.
 struct [[nodiscard]] StepReport {
     TouchModel touch;  // for the hand, one period later
     double move = 0;   // Å, of the grabbed molecule

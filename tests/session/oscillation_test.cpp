@@ -23,27 +23,27 @@ TEST_CASE("held at rest, the plain loop at 14 ms oscillates in a medium hand",
           "[session][coupling]") {
     const Summary summary = test::run_water(held("14", "medium"));
 
-    CHECK_THAT(summary.ripple.rms, WithinAbs(1.08, 0.1));
-    CHECK_THAT(summary.ripple.hertz, WithinAbs(6.6, 0.4));
+    CHECK_THAT(summary.ripple->rms, WithinAbs(1.08, 0.1));
+    CHECK_THAT(summary.ripple->hertz, WithinAbs(6.6, 0.4));
     REQUIRE(summary.warnings.size() == 1);
-    CHECK_THAT(summary.warnings[0], Catch::Matchers::Contains("may vibrate"));
+    CHECK_THAT(summary.warnings[0], Catch::Matchers::Contains("vibrates"));
 }
 
 TEST_CASE("held at rest, the plain loop's ripple follows the period", "[session][coupling]") {
-    CHECK(test::run_water(held("1", "medium")).ripple.rms < 0.02);
-    CHECK_THAT(test::run_water(held("5", "medium")).ripple.rms, WithinAbs(0.485, 0.05));
-    CHECK_THAT(test::run_water(held("83", "medium")).ripple.rms, WithinAbs(1.32, 0.15));
+    CHECK(test::run_water(held("1", "medium")).ripple->rms < 0.02);
+    CHECK_THAT(test::run_water(held("5", "medium")).ripple->rms, WithinAbs(0.485, 0.05));
+    CHECK_THAT(test::run_water(held("83", "medium")).ripple->rms, WithinAbs(1.32, 0.15));
 }
 
 TEST_CASE("enough friction stops the shaking of a firm hand at 14 ms", "[session][coupling]") {
-    CHECK(test::run_water(held("14", "firm", "0.26")).ripple.rms < 0.02);
+    CHECK(test::run_water(held("14", "firm", "0.26")).ripple->rms < 0.02);
 }
 
 TEST_CASE("the default is calm, and the attraction of 0.322 nN is felt as 0.896 N",
           "[session][coupling]") {
     const Summary summary = test::run_water({});
 
-    CHECK(summary.ripple.rms < 0.02);
+    CHECK(summary.ripple->rms < 0.02);
     CHECK_THAT(summary.largest_attraction_N, WithinAbs(0.896, 0.01));
     // In to 3 nN, which eq. 2 plays as 2.12 N; friction keeps up to 0.26 N of the last bit.
     CHECK(summary.largest_repulsion_N > 1.86);

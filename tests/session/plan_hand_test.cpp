@@ -39,7 +39,7 @@ TEST_CASE("without friction or delay a slow stroke peaks at the force it was pla
                          "encoder_step_mm=0", "stroke_s=6", "seconds=15"});
 
     const Simulation simulation = load_simulation(test::water_scene());
-    const double planned = find_repulsion(simulation, peak_nN / 0.0694770, 7).value();
+    const double planned = repulsion_distance(simulation, peak_nN / 0.0694770, 7).value();
     CHECK(summary.closest_angstrom == Approx(planned).margin(0.005));
 }
 

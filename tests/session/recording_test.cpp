@@ -22,7 +22,7 @@ Summary record(const fs::path& scene_path, const fs::path& folder,
     Simulation simulation = load_simulation(scene);
     EmulatedOmni device(build_emulated_omni(scene, simulation));
     Recording recording(folder, scene);
-    return run_headless(scene, simulation, device, &recording, {});
+    return run_headless(scene, simulation, device, {}, &recording, {});
 }
 
 const fs::path water = PALPA_ROOT "/scenes/water";

@@ -98,7 +98,7 @@ TEST_CASE("the scene's line has the depth, rest, stiffness and attraction of the
           "[simulation][water]") {
     const Simulation simulation = load_simulation(test::water_scene());
 
-    const double r_eq = find_equilibrium(simulation).value();
+    const double r_eq = equilibrium_distance(simulation).value();
     const LineForce rest = force_along_line_at(simulation, r_eq);
     CHECK_THAT(rest.energy, WithinAbs(-6.594, 0.005));
     CHECK_THAT(r_eq, WithinAbs(2.767, 0.002));
@@ -116,8 +116,8 @@ TEST_CASE("the scene's line has the depth, rest, stiffness and attraction of the
     CHECK_THAT(strongest, WithinAbs(0.322, 0.002));
     CHECK_THAT(where, WithinAbs(3.10, 0.01));
 
-    CHECK_THAT(find_repulsion(simulation, 3 / nN, 7).value(), WithinAbs(2.473, 0.001));
-    CHECK_THAT(find_repulsion(simulation, 10 / nN, 7).value(), WithinAbs(2.325, 0.001));
+    CHECK_THAT(repulsion_distance(simulation, 3 / nN, 7).value(), WithinAbs(2.473, 0.001));
+    CHECK_THAT(repulsion_distance(simulation, 10 / nN, 7).value(), WithinAbs(2.325, 0.001));
     CHECK_THAT(force_along_line_at(simulation, 6.24).force * nN, WithinAbs(-0.020, 0.0005));
 }
 

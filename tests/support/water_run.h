@@ -15,8 +15,10 @@ namespace palpa::test {
 inline Summary run_water(const std::vector<std::string>& settings) {
     const SceneDescription scene = water_scene(settings);
     Simulation simulation = load_simulation(scene);
-    EmulatedOmni device(build_emulated_omni(scene, simulation));
-    return run_headless(scene, simulation, device, nullptr, {});
+    const EmulatedOmniSettings device_settings = build_emulated_omni(scene, simulation);
+    EmulatedOmni device(device_settings);
+    return run_headless(scene, simulation, device,
+                        list_warnings(scene, simulation, device_settings.script), nullptr, {});
 }
 
 }  // namespace palpa::test

@@ -81,7 +81,7 @@ class Cli(unittest.TestCase):
             "stroke=hold", "--set", "kick_N_s=0.005", "--json").stdout)
         self.assertAlmostEqual(summary["ripple_N"], 1.08, delta=0.1)
         self.assertAlmostEqual(summary["ripple_Hz"], 6.6, delta=0.4)
-        self.assertTrue(any("may vibrate" in warning for warning in summary["warnings"]))
+        self.assertTrue(any("vibrates" in warning for warning in summary["warnings"]))
 
     def test_the_same_command_twice_and_its_session_give_the_same_bytes(self):
         for name in ("a", "b"):
