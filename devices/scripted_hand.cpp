@@ -7,9 +7,8 @@
 namespace palpa {
 namespace {
 
-// A clutch takes a second: wait until the handle has caught up, press, carry, let it settle,
-// release.
-constexpr double wait_s = 0.2, press_s = 0.1, carry_s = 0.5, settle_s = 0.2;
+// A clutch takes 1.4 s: wait until the handle has caught up, press, carry, let it settle, release.
+constexpr double wait_s = 0.5, press_s = 0.1, carry_s = 0.5, settle_s = 0.3;
 // The hand turns back this far before the stop, and carries the handle to as far from the other.
 constexpr double margin_m = 0.005;
 
@@ -26,7 +25,8 @@ ScriptedHand::Wish ScriptedHand::step(double tick_s) noexcept {
     const double before = last_x_m_;
     if (clutch_time_s_ < 0) {
         const double next = find_target(script_.path, script_time_s_) + shift_m_;
-        if (std::abs(next) > reach_m_ && std::abs(next) > std::abs(before)) {
+        // A nanometre over the edge is rounding.
+        if (std::abs(next) > reach_m_ + 1e-9 && std::abs(next) > std::abs(before)) {
             clutch_time_s_ = 0;
             carry_from_m_ = before;
             carry_m_ = std::copysign(reach_m_, -next) - before;

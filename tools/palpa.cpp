@@ -11,6 +11,7 @@
 #include <exception>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <vector>
 
 namespace {
@@ -106,7 +107,13 @@ int run_program(int argc, char** argv) {
 
 int main(int argc, char** argv) {
     try {
-        return run_program(argc, argv);
+        const int code = run_program(argc, argv);
+        if (std::fflush(stdout) == 0) return code;
+        fmt::print(stderr, "palpa: the output cannot be written\n");
+        return bad_input;
+    } catch (const std::system_error&) {  // what fmt throws when it cannot print
+        fmt::print(stderr, "palpa: the output cannot be written\n");
+        return bad_input;
     } catch (const palpa::LoadError& error) {
         fmt::print(stderr, "{}\n", error.what());
         return bad_input;

@@ -72,6 +72,18 @@ const ResidueAtom* find_template(const ForceField& force_field, const AtomName& 
     return nullptr;
 }
 
+// A template whose atoms do not add up to its own charge has a slip in one of them.
+void check_charge(const std::string& name, const Residue& residue, Missing& missing) {
+    double sum = 0;
+    for (const ResidueAtom& atom : residue.atoms) sum += atom.charge;
+    if (std::abs(sum - residue.charge) > 1e-3) {
+        missing.add(residue.place,
+                    fmt::format("residue '{}' is given {} e, but its atoms add up to "
+                                "{:.4f} e",
+                                name, residue.charge, sum));
+    }
+}
+
 // A residue that the structure holds only in part would be charged wrongly.
 void check_complete(const ForceField& force_field, const Structure& structure,
                     std::string_view segment, Missing& missing) {
@@ -86,6 +98,7 @@ void check_complete(const ForceField& force_field, const Structure& structure,
     for (const auto& [residue, atoms] : present) {
         const auto found = force_field.residues.find(residue.second);
         if (found == force_field.residues.end()) continue;
+        check_charge(found->first, found->second, missing);
         for (const ResidueAtom& atom : found->second.atoms) {
             if (atoms.contains(atom.name)) continue;
             missing.add({structure.file, lines.at(residue), 0},

@@ -21,6 +21,9 @@ std::string read_text_file(const std::filesystem::path& path) {
     if (std::filesystem::is_directory(path, error)) {
         throw LoadError({path.string()}, "is a folder, a file was expected");
     }
+    if (!std::filesystem::is_regular_file(path, error)) {
+        throw LoadError({path.string()}, "is no regular file");
+    }
     errno = 0;
     std::ifstream file(path, std::ios::binary);
     std::ostringstream content;

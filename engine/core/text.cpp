@@ -94,7 +94,8 @@ std::optional<std::int64_t> find_integer(std::string_view text) {
 std::string_view find_near_name(std::string_view name, std::span<const std::string_view> names) {
     if (name.empty()) return {};
     std::string_view best;
-    std::size_t fewest = std::max<std::size_t>(1, name.size() / 3) + 1;
+    // A third of the letters, at least one, but never all of them.
+    std::size_t fewest = std::min(std::max<std::size_t>(1, name.size() / 3), name.size() - 1) + 1;
     for (const std::string_view candidate : names) {
         const std::size_t edits = edit_distance(name, candidate);
         if (edits < fewest) {

@@ -38,6 +38,13 @@ TextPlace place_of(const toml::source_region& source) {
     return place;
 }
 
+// A number that is seen to be no whole one.
+std::string real_text(double value) {
+    std::string text = fmt::format("{}", value);
+    if (text.find_first_not_of("-0123456789") == std::string::npos) text += ".0";
+    return text;
+}
+
 // What a node holds, as a person would call it.
 std::string kind_of(const toml::node& node) {
     switch (node.type()) {
@@ -50,7 +57,7 @@ std::string kind_of(const toml::node& node) {
         case toml::node_type::integer:
             return fmt::format("{}", node.ref<std::int64_t>());
         case toml::node_type::floating_point:
-            return fmt::format("{}", node.ref<double>());
+            return real_text(node.ref<double>());
         case toml::node_type::boolean:
             return node.ref<bool>() ? "true" : "false";
         case toml::node_type::none:
@@ -235,7 +242,9 @@ public:
             };
             const std::optional<double> a = number(0), b = number(1);
             if (!a || !b || !std::isfinite(*a) || !std::isfinite(*b)) {
-                return problem(entry, expected(field, entry, "a pair of finite numbers"));
+                return problem(entry, fmt::format("an entry of '{}' is no pair; expected a pair of "
+                                                  "finite numbers, [0.5, 10.0]",
+                                                  full_key(field.key)));
             }
             value.push_back({*a, *b});
         }
@@ -399,6 +408,16 @@ void check_ranges(const SceneDescription& scene, Reader& reader) {
     }
 }
 
+// ---- before reading ---------------------------------------------------------------------------
+
+// The TOML reader follows dotted keys by recursion, without a limit of its own.
+void check_dots(std::string_view line, const TextPlace& place) {
+    constexpr std::ptrdiff_t most = 100;
+    if (std::count(line.begin(), line.end(), '.') > most) {
+        throw LoadError(place, fmt::format("more than {} dots in one line", most));
+    }
+}
+
 // ---- settings from the command line ----------------------------------------------------------
 
 // The full key that "mode" or "coupling.mode" means.
@@ -411,6 +430,11 @@ std::string full_setting_key(const std::string& key, const TextPlace& place) {
         const std::string_view last = std::string_view(field.key).substr(field.key.rfind('.') + 1);
         last_parts.push_back(last);
         if (field.key == key) return key;
+        if (field.key.starts_with(key + ".")) {
+            throw LoadError(
+                place, fmt::format("'{}' is a table; expected one of its keys, such as {}", key,
+                                   field.key));
+        }
         if (last == key) matches.push_back(field.key);
     }
     // A field of NAME is one of every molecule.
@@ -436,8 +460,32 @@ void merge(toml::table from, toml::table& onto) {
     }
 }
 
+// The value of a setting as TOML: as it stands, or what a person means by .5 and by a bare word.
+std::string setting_value(std::string_view text, const TextPlace& place) {
+    const auto is_toml = [](const std::string& value) {
+        try {
+            (void)toml::parse(std::string_view(value));
+            return true;
+        } catch (const toml::parse_error&) {
+            return false;
+        }
+    };
+    const std::string value(text);
+    if (is_toml("x = " + value)) return value;
+    if (const std::optional<double> number = find_real(text)) return real_text(*number);
+    if (text.empty() || text.find_first_of("\"'\\[]{}=#") != std::string_view::npos) {
+        throw LoadError(place, "the value is neither TOML nor a bare word");
+    }
+    return "\"" + value + "\"";
+}
+
 void apply_setting(const std::string& setting, toml::table& root) {
+    const bool printable = std::none_of(setting.begin(), setting.end(), [](char letter) {
+        return static_cast<unsigned char>(letter) < 0x20 || letter == 0x7f;
+    });
+    if (!printable) throw LoadError({"--set"}, "a setting is one line of printable text");
     const TextPlace place{"--set " + setting};
+    check_dots(setting, place);
     const std::size_t equals = setting.find('=');
     const std::string left(trimmed(std::string_view(setting).substr(0, equals)));
     if (equals == std::string::npos || left.empty()) {
@@ -447,22 +495,13 @@ void apply_setting(const std::string& setting, toml::table& root) {
     if (key.starts_with('.') || key.ends_with('.') || key.find("..") != std::string::npos) {
         throw LoadError(place, fmt::format("'{}' is no key", key));
     }
-    const std::string value(trimmed(std::string_view(setting).substr(equals + 1)));
-    const auto parse = [&](const std::string& text) {
-        return toml::parse(std::string_view(text), std::string_view(place.file));
-    };
+    const std::string value =
+        setting_value(trimmed(std::string_view(setting).substr(equals + 1)), place);
     try {
-        merge(parse(key + " = " + value), root);
+        merge(toml::parse(std::string_view(key + " = " + value), std::string_view(place.file)),
+              root);
     } catch (const toml::parse_error&) {
-        // Not TOML: a word, then.
-        const bool word =
-            !value.empty() && value.find_first_of("\"'\\\n[]{}=#") == std::string::npos;
-        if (!word) throw LoadError(place, "the value is neither TOML nor a bare word");
-        try {
-            merge(parse(key + " = \"" + value + "\""), root);
-        } catch (const toml::parse_error&) {
-            throw LoadError(place, fmt::format("'{}' is no key", key));
-        }
+        throw LoadError(place, fmt::format("'{}' is no key", key));
     }
 }
 
@@ -470,12 +509,16 @@ void apply_setting(const std::string& setting, toml::table& root) {
 
 SceneDescription parse_scene(std::string_view text, const fs::path& file,
                              std::span<const std::string> settings) {
+    std::size_t line_number = 0;
+    for (const std::string_view line : split_lines(text)) {
+        check_dots(line, {file.string(), ++line_number, 1});
+    }
     toml::table root;
     try {
         root = toml::parse(text, std::string_view(file.string()));
     } catch (const toml::parse_error& error) {
         std::string what(error.description());
-        if (what.starts_with("Error")) what[0] = 'e';
+        if (!what.empty() && what[0] >= 'A' && what[0] <= 'Z') what[0] += 'a' - 'A';
         throw LoadError(place_of(error.source()), what);
     }
     if (root.empty()) {

@@ -61,8 +61,9 @@ std::vector<std::string> list_warnings(const SceneDescription& scene, const Simu
     }
     const double last_move = script.path.empty() ? 0 : script.path.back().time_s;
     if (last_move > scene.seconds) {
-        warnings.push_back(fmt::format("the stroke takes {} s, the run only {} s (run.seconds)",
-                                       last_move, scene.seconds));
+        warnings.push_back(
+            fmt::format("the stroke takes {:.6g} s, the run only {:.6g} s (run.seconds)", last_move,
+                        scene.seconds));
     }
     return warnings;
 }

@@ -184,3 +184,11 @@ TEST_CASE("a pair that NBFIX would change is refused where it is needed", "[char
         CHECK(table.size() == 4);
     }
 }
+
+TEST_CASE("a residue whose atoms do not add up to its charge is told", "[charmm][assign]") {
+    std::string text(water_and_ions);
+    text.replace(text.find("ATOM H2 HT 0.417"), 16, "ATOM H2 HT 0.451");
+
+    CHECK(error_of(parsed(text + "END\n"), two_waters, "A") ==
+          "a.str:6: residue 'TIP3' is given 0 e, but its atoms add up to 0.0340 e");
+}

@@ -1,5 +1,6 @@
 #include "devices/emulated_omni.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -129,4 +130,23 @@ TEST_CASE("the same settings give the same motion to the last bit", "[devices][o
         REQUIRE(a.true_position_m() == b.true_position_m());
         REQUIRE(a.read().buttons == b.read().buttons);
     }
+}
+
+TEST_CASE("stops hold the lightest and the heaviest handle that a scene may have",
+          "[devices][omni]") {
+    const double inertia = GENERATE(0.001, 0.002, 0.01, 10.0);
+    EmulatedOmniSettings settings = bare();
+    settings.dynamics.inertia_kg = inertia;
+    settings.script.kick_N_s = 0.1;
+    EmulatedOmni omni(settings);
+
+    double widest = 0;
+    for (int i = 0; i < 5000; ++i) {
+        omni.write(Vec3::Zero());
+        widest = std::max(widest, std::abs(omni.true_position_m().x()));
+    }
+
+    // 100 m/s, at worst, go 25 mm in a sub-step; the stop turns them within a few.
+    CHECK(widest < 0.5);
+    CHECK(std::abs(omni.true_position_m().x()) < 0.09);
 }

@@ -69,3 +69,23 @@ TEST_CASE("a kick gives its impulse within ten milliseconds after one second", "
     CHECK(hand.kick_newton(0.999) == 0);
     CHECK(hand.kick_newton(1.0) == Approx(0.5));
 }
+
+TEST_CASE("a path that begins outside of the workspace is begun at its edge", "[devices][hand]") {
+    const HandScript script{.path = {{0.5, 0.2}, {2.5, 0.1}}};
+    ScriptedHand hand(script, 0.08);
+
+    CHECK(hand.start_m() == Approx(0.075));
+    ScriptedHand::Wish wish;
+    for (int i = 0; i < 4000; ++i) {
+        wish = hand.step(tick);
+        CHECK(wish.buttons == 0);
+    }
+    CHECK(wish.x_m == Approx(0.075 - 0.1));
+}
+
+TEST_CASE("a clutch ends inside the workspace, from wherever it began", "[devices][hand]") {
+    const HandScript script{.path = {{0.1, -0.06}, {0.6, 0.5}, {1.0, 0.5}, {1.6, -0.3}}};
+    ScriptedHand hand(script, 0.08);
+
+    for (int i = 0; i < 20'000; ++i) CHECK(std::abs(hand.step(tick).x_m) < 0.08);
+}

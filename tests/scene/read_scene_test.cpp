@@ -166,7 +166,7 @@ TEST_CASE("a value of the wrong type is told with what it is and should be", "[s
         {"[coupling]\nclamp_N = 2020-01-01", 18, 11, "is a date or time; expected a number"},
         {"[hand]\nstart_angstrom = \"far\"", 18, 18, "expected a number"},
         {"[hand]\ncycles = 1.0", 18, 10,
-         "'hand.cycles' is 1; expected a whole number from 1 to 10000"},
+         "'hand.cycles' is 1.0; expected a whole number from 1 to 10000"},
         {"[hand]\ncycles = \"1\"", 18, 10, "expected a whole number"},
         {"[hand]\ngrip = 2", 18, 8, "'hand.grip' is 2; expected one of none, light"},
         {"[hand]\ngrip = \"frim\"", 18, 8, "expected one of none, light, slack, medium, firm"},
@@ -175,7 +175,7 @@ TEST_CASE("a value of the wrong type is told with what it is and should be", "[s
         {"[coupling]\nmode = 2.0", 18, 8, "expected one of 1, 2, 3, 4, 5"},
         {"[hand]\npath = 3", 18, 8, "expected a list of pairs"},
         {"[hand]\npath = [[0, 1], 3]", 18, 17,
-         "'hand.path' is 3; expected a pair of finite numbers"},
+         "an entry of 'hand.path' is no pair; expected a pair of finite numbers"},
         {"[hand]\npath = [[0, 1], [3]]", 18, 17, "expected a pair of finite numbers"},
         {"[hand]\npath = [[0, 1, 2]]", 18, 9, "expected a pair of finite numbers"},
         {"[hand]\npath = [[0, \"1\"]]", 18, 9, "expected a pair of finite numbers"},
@@ -446,4 +446,46 @@ TEST_CASE("files of a scene are sought beside it, wherever one stands", "[scene]
 
     CHECK(scene.force_field.files[0] == folder.path() / "tip3p.str");
     CHECK(scene.molecules[0].structure == folder.path() / "dimer.crd");
+}
+
+TEST_CASE("numbers as people type them are taken from settings", "[scene][settings]") {
+    CHECK(with({"clamp_N=.5"}).coupling.clamp_N == 0.5);
+    CHECK(with({"clamp_N=2."}).coupling.clamp_N == 2);
+    CHECK(with({"clamp_N=+1e0"}).coupling.clamp_N == 1);
+}
+
+TEST_CASE("a setting is one line, and a table is no value", "[scene][settings]") {
+    const auto error_with = [](const std::string& setting) -> std::string {
+        try {
+            with({setting});
+        } catch (const LoadError& error) {
+            return error.what();
+        }
+        return "no error";
+    };
+
+    CHECK(error_with("title=\"a\"\nseconds=1") == "--set: a setting is one line of printable text");
+    CHECK_THAT(error_with("hand=3"), Contains("'hand' is a table; expected one of its keys"));
+    CHECK_THAT(error_with("mode=6"), !Contains("did you mean"));
+    CHECK_THAT(error_with("mode=2.0"), Contains("'coupling.mode' is 2.0; expected one of"));
+    CHECK_THAT(error_with("seed=1e3"), Contains("'run.seed' is 1000.0; expected a whole number"));
+}
+
+TEST_CASE("a key of thousands of dots is refused before it is followed", "[scene][errors]") {
+    std::string key = "a";
+    for (int i = 0; i < 40'000; ++i) key += ".a";
+
+    CHECK_THAT(error_of(base + key + " = 1\n"),
+               StartsWith(at(17, 1) + "more than 100 dots in one line"));
+    CHECK_THROWS_AS(with({key + "=1"}), LoadError);
+}
+
+TEST_CASE("a scene knows where its fields stand", "[scene][read]") {
+    const SceneDescription scene = with({"mode=3"});
+
+    CHECK(scene.place_of("grab.molecule").line > 0);
+    CHECK(scene.place_of("coupling.mode").file == "--set mode=3");
+    CHECK(scene.place_of("run.seed").line == 0);  // a default stands nowhere
+    CHECK(scene.places.contains("coupling.mode"));
+    CHECK_FALSE(scene.places.contains("run.seed"));
 }

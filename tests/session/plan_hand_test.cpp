@@ -63,3 +63,19 @@ TEST_CASE("a path is taken as the scene gives it", "[session][hand]") {
 TEST_CASE("a force that the molecules never reach is an error", "[session][hand]") {
     CHECK_THROWS_AS(plan({"hand.start_angstrom=2.4"}), LoadError);
 }
+
+TEST_CASE("a fast path beyond the workspace takes the molecule all its way", "[session][hand]") {
+    // 0.5 m at 0.25e9 are 20 Å; the handle lags a little behind the hand when the clutch is
+    // pressed.
+    const Summary summary = test::run_water(
+        {"stroke=path", "hand.path=[[0.5, 0], [1.5, 500]]", "seconds=12", "friction_N=0"});
+
+    CHECK(summary.last_angstrom == Approx(27).margin(0.1));
+}
+
+TEST_CASE("a stroke that no hand could follow is an error at its key", "[session][hand]") {
+    CHECK_THROWS_WITH(
+        plan({"stroke=path", "hand.path=[[0, 0], [0.1, 500]]"}),
+        Catch::Matchers::Contains("--set hand.path") && Catch::Matchers::Contains("9.38 m/s"));
+    CHECK_THROWS_WITH(plan({"stroke_s=0.02"}), Catch::Matchers::Contains("--set stroke_s=0.02"));
+}

@@ -118,3 +118,41 @@ TEST_CASE("a folder that holds something else is left alone", "[session][recordi
     CHECK_THROWS_AS(Recording(folder.path() / "thesis.tex" / "run", test::water_scene()),
                     LoadError);
 }
+
+TEST_CASE("inputs of one name from several folders stay apart", "[session][recording]") {
+    const test::TemporaryFolder folder;
+    const fs::path scene = folder.path() / "scene";
+    fs::copy(water, scene);
+    fs::create_directories(scene / "sub");
+    // The same file name twice, and a third file that is called as a naive copy would be.
+    const std::string dimer = read_text_file(scene / "dimer.crd");
+    std::ofstream(scene / "sub" / "dimer.crd") << dimer;
+    std::ofstream(scene / "2-dimer.crd") << dimer;
+    const std::vector<std::string> settings{
+        "seconds=0.1", "molecules.moved.structure=sub/dimer.crd",
+        "molecules.third.structure=2-dimer.crd", "molecules.third.segment=FIX",
+        "molecules.third.reference_atom=OH2"};
+
+    record(scene, folder.path() / "a", settings);
+    record(folder.path() / "a" / "session.toml", folder.path() / "b", {});
+
+    CHECK(std::distance(fs::directory_iterator(folder.path() / "a" / "inputs"), {}) == 4);
+    CHECK(read_text_file(folder.path() / "a" / "trace.csv") ==
+          read_text_file(folder.path() / "b" / "trace.csv"));
+}
+
+TEST_CASE("only our own recordings are replaced, and whole", "[session][recording]") {
+    const test::TemporaryFolder folder;
+    std::ofstream(folder.path() / "session.toml") << "title = \"a scene of that name\"\n";
+    CHECK_THROWS_AS(Recording(folder.path(), test::water_scene()), LoadError);
+
+    fs::remove(folder.path() / "session.toml");
+    record(water, folder.path(), {"seconds=0.1"});
+    std::ofstream(folder.path() / "inputs" / "stale.crd") << "from before";
+    record(water, folder.path(), {"seconds=0.1"});
+    CHECK_FALSE(fs::exists(folder.path() / "inputs" / "stale.crd"));
+
+    fs::remove(folder.path() / "trace.csv");
+    fs::create_directory(folder.path() / "trace.csv");
+    CHECK_THROWS_AS(Recording(folder.path(), test::water_scene()), LoadError);
+}

@@ -51,6 +51,16 @@ class CheckLayers(unittest.TestCase):
         self.assertEqual(code, 1)
         self.assertIn("engine/core/a.cpp:2: 'core' may not include 'haptics'", output)
 
+    def test_an_include_in_angle_brackets_or_after_a_comment_is_seen(self):
+        for line in ("#include <haptics/a.h>", '/* why */ #include "haptics/a.h"'):
+            with self.subTest(line=line):
+                self.module("core", [])
+                path = self.root / "engine" / "core" / "a.cpp"
+                path.write_text('/* two\nlines */\n' + line + "\n")
+                code, output = check(self.root)
+                self.assertEqual(code, 1)
+                self.assertIn("engine/core/a.cpp:3: 'core' may not include 'haptics'", output)
+
     def test_a_cycle_fails_and_is_spelled_out(self):
         self.module("core", ["haptics"])
         code, output = check(self.root)

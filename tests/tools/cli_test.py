@@ -129,6 +129,21 @@ class Cli(unittest.TestCase):
             if row["name"] == "step/water":
                 self.assertLess(row["error"], 1e-5)
 
+    def test_check_tells_what_the_line_is_like(self):
+        result = self.palpa("run", "--check", WATER)
+        for text in ("-6.594 kcal/mol at 2.767 Å, 29.3 N/m", "0.322 nN at 3.10 Å, felt as 0.896 N",
+                     "3 nN at 2.473 Å, felt as 2.120 N", "663 N/m felt at 2.760 Å"):
+            self.assertIn(text, result.stdout)
+        self.assertIn("vibrates", self.palpa("run", "--check", WATER, "--mode", "1").stdout)
+
+    def test_lost_output_is_no_success(self):
+        for arguments in (["run", WATER, "--seconds", "0.1"], ["run", "--keys"], ["bench", WATER]):
+            with self.subTest(arguments=arguments), open("/dev/full", "w") as full:
+                result = subprocess.run([PROGRAM, *map(str, arguments)], stdout=full,
+                                        stderr=subprocess.PIPE, text=True)
+                self.assertEqual(result.returncode, 2)
+                self.assertIn("the output cannot be written", result.stderr)
+
     # ---- bad input: one line, exit code 2, nothing half-written
 
     def test_guarded_mode_is_refused_in_a_sentence(self):

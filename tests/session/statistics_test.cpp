@@ -1,0 +1,59 @@
+#include "session/statistics.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <utility>
+
+using namespace palpa;
+
+namespace {
+
+ServoTick tick_of(double force, double distance) {
+    ServoTick tick;
+    tick.sent_newton.x() = force;
+    tick.touch.molecule_angstrom.x() = distance;
+    return tick;
+}
+
+}  // namespace
+
+TEST_CASE("the extremes of a run are kept with their signs", "[session][statistics]") {
+    Statistics statistics(1e-3);
+    for (const auto& [force, distance] :
+         {std::pair{0.2, 5.0}, {-0.9, 3.1}, {2.1, 2.5}, {-0.1, -0.4}, {0.0, -6.0}}) {
+        statistics.add(tick_of(force, distance));
+    }
+
+    const Summary summary = statistics.summary();
+
+    CHECK(summary.largest_attraction_N == 0.9);
+    CHECK(summary.largest_repulsion_N == 2.1);
+    CHECK(summary.closest_angstrom == 0.4);
+    CHECK(summary.last_angstrom == -6);
+    CHECK(summary.went_through);
+    CHECK(summary.ticks == 5);
+    CHECK_FALSE(summary.ripple.has_value());
+}
+
+TEST_CASE("step times are told to a percent, whatever their size", "[session][statistics]") {
+    const double unit = GENERATE(1e-8, 1e-6, 1e-3, 1.0);
+    Statistics statistics(1e-3);
+    for (int i = 1; i <= 1000; ++i) statistics.add_step(i * unit, i % 10 != 0);
+
+    const Summary summary = statistics.summary();
+
+    CHECK(summary.step_median_us == Approx(500 * unit * 1e6).epsilon(0.01));
+    CHECK(summary.step_p99_us == Approx(990 * unit * 1e6).epsilon(0.01));
+    CHECK(summary.steps == 1000);
+    CHECK(summary.steps_not_finite == 100);
+}
+
+TEST_CASE("ripple is that of the last four seconds", "[session][statistics]") {
+    Statistics statistics(1e-3);
+    for (int i = 0; i < 5000; ++i) statistics.add(tick_of(std::sin(0.05 * i), 3));  // 8 Hz
+    const double loud = statistics.summary().ripple.value().rms;
+    for (int i = 0; i < 4000; ++i) statistics.add(tick_of(0.5, 3));
+
+    CHECK(loud == Approx(std::sqrt(0.5)).epsilon(0.05));
+    CHECK(statistics.summary().ripple.value().rms < 1e-12);
+}

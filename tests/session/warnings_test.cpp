@@ -1,0 +1,73 @@
+// What the program says about settings that make trouble, against what then happens.
+#include "core/units.h"
+#include "haptics/gains.h"
+#include "simulation/probe.h"
+#include "tests/support/water_run.h"
+
+#include <catch2/catch.hpp>
+#include <string>
+#include <tuple>
+#include <vector>
+
+using namespace palpa;
+using Catch::Matchers::Contains;
+using Catch::Matchers::WithinRel;
+
+TEST_CASE("a setting is called shaking where it shakes, and only there", "[session][coupling]") {
+    const auto [hand, period_ms, delay_ticks] = GENERATE(table<std::string, int, int>({
+        {"light", 1, 1},
+        {"slack", 1, 1},
+        {"light", 1, 0},
+        {"medium", 1, 1},
+        {"medium", 5, 1},
+        {"firm", 1, 1},
+        {"firm", 5, 1},
+        {"firm", 14, 1},
+        {"firm-grip", 14, 1},
+    }));
+    INFO(hand << ", " << period_ms << " ms, " << delay_ticks);
+    const Summary summary =
+        test::run_water({"mode=2", "grip=" + hand, "run.period_ms=" + std::to_string(period_ms),
+                         "servo_delay_ticks=" + std::to_string(delay_ticks), "friction_N=0",
+                         "encoder_step_mm=0", "stroke=hold", "kick_N_s=0.005", "seconds=20"});
+
+    const bool shakes = summary.ripple.value().rms > 0.02;
+    CHECK(summary.warnings.empty() == !shakes);
+}
+
+TEST_CASE("the stiffness felt is the paper's", "[session][coupling]") {
+    const SceneDescription scene = test::water_scene({"mode=2"});
+    const Simulation simulation = load_simulation(scene);
+    const auto felt_at = [&](double distance) {
+        const LineForce line = force_along_line_at(simulation, distance);
+        return hand_force_slope(simulation.laws.force,
+                                line.force * units::newton_per_kcal_per_mol_angstrom) *
+               line.stiffness * units::newton_per_metre_per_kcal_per_mol_angstrom2 / 0.25e9;
+    };
+
+    CHECK_THAT(felt_at(equilibrium_distance(simulation).value()), WithinRel(646, 1e-3));
+    CHECK_THAT(stiffest_place(scene, simulation).newton_per_metre, WithinRel(663, 1e-3));
+    CHECK_THAT(stiffest_place(scene, simulation).angstrom, WithinRel(2.760, 1e-3));
+    const double wall =
+        repulsion_distance(simulation, 3e-9 / units::newton_per_kcal_per_mol_angstrom, 7).value();
+    CHECK_THAT(felt_at(wall), WithinRel(264, 2e-3));
+    // Eq. 3 falls to A_dmin where nothing pulls: fifty times stiffer.
+    const SceneDescription notched = test::water_scene({"mode=1"});
+    CHECK_THAT(stiffest_place(notched, load_simulation(notched)).newton_per_metre,
+               WithinRel(32'300, 2e-3));
+}
+
+TEST_CASE("a run that is too short for its stroke, or goes through, says so",
+          "[session][coupling]") {
+    const auto warnings = [](const std::vector<std::string>& settings) {
+        std::string all;
+        for (const std::string& warning : test::run_water(settings).warnings) all += warning + "; ";
+        return all;
+    };
+
+    CHECK_THAT(warnings({"stroke_s=20"}), Contains("the stroke takes 41.6 s, the run only 10 s"));
+    CHECK_THAT(warnings({"grip=firm", "stroke=path", "hand.path=[[0, 60], [3, -70], [4, -70]]",
+                         "hand.start_angstrom=4", "clamp_N=1"}),
+               Contains("through the other one"));
+    CHECK(warnings({}).empty());
+}
