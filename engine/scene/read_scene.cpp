@@ -470,7 +470,7 @@ std::string setting_value(std::string_view text, const TextPlace& place) {
             return false;
         }
     };
-    const std::string value(text);
+    std::string value(text);
     if (is_toml("x = " + value)) return value;
     if (const std::optional<double> number = find_real(text)) return real_text(*number);
     if (text.empty() || text.find_first_of("\"'\\[]{}=#") != std::string_view::npos) {

@@ -87,7 +87,8 @@ Summary run_headless(const SceneDescription& scene, Simulation& simulation, Devi
     const auto on_tick = [&](const ServoTick& tick) {
         statistics.add(tick);
         if (recording) recording->add(tick);
-        if (progress && ++done % ticks_between_progress == 0 && done < ticks) {
+        ++done;
+        if (progress && done % ticks_between_progress == 0 && done < ticks) {
             progress(static_cast<double>(done) / static_cast<double>(ticks));
         }
     };
