@@ -1,12 +1,16 @@
 // The program: reads the command line, calls one command, turns errors into exit codes.
 #include "core/load_error.h"
+#include "core/text.h"
 #include "core/version.h"
+#include "gpu/device.h"
 #include "tools/bench.h"
+#include "tools/render.h"
 #include "tools/run.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <optional>
@@ -75,6 +79,33 @@ void add_bench(CLI::App& program, palpa::BenchOptions& options) {
     add_set_option(bench, options.settings);
 }
 
+void add_render(CLI::App& program, palpa::RenderOptions& options) {
+    CLI::App& render = *program.add_subcommand("render", "A picture of a scene; needs no display");
+    render.add_option("scene", options.scene, "scene folder or file")->required();
+    render.add_option("-o,--output", options.image, "PNG file to write")->required();
+    render.add_option_function<std::string>(
+        "--size",
+        [&options](const std::string& text) {
+            const std::size_t by = text.find('x');
+            const auto width = palpa::find_integer(text.substr(0, by));
+            const auto height =
+                palpa::find_integer(by == std::string::npos ? "" : text.substr(by + 1));
+            if (!width || !height || *width < 1 || *height < 1 || *width > 1'000'000 ||
+                *height > 1'000'000) {
+                throw CLI::ValidationError("--size",
+                                           "'" + text + "' is no size; expected WIDTHxHEIGHT");
+            }
+            options.width = static_cast<std::uint32_t>(*width);
+            options.height = static_cast<std::uint32_t>(*height);
+        },
+        "WIDTHxHEIGHT in pixels, 1280x720 unless given");
+    render.add_option("--time", options.time_s, "seconds that the hand plays before the picture")
+        ->check(CLI::Range(0.0, 1e5));
+    render.add_option("--as", options.representation, "ball-and-stick, space-filling or licorice");
+    render.add_flag("!--no-arrow", options.arrow, "without the force on the molecule");
+    add_set_option(render, options.settings);
+}
+
 int run_program(int argc, char** argv) {
     CLI::App program("Palpa: feel molecules", "palpa");
     program.require_subcommand(1);
@@ -82,8 +113,10 @@ int run_program(int argc, char** argv) {
                              std::string(palpa::version_name) + " (" + palpa::commit_name + ")");
     palpa::RunOptions run;
     palpa::BenchOptions bench;
+    palpa::RenderOptions render;
     add_run(program, run);
     add_bench(program, bench);
+    add_render(program, render);
     const std::vector<CLI::App*> commands = program.get_subcommands({});
     const bool known = std::any_of(commands.begin(), commands.end(), [&](const CLI::App* command) {
         return argc > 1 && command->check_name(argv[1]);
@@ -100,6 +133,7 @@ int run_program(int argc, char** argv) {
         fmt::print(stderr, "palpa: {}; see palpa --help\n", error.what());
         return bad_input;
     }
+    if (program.got_subcommand("render")) return palpa::render_command(render);
     return program.got_subcommand("run") ? palpa::run_command(run) : palpa::bench_command(bench);
 }
 
@@ -113,6 +147,9 @@ int main(int argc, char** argv) {
         return bad_input;
     } catch (const std::system_error&) {  // what fmt throws when it cannot print
         fmt::print(stderr, "palpa: the output cannot be written\n");
+        return bad_input;
+    } catch (const palpa::GpuError& error) {
+        fmt::print(stderr, "palpa: {}\n", error.what());
         return bad_input;
     } catch (const palpa::LoadError& error) {
         fmt::print(stderr, "{}\n", error.what());

@@ -127,6 +127,26 @@ void check_nbfix(const ForceField& force_field, const AtomTable& table, std::set
     }
 }
 
+// The bonds inside each residue. A residue's atoms stand together in the table.
+void add_bonds(const ForceField& force_field, AtomRange range, AtomTable& table) {
+    const std::uint32_t end = range.first + range.count;
+    for (std::uint32_t first = range.first, next = first; first < end; first = next) {
+        const AtomName& residue = table.names[first];
+        std::map<std::string, std::uint32_t, std::less<>> by_name;
+        for (; next < end && table.names[next].number == residue.number &&
+               table.names[next].residue == residue.residue;
+             ++next) {
+            by_name[table.names[next].atom] = next;
+        }
+        for (const auto& [a, b] : force_field.residues.at(residue.residue).bonds) {
+            const auto from = by_name.find(a), to = by_name.find(b);
+            if (from != by_name.end() && to != by_name.end()) {
+                table.bonds.push_back({from->second, to->second});
+            }
+        }
+    }
+}
+
 }  // namespace
 
 AtomRange add_segment_atoms(const ForceField& force_field, const Structure& structure,
@@ -156,6 +176,7 @@ AtomRange add_segment_atoms(const ForceField& force_field, const Structure& stru
         used_types.insert(atom->type);
         added.names.push_back(name);
         added.positions.push_back(structure.positions[i]);
+        added.element.push_back(type->second.element);
         added.mass.push_back(type->second.mass);
         added.charge.push_back(atom->charge);
         added.sqrt_epsilon.push_back(std::sqrt(nonbonded->second.epsilon));
@@ -175,10 +196,12 @@ AtomRange add_segment_atoms(const ForceField& force_field, const Structure& stru
     const auto append = [](auto& to, auto& from) { to.insert(to.end(), from.begin(), from.end()); };
     append(table.names, added.names);
     append(table.positions, added.positions);
+    append(table.element, added.element);
     append(table.mass, added.mass);
     append(table.charge, added.charge);
     append(table.sqrt_epsilon, added.sqrt_epsilon);
     append(table.half_rmin, added.half_rmin);
+    add_bonds(force_field, range, table);
     return range;
 }
 

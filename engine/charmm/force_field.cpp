@@ -16,9 +16,9 @@ using Words = std::span<const std::string_view>;
 
 // Keywords count by their first four letters. Those of a topology file that carry nothing a rigid
 // molecule needs.
-constexpr std::array topology_passed_over = std::to_array<std::string_view>(
-    {"GROU", "BOND", "DOUB", "TRIP", "AROM", "ANGL", "THET", "DIHE", "IMPR", "IMPH",
-     "CMAP", "DONO", "ACCE", "IC",   "BILD", "PATC", "DELE", "DEFA", "AUTO", "DECL"});
+constexpr std::array topology_passed_over =
+    std::to_array<std::string_view>({"GROU", "ANGL", "THET", "DIHE", "IMPR", "IMPH", "CMAP", "DONO",
+                                     "ACCE", "IC", "BILD", "PATC", "DELE", "DEFA", "AUTO", "DECL"});
 constexpr std::array script_passed_over =
     std::to_array<std::string_view>({"SET", "IF", "RETU", "BOML", "WRNL"});
 
@@ -149,6 +149,9 @@ private:
         }
         if (keyword == "ATOM" && in_patch_) return;
         if (keyword == "ATOM") return parse_residue_atom(words);
+        for (const std::string_view bond : {"BOND", "DOUB", "TRIP", "AROM"}) {
+            if (keyword == bond) return parse_residue_bonds(words);
+        }
         if (!contains(topology_passed_over, keyword)) {
             fail(
                 fmt::format("'{}' is not a line of a topology file; expected MASS, RESI, ATOM or "
@@ -176,7 +179,7 @@ private:
         end_residue();
         const std::string residue = name(words, 1, "residue name");
         const auto [added, is_new] = into_.residues.emplace(
-            residue, Residue{real(words, 2, "residue's charge"), {}, place()});
+            residue, Residue{real(words, 2, "residue's charge"), {}, {}, place()});
         if (!is_new) {
             fail(fmt::format("residue '{}' again, first in {}", residue,
                              to_string(added->second.place)));
@@ -195,6 +198,16 @@ private:
             }
         }
         residue_->atoms.push_back(std::move(atom));
+    }
+
+    // BOND a b a b ...; bonds of patches are passed over like the rest of them.
+    void parse_residue_bonds(Words words) {
+        if (in_patch_) return;
+        if (!residue_) fail("a BOND line outside of a residue; expected a RESI line before it");
+        if (words.size() % 2 == 0) fail("a BOND line with an odd number of atoms; expected pairs");
+        for (std::size_t i = 1; i + 1 < words.size(); i += 2) {
+            residue_->bonds.push_back({std::string(words[i]), std::string(words[i + 1])});
+        }
     }
 
     void parse_parameters(const std::string& keyword, Words words) {

@@ -29,6 +29,7 @@ struct ResidueAtom {
 struct Residue {
     double charge = 0;  // e, as the RESI line states it
     std::vector<ResidueAtom> atoms;
+    std::vector<std::array<std::string, 2>> bonds;  // by atom name; a name may begin with + or -
     TextPlace place;
 };
 

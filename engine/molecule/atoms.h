@@ -2,6 +2,7 @@
 #pragma once
 #include "math/vec.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -39,10 +40,14 @@ struct AtomRange {
 struct AtomTable {
     std::vector<AtomName> names;
     std::vector<Vec3> positions;       // Å
+    std::vector<std::string> element;  // "O"; empty where the force field names none
     std::vector<double> mass;          // amu
     std::vector<double> charge;        // e
     std::vector<double> sqrt_epsilon;  // (kcal/mol)^(1/2), root of the Lennard-Jones well depth
     std::vector<double> half_rmin;     // Å, half the distance of the well's minimum
+
+    // Bonded pairs of atoms, by index.
+    std::vector<std::array<std::uint32_t, 2>> bonds;
 
     std::size_t size() const noexcept { return names.size(); }
 };

@@ -58,7 +58,8 @@ class Scripts(unittest.TestCase):
         found = set(re.findall(r"find_package\((\w+)", (ROOT / "CMakeLists.txt").read_text() +
                                (ROOT / "tests" / "CMakeLists.txt").read_text()))
         names = {"CLI11": "cli11", "Eigen3": "eigen3", "fmt": "fmt", "Catch2": "catch2",
-                 "nlohmann_json": "nlohmann-json", "tomlplusplus": "tomlplusplus"}
+                 "nlohmann_json": "nlohmann-json", "tomlplusplus": "tomlplusplus",
+                 "glm": "glm", "PNG": "libpng", "Vulkan": "vulkan"}
         for package in found - {"Threads", "Python3"}:
             self.assertIn(f'"{names[package]}"', vcpkg)
 

@@ -1,0 +1,39 @@
+// What one picture shows, as plain shapes. Lengths in Å, colours in linear RGB from 0 to 1.
+#pragma once
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <vector>
+
+namespace palpa {
+
+// `pick` names what a shape stands for; whoever asks which thing is at a pixel gets it back.
+struct SphereShape {
+    glm::vec3 centre{0};
+    float radius = 1;
+    glm::vec3 colour{1};
+    std::uint32_t pick = 0;
+};
+
+// A cylinder, or a cone where the radii differ; coloured in two halves. Flat at `a`, open at `b`.
+struct ConeShape {
+    glm::vec3 a{0}, b{0};
+    float radius_a = 1, radius_b = 1;
+    glm::vec3 colour_a{1}, colour_b{1};
+    std::uint32_t pick = 0;
+};
+
+struct FrameCamera {
+    glm::vec3 eye{0, 0, 10}, target{0}, up{0, 1, 0};
+    float vertical_angle = 0.6F;  // rad
+    float near = 0.1F, far = 1000;
+};
+
+struct FrameScene {
+    std::vector<SphereShape> spheres;
+    std::vector<ConeShape> cones;
+    FrameCamera camera;
+    glm::vec3 background{1};
+};
+
+}  // namespace palpa

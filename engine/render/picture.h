@@ -1,0 +1,22 @@
+// Pictures in memory, and as PNG files.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace palpa {
+
+// Rows from the top, pixels from the left.
+struct Picture {
+    std::uint32_t width = 0, height = 0;
+    std::vector<std::uint8_t> rgba;    // 4 bytes a pixel, sRGB
+    std::vector<std::uint32_t> picks;  // what is seen: a shape's `pick`, or nothing_seen
+    std::vector<float> depth;          // Å in front of the camera; infinity where nothing is
+
+    static constexpr std::uint32_t nothing_seen = UINT32_MAX;
+};
+
+// Writes the colours as PNG, whole or not at all. Throws LoadError if it cannot.
+void write_png(const std::filesystem::path& path, const Picture& picture);
+
+}  // namespace palpa

@@ -1,0 +1,43 @@
+#include "render/picture.h"
+
+#include "core/load_error.h"
+#include "tests/support/temporary_folder.h"
+
+#include <png.h>
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+using namespace palpa;
+
+TEST_CASE("a PNG holds the picture's colours, row by row from the top", "[render][picture]") {
+    const test::TemporaryFolder folder;
+    Picture picture{3, 2, {}, {}, {}};
+    for (std::uint8_t i = 0; i < 24; ++i) {
+        picture.rgba.push_back(i % 4 == 3 ? std::uint8_t{255} : static_cast<std::uint8_t>(10 * i));
+    }
+    const std::filesystem::path path = folder.path() / "a.png";
+
+    write_png(path, picture);
+
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION;
+    REQUIRE(png_image_begin_read_from_file(&image, path.string().c_str()) != 0);
+    image.format = PNG_FORMAT_RGBA;
+    std::vector<std::uint8_t> read(PNG_IMAGE_SIZE(image));
+    REQUIRE(png_image_finish_read(&image, nullptr, read.data(), 0, nullptr) != 0);
+    CHECK(image.width == 3);
+    CHECK(image.height == 2);
+    CHECK(read == picture.rgba);
+}
+
+TEST_CASE("a picture that cannot be written is a LoadError, and leaves nothing",
+          "[render][picture]") {
+    const test::TemporaryFolder folder;
+    const Picture picture{1, 1, {1, 2, 3, 255}, {}, {}};
+
+    CHECK_THROWS_AS(write_png(folder.path() / "nowhere" / "a.png", picture), LoadError);
+    CHECK_THROWS_AS(write_png(folder.path(), picture), LoadError);
+    CHECK(std::filesystem::is_empty(folder.path()));
+}

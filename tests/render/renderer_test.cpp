@@ -1,0 +1,154 @@
+// Facts that any right picture shows, whatever its colours: what is seen where, and how far away.
+#include "render/renderer.h"
+
+#include "tests/support/gpu.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <glm/geometric.hpp>
+#include <numbers>
+#include <vector>
+
+using namespace palpa;
+
+namespace {
+
+constexpr std::uint32_t width = 320, height = 240;
+
+std::size_t pixel_of(const FrameCamera& camera, const glm::vec3& point) {
+    const glm::vec3 there = project(camera, point, width, height);
+    return static_cast<std::size_t>(there.y) * width + static_cast<std::size_t>(there.x);
+}
+
+std::size_t count(const Picture& picture, std::uint32_t pick) {
+    std::size_t pixels = 0;
+    for (const std::uint32_t p : picture.picks) pixels += p == pick ? 1 : 0;
+    return pixels;
+}
+
+}  // namespace
+
+TEST_CASE("a sphere is seen at its centre, as near as its front", "[render][gpu]") {
+    GpuDevice device(test::validated());
+    Renderer renderer(device);
+    FrameScene scene;
+    scene.camera.eye = {1, 2, 12};
+    scene.camera.target = {1, 1, 0};
+    scene.spheres = {{{0, 0, 0}, 1.5F, {1, 0, 0}, 7}, {{3, 1, -2}, 1, {0, 1, 0}, 8}};
+
+    const Picture picture = renderer.draw(scene, width, height);
+
+    for (const SphereShape& sphere : scene.spheres) {
+        const std::size_t at = pixel_of(scene.camera, sphere.centre);
+        CHECK(picture.picks[at] == sphere.pick);
+        const glm::vec3 ray = sphere.centre - scene.camera.eye;
+        const float front = glm::length(ray) - sphere.radius;
+        // Along the axis of the camera, as depth is told.
+        const float cosine =
+            glm::dot(glm::normalize(ray), glm::normalize(scene.camera.target - scene.camera.eye));
+        CHECK(picture.depth[at] == Approx(front * cosine).epsilon(0.002));
+    }
+    CHECK(picture.picks[0] == Picture::nothing_seen);
+    CHECK(std::isinf(picture.depth[0]));
+    test::check_silent(device);
+}
+
+TEST_CASE("a sphere's outline is as large as perspective makes it", "[render][gpu]") {
+    GpuDevice device(test::validated());
+    Renderer renderer(device);
+    FrameScene scene;
+    scene.camera.eye = {0, 0, 10};
+    scene.spheres = {{{0, 0, 0}, 2, {1, 1, 1}, 1}};
+
+    const Picture picture = renderer.draw(scene, width, height);
+
+    // Seen under the angle asin(r/d), on a plane of height/2 per tan(angle/2).
+    const double radius = std::tan(std::asin(2.0 / 10)) / std::tan(0.3) * height / 2;
+    CHECK(static_cast<double>(count(picture, 1)) ==
+          Approx(std::numbers::pi * radius * radius).epsilon(0.01));
+}
+
+TEST_CASE("what is nearer hides what is behind it, sphere and cone alike", "[render][gpu]") {
+    GpuDevice device(test::validated());
+    Renderer renderer(device);
+    FrameScene scene;
+    scene.spheres = {{{0, 0, -3}, 1, {1, 0, 0}, 1}, {{0, 0, 2}, 0.5F, {0, 1, 0}, 2}};
+    scene.cones = {{{-3, 0, 0}, {3, 0, 0}, 0.4F, 0.4F, {0, 0, 1}, {0, 0, 1}, 3}};
+
+    const Picture picture = renderer.draw(scene, width, height);
+
+    CHECK(picture.picks[pixel_of(scene.camera, {0, 0, 2})] == 2);
+    CHECK(picture.picks[pixel_of(scene.camera, {1.5F, 0, 0})] == 3);
+    CHECK(picture.depth[pixel_of(scene.camera, {1.5F, 0, 0})] == Approx(10 - 0.4).epsilon(0.01));
+    CHECK(picture.picks[pixel_of(scene.camera, {0, 0.9F, -3})] == 1);
+    test::check_silent(device);
+}
+
+TEST_CASE("a cylinder covers what it covers from every side, a cone comes to its point",
+          "[render][gpu]") {
+    GpuDevice device(test::validated());
+    Renderer renderer(device);
+    const glm::vec3 axis =
+        GENERATE(glm::vec3(1, 0, 0), glm::vec3(0, 1, 0), glm::normalize(glm::vec3(1, 1, 1)),
+                 glm::normalize(glm::vec3(-1, 0.5F, 1)));
+    FrameScene scene;
+    scene.cones = {{-1.5F * axis, 1.5F * axis, 0.3F, 0.3F, {1, 0, 0}, {0, 1, 0}, 1}};
+
+    const Picture cylinder = renderer.draw(scene, width, height);
+    scene.cones[0].radius_b = 0.001F;
+    const Picture cone = renderer.draw(scene, width, height);
+
+    for (const float along : {-1.3F, -0.5F, 0.2F, 1.0F}) {
+        const std::size_t at = pixel_of(scene.camera, along * axis);
+        CHECK(cylinder.picks[at] == 1);
+        CHECK(cone.picks[at] == 1);
+    }
+    CHECK(cylinder.picks[pixel_of(scene.camera, 2.1F * axis)] == Picture::nothing_seen);
+    CHECK(static_cast<double>(count(cone, 1)) < 0.75 * static_cast<double>(count(cylinder, 1)));
+    test::check_silent(device);
+}
+
+TEST_CASE("forced staging draws the same picture to the bit", "[render][gpu]") {
+    FrameScene scene;
+    for (int i = 0; i < 50; ++i) {
+        scene.spheres.push_back({{std::sin(i), std::cos(1.7 * i), 0.1F * static_cast<float>(i)},
+                                 0.4F,
+                                 {0.5F, 0.5F, 0.5F},
+                                 static_cast<std::uint32_t>(i)});
+    }
+    GpuDevice direct(test::validated(false)), staged(test::validated(true));
+
+    const Picture a = Renderer(direct).draw(scene, width, height);
+    const Picture b = Renderer(staged).draw(scene, width, height);
+
+    CHECK(a.rgba == b.rgba);
+    CHECK(a.picks == b.picks);
+    test::check_silent(staged);
+}
+
+TEST_CASE("an empty scene is its background, a camera inside a sphere sees past it",
+          "[render][gpu]") {
+    GpuDevice device(test::validated());
+    Renderer renderer(device);
+    FrameScene scene;
+    scene.background = {0, 0, 1};
+    CHECK(renderer.draw(scene, 4, 4).rgba[2] == 255);
+
+    scene.spheres = {{scene.camera.eye, 1, {1, 1, 1}, 5}};
+    CHECK(count(renderer.draw(scene, width, height), 5) == 0);
+    test::check_silent(device);
+}
+
+TEST_CASE("a size of nothing or beyond the device is refused in a sentence", "[render][gpu]") {
+    GpuDevice device(test::validated());
+    Renderer renderer(device);
+    const FrameScene scene;
+
+    CHECK_THROWS_AS(renderer.draw(scene, 0, 10), GpuError);
+    CHECK_THROWS_AS(renderer.draw(scene, 10, 0), GpuError);
+    CHECK_THROWS_WITH(renderer.draw(scene, 1'000'000, 10),
+                      Catch::Matchers::Contains("a picture of 1000000x10; expected 1x1 to"));
+    test::check_silent(device);
+}

@@ -1,0 +1,77 @@
+"""palpa render from outside: a picture without a display, and one clear line where there is none."""
+import os
+import struct
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+PROGRAM = os.environ["PALPA_PROGRAM"]
+WATER = Path(os.environ["PALPA_ROOT"]) / "scenes" / "water"
+
+
+class Render(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.image = Path(self.folder.name) / "water.png"
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def render(self, *arguments, **environment):
+        clean = {key: value for key, value in os.environ.items()
+                 if key not in ("DISPLAY", "WAYLAND_DISPLAY")}
+        return subprocess.run([PROGRAM, "render", WATER, *map(str, arguments)], capture_output=True,
+                              text=True, env={**clean, **environment})
+
+    def size_of_image(self):
+        data = self.image.read_bytes()
+        self.assertEqual(data[:8], b"\x89PNG\r\n\x1a\n")
+        return struct.unpack(">II", data[16:24])
+
+    def assert_bad_input(self, result, expected):
+        self.assertEqual(result.returncode, 2, result.stderr)
+        self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
+        self.assertIn(expected, result.stderr)
+        self.assertFalse(self.image.exists())
+
+    def test_a_picture_needs_no_display(self):
+        for look in ("ball-and-stick", "space-filling", "licorice"):
+            with self.subTest(look=look):
+                result = self.render("-o", self.image, "--size", "64x48", "--as", look)
+                self.assertEqual(result.returncode, 0, result.stderr)
+                self.assertEqual(self.size_of_image(), (64, 48))
+
+    def test_time_moves_the_molecule(self):
+        pictures = []
+        for time in (0, 3):
+            self.assertEqual(self.render("-o", self.image, "--size", "64x48", "--time",
+                                         time).returncode, 0)
+            pictures.append(self.image.read_bytes())
+        self.assertNotEqual(*pictures)
+
+    def test_the_same_picture_twice_is_the_same_to_the_byte(self):
+        pictures = []
+        for _ in range(2):
+            self.render("-o", self.image, "--size", "160x90")
+            pictures.append(self.image.read_bytes())
+        self.assertEqual(*pictures)
+
+    def test_sizes_that_are_none(self):
+        for size in ("0x10", "10x0", "10", "axb", "-1x5", "1e3x5"):
+            with self.subTest(size=size):
+                self.assert_bad_input(self.render("-o", self.image, "--size", size), "is no size")
+        self.assert_bad_input(self.render("-o", self.image, "--size", "999999x10"),
+                              "a picture of 999999x10; expected 1x1 to")
+
+    def test_what_cannot_be_drawn_or_written(self):
+        self.assert_bad_input(self.render("-o", self.image, "--as", "liquorice"),
+                              "did you mean 'licorice'?")
+        self.assert_bad_input(self.render("-o", Path(self.folder.name) / "no" / "a.png"),
+                              "cannot be written")
+        self.assert_bad_input(self.render("-o", self.image, VK_DRIVER_FILES="/nowhere",
+                                          VK_ICD_FILENAMES="/nowhere"), "Vulkan")
+
+
+if __name__ == "__main__":
+    unittest.main()
