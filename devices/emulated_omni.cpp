@@ -7,8 +7,7 @@
 namespace palpa {
 namespace {
 
-constexpr double rate_hz = 1000;
-constexpr double tick_s = 1 / rate_hz;
+constexpr double tick_s = 1 / servo_rate_hz;
 constexpr int sub_steps = 4;
 constexpr double sub_step_s = tick_s / sub_steps;
 
@@ -33,7 +32,6 @@ double stop_force(double position, double velocity, double half_width, double ma
 EmulatedOmni::EmulatedOmni(const EmulatedOmniSettings& settings)
     : settings_(settings), operator_(settings.script, half_workspace_m.x()) {
     spec_.name = "emulated Omni";
-    spec_.rate_hz = rate_hz;
     spec_.peak_force_newton = settings.peak_force_newton;
     spec_.viscosity_N_s_per_m = settings.dynamics.viscosity_N_s_per_m;
     spec_.half_workspace_m = half_workspace_m;

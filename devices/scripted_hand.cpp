@@ -9,13 +9,11 @@ namespace {
 
 // A clutch takes 1.4 s: wait until the handle has caught up, press, carry, let it settle, release.
 constexpr double wait_s = 0.5, press_s = 0.1, carry_s = 0.5, settle_s = 0.3;
-// The hand turns back this far before the stop, and carries the handle to as far from the other.
-constexpr double margin_m = 0.005;
 
 }  // namespace
 
 ScriptedHand::ScriptedHand(HandScript script, double half_width_m)
-    : script_(std::move(script)), reach_m_(half_width_m - margin_m) {
+    : script_(std::move(script)), reach_m_(half_width_m - stop_margin_m) {
     const double start = find_target(script_.path, 0);
     last_x_m_ = std::clamp(start, -reach_m_, reach_m_);
     shift_m_ = last_x_m_ - start;

@@ -18,7 +18,7 @@
 namespace palpa {
 namespace {
 
-Representation find_representation(const std::string& name) {
+Representation representation_called(const std::string& name) {
     const auto found = std::find(representation_names.begin(), representation_names.end(), name);
     if (found == representation_names.end()) {
         throw LoadError({"--as " + name},
@@ -32,7 +32,7 @@ Representation find_representation(const std::string& name) {
 
 int render_command(const RenderOptions& options) {
     SceneDescription scene = read_scene(options.scene, options.settings);
-    const ViewSettings view{find_representation(options.representation), options.arrow};
+    const ViewSettings view{representation_called(options.representation), options.arrow};
     Simulation simulation = load_simulation(scene);
     if (options.time_s > 0) {
         scene.seconds = options.time_s;

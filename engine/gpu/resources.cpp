@@ -83,6 +83,15 @@ Buffer upload(GpuDevice& device, std::span<const std::byte> content, VkBufferUsa
     return target;
 }
 
+void show_copies_to_host(VkCommandBuffer commands) noexcept {
+    VkMemoryBarrier barrier{};
+    barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
+    barrier.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
+    barrier.dstAccessMask = VK_ACCESS_HOST_READ_BIT;
+    vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1,
+                         &barrier, 0, nullptr, 0, nullptr);
+}
+
 Image::Image(const GpuDevice& device, VkExtent2D size, VkFormat format, VkImageUsageFlags usage,
              VkImageAspectFlags aspect)
     : Image() {

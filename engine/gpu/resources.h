@@ -50,6 +50,9 @@ private:
 // least.
 Buffer upload(GpuDevice& device, std::span<const std::byte> content, VkBufferUsageFlags usage);
 
+// What was copied so far in these commands may be read by the processor once they are done.
+void show_copies_to_host(VkCommandBuffer commands) noexcept;
+
 class Image {
 public:
     Image() = default;

@@ -7,10 +7,13 @@
 
 namespace palpa {
 
+// The servo ticks this often, on every device so far.
+inline constexpr double servo_rate_hz = 1000;
+
 // Limits as the maker or the driver states them. SI; axes: x right, y up, z towards the user.
 struct DeviceSpec {
     std::string name;
-    double rate_hz = 1000;           // servo ticks a second
+    double rate_hz = servo_rate_hz;  // servo ticks a second
     double peak_force_newton = 0;    // what the motors give at most
     double viscosity_N_s_per_m = 0;  // what is known of the device's own damping; 0 if nothing
     Vec3 half_workspace_m = Vec3::Zero();  // the box in which the handle can move, from its centre

@@ -42,6 +42,9 @@ double minimum_jerk(double s) noexcept;
 
 double find_target(const std::vector<HandWaypoint>& path, double time_s) noexcept;
 
+// A hand turns back this far (m) before the stops of the workspace.
+inline constexpr double stop_margin_m = 0.005;
+
 // A hand's plan for a session: a path along x, and an impulse that knocks the handle.
 struct HandScript {
     std::vector<HandWaypoint> path;  // times ascending

@@ -10,8 +10,7 @@ namespace palpa {
 namespace {
 
 // One period of the loop without its spring: the plant, and the forces that are under way. In a
-// period the force of `whole` + 2 samples ago acts first, for the broken part of the delay, then
-// that of `whole` + 1 samples ago.
+// period the oldest of them acts first, for the broken part of the delay, then the one after it.
 struct DelayedLoop {
     Eigen::MatrixXd matrix;   // state: plant, then forces under way, the newest first
     Eigen::Index newest = 0;  // row of the force computed now, -K times the handle's position

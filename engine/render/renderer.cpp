@@ -438,12 +438,7 @@ Picture Renderer::draw(const FrameScene& scene, std::uint32_t width, std::uint32
         copy_to(commands, colour.handle(), VK_IMAGE_ASPECT_COLOR_BIT, colour_back, size);
         copy_to(commands, ids.handle(), VK_IMAGE_ASPECT_COLOR_BIT, ids_back, size);
         copy_to(commands, depth.handle(), VK_IMAGE_ASPECT_DEPTH_BIT, depth_back, size);
-        VkMemoryBarrier to_host{};
-        to_host.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
-        to_host.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
-        to_host.dstAccessMask = VK_ACCESS_HOST_READ_BIT;
-        vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT,
-                             0, 1, &to_host, 0, nullptr, 0, nullptr);
+        show_copies_to_host(commands);
     });
     return read_back(scene, colour_back, ids_back, depth_back, size);
 }

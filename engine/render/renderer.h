@@ -7,7 +7,7 @@
 
 #include <cstdint>
 #include <glm/mat4x4.hpp>
-#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 
 namespace palpa {
 
@@ -26,8 +26,6 @@ public:
     Picture draw(const FrameScene& scene, std::uint32_t width, std::uint32_t height);
 
 private:
-    struct Targets;
-
     void create_passes();
     void create_pipelines();
     VkPipeline create_pipeline(VkShaderModule vertex, VkShaderModule fragment, VkRenderPass pass,

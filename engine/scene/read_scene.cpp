@@ -38,13 +38,6 @@ TextPlace place_of(const toml::source_region& source) {
     return place;
 }
 
-// A number that is seen to be no whole one.
-std::string real_text(double value) {
-    std::string text = fmt::format("{}", value);
-    if (text.find_first_not_of("-0123456789") == std::string::npos) text += ".0";
-    return text;
-}
-
 // What a node holds, as a person would call it.
 std::string kind_of(const toml::node& node) {
     switch (node.type()) {
@@ -57,7 +50,7 @@ std::string kind_of(const toml::node& node) {
         case toml::node_type::integer:
             return fmt::format("{}", node.ref<std::int64_t>());
         case toml::node_type::floating_point:
-            return real_text(node.ref<double>());
+            return format_real(node.ref<double>());
         case toml::node_type::boolean:
             return node.ref<bool>() ? "true" : "false";
         case toml::node_type::none:
@@ -472,7 +465,7 @@ std::string setting_value(std::string_view text, const TextPlace& place) {
     };
     std::string value(text);
     if (is_toml("x = " + value)) return value;
-    if (const std::optional<double> number = find_real(text)) return real_text(*number);
+    if (const std::optional<double> number = find_real(text)) return format_real(*number);
     if (text.empty() || text.find_first_of("\"'\\[]{}=#") != std::string_view::npos) {
         throw LoadError(place, "the value is neither TOML nor a bare word");
     }

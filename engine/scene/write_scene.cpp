@@ -1,5 +1,6 @@
 #include "scene/write_scene.h"
 
+#include "core/text.h"
 #include "scene/fields.h"
 
 #include <fmt/format.h>
@@ -33,13 +34,6 @@ std::string key_text(std::string_view key) {
     return bare ? std::string(key) : in_quotes(key);
 }
 
-// The shortest digits that read back as the same number, always with a point or exponent.
-std::string real_text(double value) {
-    std::string text = fmt::format("{}", value);
-    if (text.find_first_of(".e") == std::string::npos) text += ".0";
-    return text;
-}
-
 class Writer final : public FieldVisitor {
 public:
     explicit Writer(const std::function<std::string(const std::filesystem::path&)>& file_name)
@@ -57,9 +51,9 @@ public:
     }
     void list_tables(const Field& /*field*/, std::vector<std::string>& /*names*/) override {}
 
-    void real(const Field& field, double& value) override { add(field, real_text(value)); }
+    void real(const Field& field, double& value) override { add(field, format_real(value)); }
     void optional_real(const Field& field, std::optional<double>& value) override {
-        if (value) add(field, real_text(*value));
+        if (value) add(field, format_real(*value));
     }
     void integer(const Field& field, std::int64_t& value) override {
         add(field, fmt::format("{}", value));
@@ -81,7 +75,7 @@ public:
     void pairs(const Field& field, std::vector<std::array<double, 2>>& value) override {
         std::vector<std::string> pairs;
         for (const auto& [a, b] : value) {
-            pairs.push_back(fmt::format("[{}, {}]", real_text(a), real_text(b)));
+            pairs.push_back(fmt::format("[{}, {}]", format_real(a), format_real(b)));
         }
         add(field, fmt::format("[{}]", fmt::join(pairs, ", ")));
     }

@@ -16,7 +16,6 @@ namespace palpa {
 namespace {
 
 constexpr double first_rest_s = 0.3;  // before the hand sets out, and between cycles
-constexpr double centring_margin_m = 0.005;
 constexpr double fastest_hand_m_per_s = 3;
 
 double newton_at(const Simulation& simulation, double distance) {
@@ -53,7 +52,7 @@ HandScript plan_in_out(const SceneDescription& scene, const Simulation& simulati
     const double peak_felt = hand_force(simulation.laws.force, peak_newton);
     const double bend = hand ? peak_felt / static_stiffness(*hand) : 0;
     const double travel = handle_travel(simulation, *innermost, start) + bend;
-    const double outside = std::min(travel / 2, half_width_m - centring_margin_m);
+    const double outside = std::min(travel / 2, half_width_m - stop_margin_m);
 
     HandScript script;
     double time = first_rest_s;

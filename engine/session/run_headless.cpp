@@ -17,7 +17,7 @@
 namespace palpa {
 namespace {
 
-constexpr double tick_s = 1e-3;
+constexpr double tick_s = 1 / servo_rate_hz;
 constexpr std::uint64_t ticks_between_progress = 100;
 
 }  // namespace

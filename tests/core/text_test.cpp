@@ -144,3 +144,13 @@ TEST_CASE("the hash is FNV-1a and goes on where it stopped", "[core][text]") {
     CHECK(content_hash("foobar") == 0x85944171f73967e8);
     CHECK(content_hash("bar", content_hash("foo")) == content_hash("foobar"));
 }
+
+TEST_CASE("a real number is written as one, and reads back the same", "[core][text]") {
+    CHECK(format_real(2) == "2.0");
+    CHECK(format_real(-0.0) == "-0.0");
+    CHECK(format_real(0.055) == "0.055");
+    CHECK(format_real(1e300).find('e') != std::string::npos);
+    for (const double value : {1.0 / 3, 5.1e9, -1e-300, 640000000.0}) {
+        CHECK(find_real(format_real(value)) == value);
+    }
+}
