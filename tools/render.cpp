@@ -43,8 +43,8 @@ int render_command(const RenderOptions& options) {
     Renderer renderer(gpu);
     const float aspect = static_cast<float>(options.width) /
                          static_cast<float>(std::max<std::uint32_t>(options.height, 1));
-    const Picture picture =
-        renderer.draw(build_frame(simulation, view, aspect), options.width, options.height);
+    const Picture picture = renderer.draw(build_frame(simulation, view, aspect), options.width,
+                                          options.height, PictureContent::Colours);
     write_png(options.image, picture);
     fmt::print("{}: {}x{} on {}\n", options.image.string(), picture.width, picture.height,
                gpu.name());

@@ -67,20 +67,33 @@ void Buffer::swap(Buffer& other) noexcept {
     std::swap(mapped_, other.mapped_);
 }
 
-Buffer upload(GpuDevice& device, std::span<const std::byte> content, VkBufferUsageFlags usage) {
-    const VkDeviceSize bytes = std::max<VkDeviceSize>(content.size(), 64);
-    Buffer target(device, bytes, usage | VK_BUFFER_USAGE_TRANSFER_DST_BIT, BufferPlace::Device);
-    if (!target.mapped().empty()) {
-        std::copy(content.begin(), content.end(), target.mapped().begin());
-        return target;
+bool UploadBuffer::reserve(VkDeviceSize bytes) {
+    if (target_.handle() != VK_NULL_HANDLE && bytes <= target_.bytes()) return false;
+    const VkDeviceSize room = std::max({bytes, 2 * target_.bytes(), VkDeviceSize{64}});
+    target_ =
+        Buffer(*device_, room, usage_ | VK_BUFFER_USAGE_TRANSFER_DST_BIT, BufferPlace::Device);
+    if (target_.mapped().empty()) {
+        staging_ = Buffer(*device_, room, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, BufferPlace::Readback);
     }
-    const Buffer staging(device, bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, BufferPlace::Readback);
-    std::copy(content.begin(), content.end(), staging.mapped().begin());
-    device.submit([&](VkCommandBuffer commands) {
-        const VkBufferCopy region{0, 0, bytes};
-        vkCmdCopyBuffer(commands, staging.handle(), target.handle(), 1, &region);
-    });
-    return target;
+    return true;
+}
+
+std::span<std::byte> UploadBuffer::mapped() const noexcept {
+    return target_.mapped().empty() ? staging_.mapped() : target_.mapped();
+}
+
+void UploadBuffer::record(VkCommandBuffer commands, VkDeviceSize bytes) const noexcept {
+    if (!target_.mapped().empty() || bytes == 0) return;
+    const VkBufferCopy region{0, 0, bytes};
+    vkCmdCopyBuffer(commands, staging_.handle(), target_.handle(), 1, &region);
+    VkMemoryBarrier barrier{};
+    barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
+    barrier.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
+    barrier.dstAccessMask = VK_ACCESS_SHADER_READ_BIT;
+    vkCmdPipelineBarrier(
+        commands, VK_PIPELINE_STAGE_TRANSFER_BIT,
+        VK_PIPELINE_STAGE_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, 0, 1, &barrier,
+        0, nullptr, 0, nullptr);
 }
 
 void show_copies_to_host(VkCommandBuffer commands) noexcept {
@@ -93,11 +106,13 @@ void show_copies_to_host(VkCommandBuffer commands) noexcept {
 }
 
 Image::Image(const GpuDevice& device, VkExtent2D size, VkFormat format, VkImageUsageFlags usage,
-             VkImageAspectFlags aspect)
+             VkImageAspectFlags aspect, VkFormat view_format)
     : Image() {
     device_ = device.handle();
     VkImageCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
+    if (view_format == VK_FORMAT_UNDEFINED) view_format = format;
+    if (view_format != format) info.flags = VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT;
     info.imageType = VK_IMAGE_TYPE_2D;
     info.format = format;
     info.extent = {size.width, size.height, 1};
@@ -117,7 +132,7 @@ Image::Image(const GpuDevice& device, VkExtent2D size, VkFormat format, VkImageU
     view.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
     view.image = image_;
     view.viewType = VK_IMAGE_VIEW_TYPE_2D;
-    view.format = format;
+    view.format = view_format;
     view.subresourceRange = {aspect, 0, 1, 0, 1};
     check_vulkan(vkCreateImageView(device_, &view, nullptr, &view_), "vkCreateImageView");
 }
@@ -134,6 +149,31 @@ void Image::swap(Image& other) noexcept {
     std::swap(image_, other.image_);
     std::swap(view_, other.view_);
     std::swap(memory_, other.memory_);
+}
+
+Framebuffer::Framebuffer(const GpuDevice& device, VkRenderPass pass,
+                         std::span<const VkImageView> views, VkExtent2D size)
+    : Framebuffer() {
+    device_ = device.handle();
+    VkFramebufferCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO;
+    info.renderPass = pass;
+    info.attachmentCount = static_cast<std::uint32_t>(views.size());
+    info.pAttachments = views.data();
+    info.width = size.width;
+    info.height = size.height;
+    info.layers = 1;
+    check_vulkan(vkCreateFramebuffer(device_, &info, nullptr, &framebuffer_),
+                 "vkCreateFramebuffer");
+}
+
+Framebuffer::~Framebuffer() {
+    if (device_ != VK_NULL_HANDLE) vkDestroyFramebuffer(device_, framebuffer_, nullptr);
+}
+
+void Framebuffer::swap(Framebuffer& other) noexcept {
+    std::swap(device_, other.device_);
+    std::swap(framebuffer_, other.framebuffer_);
 }
 
 }  // namespace palpa

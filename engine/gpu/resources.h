@@ -11,7 +11,7 @@ namespace palpa {
 
 // Where a buffer is written and read from.
 enum class BufferPlace {
-    Device,    // the device's own memory, filled through `upload`
+    Device,    // the device's own memory, filled through an UploadBuffer
     Readback,  // the processor's, for what the device hands back
 };
 
@@ -45,10 +45,30 @@ private:
     void* mapped_ = nullptr;
 };
 
-// Makes a device buffer with this content, directly where the processor can write it (and the
-// device does not force staging), through a staging buffer otherwise. Never empty: one element at
-// least.
-Buffer upload(GpuDevice& device, std::span<const std::byte> content, VkBufferUsageFlags usage);
+// A device buffer that is filled anew for every frame, and grows with what it holds. Written
+// straight where the processor sees the device's memory (and the device does not force staging),
+// through a staging buffer otherwise. Write it only while no commands that read it are under way.
+class UploadBuffer {
+public:
+    UploadBuffer(const GpuDevice& device, VkBufferUsageFlags usage)
+        : device_(&device), usage_(usage) {}
+
+    // Makes room for that many bytes, one element's at least. What the buffer held is lost where
+    // this returns true: then it is another one.
+    [[nodiscard]] bool reserve(VkDeviceSize bytes);
+
+    // Where to write before `record` records what brings the first `bytes` to the device, for
+    // shaders to read.
+    std::span<std::byte> mapped() const noexcept;
+    void record(VkCommandBuffer commands, VkDeviceSize bytes) const noexcept;
+
+    VkBuffer handle() const noexcept { return target_.handle(); }
+
+private:
+    const GpuDevice* device_;
+    VkBufferUsageFlags usage_;
+    Buffer target_, staging_;  // no staging buffer where the target is mapped
+};
 
 // What was copied so far in these commands may be read by the processor once they are done.
 void show_copies_to_host(VkCommandBuffer commands) noexcept;
@@ -56,8 +76,9 @@ void show_copies_to_host(VkCommandBuffer commands) noexcept;
 class Image {
 public:
     Image() = default;
+    // The view has the image's format unless it is given another.
     Image(const GpuDevice& device, VkExtent2D size, VkFormat format, VkImageUsageFlags usage,
-          VkImageAspectFlags aspect);
+          VkImageAspectFlags aspect, VkFormat view_format = VK_FORMAT_UNDEFINED);
     Image(Image&& other) noexcept { swap(other); }
     Image& operator=(Image&& other) noexcept {
         swap(other);
@@ -75,6 +96,28 @@ private:
     VkImage image_ = VK_NULL_HANDLE;
     VkImageView view_ = VK_NULL_HANDLE;
     VkDeviceMemory memory_ = VK_NULL_HANDLE;
+};
+
+// Images that a render pass draws into.
+class Framebuffer {
+public:
+    Framebuffer() = default;
+    Framebuffer(const GpuDevice& device, VkRenderPass pass, std::span<const VkImageView> views,
+                VkExtent2D size);
+    Framebuffer(Framebuffer&& other) noexcept { swap(other); }
+    Framebuffer& operator=(Framebuffer&& other) noexcept {
+        swap(other);
+        return *this;
+    }
+    ~Framebuffer();
+
+    VkFramebuffer handle() const noexcept { return framebuffer_; }
+
+private:
+    void swap(Framebuffer& other) noexcept;
+
+    VkDevice device_ = VK_NULL_HANDLE;
+    VkFramebuffer framebuffer_ = VK_NULL_HANDLE;
 };
 
 }  // namespace palpa

@@ -16,6 +16,9 @@ struct Picture {
     static constexpr std::uint32_t nothing_seen = UINT32_MAX;
 };
 
+// What is wanted of a picture: the colours cost the least.
+enum class PictureContent { Colours, All };
+
 // Writes the colours as PNG, whole or not at all. Throws LoadError if it cannot.
 void write_png(const std::filesystem::path& path, const Picture& picture);
 

@@ -14,6 +14,7 @@
 #include <cstring>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -21,7 +22,7 @@ namespace palpa {
 namespace {
 
 constexpr VkFormat id_format = VK_FORMAT_R32_UINT, depth_format = VK_FORMAT_D32_SFLOAT,
-                   colour_format = VK_FORMAT_R8G8B8A8_SRGB;
+                   colour_format = VK_FORMAT_R8G8B8A8_UNORM, drawn_format = VK_FORMAT_R8G8B8A8_SRGB;
 
 // The layouts of shaders/frame.glsl.
 struct GpuSphere {
@@ -44,22 +45,6 @@ GpuFrame build_frame_constants(const FrameScene& scene, VkExtent2D size) {
             {y_scale * height / width, y_scale, camera.near, camera.far},
             {scene.background, static_cast<float>(scene.spheres.size())},
             {width, height, 1 / width, 1 / height}};
-}
-
-std::vector<GpuSphere> build_spheres(const FrameScene& scene) {
-    std::vector<GpuSphere> spheres;
-    for (const SphereShape& s : scene.spheres) {
-        spheres.push_back({{s.centre, s.radius}, {s.colour, 1}});
-    }
-    return spheres;
-}
-
-std::vector<GpuCone> build_cones(const FrameScene& scene) {
-    std::vector<GpuCone> cones;
-    for (const ConeShape& c : scene.cones) {
-        cones.push_back({{c.a, c.radius_a}, {c.b, c.radius_b}, {c.colour_a, 1}, {c.colour_b, 1}});
-    }
-    return cones;
 }
 
 VkShaderModule create_module(VkDevice device, std::span<const std::uint32_t> code) {
@@ -118,54 +103,62 @@ VkRenderPass create_pass(VkDevice device, std::span<const VkAttachmentDescriptio
     return pass;
 }
 
-// A framebuffer for the length of one frame.
-class Framebuffer {
-public:
-    Framebuffer(VkDevice device, VkRenderPass pass, std::span<const VkImageView> views,
-                VkExtent2D size)
-        : device_(device) {
-        VkFramebufferCreateInfo info{};
-        info.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO;
-        info.renderPass = pass;
-        info.attachmentCount = static_cast<std::uint32_t>(views.size());
-        info.pAttachments = views.data();
-        info.width = size.width;
-        info.height = size.height;
-        info.layers = 1;
-        check_vulkan(vkCreateFramebuffer(device, &info, nullptr, &handle_), "vkCreateFramebuffer");
-    }
-    Framebuffer(const Framebuffer&) = delete;
-    Framebuffer& operator=(const Framebuffer&) = delete;
-    ~Framebuffer() { vkDestroyFramebuffer(device_, handle_, nullptr); }
-
-    VkFramebuffer handle() const noexcept { return handle_; }
-
-private:
-    VkDevice device_;
-    VkFramebuffer handle_ = VK_NULL_HANDLE;
-};
-
-void copy_to(VkCommandBuffer commands, VkImage image, VkImageAspectFlags aspect,
-             const Buffer& buffer, VkExtent2D size) {
+VkBufferImageCopy region_of(VkImageAspectFlags aspect, VkOffset2D from, VkExtent2D size) {
     VkBufferImageCopy region{};
     region.imageSubresource = {aspect, 0, 0, 1};
+    region.imageOffset = {from.x, from.y, 0};
     region.imageExtent = {size.width, size.height, 1};
-    vkCmdCopyImageToBuffer(commands, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer.handle(),
-                           1, &region);
+    return region;
 }
 
-// From being read by a shader to being copied.
-void make_source(VkCommandBuffer commands, VkImage image, VkImageAspectFlags aspect) {
+// An image's picture elements of 4 bytes, brought to the processor.
+class Readback {
+public:
+    Readback(const GpuDevice& device, VkExtent2D size)
+        : buffer_(device, VkDeviceSize{4} * size.width * size.height,
+                  VK_BUFFER_USAGE_TRANSFER_DST_BIT, BufferPlace::Readback) {}
+
+    void copy(VkCommandBuffer commands, VkImage image, const VkBufferImageCopy& region) const {
+        vkCmdCopyImageToBuffer(commands, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                               buffer_.handle(), 1, &region);
+    }
+
+    template <class T>
+    std::vector<T> read() const {
+        const std::span<std::byte> bytes = buffer_.mapped();
+        std::vector<T> values(bytes.size() / sizeof(T));
+        std::memcpy(values.data(), bytes.data(), bytes.size());
+        return values;
+    }
+
+private:
+    Buffer buffer_;
+};
+
+void change_layout(VkCommandBuffer commands, VkImage image, VkImageAspectFlags aspect,
+                   VkImageLayout from, VkImageLayout to) {
     VkImageMemoryBarrier barrier{};
     barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER;
     barrier.dstAccessMask = VK_ACCESS_TRANSFER_READ_BIT;
-    barrier.oldLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-    barrier.newLayout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+    barrier.oldLayout = from;
+    barrier.newLayout = to;
     barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
     barrier.image = image;
     barrier.subresourceRange = {aspect, 0, 1, 0, 1};
-    vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
-                         VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, nullptr, 0, nullptr, 1, &barrier);
+    const VkPipelineStageFlags reads =
+        VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
+    vkCmdPipelineBarrier(commands, reads, reads, 0, 0, nullptr, 0, nullptr, 1, &barrier);
+}
+
+// From being read by a shader to being copied, and back.
+void copy_readable(VkCommandBuffer commands, VkImage image, const Readback& target,
+                   const VkBufferImageCopy& region) {
+    const VkImageAspectFlags aspect = region.imageSubresource.aspectMask;
+    change_layout(commands, image, aspect, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                  VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    target.copy(commands, image, region);
+    change_layout(commands, image, aspect, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                  VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
 }
 
 }  // namespace
@@ -182,7 +175,10 @@ glm::vec3 project(const FrameCamera& camera, const glm::vec3& point, std::uint32
     return {0.5F * w + scale * view.x, 0.5F * h - scale * view.y, -view.z};
 }
 
-Renderer::Renderer(GpuDevice& device) : device_(device) {
+Renderer::Renderer(GpuDevice& device)
+    : device_(device),
+      sphere_buffer_(device, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT),
+      cone_buffer_(device, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) {
     create_passes();
     create_pipelines();
 }
@@ -205,7 +201,7 @@ void Renderer::create_passes() {
                             attachment(depth_format, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL)};
     shape_pass_ = create_pass(device_.handle(), shapes, true, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
                               VK_ACCESS_SHADER_READ_BIT);
-    const std::array picture{attachment(colour_format, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL)};
+    const std::array picture{attachment(drawn_format, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL)};
     resolve_pass_ = create_pass(device_.handle(), picture, false, VK_PIPELINE_STAGE_TRANSFER_BIT,
                                 VK_ACCESS_TRANSFER_READ_BIT);
 }
@@ -337,40 +333,31 @@ VkPipeline Renderer::create_pipeline(VkShaderModule vertex, VkShaderModule fragm
     return pipeline;
 }
 
-Picture Renderer::draw(const FrameScene& scene, std::uint32_t width, std::uint32_t height) {
-    const std::uint32_t most = device_.limits().maxImageDimension2D;
-    if (width == 0 || height == 0 || width > most || height > most) {
-        throw GpuError(fmt::format("a picture of {}x{}; expected 1x1 to {}x{} on {}", width, height,
-                                   most, most, device_.name()));
-    }
-    const VkExtent2D size{width, height};
-    const VkDevice device = device_.handle();
-    const std::vector<GpuSphere> spheres = build_spheres(scene);
-    const std::vector<GpuCone> cones = build_cones(scene);
-    const Buffer sphere_buffer =
-        upload(device_, std::as_bytes(std::span(spheres)), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-    const Buffer cone_buffer =
-        upload(device_, std::as_bytes(std::span(cones)), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+Renderer::Targets Renderer::create_targets(VkExtent2D size) const {
+    const VkImageUsageFlags read = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    Targets targets;
+    targets.size = size;
+    targets.ids = Image(device_, size, id_format, read | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT,
+                        VK_IMAGE_ASPECT_COLOR_BIT);
+    targets.depth =
+        Image(device_, size, depth_format, read | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT,
+              VK_IMAGE_ASPECT_DEPTH_BIT);
+    targets.colour = Image(device_, size, colour_format,
+                           VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
+                           VK_IMAGE_ASPECT_COLOR_BIT, drawn_format);
+    const std::array shape_views{targets.ids.view(), targets.depth.view()};
+    const std::array picture_views{targets.colour.view()};
+    targets.shapes = Framebuffer(device_, shape_pass_, shape_views, size);
+    targets.picture = Framebuffer(device_, resolve_pass_, picture_views, size);
+    return targets;
+}
 
-    constexpr VkImageUsageFlags read = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
-    const Image ids(device_, size, id_format, read | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT,
-                    VK_IMAGE_ASPECT_COLOR_BIT);
-    const Image depth(device_, size, depth_format,
-                      read | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT,
-                      VK_IMAGE_ASPECT_DEPTH_BIT);
-    const Image colour(device_, size, colour_format,
-                       VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
-                       VK_IMAGE_ASPECT_COLOR_BIT);
-    const std::array shape_views{ids.view(), depth.view()};
-    const std::array picture_views{colour.view()};
-    const Framebuffer shape_target(device, shape_pass_, shape_views, size);
-    const Framebuffer picture_target(device, resolve_pass_, picture_views, size);
-
+void Renderer::write_descriptors() const {
     const std::array<VkDescriptorBufferInfo, 2> buffers{
-        {{sphere_buffer.handle(), 0, VK_WHOLE_SIZE}, {cone_buffer.handle(), 0, VK_WHOLE_SIZE}}};
+        {{sphere_buffer_.handle(), 0, VK_WHOLE_SIZE}, {cone_buffer_.handle(), 0, VK_WHOLE_SIZE}}};
     const std::array<VkDescriptorImageInfo, 2> images{
-        {{sampler_, ids.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL},
-         {sampler_, depth.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL}}};
+        {{sampler_, targets_.ids.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL},
+         {sampler_, targets_.depth.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL}}};
     std::array<VkWriteDescriptorSet, 2> writes{};
     writes[0].sType = writes[1].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
     writes[0].dstSet = writes[1].dstSet = set_;
@@ -380,91 +367,132 @@ Picture Renderer::draw(const FrameScene& scene, std::uint32_t width, std::uint32
     writes[1].dstBinding = 2;
     writes[1].descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
     writes[1].pImageInfo = images.data();
-    vkUpdateDescriptorSets(device, static_cast<std::uint32_t>(writes.size()), writes.data(), 0,
-                           nullptr);
-
-    const VkDeviceSize bytes = VkDeviceSize{4} * width * height;
-    const Buffer colour_back(device_, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                             BufferPlace::Readback);
-    const Buffer ids_back(device_, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, BufferPlace::Readback);
-    const Buffer depth_back(device_, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                            BufferPlace::Readback);
-    const GpuFrame constants = build_frame_constants(scene, size);
-
-    device_.submit([&](VkCommandBuffer commands) {
-        const VkViewport viewport{0, 0, static_cast<float>(width), static_cast<float>(height),
-                                  0, 1};
-        const VkRect2D area{{0, 0}, size};
-        vkCmdSetViewport(commands, 0, 1, &viewport);
-        vkCmdSetScissor(commands, 0, 1, &area);
-        vkCmdPushConstants(commands, layout_,
-                           VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
-                           sizeof(constants), &constants);
-
-        std::array<VkClearValue, 2> clear{};
-        clear[1].depthStencil = {1, 0};
-        VkRenderPassBeginInfo begin{};
-        begin.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO;
-        begin.renderPass = shape_pass_;
-        begin.framebuffer = shape_target.handle();
-        begin.renderArea = area;
-        begin.clearValueCount = static_cast<std::uint32_t>(clear.size());
-        begin.pClearValues = clear.data();
-        vkCmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
-        // The shapes' pass must not bind what it draws into, but its set names those images; they
-        // are in the layout that the set promises only afterwards, and no shader reads them here.
-        vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0, 1, &set_, 0,
-                                nullptr);
-        if (!spheres.empty()) {
-            vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, spheres_);
-            vkCmdDraw(commands, 4, static_cast<std::uint32_t>(spheres.size()), 0, 0);
-        }
-        if (!cones.empty()) {
-            vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, cones_);
-            vkCmdDraw(commands, 14, static_cast<std::uint32_t>(cones.size()), 0, 0);
-        }
-        vkCmdEndRenderPass(commands);
-
-        begin.renderPass = resolve_pass_;
-        begin.framebuffer = picture_target.handle();
-        begin.clearValueCount = 1;
-        vkCmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
-        vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, resolve_);
-        vkCmdDraw(commands, 3, 1, 0, 0);
-        vkCmdEndRenderPass(commands);
-
-        make_source(commands, ids.handle(), VK_IMAGE_ASPECT_COLOR_BIT);
-        make_source(commands, depth.handle(), VK_IMAGE_ASPECT_DEPTH_BIT);
-        copy_to(commands, colour.handle(), VK_IMAGE_ASPECT_COLOR_BIT, colour_back, size);
-        copy_to(commands, ids.handle(), VK_IMAGE_ASPECT_COLOR_BIT, ids_back, size);
-        copy_to(commands, depth.handle(), VK_IMAGE_ASPECT_DEPTH_BIT, depth_back, size);
-        show_copies_to_host(commands);
-    });
-    return read_back(scene, colour_back, ids_back, depth_back, size);
+    vkUpdateDescriptorSets(device_.handle(), static_cast<std::uint32_t>(writes.size()),
+                           writes.data(), 0, nullptr);
 }
 
-Picture Renderer::read_back(const FrameScene& scene, const Buffer& colour, const Buffer& ids,
-                            const Buffer& depth, VkExtent2D size) const {
-    const std::size_t pixels = std::size_t{size.width} * size.height;
-    Picture picture{size.width, size.height, std::vector<std::uint8_t>(4 * pixels),
-                    std::vector<std::uint32_t>(pixels), std::vector<float>(pixels)};
-    std::memcpy(picture.rgba.data(), colour.mapped().data(), 4 * pixels);
-    std::memcpy(picture.picks.data(), ids.mapped().data(), 4 * pixels);
-    std::memcpy(picture.depth.data(), depth.mapped().data(), 4 * pixels);
-    const float near = scene.camera.near, far = scene.camera.far;
-    for (std::size_t i = 0; i < pixels; ++i) {
-        const std::uint32_t id = picture.picks[i];
-        if (id == 0) {
-            picture.picks[i] = Picture::nothing_seen;
-            picture.depth[i] = std::numeric_limits<float>::infinity();
-            continue;
+bool Renderer::upload_shapes(VkCommandBuffer commands, const FrameScene& scene) {
+    const bool spheres_moved = sphere_buffer_.reserve(scene.spheres.size() * sizeof(GpuSphere));
+    const bool cones_moved = cone_buffer_.reserve(scene.cones.size() * sizeof(GpuCone));
+    picks_.clear();
+    std::byte* place = sphere_buffer_.mapped().data();
+    for (const SphereShape& s : scene.spheres) {
+        const GpuSphere sphere{{s.centre, s.radius}, {s.colour, 1}};
+        std::memcpy(place, &sphere, sizeof(sphere));
+        place += sizeof(sphere);
+        picks_.push_back(s.pick);
+    }
+    place = cone_buffer_.mapped().data();
+    for (const ConeShape& c : scene.cones) {
+        const GpuCone cone{{c.a, c.radius_a}, {c.b, c.radius_b}, {c.colour_a, 1}, {c.colour_b, 1}};
+        std::memcpy(place, &cone, sizeof(cone));
+        place += sizeof(cone);
+        picks_.push_back(c.pick);
+    }
+    sphere_buffer_.record(commands, scene.spheres.size() * sizeof(GpuSphere));
+    cone_buffer_.record(commands, scene.cones.size() * sizeof(GpuCone));
+    return spheres_moved || cones_moved;
+}
+
+void Renderer::record(VkCommandBuffer commands, const FrameScene& scene, VkExtent2D size) {
+    const std::uint32_t most = device_.limits().maxImageDimension2D;
+    if (size.width == 0 || size.height == 0 || size.width > most || size.height > most) {
+        throw GpuError(fmt::format("a picture of {}x{}; expected 1x1 to {}x{} on {}", size.width,
+                                   size.height, most, most, device_.name()));
+    }
+    const bool resized = size.width != targets_.size.width || size.height != targets_.size.height;
+    if (resized) targets_ = create_targets(size);
+    if (upload_shapes(commands, scene) || resized) write_descriptors();
+
+    const VkViewport viewport{0, 0, static_cast<float>(size.width), static_cast<float>(size.height),
+                              0, 1};
+    const VkRect2D area{{0, 0}, size};
+    const GpuFrame constants = build_frame_constants(scene, size);
+    vkCmdSetViewport(commands, 0, 1, &viewport);
+    vkCmdSetScissor(commands, 0, 1, &area);
+    vkCmdPushConstants(commands, layout_, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT,
+                       0, sizeof(constants), &constants);
+
+    std::array<VkClearValue, 2> clear{};
+    clear[1].depthStencil = {1, 0};
+    VkRenderPassBeginInfo begin{};
+    begin.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO;
+    begin.renderPass = shape_pass_;
+    begin.framebuffer = targets_.shapes.handle();
+    begin.renderArea = area;
+    begin.clearValueCount = static_cast<std::uint32_t>(clear.size());
+    begin.pClearValues = clear.data();
+    vkCmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
+    // The shapes' pass must not bind what it draws into, but its set names those images; they are
+    // in the layout that the set promises only afterwards, and no shader reads them here.
+    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0, 1, &set_, 0,
+                            nullptr);
+    if (!scene.spheres.empty()) {
+        vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, spheres_);
+        vkCmdDraw(commands, 4, static_cast<std::uint32_t>(scene.spheres.size()), 0, 0);
+    }
+    if (!scene.cones.empty()) {
+        vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, cones_);
+        vkCmdDraw(commands, 14, static_cast<std::uint32_t>(scene.cones.size()), 0, 0);
+    }
+    vkCmdEndRenderPass(commands);
+
+    begin.renderPass = resolve_pass_;
+    begin.framebuffer = targets_.picture.handle();
+    begin.clearValueCount = 1;
+    vkCmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
+    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, resolve_);
+    vkCmdDraw(commands, 3, 1, 0, 0);
+    vkCmdEndRenderPass(commands);
+}
+
+Picture Renderer::draw(const FrameScene& scene, std::uint32_t width, std::uint32_t height,
+                       PictureContent content) {
+    const VkExtent2D size{width, height};
+    std::optional<Readback> colours, ids, depths;
+    device_.submit([&](VkCommandBuffer commands) {
+        record(commands, scene, size);
+        colours.emplace(device_, size);
+        colours->copy(commands, targets_.colour.handle(),
+                      region_of(VK_IMAGE_ASPECT_COLOR_BIT, {0, 0}, size));
+        if (content == PictureContent::All) {
+            ids.emplace(device_, size);
+            copy_readable(commands, targets_.ids.handle(), *ids,
+                          region_of(VK_IMAGE_ASPECT_COLOR_BIT, {0, 0}, size));
+            depths.emplace(device_, size);
+            copy_readable(commands, targets_.depth.handle(), *depths,
+                          region_of(VK_IMAGE_ASPECT_DEPTH_BIT, {0, 0}, size));
         }
-        picture.picks[i] = id <= scene.spheres.size()
-                               ? scene.spheres[id - 1].pick
-                               : scene.cones[id - 1 - scene.spheres.size()].pick;
-        picture.depth[i] = far * near / (far - picture.depth[i] * (far - near));
+        show_copies_to_host(commands);
+    });
+    Picture picture{width, height, colours->read<std::uint8_t>(), {}, {}};
+    if (content == PictureContent::Colours) return picture;
+    picture.picks = ids->read<std::uint32_t>();
+    picture.depth = depths->read<float>();
+    const float near = scene.camera.near, far = scene.camera.far;
+    for (std::size_t i = 0; i < picture.picks.size(); ++i) {
+        picture.depth[i] = picture.picks[i] == 0
+                               ? std::numeric_limits<float>::infinity()
+                               : far * near / (far - picture.depth[i] * (far - near));
+        picture.picks[i] = pick_of(picture.picks[i]);
     }
     return picture;
+}
+
+std::uint32_t Renderer::pick(std::uint32_t x, std::uint32_t y) {
+    if (x >= targets_.size.width || y >= targets_.size.height) return Picture::nothing_seen;
+    const Readback id(device_, {1, 1});
+    const VkOffset2D pixel{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};
+    device_.submit([&](VkCommandBuffer commands) {
+        copy_readable(commands, targets_.ids.handle(), id,
+                      region_of(VK_IMAGE_ASPECT_COLOR_BIT, pixel, {1, 1}));
+        show_copies_to_host(commands);
+    });
+    return pick_of(id.read<std::uint32_t>().front());
+}
+
+std::uint32_t Renderer::pick_of(std::uint32_t id) const noexcept {
+    return id == 0 ? Picture::nothing_seen : picks_[id - 1];
 }
 
 }  // namespace palpa

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
+#include <vector>
 
 namespace palpa {
 
@@ -22,16 +23,42 @@ public:
     Renderer& operator=(const Renderer&) = delete;
     ~Renderer();
 
-    // Throws GpuError if the size is 0 or beyond what the device can do.
-    Picture draw(const FrameScene& scene, std::uint32_t width, std::uint32_t height);
+    // Draws, waits, and brings back what is wanted of the picture. Throws GpuError if the size is 0
+    // or beyond what the device can do.
+    Picture draw(const FrameScene& scene, std::uint32_t width, std::uint32_t height,
+                 PictureContent content = PictureContent::All);
+
+    // Records both passes, for a caller who submits them; the last frame's commands must be done.
+    // What they need stays from frame to frame, until the size or the number of shapes grows.
+    // Throws like `draw`.
+    void record(VkCommandBuffer commands, const FrameScene& scene, VkExtent2D size);
+
+    // What the recorded commands draw: an image of `size`, R8G8B8A8_UNORM, its values encoded as
+    // sRGB already, left in TRANSFER_SRC_OPTIMAL for transfers that come later in the commands. It
+    // is another image after a `record` with another size.
+    VkImage colour_image() const noexcept { return targets_.colour.handle(); }
+
+    // What is seen at a pixel of the last recorded frame, whose commands are done: a shape's
+    // `pick`, or Picture::nothing_seen, also outside of the picture.
+    std::uint32_t pick(std::uint32_t x, std::uint32_t y);
 
 private:
+    // The images of one size.
+    struct Targets {
+        VkExtent2D size{0, 0};
+        Image ids, depth, colour;
+        Framebuffer shapes, picture;
+    };
+
     void create_passes();
     void create_pipelines();
     VkPipeline create_pipeline(VkShaderModule vertex, VkShaderModule fragment, VkRenderPass pass,
                                bool has_depth) const;
-    Picture read_back(const FrameScene& scene, const Buffer& colour, const Buffer& ids,
-                      const Buffer& depth, VkExtent2D size) const;
+    Targets create_targets(VkExtent2D size) const;
+    void write_descriptors() const;
+    // Whether a buffer grew, so that the descriptors name one that is gone.
+    bool upload_shapes(VkCommandBuffer commands, const FrameScene& scene);
+    std::uint32_t pick_of(std::uint32_t id) const noexcept;
 
     GpuDevice& device_;
     VkRenderPass shape_pass_ = VK_NULL_HANDLE, resolve_pass_ = VK_NULL_HANDLE;
@@ -41,6 +68,11 @@ private:
     VkDescriptorSet set_ = VK_NULL_HANDLE;
     VkSampler sampler_ = VK_NULL_HANDLE;
     VkPipeline spheres_ = VK_NULL_HANDLE, cones_ = VK_NULL_HANDLE, resolve_ = VK_NULL_HANDLE;
+
+    // written by every record
+    Targets targets_;
+    UploadBuffer sphere_buffer_, cone_buffer_;
+    std::vector<std::uint32_t> picks_;  // of every shape: the spheres', then the cones'
 };
 
 // From the world to the camera, and from the camera to the picture's plane, for whoever asks where

@@ -152,3 +152,32 @@ TEST_CASE("a size of nothing or beyond the device is refused in a sentence", "[r
                       Catch::Matchers::Contains("a picture of 1000000x10; expected 1x1 to"));
     test::check_silent(device);
 }
+
+TEST_CASE("what stays from frame to frame shows the newest scene and size, and picks from it",
+          "[render][gpu]") {
+    GpuDevice device(test::validated(GENERATE(false, true)));
+    Renderer renderer(device);
+    FrameScene scene;
+    const auto fresh = [&](std::uint32_t wide, std::uint32_t high) {
+        return Renderer(device).draw(scene, wide, high).rgba;
+    };
+    scene.spheres = {{{0, 0, 0}, 1, {1, 0, 0}, 7}};
+
+    CHECK(renderer.draw(scene, 64, 48).rgba == fresh(64, 48));
+    CHECK(renderer.pick(32, 24) == 7);
+    for (int i = 1; i < 40; ++i) {  // more than the buffers had room for
+        scene.spheres.push_back({{0.1F * static_cast<float>(i), 0, 0}, 1, {0, 1, 0}, 8});
+        scene.cones.push_back({{0, 0, 0}, {0, 0.1F * static_cast<float>(i), 2}, 0.4F, 0.2F});
+    }
+    CHECK(renderer.draw(scene, 64, 48).rgba == fresh(64, 48));
+    CHECK(renderer.draw(scene, 32, 80).rgba == fresh(32, 80));
+    scene.cones.clear();
+    scene.spheres.resize(1);
+    const Picture colours = renderer.draw(scene, 64, 48, PictureContent::Colours);
+    CHECK(colours.rgba == fresh(64, 48));
+    CHECK(colours.picks.empty());
+    CHECK(renderer.pick(32, 24) == 7);
+    CHECK(renderer.pick(0, 0) == Picture::nothing_seen);
+    CHECK(renderer.pick(64, 24) == Picture::nothing_seen);
+    test::check_silent(device);
+}
