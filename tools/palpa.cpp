@@ -3,6 +3,7 @@
 #include "core/text.h"
 #include "core/version.h"
 #include "gpu/device.h"
+#include "platform/window.h"
 #include "tools/bench.h"
 #include "tools/render.h"
 #include "tools/run.h"
@@ -43,15 +44,41 @@ void add_set_option(CLI::App& command, std::vector<std::string>& settings) {
         ->take_last();
 }
 
+// WIDTHxHEIGHT in pixels.
+void add_size(CLI::App& command, const std::string& option, const std::string& help,
+              std::uint32_t& width, std::uint32_t& height) {
+    command.add_option_function<std::string>(
+        option,
+        [option, &width, &height](const std::string& text) {
+            constexpr std::int64_t most = 1'000'000;
+            const std::size_t by = text.find('x');
+            const auto w = palpa::find_integer(text.substr(0, by));
+            const auto h = palpa::find_integer(by == std::string::npos ? "" : text.substr(by + 1));
+            if (!w || !h || *w < 1 || *h < 1 || *w > most || *h > most) {
+                throw CLI::ValidationError(option,
+                                           "'" + text + "' is no size; expected WIDTHxHEIGHT");
+            }
+            width = static_cast<std::uint32_t>(*w);
+            height = static_cast<std::uint32_t>(*h);
+        },
+        "WIDTHxHEIGHT in pixels, " + help);
+}
+
 void add_run(CLI::App& program, palpa::RunOptions& options) {
     CLI::App& run = *program.add_subcommand("run", "Feel a scene: a hand on an emulated Omni");
     run.add_option("scene", options.scene, "scene folder, scene file or recorded session.toml")
         ->required();
     run.add_flag("--headless", options.headless,
                  "in lockstep on a virtual clock, without a window");
+    run.add_flag("--play", options.play,
+                 "in a window: let the emulated hand play the scene's stroke, not the mouse");
     run.add_flag("--check", options.check_only,
                  "only read the scene and say what is wrong with it");
     run.add_option("--record", options.record, "folder for trace.csv, summary.json, session.toml");
+    add_size(run, "--size", "of the window, 1280x800 unless given", options.width, options.height);
+    run.add_option("--screenshots", options.screenshots, "folder for screenshots of the window");
+    run.add_flag("--validation", options.validation,
+                 "let the Vulkan validation layer watch the window's drawing");
     run.add_flag("--json", options.json, "print the summary as JSON");
     run.add_flag_callback(
         "--keys",
@@ -83,22 +110,7 @@ void add_render(CLI::App& program, palpa::RenderOptions& options) {
     CLI::App& render = *program.add_subcommand("render", "A picture of a scene; needs no display");
     render.add_option("scene", options.scene, "scene folder or file")->required();
     render.add_option("-o,--output", options.image, "PNG file to write")->required();
-    render.add_option_function<std::string>(
-        "--size",
-        [&options](const std::string& text) {
-            const std::size_t by = text.find('x');
-            const auto width = palpa::find_integer(text.substr(0, by));
-            const auto height =
-                palpa::find_integer(by == std::string::npos ? "" : text.substr(by + 1));
-            if (!width || !height || *width < 1 || *height < 1 || *width > 1'000'000 ||
-                *height > 1'000'000) {
-                throw CLI::ValidationError("--size",
-                                           "'" + text + "' is no size; expected WIDTHxHEIGHT");
-            }
-            options.width = static_cast<std::uint32_t>(*width);
-            options.height = static_cast<std::uint32_t>(*height);
-        },
-        "WIDTHxHEIGHT in pixels, 1280x720 unless given");
+    add_size(render, "--size", "1280x720 unless given", options.width, options.height);
     render.add_option("--time", options.time_s, "seconds that the hand plays before the picture")
         ->check(CLI::Range(0.0, 1e5));
     render.add_option("--as", options.representation, "ball-and-stick, space-filling or licorice");
@@ -147,6 +159,9 @@ int main(int argc, char** argv) {
         return bad_input;
     } catch (const std::system_error&) {  // what fmt throws when it cannot print
         fmt::print(stderr, "palpa: the output cannot be written\n");
+        return bad_input;
+    } catch (const palpa::PlatformError& error) {
+        fmt::print(stderr, "palpa: {}\n", error.what());
         return bad_input;
     } catch (const palpa::GpuError& error) {
         fmt::print(stderr, "palpa: {}\n", error.what());

@@ -1,5 +1,7 @@
 #include "tools/run.h"
 
+#include "app/run_window.h"
+#include "core/load_error.h"
 #include "core/units.h"
 #include "devices/emulated_omni.h"
 #include "haptics/gains.h"
@@ -79,6 +81,45 @@ void print_summary(const SceneDescription& scene, const Summary& s) {
                s.step_p99_us, s.steps);
 }
 
+int run_in_window(const SceneDescription& scene, EmulatedOmniSettings settings,
+                  const RunOptions& options) {
+    if (options.record) {
+        throw LoadError(
+            {"--record"},
+            "a session in a window cannot be recorded yet; expected --headless with it");
+    }
+    HandTargets targets;
+    if (!options.play) {
+        settings.live = &targets;
+        settings.script = {};
+        // A mouse has no workspace: half a metre either way stands for that.
+        settings.half_workspace_m = Vec3::Constant(0.5);
+    }
+    EmulatedOmni device(settings);
+    const WindowReport report = run_window(scene, device,
+                                           {.width = options.width,
+                                            .height = options.height,
+                                            .screenshots = options.screenshots,
+                                            .mouse_hand = settings.live,
+                                            .validation = options.validation});
+    SceneDescription played = scene;
+    played.coupling = report.settings.coupling;
+    played.period_ms = report.settings.period_ms;
+    played.seconds = static_cast<double>(report.summary.ticks) / servo_rate_hz;
+    if (options.json) {
+        fmt::print("{}", format_summary(played, report.summary));
+        return 0;
+    }
+    print_summary(played, report.summary);
+    fmt::print("  drawn       {} frames, {:.1f} ms median, scale {:.2f} at the end\n",
+               report.frames, report.median_frame_ms, report.render_scale);
+    if (!scene.lesson.empty()) {
+        fmt::print("  lesson      {} of {} steps done\n", report.lesson_steps_done,
+                   scene.lesson.size());
+    }
+    return 0;
+}
+
 }  // namespace
 
 EmulatedOmniSettings build_emulated_omni(const SceneDescription& scene,
@@ -88,7 +129,7 @@ EmulatedOmniSettings build_emulated_omni(const SceneDescription& scene,
         .friction_newton = scene.device.friction_N,
         .encoder_step_m = scene.device.encoder_step_mm * 1e-3,
         .hand = hand_model(static_cast<Grip>(scene.hand.grip)),
-        .script = plan_hand(scene, simulation, EmulatedOmni::half_workspace_m.x()),
+        .script = plan_hand(scene, simulation, omni_half_workspace_m.x()),
     };
 }
 
@@ -111,11 +152,9 @@ int run_command(const RunOptions& options) {
         for (const std::string& warning : warnings) fmt::print("  warning: {}\n", warning);
         return 0;
     }
+    if (!options.headless) return run_in_window(scene, settings, options);
     std::optional<Recording> recording;
     if (options.record) recording.emplace(*options.record, scene);
-    if (!options.headless) {
-        fmt::print(stderr, "there is no window yet: running headless, in lockstep\n");
-    }
     if (!scene.places.contains("coupling.mode")) {
         fmt::print(
             stderr,

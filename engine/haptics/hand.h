@@ -1,5 +1,8 @@
 // Models of the hand that holds the handle, and the path it wants to follow.
 #pragma once
+#include "core/mailbox.h"
+#include "math/vec.h"
+
 #include <array>
 #include <optional>
 #include <string_view>
@@ -52,5 +55,12 @@ struct HandScript {
     double kick_time_s = 1.0;
     double kick_duration_s = 0.01;
 };
+
+// Where a person without a device wants the handle: a mouse's owner posts, the emulated device
+// reads.
+struct HandTarget {
+    Vec3 position_m = Vec3::Zero();
+};
+using HandTargets = Mailbox<HandTarget>;
 
 }  // namespace palpa

@@ -38,6 +38,11 @@ inline constexpr std::array<std::string_view, 6> coupling_mode_names{"1", "2", "
 inline constexpr std::array<std::string_view, 6> hand_names{"none",   "light", "slack",
                                                             "medium", "firm",  "firm-grip"};
 
+// What a step of a lesson looks at.
+enum class LessonQuantity { Distance, Force, FeltForce, Mode };
+inline constexpr std::array<std::string_view, 4> lesson_quantity_names{
+    "distance_angstrom", "force_nN", "felt_N", "mode"};
+
 struct ForceFieldDescription {
     std::vector<std::filesystem::path> files;
     double coulomb_constant = units::charmm_coulomb_constant;  // kcal Å/mol/e^2
@@ -82,6 +87,16 @@ struct CouplingDescription {
     double F_h1_N = 1, F_h2_N = 3, F_0_nN = 1.5, A_f_min = 0.64e9, A_f_max = 5.1e9;  // eq. 2
     double gamma_per_N = 10e11, F_off_pN = 20, A_d_min = 0.005e9, A_d_max = 0.25e9;  // eq. 3
     double A_f = 0.64e9, A_d = 0.25e9;  // the constant gains
+
+    friend bool operator==(const CouplingDescription&, const CouplingDescription&) = default;
+};
+
+// One step of a lesson: what there is to know, what to do, and how to tell that it was done.
+struct LessonStepDescription {
+    std::string name, text, task;
+    LessonQuantity quantity = LessonQuantity::Distance;
+    std::optional<double> at_least, at_most;
+    double for_s = 0;  // without a break
 };
 
 struct SceneDescription {
@@ -93,6 +108,7 @@ struct SceneDescription {
     HandDescription hand;
     DeviceDescription device;
     CouplingDescription coupling;
+    std::vector<LessonStepDescription> lesson;  // in the order of the file
     double period_ms = 1;
     double seconds = 10;
     std::int64_t every = 1;

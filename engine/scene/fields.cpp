@@ -216,6 +216,38 @@ void visit_coupling(FieldVisitor& v, CouplingDescription& c) {
     v.leave_table();
 }
 
+void visit_lesson_step(FieldVisitor& v, LessonStepDescription& s) {
+    v.enter_table({.key = s.name, .meaning = "one step of the lesson"});
+    v.text({.key = "text", .meaning = "what there is to know", .required = true}, s.text);
+    v.text({.key = "task", .meaning = "what to do", .required = true}, s.task);
+    choose(v,
+           {.key = "quantity",
+            .meaning = "what tells that it was done: the distance of the reference atoms, the "
+                       "force on the molecule or on the hand (+ repels), the coupling's mode"},
+           lesson_quantity_names, s.quantity);
+    v.optional_real({.key = "at_least", .meaning = "smallest value that will do"}, s.at_least);
+    v.optional_real({.key = "at_most", .meaning = "largest value that will do"}, s.at_most);
+    v.real({.key = "for_s",
+            .meaning = "how long without a break, in simulated seconds",
+            .lowest = 0,
+            .highest = 1e3},
+           s.for_s);
+    v.leave_table();
+}
+
+void visit_lesson(FieldVisitor& v, std::vector<LessonStepDescription>& steps) {
+    v.enter_table({.key = "lesson", .meaning = "a first lesson, step by step"});
+    std::vector<std::string> names;
+    for (const LessonStepDescription& step : steps) names.push_back(step.name);
+    v.list_tables({.key = "STEP", .meaning = "one step, under a name of your choice"}, names);
+    steps.resize(names.size());
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        steps[i].name = names[i];
+        visit_lesson_step(v, steps[i]);
+    }
+    v.leave_table();
+}
+
 // Gathers the notes; the values visited are the defaults.
 class Lister final : public FieldVisitor {
 public:
@@ -285,6 +317,7 @@ void visit_scene(FieldVisitor& v, SceneDescription& scene) {
     visit_hand(v, scene.hand);
     visit_device(v, scene.device);
     visit_coupling(v, scene.coupling);
+    visit_lesson(v, scene.lesson);
     v.enter_table({.key = "run", .meaning = "a headless run"});
     v.real({.key = "period_ms",
             .meaning = "declared period of the simulation, a whole number of 1 ms servo ticks",

@@ -399,6 +399,13 @@ void check_ranges(const SceneDescription& scene, Reader& reader) {
               fmt::format("'hand.path' has the time {} after {}; expected ascending times",
                           h.path[i][0], h.path[i - 1][0]));
     }
+    for (const LessonStepDescription& step : scene.lesson) {
+        const std::string key = "lesson." + step.name;
+        check(step.at_least || step.at_most, key,
+              fmt::format("'{}' has neither at_least nor at_most; expected one or both", key));
+        check(!(step.at_least && step.at_most) || *step.at_least <= *step.at_most, key + ".at_most",
+              fmt::format("'{}.at_most' is below at_least; no value would do", key));
+    }
 }
 
 // ---- before reading ---------------------------------------------------------------------------
@@ -430,8 +437,11 @@ std::string full_setting_key(const std::string& key, const TextPlace& place) {
         }
         if (last == key) matches.push_back(field.key);
     }
-    // A field of NAME is one of every molecule.
-    if (matches.size() == 1 && matches[0].find("NAME") == std::string::npos) return matches[0];
+    // A field of NAME is one of every molecule, one of STEP one of every step of the lesson.
+    const auto is_of_many = [](const std::string& field) {
+        return field.find("NAME") != std::string::npos || field.find("STEP") != std::string::npos;
+    };
+    if (matches.size() == 1 && !is_of_many(matches[0])) return matches[0];
     if (matches.empty()) {
         throw LoadError(place, fmt::format("no field of a scene is called '{}'{}", key,
                                            near_name_hint(key, last_parts)));

@@ -135,6 +135,12 @@ std::string format_summary(const SceneDescription& scene, const Summary& summary
     json["stroke"] = stroke_names[static_cast<std::size_t>(scene.hand.stroke)];
     json["mode"] = coupling_mode_names[static_cast<std::size_t>(scene.coupling.mode)];
     json["period_ms"] = scene.period_ms;
+    const CouplingDescription& c = scene.coupling;
+    json["coupling"] = {
+        {"clamp_N", c.clamp_N},         {"F_h1_N", c.F_h1_N},     {"F_h2_N", c.F_h2_N},
+        {"F_0_nN", c.F_0_nN},           {"A_f_min", c.A_f_min},   {"A_f_max", c.A_f_max},
+        {"gamma_per_N", c.gamma_per_N}, {"F_off_pN", c.F_off_pN}, {"A_d_min", c.A_d_min},
+        {"A_d_max", c.A_d_max},         {"A_f", c.A_f},           {"A_d", c.A_d}};
     json["friction_N"] = scene.device.friction_N;
     json["seed"] = scene.seed;
     json["seconds"] = scene.seconds;
@@ -155,7 +161,7 @@ std::string format_summary(const SceneDescription& scene, const Summary& summary
     json["last_angstrom"] = summary.last_angstrom;
     json["clamped_share"] = summary.clamped_share;
     json["stopped"] = summary.stopped;
-    json["overruns"] = 0;                                 // lockstep cannot be late
+    json["overruns"] = summary.overruns;
     json["neglected"] = nlohmann::ordered_json::array();  // rigid, all pairs: nothing
     json["warnings"] = summary.warnings;
     return json.dump(2) + "\n";

@@ -20,9 +20,10 @@ struct Summary {
     double largest_repulsion_N = 0;              // felt, along +x
     double closest_angstrom = 0;                 // smallest distance, whatever its sign
     double last_angstrom = 0;
-    bool went_through = false;  // the molecule came out on the other side
-    double clamped_share = 0;   // of the time
-    bool stopped = false;       // a force was not finite
+    bool went_through = false;   // the molecule came out on the other side
+    double clamped_share = 0;    // of the time
+    bool stopped = false;        // a force was not finite
+    std::uint64_t overruns = 0;  // servo ticks that came too late; lockstep cannot be late
     std::vector<std::string> warnings;
 };
 

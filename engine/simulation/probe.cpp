@@ -24,6 +24,12 @@ double bisect(const Simulation& simulation, double level, double inside, double 
 
 }  // namespace
 
+Vec3 grabbed_place(const Simulation& simulation) noexcept {
+    const Grab* const grab = simulation.world.find<Grab>(simulation.hand);
+    const Molecule* const grabbed = simulation.world.find<Molecule>(grab->molecule);
+    return simulation.atoms.positions[grabbed->reference_atom];
+}
+
 void move_grabbed(Simulation& simulation, double distance) noexcept {
     const Grab* const grab = simulation.world.find<Grab>(simulation.hand);
     const Molecule* const origin = simulation.world.find<Molecule>(grab->measured_from);

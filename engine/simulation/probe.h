@@ -14,6 +14,9 @@ struct LineForce {
     double stiffness = 0;  // kcal/mol/Å^2, -d(force)/d(distance)
 };
 
+// Where the grabbed molecule's reference atom is (Å, in the world).
+Vec3 grabbed_place(const Simulation& simulation) noexcept;
+
 // Puts the grabbed molecule's reference atom at that distance (Å) along its line.
 void move_grabbed(Simulation& simulation, double distance) noexcept;
 

@@ -43,6 +43,10 @@ TouchModel build_touch_model(const Simulation& simulation, const HandPose& hand)
     return touch;
 }
 
+void take_hold(Simulation& simulation, const HandPose& hand) noexcept {
+    simulation.world.find<Grab>(simulation.hand)->travel_m = hand.travel_m;
+}
+
 StepReport step_simulation(Simulation& simulation, const HandPose& hand,
                            const TouchModel& felt) noexcept {
     Grab* const grab = simulation.world.find<Grab>(simulation.hand);

@@ -19,6 +19,10 @@ struct [[nodiscard]] StepReport {
 StepReport step_simulation(Simulation& simulation, const HandPose& hand,
                            const TouchModel& felt) noexcept;
 
+// The hand takes hold of the molecule where both are: what the handle travelled since the last step
+// moves nothing.
+void take_hold(Simulation& simulation, const HandPose& hand) noexcept;
+
 // The touch model of the molecule where it stands, before any step.
 TouchModel build_touch_model(const Simulation& simulation, const HandPose& hand) noexcept;
 

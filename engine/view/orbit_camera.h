@@ -1,0 +1,38 @@
+// A camera that a person turns about what they look at.
+#pragma once
+#include "render/frame_scene.h"
+
+namespace palpa {
+
+// Looks at `target` from `distance` away; y is up.
+struct OrbitCamera {
+    glm::vec3 target{0};
+    float distance = 10;          // Å
+    float azimuth = 0;            // rad, about y; 0 looks along -z
+    float elevation = 0;          // rad, + from above
+    float vertical_angle = 0.6F;  // rad
+};
+
+// The direction from the target to the eye, and to the right and upwards in the picture.
+glm::vec3 backward(const OrbitCamera& camera);
+glm::vec3 rightward(const OrbitCamera& camera);
+glm::vec3 upward(const OrbitCamera& camera);
+
+// Turns; never over the top.
+void orbit(OrbitCamera& camera, float azimuth, float elevation);
+// Shifts by pixels of a picture `height` pixels high, so that what is at the target's depth
+// follows.
+void pan(OrbitCamera& camera, float right, float down, float height);
+// Å at the depth of a place that a pixel covers, in a picture `height` pixels high.
+float angstrom_per_pixel(const OrbitCamera& camera, const glm::vec3& place, float height);
+// Nearer for factors below 1.
+void zoom(OrbitCamera& camera, float factor);
+// All shapes fit a picture of that aspect, seen from where the camera looks.
+void frame_all(OrbitCamera& camera, const FrameScene& frame, float aspect);
+// Looks at one place, from near.
+void focus(OrbitCamera& camera, const glm::vec3& place, float distance);
+
+// With clip planes in front of and behind all shapes.
+FrameCamera frame_camera(const OrbitCamera& camera, const FrameScene& frame);
+
+}  // namespace palpa
