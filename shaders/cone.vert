@@ -2,27 +2,39 @@
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"
 
-layout(location = 0) out vec3 place;
-layout(location = 1) flat out vec4 start;  // view space, radius
-layout(location = 2) flat out vec4 end;
+layout(location = 0) flat out vec4 axis;  // and 1 + slope^2
+layout(location = 1) flat out vec4 form;  // g and C of the equation in cone.frag
+layout(location = 2) flat out vec2 ends;  // of the axis, from the foot of the camera's perpendicular
 layout(location = 3) flat out uint id;
 
-// The corners of a box in the order of one strip of 14 vertices, a bit each for x, y and z.
-const int strip_x = 0x287a, strip_y = 0x02af, strip_z = 0x31e3;
-
 void main() {
-    Cone shape = cones[gl_InstanceIndex];
-    start = vec4(to_view(shape.a_radius.xyz), shape.a_radius.w);
-    end = vec4(to_view(shape.b_radius.xyz), shape.b_radius.w);
-    id = uint(frame.background.w) + uint(gl_InstanceIndex) + 1u;
-    vec3 axis = normalize(end.xyz - start.xyz);
-    vec3 side = normalize(cross(axis, abs(axis.y) < 0.9 ? vec3(0, 1, 0) : vec3(1, 0, 0)));
-    vec3 other = cross(axis, side);
-    float radius = max(start.w, end.w);
-    int bit = 1 << gl_VertexIndex;
-    vec2 across = vec2((strip_x & bit) != 0 ? 1.0 : -1.0, (strip_y & bit) != 0 ? 1.0 : -1.0);
-    vec3 from = (strip_z & bit) != 0 ? end.xyz : start.xyz;
-    place = from + radius * (across.x * side + across.y * other);
-    gl_Position = clip_of(place);
-    gl_Position.z = 0.5 * gl_Position.w;
+    uint index = frame.spheres + uint(gl_VertexIndex / 6);
+    Shape shape = shapes[index];
+    vec3 a = shape.start.xyz;
+    float height = shape.axis.w, slope = shape.paint_a.w;
+    float n = -dot(a, shape.axis.xyz);
+    float radius_at_foot = shape.start.w + slope * n;
+    axis = vec4(shape.axis.xyz, 1.0 + slope * slope);
+    form = vec4(a + (n + slope * radius_at_foot) * shape.axis.xyz,
+                dot(a, a) - n * n - radius_at_foot * radius_at_foot);
+    ends = vec2(n, height);
+    id = index + 1u;
+
+    vec2 corner = corner_of(gl_VertexIndex);
+    float radius = max(shape.start.w, shape.start.w + slope * height);
+    vec3 foot = a + n * shape.axis.xyz;  // of the perpendicular from the camera to the axis
+    float away = length(foot);
+    if (away <= 2.0 * radius) {  // seen from its end
+        gl_Position = corner_around(a + 0.5 * height * shape.axis.xyz,
+                                    length(vec2(0.5 * height, radius)), corner);
+        return;
+    }
+    // A rectangle through the axis, across the line of sight: as wide as the camera's tangents to
+    // the sides, as long as it takes to hide both ends.
+    vec3 side = normalize(cross(shape.axis.xyz, foot));
+    float width = radius * away * inversesqrt(away * away - radius * radius);
+    float from = corner.x < 0.0 ? -n : height - n;
+    float towards = from * corner.x > 0.0 ? -radius : radius;
+    from *= away / (away + towards);
+    gl_Position = clip_of(foot + from * shape.axis.xyz + corner.y * width * side);
 }

@@ -2,79 +2,59 @@
 // View space: x right, y up, z towards the viewer, the camera at the origin.
 
 layout(push_constant) uniform Frame {
-    mat4 view;         // world to view space
-    vec4 projection;   // x scale, y scale, near, far
-    vec4 background;   // rgb, and in w the number of spheres
-    vec4 size;         // of the picture: width, height, their inverses
+    vec4 projection;  // x scale, y scale, near, far
+    vec4 size;        // of the picture: width, height, their inverses
+    uint spheres;     // how many of the shapes are spheres; the cones stand behind them
 } frame;
 
-struct Sphere {
-    vec4 centre_radius;
-    vec4 colour;
+// In view space. A sphere is a cone without axis and height.
+struct Shape {
+    vec4 start;    // a, radius there
+    vec4 axis;     // unit vector from a to b, height
+    vec4 paint_a;  // colour, slope: how much the radius grows along the axis
+    vec4 paint_b;  // colour of the half near b
 };
 
-struct Cone {
-    vec4 a_radius;
-    vec4 b_radius;
-    vec4 colour_a;
-    vec4 colour_b;
-};
+layout(std430, set = 0, binding = 0) readonly buffer Shapes { Shape shapes[]; };
 
-layout(std430, set = 0, binding = 0) readonly buffer Spheres { Sphere spheres[]; };
-layout(std430, set = 0, binding = 1) readonly buffer Cones { Cone cones[]; };
-
-vec3 to_view(vec3 world) { return (frame.view * vec4(world, 1.0)).xyz; }
-
-// Depth between 0 at the near and 1 at the far plane for a view-space z, and back.
-float depth_of(float z) {
+// What the depth test compares, 0 at the near and 1 at the far plane, for a distance in front of the
+// camera.
+float depth_of(float distance) {
     float near = frame.projection.z, far = frame.projection.w;
-    return far * (z + near) / (z * (far - near));
-}
-float z_of(float depth) {
-    float near = frame.projection.z, far = frame.projection.w;
-    return far * near / (depth * (far - near) - far);
+    return far * (distance - near) / (distance * (far - near));
 }
 
+// The view-space ray of depth 1 through a place in the picture, in pixels from the upper left.
+vec3 ray_at(vec2 pixel) {
+    vec2 plane = pixel * frame.size.zw * 2.0 - 1.0;
+    return vec3(plane.x / frame.projection.x, -plane.y / frame.projection.y, -1.0);
+}
+
+// Where a corner of an impostor is drawn. Its own depth is of no use: the fragment finds the real
+// one.
 vec4 clip_of(vec3 view) {
-    float near = frame.projection.z, far = frame.projection.w;
-    return vec4(frame.projection.x * view.x, -frame.projection.y * view.y,
-                -far * (view.z + near) / (far - near), -view.z);
+    return vec4(frame.projection.x * view.x, -frame.projection.y * view.y, 0.0, -view.z);
 }
 
-// Distance along the ray (a multiple of its direction) to the sphere, or -1.
-float hit_sphere(vec3 ray, vec3 centre, float radius) {
-    float a = dot(ray, ray), b = dot(ray, centre);
-    float root = b * b - a * (dot(centre, centre) - radius * radius);
-    return root < 0.0 ? -1.0 : (b - sqrt(root)) / a;
+// All corners here: an impostor of no area, and inside of the view. One vertex outside of it makes
+// lavapipe send thousands of others through its clipper, also where that vertex is padding.
+const vec4 nowhere = vec4(0.0, 0.0, 0.0, 1.0);
+
+// Two triangles of six vertices make a rectangle; its corners, from -1 to 1. A list of triangles
+// instead of an instance per shape: software draws each instance by itself, at ten times the cost.
+vec2 corner_of(int vertex) {
+    int bit = 1 << (vertex % 6);
+    return vec2((0x32 & bit) != 0 ? 1.0 : -1.0, (0x2c & bit) != 0 ? 1.0 : -1.0);
 }
 
-// The same for a cone from a (radius ra) to b (radius rb), flat at a; gives the normal as well.
-float hit_cone(vec3 ray, vec3 a, vec3 b, float ra, float rb, out vec3 normal) {
-    vec3 axis = b - a;
-    float height = length(axis);
-    axis /= height;
-    float k = (rb - ra) / height;
-    float m = dot(ray, axis), n = -dot(a, axis), r = ra + k * n;
-    float A = dot(ray, ray) - m * m - k * k * m * m;
-    float B = -dot(a, ray) - m * n - k * m * r;
-    float C = dot(a, a) - n * n - r * r;
-    float root = B * B - A * C;
-    if (root >= 0.0 && A > 0.0) {
-        float t = (-B - sqrt(root)) / A;
-        float along = m * t + n;
-        if (t > 0.0 && along >= 0.0 && along <= height) {
-            vec3 off = t * ray - a - along * axis;
-            normal = normalize(normalize(off) - k * axis);
-            return t;
-        }
-    }
-    // The flat end, seen from outside.
-    if (m > 0.0) {
-        float t = dot(a, axis) / m;
-        if (t > 0.0 && distance(t * ray, a) <= ra) {
-            normal = -axis;
-            return t;
-        }
-    }
-    return -1.0;
+// A corner of the square through a sphere's outline as the camera sees it, just large enough.
+// Nowhere if the camera is inside of the sphere or past it.
+vec4 corner_around(vec3 centre, float radius, vec2 corner) {
+    float d2 = dot(centre, centre), r2 = radius * radius;
+    if (d2 <= r2 || centre.z - radius > -frame.projection.z) return nowhere;
+    vec3 outward = centre * inversesqrt(d2);
+    vec3 right = normalize(cross(outward, abs(outward.y) < 0.9 ? vec3(0, 1, 0) : vec3(1, 0, 0)));
+    vec3 up = cross(right, outward);
+    float outline = radius * sqrt((d2 - r2) / d2);
+    return clip_of(centre * (1.0 - r2 / d2) + outline * (corner.x * right + corner.y * up));
 }

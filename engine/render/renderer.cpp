@@ -2,6 +2,7 @@
 
 #include "shaders/cone_frag.h"
 #include "shaders/cone_vert.h"
+#include "shaders/outline_frag.h"
 #include "shaders/resolve_frag.h"
 #include "shaders/resolve_vert.h"
 #include "shaders/sphere_frag.h"
@@ -9,42 +10,70 @@
 
 #include <fmt/format.h>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace palpa {
 namespace {
 
-constexpr VkFormat id_format = VK_FORMAT_R32_UINT, depth_format = VK_FORMAT_D32_SFLOAT,
+constexpr VkFormat seen_format = VK_FORMAT_R32G32_UINT, depth_format = VK_FORMAT_D32_SFLOAT,
                    colour_format = VK_FORMAT_R8G8B8A8_UNORM, drawn_format = VK_FORMAT_R8G8B8A8_SRGB;
 
 // The layouts of shaders/frame.glsl.
-struct GpuSphere {
-    glm::vec4 centre_radius, colour;
-};
-struct GpuCone {
-    glm::vec4 a_radius, b_radius, colour_a, colour_b;
+struct GpuShape {
+    glm::vec4 start, axis, paint_a, paint_b;
 };
 struct GpuFrame {
-    glm::mat4 view;
-    glm::vec4 projection, background, size;
+    glm::vec4 projection, size;
+    std::uint32_t spheres;
 };
 static_assert(sizeof(GpuFrame) <= 128, "push constants");
+// What the shapes' pass leaves of a pixel.
+struct Seen {
+    std::uint32_t id;  // of a shape from 1, 0 where nothing is
+    float distance;    // in front of the camera
+};
+constexpr float nowhere =
+    1e9F;  // the distance of nothing, for shaders: a number that they can reckon with
 
 GpuFrame build_frame_constants(const FrameScene& scene, VkExtent2D size) {
     const FrameCamera& camera = scene.camera;
     const auto width = static_cast<float>(size.width), height = static_cast<float>(size.height);
     const float y_scale = 1 / std::tan(camera.vertical_angle / 2);
-    return {view_matrix(camera),
-            {y_scale * height / width, y_scale, camera.near, camera.far},
-            {scene.background, static_cast<float>(scene.spheres.size())},
-            {width, height, 1 / width, 1 / height}};
+    return {{y_scale * height / width, y_scale, camera.near, camera.far},
+            {width, height, 1 / width, 1 / height},
+            static_cast<std::uint32_t>(scene.spheres.size())};
+}
+
+GpuShape build_shape(const glm::mat4& view, const SphereShape& sphere) {
+    const glm::vec3 centre(view * glm::vec4(sphere.centre, 1));
+    return {{centre, sphere.radius}, {0, 0, 0, 0}, {sphere.colour, 0}, {sphere.colour, 0}};
+}
+
+GpuShape build_shape(const glm::mat4& view, const ConeShape& cone) {
+    const glm::vec3 a(view * glm::vec4(cone.a, 1)), b(view * glm::vec4(cone.b, 1));
+    const float height = glm::length(b - a);
+    return {{a, cone.radius_a},
+            {(b - a) / height, height},
+            {cone.colour_a, (cone.radius_b - cone.radius_a) / height},
+            {cone.colour_b, 0}};
+}
+
+void check_size(const GpuDevice& device, VkExtent2D size) {
+    const std::uint32_t most = device.limits().maxImageDimension2D;
+    if (size.width == 0 || size.height == 0 || size.width > most || size.height > most) {
+        throw GpuError(fmt::format("a picture of {}x{}; expected 1x1 to {}x{} on {}", size.width,
+                                   size.height, most, most, device.name()));
+    }
 }
 
 VkShaderModule create_module(VkDevice device, std::span<const std::uint32_t> code) {
@@ -71,23 +100,22 @@ VkAttachmentDescription attachment(VkFormat format, VkImageLayout last) {
 }
 
 VkRenderPass create_pass(VkDevice device, std::span<const VkAttachmentDescription> attachments,
-                         bool has_depth, VkPipelineStageFlags next_stage,
-                         VkAccessFlags next_access) {
+                         VkPipelineStageFlags next_stage, VkAccessFlags next_access) {
     const VkAttachmentReference colour{0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
     const VkAttachmentReference depth{1, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL};
     VkSubpassDescription subpass{};
     subpass.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS;
     subpass.colorAttachmentCount = 1;
     subpass.pColorAttachments = &colour;
-    subpass.pDepthStencilAttachment = has_depth ? &depth : nullptr;
+    subpass.pDepthStencilAttachment = &depth;
     // What reads the attachments afterwards waits for them.
     VkSubpassDependency after{};
     after.srcSubpass = 0;
     after.dstSubpass = VK_SUBPASS_EXTERNAL;
     after.srcStageMask =
         VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT;
-    after.srcAccessMask = VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT |
-                          (has_depth ? VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT : 0);
+    after.srcAccessMask =
+        VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
     after.dstStageMask = next_stage;
     after.dstAccessMask = next_access;
     VkRenderPassCreateInfo info{};
@@ -103,62 +131,55 @@ VkRenderPass create_pass(VkDevice device, std::span<const VkAttachmentDescriptio
     return pass;
 }
 
-VkBufferImageCopy region_of(VkImageAspectFlags aspect, VkOffset2D from, VkExtent2D size) {
-    VkBufferImageCopy region{};
-    region.imageSubresource = {aspect, 0, 0, 1};
-    region.imageOffset = {from.x, from.y, 0};
-    region.imageExtent = {size.width, size.height, 1};
-    return region;
-}
-
-// An image's picture elements of 4 bytes, brought to the processor.
+// Part of a colour image, brought to the processor. The image is where it can be copied from.
 class Readback {
 public:
-    Readback(const GpuDevice& device, VkExtent2D size)
-        : buffer_(device, VkDeviceSize{4} * size.width * size.height,
+    Readback(const GpuDevice& device, VkExtent2D size, VkDeviceSize bytes_a_pixel)
+        : size_(size),
+          buffer_(device, bytes_a_pixel * size.width * size.height,
                   VK_BUFFER_USAGE_TRANSFER_DST_BIT, BufferPlace::Readback) {}
 
-    void copy(VkCommandBuffer commands, VkImage image, const VkBufferImageCopy& region) const {
+    void record(VkCommandBuffer commands, VkImage image, VkOffset2D from) const {
+        VkBufferImageCopy region{};
+        region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+        region.imageOffset = {from.x, from.y, 0};
+        region.imageExtent = {size_.width, size_.height, 1};
         vkCmdCopyImageToBuffer(commands, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
                                buffer_.handle(), 1, &region);
     }
 
-    template <class T>
-    std::vector<T> read() const {
+    template <class Pixel>
+    std::vector<Pixel> read() const {
         const std::span<std::byte> bytes = buffer_.mapped();
-        std::vector<T> values(bytes.size() / sizeof(T));
-        std::memcpy(values.data(), bytes.data(), bytes.size());
-        return values;
+        std::vector<Pixel> pixels(bytes.size() / sizeof(Pixel));
+        std::memcpy(pixels.data(), bytes.data(), bytes.size());
+        return pixels;
     }
 
 private:
+    VkExtent2D size_;
     Buffer buffer_;
 };
 
-void change_layout(VkCommandBuffer commands, VkImage image, VkImageAspectFlags aspect,
-                   VkImageLayout from, VkImageLayout to) {
+// The same for an image that shaders read before and afterwards.
+void record_between_reads(VkCommandBuffer commands, VkImage image, VkOffset2D from,
+                          const Readback& readback) {
     VkImageMemoryBarrier barrier{};
     barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER;
     barrier.dstAccessMask = VK_ACCESS_TRANSFER_READ_BIT;
-    barrier.oldLayout = from;
-    barrier.newLayout = to;
+    barrier.oldLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+    barrier.newLayout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
     barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
     barrier.image = image;
-    barrier.subresourceRange = {aspect, 0, 1, 0, 1};
-    const VkPipelineStageFlags reads =
-        VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
-    vkCmdPipelineBarrier(commands, reads, reads, 0, 0, nullptr, 0, nullptr, 1, &barrier);
-}
-
-// From being read by a shader to being copied, and back.
-void copy_readable(VkCommandBuffer commands, VkImage image, const Readback& target,
-                   const VkBufferImageCopy& region) {
-    const VkImageAspectFlags aspect = region.imageSubresource.aspectMask;
-    change_layout(commands, image, aspect, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
-                  VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
-    target.copy(commands, image, region);
-    change_layout(commands, image, aspect, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                  VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+    vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
+                         VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, nullptr, 0, nullptr, 1, &barrier);
+    readback.record(commands, image, from);
+    barrier.dstAccessMask = VK_ACCESS_SHADER_READ_BIT;
+    std::swap(barrier.oldLayout, barrier.newLayout);
+    vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                         VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, 0, 0, nullptr, 0, nullptr, 1,
+                         &barrier);
 }
 
 }  // namespace
@@ -176,16 +197,14 @@ glm::vec3 project(const FrameCamera& camera, const glm::vec3& point, std::uint32
 }
 
 Renderer::Renderer(GpuDevice& device)
-    : device_(device),
-      sphere_buffer_(device, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT),
-      cone_buffer_(device, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) {
+    : device_(device), shapes_(device, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) {
     create_passes();
     create_pipelines();
 }
 
 Renderer::~Renderer() {
     const VkDevice device = device_.handle();
-    for (const VkPipeline pipeline : {spheres_, cones_, resolve_}) {
+    for (const VkPipeline pipeline : {draw_spheres_, draw_cones_, shade_, outline_}) {
         vkDestroyPipeline(device, pipeline, nullptr);
     }
     vkDestroyPipelineLayout(device, layout_, nullptr);
@@ -197,12 +216,19 @@ Renderer::~Renderer() {
 }
 
 void Renderer::create_passes() {
-    const std::array shapes{attachment(id_format, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL),
-                            attachment(depth_format, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL)};
-    shape_pass_ = create_pass(device_.handle(), shapes, true, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
-                              VK_ACCESS_SHADER_READ_BIT);
-    const std::array picture{attachment(drawn_format, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL)};
-    resolve_pass_ = create_pass(device_.handle(), picture, false, VK_PIPELINE_STAGE_TRANSFER_BIT,
+    const VkImageLayout depth_layout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
+    const std::array shapes{attachment(seen_format, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL),
+                            attachment(depth_format, depth_layout)};
+    shape_pass_ = create_pass(
+        device_.handle(), shapes,
+        VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT,
+        VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_READ_BIT);
+    std::array picture{attachment(drawn_format, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL),
+                       attachment(depth_format, depth_layout)};
+    picture[1].initialLayout = depth_layout;
+    picture[1].loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
+    picture[1].storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+    resolve_pass_ = create_pass(device_.handle(), picture, VK_PIPELINE_STAGE_TRANSFER_BIT,
                                 VK_ACCESS_TRANSFER_READ_BIT);
 }
 
@@ -214,11 +240,11 @@ void Renderer::create_pipelines() {
         VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
     check_vulkan(vkCreateSampler(device, &sampler, nullptr, &sampler_), "vkCreateSampler");
 
-    std::array<VkDescriptorSetLayoutBinding, 4> bindings{};
+    std::array<VkDescriptorSetLayoutBinding, 2> bindings{};
     for (std::uint32_t i = 0; i < bindings.size(); ++i) {
         bindings[i].binding = i;
         bindings[i].descriptorType =
-            i < 2 ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+            i < 1 ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
         bindings[i].descriptorCount = 1;
         bindings[i].stageFlags = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
     }
@@ -229,8 +255,8 @@ void Renderer::create_pipelines() {
     check_vulkan(vkCreateDescriptorSetLayout(device, &set_info, nullptr, &set_layout_),
                  "vkCreateDescriptorSetLayout");
 
-    const std::array sizes{VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 2},
-                           VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 2}};
+    const std::array sizes{VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
+                           VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1}};
     VkDescriptorPoolCreateInfo pool{};
     pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
     pool.maxSets = 1;
@@ -258,21 +284,23 @@ void Renderer::create_pipelines() {
 
     const auto build = [&](std::span<const std::uint32_t> vertex_code,
                            std::span<const std::uint32_t> fragment_code, VkRenderPass pass,
-                           bool has_depth) {
+                           VkCompareOp compare) {
         const VkShaderModule vertex = create_module(device, vertex_code);
         const VkShaderModule fragment = create_module(device, fragment_code);
-        const VkPipeline pipeline = create_pipeline(vertex, fragment, pass, has_depth);
+        const VkPipeline pipeline = create_pipeline(vertex, fragment, pass, compare);
         vkDestroyShaderModule(device, vertex, nullptr);
         vkDestroyShaderModule(device, fragment, nullptr);
         return pipeline;
     };
-    spheres_ = build(sphere_vert, sphere_frag, shape_pass_, true);
-    cones_ = build(cone_vert, cone_frag, shape_pass_, true);
-    resolve_ = build(resolve_vert, resolve_frag, resolve_pass_, false);
+    draw_spheres_ = build(sphere_vert, sphere_frag, shape_pass_, VK_COMPARE_OP_LESS);
+    draw_cones_ = build(cone_vert, cone_frag, shape_pass_, VK_COMPARE_OP_LESS);
+    // At the far plane, where shapes are, and where nothing is: the depth test chooses the pixels.
+    shade_ = build(resolve_vert, resolve_frag, resolve_pass_, VK_COMPARE_OP_GREATER);
+    outline_ = build(resolve_vert, outline_frag, resolve_pass_, VK_COMPARE_OP_EQUAL);
 }
 
 VkPipeline Renderer::create_pipeline(VkShaderModule vertex, VkShaderModule fragment,
-                                     VkRenderPass pass, bool has_depth) const {
+                                     VkRenderPass pass, VkCompareOp compare) const {
     std::array<VkPipelineShaderStageCreateInfo, 2> stages{};
     stages[0].sType = stages[1].sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
     stages[0].stage = VK_SHADER_STAGE_VERTEX_BIT;
@@ -285,7 +313,7 @@ VkPipeline Renderer::create_pipeline(VkShaderModule vertex, VkShaderModule fragm
     no_input.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
     VkPipelineInputAssemblyStateCreateInfo assembly{};
     assembly.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO;
-    assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP;
+    assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
     VkPipelineViewportStateCreateInfo viewport{};
     viewport.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO;
     viewport.viewportCount = viewport.scissorCount = 1;
@@ -297,8 +325,9 @@ VkPipeline Renderer::create_pipeline(VkShaderModule vertex, VkShaderModule fragm
     samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
     VkPipelineDepthStencilStateCreateInfo depth{};
     depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
-    depth.depthTestEnable = depth.depthWriteEnable = has_depth ? VK_TRUE : VK_FALSE;
-    depth.depthCompareOp = VK_COMPARE_OP_LESS;
+    depth.depthTestEnable = VK_TRUE;
+    depth.depthWriteEnable = pass == shape_pass_ ? VK_TRUE : VK_FALSE;
+    depth.depthCompareOp = compare;
     VkPipelineColorBlendAttachmentState write{};
     write.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
                            VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
@@ -334,72 +363,61 @@ VkPipeline Renderer::create_pipeline(VkShaderModule vertex, VkShaderModule fragm
 }
 
 Renderer::Targets Renderer::create_targets(VkExtent2D size) const {
-    const VkImageUsageFlags read = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     Targets targets;
     targets.size = size;
-    targets.ids = Image(device_, size, id_format, read | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT,
-                        VK_IMAGE_ASPECT_COLOR_BIT);
-    targets.depth =
-        Image(device_, size, depth_format, read | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT,
-              VK_IMAGE_ASPECT_DEPTH_BIT);
+    targets.seen = Image(device_, size, seen_format,
+                         VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
+                             VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
+                         VK_IMAGE_ASPECT_COLOR_BIT);
+    targets.depth = Image(device_, size, depth_format, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT,
+                          VK_IMAGE_ASPECT_DEPTH_BIT);
     targets.colour = Image(device_, size, colour_format,
                            VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
                            VK_IMAGE_ASPECT_COLOR_BIT, drawn_format);
-    const std::array shape_views{targets.ids.view(), targets.depth.view()};
-    const std::array picture_views{targets.colour.view()};
+    const std::array shape_views{targets.seen.view(), targets.depth.view()};
+    const std::array picture_views{targets.colour.view(), targets.depth.view()};
     targets.shapes = Framebuffer(device_, shape_pass_, shape_views, size);
     targets.picture = Framebuffer(device_, resolve_pass_, picture_views, size);
     return targets;
 }
 
 void Renderer::write_descriptors() const {
-    const std::array<VkDescriptorBufferInfo, 2> buffers{
-        {{sphere_buffer_.handle(), 0, VK_WHOLE_SIZE}, {cone_buffer_.handle(), 0, VK_WHOLE_SIZE}}};
-    const std::array<VkDescriptorImageInfo, 2> images{
-        {{sampler_, targets_.ids.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL},
-         {sampler_, targets_.depth.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL}}};
+    const VkDescriptorBufferInfo shapes{shapes_.handle(), 0, VK_WHOLE_SIZE};
+    const VkDescriptorImageInfo seen{sampler_, targets_.seen.view(),
+                                     VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
     std::array<VkWriteDescriptorSet, 2> writes{};
     writes[0].sType = writes[1].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
     writes[0].dstSet = writes[1].dstSet = set_;
-    writes[0].descriptorCount = writes[1].descriptorCount = 2;
+    writes[0].descriptorCount = writes[1].descriptorCount = 1;
     writes[0].descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-    writes[0].pBufferInfo = buffers.data();
-    writes[1].dstBinding = 2;
+    writes[0].pBufferInfo = &shapes;
+    writes[1].dstBinding = 1;
     writes[1].descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-    writes[1].pImageInfo = images.data();
+    writes[1].pImageInfo = &seen;
     vkUpdateDescriptorSets(device_.handle(), static_cast<std::uint32_t>(writes.size()),
                            writes.data(), 0, nullptr);
 }
 
 bool Renderer::upload_shapes(VkCommandBuffer commands, const FrameScene& scene) {
-    const bool spheres_moved = sphere_buffer_.reserve(scene.spheres.size() * sizeof(GpuSphere));
-    const bool cones_moved = cone_buffer_.reserve(scene.cones.size() * sizeof(GpuCone));
+    const std::size_t count = scene.spheres.size() + scene.cones.size();
+    const bool moved = shapes_.reserve(count * sizeof(GpuShape));
+    const glm::mat4 view = view_matrix(scene.camera);
+    std::byte* place = shapes_.mapped().data();
     picks_.clear();
-    std::byte* place = sphere_buffer_.mapped().data();
-    for (const SphereShape& s : scene.spheres) {
-        const GpuSphere sphere{{s.centre, s.radius}, {s.colour, 1}};
-        std::memcpy(place, &sphere, sizeof(sphere));
-        place += sizeof(sphere);
-        picks_.push_back(s.pick);
-    }
-    place = cone_buffer_.mapped().data();
-    for (const ConeShape& c : scene.cones) {
-        const GpuCone cone{{c.a, c.radius_a}, {c.b, c.radius_b}, {c.colour_a, 1}, {c.colour_b, 1}};
-        std::memcpy(place, &cone, sizeof(cone));
-        place += sizeof(cone);
-        picks_.push_back(c.pick);
-    }
-    sphere_buffer_.record(commands, scene.spheres.size() * sizeof(GpuSphere));
-    cone_buffer_.record(commands, scene.cones.size() * sizeof(GpuCone));
-    return spheres_moved || cones_moved;
+    const auto add = [&](const auto& shape) {
+        const GpuShape built = build_shape(view, shape);
+        std::memcpy(place, &built, sizeof(built));
+        place += sizeof(built);
+        picks_.push_back(shape.pick);
+    };
+    for (const SphereShape& sphere : scene.spheres) add(sphere);
+    for (const ConeShape& cone : scene.cones) add(cone);
+    shapes_.record(commands, count * sizeof(GpuShape));
+    return moved;
 }
 
 void Renderer::record(VkCommandBuffer commands, const FrameScene& scene, VkExtent2D size) {
-    const std::uint32_t most = device_.limits().maxImageDimension2D;
-    if (size.width == 0 || size.height == 0 || size.width > most || size.height > most) {
-        throw GpuError(fmt::format("a picture of {}x{}; expected 1x1 to {}x{} on {}", size.width,
-                                   size.height, most, most, device_.name()));
-    }
+    check_size(device_, size);
     const bool resized = size.width != targets_.size.width || size.height != targets_.size.height;
     if (resized) targets_ = create_targets(size);
     if (upload_shapes(commands, scene) || resized) write_descriptors();
@@ -414,6 +432,7 @@ void Renderer::record(VkCommandBuffer commands, const FrameScene& scene, VkExten
                        0, sizeof(constants), &constants);
 
     std::array<VkClearValue, 2> clear{};
+    clear[0].color.uint32[1] = std::bit_cast<std::uint32_t>(nowhere);
     clear[1].depthStencil = {1, 0};
     VkRenderPassBeginInfo begin{};
     begin.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO;
@@ -427,68 +446,58 @@ void Renderer::record(VkCommandBuffer commands, const FrameScene& scene, VkExten
     // in the layout that the set promises only afterwards, and no shader reads them here.
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0, 1, &set_, 0,
                             nullptr);
-    if (!scene.spheres.empty()) {
-        vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, spheres_);
-        vkCmdDraw(commands, 4, static_cast<std::uint32_t>(scene.spheres.size()), 0, 0);
-    }
-    if (!scene.cones.empty()) {
-        vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, cones_);
-        vkCmdDraw(commands, 14, static_cast<std::uint32_t>(scene.cones.size()), 0, 0);
-    }
+    const auto draw = [&](VkPipeline pipeline, std::size_t vertices) {
+        if (vertices == 0) return;
+        vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
+        vkCmdDraw(commands, static_cast<std::uint32_t>(vertices), 1, 0, 0);
+    };
+    draw(draw_spheres_, 6 * scene.spheres.size());
+    draw(draw_cones_, 6 * scene.cones.size());
     vkCmdEndRenderPass(commands);
 
     begin.renderPass = resolve_pass_;
     begin.framebuffer = targets_.picture.handle();
+    clear[0].color = {{scene.background.r, scene.background.g, scene.background.b, 1}};
     begin.clearValueCount = 1;
     vkCmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
-    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, resolve_);
-    vkCmdDraw(commands, 3, 1, 0, 0);
+    draw(shade_, 3);
+    draw(outline_, 3);
     vkCmdEndRenderPass(commands);
 }
 
 Picture Renderer::draw(const FrameScene& scene, std::uint32_t width, std::uint32_t height,
                        PictureContent content) {
     const VkExtent2D size{width, height};
-    std::optional<Readback> colours, ids, depths;
+    check_size(device_, size);
+    const Readback colours(device_, size, 4);
+    std::optional<Readback> seen;
+    if (content == PictureContent::All) seen.emplace(device_, size, sizeof(Seen));
     device_.submit([&](VkCommandBuffer commands) {
         record(commands, scene, size);
-        colours.emplace(device_, size);
-        colours->copy(commands, targets_.colour.handle(),
-                      region_of(VK_IMAGE_ASPECT_COLOR_BIT, {0, 0}, size));
-        if (content == PictureContent::All) {
-            ids.emplace(device_, size);
-            copy_readable(commands, targets_.ids.handle(), *ids,
-                          region_of(VK_IMAGE_ASPECT_COLOR_BIT, {0, 0}, size));
-            depths.emplace(device_, size);
-            copy_readable(commands, targets_.depth.handle(), *depths,
-                          region_of(VK_IMAGE_ASPECT_DEPTH_BIT, {0, 0}, size));
-        }
+        colours.record(commands, targets_.colour.handle(), {0, 0});
+        if (seen) record_between_reads(commands, targets_.seen.handle(), {0, 0}, *seen);
         show_copies_to_host(commands);
     });
-    Picture picture{width, height, colours->read<std::uint8_t>(), {}, {}};
-    if (content == PictureContent::Colours) return picture;
-    picture.picks = ids->read<std::uint32_t>();
-    picture.depth = depths->read<float>();
-    const float near = scene.camera.near, far = scene.camera.far;
-    for (std::size_t i = 0; i < picture.picks.size(); ++i) {
-        picture.depth[i] = picture.picks[i] == 0
-                               ? std::numeric_limits<float>::infinity()
-                               : far * near / (far - picture.depth[i] * (far - near));
-        picture.picks[i] = pick_of(picture.picks[i]);
+    Picture picture{width, height, colours.read<std::uint8_t>(), {}, {}};
+    if (!seen) return picture;
+    for (const Seen& pixel : seen->read<Seen>()) {
+        picture.picks.push_back(pick_of(pixel.id));
+        picture.depth.push_back(pixel.id == 0 ? std::numeric_limits<float>::infinity()
+                                              : pixel.distance);
     }
     return picture;
 }
 
 std::uint32_t Renderer::pick(std::uint32_t x, std::uint32_t y) {
     if (x >= targets_.size.width || y >= targets_.size.height) return Picture::nothing_seen;
-    const Readback id(device_, {1, 1});
-    const VkOffset2D pixel{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};
+    const Readback readback(device_, {1, 1}, sizeof(Seen));
     device_.submit([&](VkCommandBuffer commands) {
-        copy_readable(commands, targets_.ids.handle(), id,
-                      region_of(VK_IMAGE_ASPECT_COLOR_BIT, pixel, {1, 1}));
+        record_between_reads(commands, targets_.seen.handle(),
+                             {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)},
+                             readback);
         show_copies_to_host(commands);
     });
-    return pick_of(id.read<std::uint32_t>().front());
+    return pick_of(readback.read<Seen>().front().id);
 }
 
 std::uint32_t Renderer::pick_of(std::uint32_t id) const noexcept {

@@ -13,8 +13,8 @@
 namespace palpa {
 
 // Two passes. The first finds for every pixel which shape is nearest and how far; the second shades
-// each pixel once: light from the camera's upper left, ambient occlusion from eight taps of the
-// depth around, a dark outline where depth breaks off.
+// each pixel that shows one: light from the camera's upper left, ambient occlusion from eight taps
+// of the distances around, a dark outline where distance breaks off.
 class Renderer {
 public:
     // Throws GpuError.
@@ -46,14 +46,14 @@ private:
     // The images of one size.
     struct Targets {
         VkExtent2D size{0, 0};
-        Image ids, depth, colour;
+        Image seen, depth, colour;  // seen: which shape, and how far
         Framebuffer shapes, picture;
     };
 
     void create_passes();
     void create_pipelines();
     VkPipeline create_pipeline(VkShaderModule vertex, VkShaderModule fragment, VkRenderPass pass,
-                               bool has_depth) const;
+                               VkCompareOp compare) const;
     Targets create_targets(VkExtent2D size) const;
     void write_descriptors() const;
     // Whether a buffer grew, so that the descriptors name one that is gone.
@@ -67,11 +67,12 @@ private:
     VkDescriptorPool descriptors_ = VK_NULL_HANDLE;
     VkDescriptorSet set_ = VK_NULL_HANDLE;
     VkSampler sampler_ = VK_NULL_HANDLE;
-    VkPipeline spheres_ = VK_NULL_HANDLE, cones_ = VK_NULL_HANDLE, resolve_ = VK_NULL_HANDLE;
+    VkPipeline draw_spheres_ = VK_NULL_HANDLE, draw_cones_ = VK_NULL_HANDLE,
+               shade_ = VK_NULL_HANDLE, outline_ = VK_NULL_HANDLE;
 
     // written by every record
     Targets targets_;
-    UploadBuffer sphere_buffer_, cone_buffer_;
+    UploadBuffer shapes_;
     std::vector<std::uint32_t> picks_;  // of every shape: the spheres', then the cones'
 };
 
