@@ -15,7 +15,7 @@
 namespace palpa {
 namespace {
 
-constexpr float column = 350, edge = 10;  // pixels
+constexpr float edge = 10;  // pixels around the panels
 constexpr ImU32 molecule_colour = IM_COL32(190, 40, 40, 255);
 constexpr ImU32 hand_colour = IM_COL32(20, 90, 190, 255);
 constexpr ImU32 gain_colour = IM_COL32(20, 130, 70, 255);
@@ -27,6 +27,9 @@ constexpr std::array<const char*, 5> mode_texts{
     "1  variable force, variable displacement", "2  variable force, constant displacement",
     "3  constant force, variable displacement", "4  constant force, constant displacement",
     "5  no force"};
+
+// Width of the panels at either side of a window that wide.
+float column_of(float window_width) { return std::clamp(0.3F * window_width, 240.0F, 350.0F); }
 
 void tip(const char* text) {
     if (!ImGui::IsItemHovered()) return;
@@ -160,8 +163,8 @@ bool Overlay::is_shaking(const Readout& readout) const {
 }
 
 float Overlay::covered_pixels(float window_width) const noexcept {
-    const bool has_room = window_width > 3 * (column + edge);
-    return shows_overlays_ && has_room ? column + edge : 0;
+    const float covered = column_of(window_width) + edge;
+    return shows_overlays_ && window_width > 2.5F * covered ? covered : 0;
 }
 
 void Overlay::draw(const Readout& readout, const OverlayStatus& status,
@@ -179,7 +182,7 @@ void Overlay::draw(const Readout& readout, const OverlayStatus& status,
 void Overlay::draw_scene(const Readout& readout, const OverlayStatus& status,
                          std::vector<Command>& commands, std::vector<Action>& actions) {
     ImGui::SetNextWindowPos({edge, edge});
-    ImGui::SetNextWindowSize({column, 0});
+    ImGui::SetNextWindowSize({column_of(ImGui::GetIO().DisplaySize.x), 0});
     ImGui::Begin(fmt::format("{}###scene", scene_.title).c_str(), nullptr, fixed_window);
     if (!scene_.about.empty() && ImGui::CollapsingHeader("About")) {
         ImGui::TextWrapped("%s", scene_.about.c_str());
@@ -228,7 +231,7 @@ void Overlay::draw_scene(const Readout& readout, const OverlayStatus& status,
 
 void Overlay::draw_readings(const Readout& readout, const OverlayStatus& status) {
     if (!ImGui::BeginTable("readings", 2)) return;
-    ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthFixed, 130);
+    ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthFixed, 115);
     const CouplingLaws laws = build_coupling_laws(settings_.coupling);
     const TouchModel& touch = readout.touch;
     const bool on_axis = touch.active_freedom == 1;
@@ -271,6 +274,7 @@ void Overlay::draw_readings(const Readout& readout, const OverlayStatus& status)
 
 void Overlay::draw_gains(std::vector<Command>& commands) {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    const float column = column_of(screen.x);
     ImGui::SetNextWindowPos({screen.x - column - edge, edge});
     ImGui::SetNextWindowSize({column, 0});
     ImGui::Begin("Gains", nullptr, fixed_window);
@@ -366,7 +370,9 @@ void Overlay::draw_gain_sliders() {
 
 void Overlay::draw_history() {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
-    const float height = std::clamp(screen.y - gains_bottom_ - 2 * edge, 240.0F, 520.0F);
+    const float column = column_of(screen.x);
+    const float height = std::min(screen.y - gains_bottom_ - 2 * edge, 520.0F);
+    if (height < 220) return;  // no room; a larger window has it
     ImGui::SetNextWindowPos({screen.x - column - edge, gains_bottom_ + edge});
     ImGui::SetNextWindowSize({column, height});
     ImGui::Begin("What happened", nullptr, fixed_window);
@@ -418,7 +424,8 @@ void Overlay::draw_history() {
 
 void Overlay::draw_lesson() {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
-    const float width = std::max(300.0F, screen.x - 2 * column - 4 * edge);
+    const float column = column_of(screen.x);
+    const float width = std::max(260.0F, screen.x - 2 * column - 4 * edge);
     ImGui::SetNextWindowPos({screen.x / 2, screen.y - edge - 30}, ImGuiCond_Always, {0.5F, 1});
     ImGui::SetNextWindowSize({std::min(width, 560.0F), 0});
     ImGui::Begin("Lesson", nullptr, fixed_window);
@@ -466,6 +473,7 @@ void Overlay::draw_warnings(const Readout& readout, const OverlayStatus& status)
                               ? "in hand: move the mouse; the wheel goes in and out"
                               : "hold Space and move the mouse to pull the molecule; H: all keys");
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    const float column = column_of(screen.x);
     ImGui::SetNextWindowPos({screen.x / 2, edge}, ImGuiCond_Always, {0.5F, 0});
     ImGui::SetNextWindowSizeConstraints({200, 0},
                                         {std::max(260.0F, screen.x - 2 * column - 60), 400});

@@ -68,7 +68,7 @@ TEST_CASE("the mouse's hand draws the molecule near, and the hand feels it", "[a
     CHECK(live.frame.grabbed_angstrom.x() - live.distance() == Approx(0).margin(1e-9));
 }
 
-TEST_CASE("while paused nothing moves and nothing is felt; going on, nothing jumps",
+TEST_CASE("while paused nothing moves and nothing is felt and going on nothing jumps",
           "[app][threads]") {
     Live live({"start_angstrom=3.1"});
     REQUIRE(live.wait_until([&](const LiveFrame&) { return live.last.sent_newton.x() < -0.5; }));

@@ -31,9 +31,17 @@ TEST_CASE("a slow machine draws smaller, until it shows thirty frames a second",
     CHECK(frame_ms > 20);  // not smaller than need be
 }
 
+TEST_CASE("where the pixels are not what takes long, they are not given up", "[app]") {
+    RenderScale scale;
+    for (int frame = 0; frame < 400; ++frame) scale.add_frame(45 + 2 * scale.value());
+    CHECK(scale.value() > 0.9);
+}
+
 TEST_CASE("a hopeless machine still shows something, a stutter changes nothing", "[app]") {
     RenderScale hopeless;
-    for (int frame = 0; frame < 1000; ++frame) hopeless.add_frame(500);
+    for (int frame = 0; frame < 1000; ++frame) {
+        hopeless.add_frame(5000 * hopeless.value() * hopeless.value());
+    }
     CHECK(hopeless.value() == RenderScale::smallest);
 
     RenderScale steady;
