@@ -41,6 +41,7 @@ EmulatedOmni::EmulatedOmni(const EmulatedOmniSettings& settings)
 
     const Plant plant = build_plant(settings.dynamics, settings.hand);
     plant_ = sample_plant(plant, sub_step_s);
+    free_plant_ = sample_plant(build_plant(settings.dynamics, std::nullopt), sub_step_s);
     handle_mass_kg_ = plant.handle_mass_kg;
     for (PlantState& axis : state_) axis = PlantState::Zero(plant.A.rows());
     // Handle and hand begin at rest where the script begins.
@@ -65,18 +66,21 @@ void EmulatedOmni::write(const Vec3& force_newton) noexcept {
     const double peak = settings_.peak_force_newton;
     const Vec3 motors = norm > peak ? Vec3(force_newton * (peak / norm)) : force_newton;
 
+    const double now_s = static_cast<double>(tick_) * tick_s;
+    // Half a nanosecond keeps the tick from hanging on rounding.
+    if (settings_.hand && now_s > settings_.script.release_s.value_or(INFINITY) - 5e-10) let_go();
     Vec3 hand_drive = Vec3::Zero();
     if (settings_.live) {
         hand_drive = follow_live_target();
     } else {
         const ScriptedHand::Wish wish = operator_.step(tick_s);
-        buttons_ = wish.buttons;
+        buttons_ = settings_.hand ? wish.buttons : 0;
         if (settings_.hand) {
             hand_drive.x() = settings_.hand->stiffness_N_per_m * wish.x_m +
                              settings_.hand->damping_N_s_per_m * wish.v_m_per_s;
         }
     }
-    const double kick = operator_.kick_newton(static_cast<double>(tick_) * tick_s);
+    const double kick = operator_.kick_newton(now_s);
     const Vec3 outside = motors + Vec3(kick, 0, 0);
 
     for (int sub_step = 0; sub_step < sub_steps; ++sub_step) {
@@ -103,6 +107,13 @@ Vec3 EmulatedOmni::follow_live_target() noexcept {
     if (!settings_.hand) return Vec3::Zero();
     return settings_.hand->stiffness_N_per_m * wish_m_ +
            settings_.hand->damping_N_s_per_m * wish_m_per_s_;
+}
+
+void EmulatedOmni::let_go() noexcept {
+    settings_.hand.reset();
+    plant_ = free_plant_;
+    handle_mass_kg_ = settings_.dynamics.inertia_kg;
+    for (PlantState& axis : state_) axis.conservativeResize(2);
 }
 
 // Takes speed away from the handle, whatever its direction, down to rest. A handle at rest stays

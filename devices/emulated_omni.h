@@ -47,13 +47,15 @@ private:
     // What the hand's spring and damper are drawn to (N), by axis.
     Vec3 follow_live_target() noexcept;
 
+    // From here on nobody holds the handle; it keeps its place and speed.
+    void let_go() noexcept;
     // `before`: where the handle was a sub-step ago.
     void apply_friction(const Vec3& before) noexcept;
 
     EmulatedOmniSettings settings_;
     DeviceSpec spec_;
     ScriptedHand operator_;
-    SampledPlant plant_;  // over one sub-step
+    SampledPlant plant_, free_plant_;  // over one sub-step; with the hand until it lets go
     double handle_mass_kg_ = 0;
     std::array<PlantState, 3> state_;  // one per axis
     bool resting_ = true;              // friction held the handle through the last sub-step

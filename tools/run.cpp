@@ -12,11 +12,13 @@
 #include "session/run_headless.h"
 #include "simulation/probe.h"
 #include "simulation/simulation.h"
+#include "simulation/step.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
 #include <cstddef>
 #include <cstdio>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,7 +36,18 @@ void show_progress(double share) {
 // What the molecule will meet on its line, found by looking along it.
 void print_line(const SceneDescription& scene, const Simulation& simulation) {
     constexpr double nN = units::newton_per_kcal_per_mol_angstrom * 1e9;
-    if (const std::optional<double> rest = equilibrium_distance(simulation)) {
+    if (simulation.relaxed) {
+        const RelaxReport& r = *simulation.relaxed;
+        const TouchModel start = build_touch_model(simulation, {});
+        fmt::print(
+            "  relaxed     {:.3f} to {:.3f} kcal/mol in {} looks, moved {:.3f} Å, turned "
+            "{:.2f}°, {:.3f} pN left\n",
+            r.energy_before, r.energy_after, r.evaluations, r.displacement,
+            r.angle * 180 / std::numbers::pi, r.force * nN * 1e3);
+        fmt::print("  start       {:.3f} kcal/mol, {:.3f} nN, {:.1f} N/m\n",
+                   start.potential_kcal_per_mol, start.force_newton.norm() * 1e9,
+                   start.stiffness_N_per_m);
+    } else if (const std::optional<double> rest = equilibrium_distance(simulation)) {
         const LineForce line = force_along_line_at(simulation, *rest);
         fmt::print("  rest        {:.3f} kcal/mol at {:.3f} Å, {:.1f} N/m\n", line.energy, *rest,
                    line.stiffness * units::newton_per_metre_per_kcal_per_mol_angstrom2);
@@ -50,7 +63,8 @@ void print_line(const SceneDescription& scene, const Simulation& simulation) {
                    hand_force(simulation.laws.force, strongest * 1e-9));
     }
     if (const std::optional<double> wall =
-            repulsion_distance(simulation, scene.hand.peak_nN / nN, 30)) {
+            repulsion_distance(simulation, scene.hand.peak_nN / nN,
+                               simulation.relaxed ? grabbed_distance(simulation) : 30)) {
         fmt::print("  repulsion   {} nN at {:.3f} Å, felt as {:.3f} N\n", scene.hand.peak_nN, *wall,
                    hand_force(simulation.laws.force, scene.hand.peak_nN * 1e-9));
     }

@@ -48,10 +48,12 @@ double find_target(const std::vector<HandWaypoint>& path, double time_s) noexcep
 // A hand turns back this far (m) before the stops of the workspace.
 inline constexpr double stop_margin_m = 0.005;
 
-// A hand's plan for a session: a path along x, and an impulse that knocks the handle.
+// A hand's plan for a session: a path along x, when it lets go, and an impulse that knocks the
+// handle.
 struct HandScript {
     std::vector<HandWaypoint> path;  // times ascending
-    double kick_N_s = 0;             // along x, spread over `kick_duration_s`
+    std::optional<double> release_s = {};
+    double kick_N_s = 0;  // along x, spread over `kick_duration_s`
     double kick_time_s = 1.0;
     double kick_duration_s = 0.01;
 };

@@ -16,8 +16,8 @@
 namespace palpa {
 
 // Every choice of a scene file: its names stand in the order of the enumerators.
-enum class Motion { Fixed, AlongX };
-inline constexpr std::array<std::string_view, 2> motion_names{"fixed", "along-x"};
+enum class Motion { Fixed, AlongX, Translate };
+inline constexpr std::array<std::string_view, 3> motion_names{"fixed", "along-x", "translate"};
 
 enum class Stroke { Hold, InOut, Path };
 inline constexpr std::array<std::string_view, 3> stroke_names{"hold", "in-out", "path"};
@@ -51,8 +51,9 @@ struct ForceFieldDescription {
 struct MoleculeDescription {
     std::string name;
     std::filesystem::path structure;
+    std::filesystem::path topology;  // empty: the force field's residues tell
     std::string segment;
-    std::string reference_atom;  // that stands for the molecule's place
+    std::string reference_atom;  // that stands for the molecule's place: "OH2", or "25 CG"
     Motion motion = Motion::Fixed;
 };
 
@@ -65,10 +66,12 @@ struct HandDescription {
     std::size_t grip = 3;  // into hand_names: medium
     Stroke stroke = Stroke::InOut;
     std::optional<double> start_angstrom;
+    std::array<double, 3> start_offset_angstrom{};
     double peak_nN = 3;
     double stroke_s = 3;
     double pause_s = 1;
     std::int64_t cycles = 1;
+    std::optional<double> release_s;
     double kick_N_s = 0;
     std::vector<std::array<double, 2>> path;  // s, mm
 };

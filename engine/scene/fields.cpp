@@ -35,17 +35,23 @@ void visit_molecule(FieldVisitor& v, MoleculeDescription& m) {
     v.enter_table({.key = m.name, .meaning = "one molecule"});
     v.file({.key = "structure", .meaning = "CHARMM coordinate file (.crd)", .required = true},
            m.structure);
+    v.file({.key = "topology",
+            .meaning = "PSF file for types, charges, masses and bonds; unset: they come from the "
+                       "force field's residues"},
+           m.topology);
     v.text({.key = "segment",
             .meaning = "segment of that file whose atoms make up the molecule",
             .required = true},
            m.segment);
     v.text({.key = "reference_atom",
-            .meaning = "name of the atom that stands for the molecule's place",
+            .meaning = "atom that stands for the molecule's place: its name, with the residue "
+                       "number before it where the name alone is not enough (\"25 CG\")",
             .required = true},
            m.reference_atom);
     choose(v,
            {.key = "motion",
-            .meaning = "what the molecule may do: nothing, or move along x without turning"},
+            .meaning = "what the molecule may do without turning: nothing, move along x, or move "
+                       "in space after it was relaxed on loading"},
            motion_names, m.motion);
     v.leave_table();
 }
@@ -91,6 +97,12 @@ void visit_hand(FieldVisitor& v, HandDescription& h) {
                      .lowest = 0,
                      .highest = 1e3},
                     h.start_angstrom);
+    v.triple({.key = "start_offset_angstrom",
+              .meaning = "where a molecule that moves in space starts, [x, y, z] from its relaxed "
+                         "place",
+              .lowest = -1e3,
+              .highest = 1e3},
+             h.start_offset_angstrom);
     v.real({.key = "peak_nN",
             .meaning = "in-out: repulsion of the molecules at the innermost point",
             .lowest = 1e-3,
@@ -106,6 +118,11 @@ void visit_hand(FieldVisitor& v, HandDescription& h) {
            h.pause_s);
     v.integer({.key = "cycles", .meaning = "in-out: how often", .lowest = 1, .highest = 10000},
               h.cycles);
+    v.optional_real({.key = "release_s",
+                     .meaning = "when the hand lets go of the handle; unset: never",
+                     .lowest = 0,
+                     .highest = 1e5},
+                    h.release_s);
     v.real({.key = "kick_N_s",
             .meaning = "impulse that knocks the handle towards +x, spread over 10 ms at 1 s",
             .lowest = -0.1,
@@ -267,6 +284,10 @@ public:
     void optional_real(const Field& field, std::optional<double>& /*value*/) override {
         add(field, fmt::format("number{}", range(field)), "unset");
     }
+    void triple(const Field& field, std::array<double, 3>& value) override {
+        add(field, fmt::format("three numbers{}", range(field)),
+            fmt::format("[{}]", fmt::join(value, ", ")));
+    }
     void integer(const Field& field, std::int64_t& value) override {
         add(field, fmt::format("whole number{}", range(field)), fmt::format("{}", value));
     }
@@ -279,7 +300,7 @@ public:
             fmt::format("\"{}\"", names[value]));
     }
     void file(const Field& field, std::filesystem::path& /*value*/) override {
-        add(field, "file name", "");
+        add(field, "file name", "unset");
     }
     void files(const Field& field, std::vector<std::filesystem::path>& /*value*/) override {
         add(field, "list of file names", "[]");

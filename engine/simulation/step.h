@@ -9,7 +9,7 @@ namespace palpa {
 // finite, so that the servo stops, unless it was the hand's pose.
 struct [[nodiscard]] StepReport {
     TouchModel touch;  // for the hand, one period later
-    double move = 0;   // Å, of the grabbed molecule
+    double move = 0;   // Å, how far the grabbed molecule went
     bool finite = true;
 };
 
