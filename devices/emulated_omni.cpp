@@ -41,7 +41,8 @@ EmulatedOmni::EmulatedOmni(const EmulatedOmniSettings& settings)
 
     const Plant plant = build_plant(settings.dynamics, settings.hand);
     plant_ = sample_plant(plant, sub_step_s);
-    free_plant_ = sample_plant(build_plant(settings.dynamics, std::nullopt), sub_step_s);
+    relaxed_plant_ =
+        sample_plant(build_plant(settings.dynamics, relaxed(settings.hand)), sub_step_s);
     handle_mass_kg_ = plant.handle_mass_kg;
     for (PlantState& axis : state_) axis = PlantState::Zero(plant.A.rows());
     // Handle and hand begin at rest where the script begins.
@@ -68,13 +69,13 @@ void EmulatedOmni::write(const Vec3& force_newton) noexcept {
 
     const double now_s = static_cast<double>(tick_) * tick_s;
     // Half a nanosecond keeps the tick from hanging on rounding.
-    if (settings_.hand && now_s > settings_.script.release_s.value_or(INFINITY) - 5e-10) let_go();
+    if (!released_ && now_s > settings_.script.release_s.value_or(INFINITY) - 5e-10) let_go();
     Vec3 hand_drive = Vec3::Zero();
     if (settings_.live) {
         hand_drive = follow_live_target();
-    } else {
+    } else if (!released_) {
         const ScriptedHand::Wish wish = operator_.step(tick_s);
-        buttons_ = settings_.hand ? wish.buttons : 0;
+        buttons_ = wish.buttons;
         if (settings_.hand) {
             hand_drive.x() = settings_.hand->stiffness_N_per_m * wish.x_m +
                              settings_.hand->damping_N_s_per_m * wish.v_m_per_s;
@@ -110,10 +111,9 @@ Vec3 EmulatedOmni::follow_live_target() noexcept {
 }
 
 void EmulatedOmni::let_go() noexcept {
-    settings_.hand.reset();
-    plant_ = free_plant_;
-    handle_mass_kg_ = settings_.dynamics.inertia_kg;
-    for (PlantState& axis : state_) axis.conservativeResize(2);
+    released_ = true;
+    plant_ = relaxed_plant_;
+    buttons_ = 0;
 }
 
 // Takes speed away from the handle, whatever its direction, down to rest. A handle at rest stays

@@ -47,7 +47,7 @@ private:
     // What the hand's spring and damper are drawn to (N), by axis.
     Vec3 follow_live_target() noexcept;
 
-    // From here on nobody holds the handle; it keeps its place and speed.
+    // From here on the hand wants no place any more.
     void let_go() noexcept;
     // `before`: where the handle was a sub-step ago.
     void apply_friction(const Vec3& before) noexcept;
@@ -55,7 +55,8 @@ private:
     EmulatedOmniSettings settings_;
     DeviceSpec spec_;
     ScriptedHand operator_;
-    SampledPlant plant_, free_plant_;  // over one sub-step; with the hand until it lets go
+    SampledPlant plant_, relaxed_plant_;  // over one sub-step, until the hand lets go and after
+    bool released_ = false;
     double handle_mass_kg_ = 0;
     std::array<PlantState, 3> state_;  // one per axis
     bool resting_ = true;              // friction held the handle through the last sub-step

@@ -3,6 +3,7 @@
 //   make_hiv_scene FORCE_FIELD.json FRAME.json FOLDER
 #include "core/files.h"
 #include "core/load_error.h"
+#include "core/units.h"
 #include "formats/crd.h"
 #include "formats/psf.h"
 #include "math/vec.h"
@@ -28,7 +29,7 @@ namespace {
 
 using palpa::Vec3;
 
-constexpr double angstrom_per_nm = 10, kJ_per_kcal = 4.184;
+constexpr double angstrom_per_nm = 10;
 constexpr std::string_view ligand = "TL3";
 
 // The protein's chains and the inhibitor, under names that say what they are.
@@ -41,7 +42,8 @@ struct Lennard {
 };
 
 Lennard from_sigma(double sigma_nm, double epsilon_kJ) {
-    return {epsilon_kJ / kJ_per_kcal, sigma_nm * angstrom_per_nm * std::pow(2.0, 1.0 / 6)};
+    return {epsilon_kJ * 1e3 / palpa::units::joule_per_kcal,
+            sigma_nm * angstrom_per_nm * std::pow(2.0, 1.0 / 6)};
 }
 
 struct Type {

@@ -23,6 +23,11 @@ std::optional<HandModel> hand_model(Grip grip) noexcept {
     return std::nullopt;
 }
 
+std::optional<HandModel> relaxed(std::optional<HandModel> hand) noexcept {
+    if (hand) hand->stiffness_N_per_m = 0;
+    return hand;
+}
+
 double static_stiffness(const HandModel& hand) noexcept {
     if (hand.grip_stiffness_N_per_m <= 0) return hand.stiffness_N_per_m;
     return hand.stiffness_N_per_m * hand.grip_stiffness_N_per_m /

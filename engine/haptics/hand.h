@@ -30,6 +30,9 @@ inline constexpr std::array<std::string_view, 6> grip_names{"none",   "light", "
 // The hand of that grip; nothing where nobody holds the handle.
 std::optional<HandModel> hand_model(Grip grip) noexcept;
 
+// The same hand once it wants no place any more: its mass and its damping stay on the handle.
+std::optional<HandModel> relaxed(std::optional<HandModel> hand) noexcept;
+
 // Spring between the handle and the place the hand wants, where nothing moves (N/m).
 double static_stiffness(const HandModel& hand) noexcept;
 

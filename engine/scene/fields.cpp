@@ -118,11 +118,13 @@ void visit_hand(FieldVisitor& v, HandDescription& h) {
            h.pause_s);
     v.integer({.key = "cycles", .meaning = "in-out: how often", .lowest = 1, .highest = 10000},
               h.cycles);
-    v.optional_real({.key = "release_s",
-                     .meaning = "when the hand lets go of the handle; unset: never",
-                     .lowest = 0,
-                     .highest = 1e5},
-                    h.release_s);
+    v.optional_real(
+        {.key = "release_s",
+         .meaning = "when the hand lets go: it wants no place any more, only its mass and damping "
+                    "stay on the handle; unset: never",
+         .lowest = 0,
+         .highest = 1e5},
+        h.release_s);
     v.real({.key = "kick_N_s",
             .meaning = "impulse that knocks the handle towards +x, spread over 10 ms at 1 s",
             .lowest = -0.1,

@@ -14,6 +14,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 namespace palpa {
 namespace {
@@ -77,16 +78,28 @@ std::vector<std::string> list_warnings(const SceneDescription& scene, const Simu
                                        const HandScript& script) {
     std::vector<std::string> warnings;
     const FeltStiffness stiffest = stiffest_place(scene, simulation);
-    const Plant plant = build_plant({scene.device.inertia_kg, scene.device.viscosity_N_s_per_m},
-                                    hand_model(static_cast<Grip>(scene.hand.grip)));
-    const double limit = critical_stiffness(
-        plant, simulation.period_s, static_cast<double>(scene.device.servo_delay_ticks) * tick_s);
+    const std::optional<HandModel> hand = hand_model(static_cast<Grip>(scene.hand.grip));
+    const auto limit_of = [&](const std::optional<HandModel>& held) {
+        return critical_stiffness(
+            build_plant({scene.device.inertia_kg, scene.device.viscosity_N_s_per_m}, held),
+            simulation.period_s, static_cast<double>(scene.device.servo_delay_ticks) * tick_s);
+    };
+    const double limit = limit_of(hand);
     if (stiffest.newton_per_metre > limit) {
         warnings.push_back(
             fmt::format("this setting vibrates unless friction holds it: at {:.2f} Å the hand "
                         "feels {:.3g} N/m, "
                         "and this hand on this device is calm up to {:.3g} N/m at T_s = {} ms",
                         stiffest.angstrom, stiffest.newton_per_metre, limit, scene.period_ms));
+    }
+    if (script.release_s) {
+        const double relaxed_limit = limit_of(relaxed(hand));
+        if (stiffest.newton_per_metre > relaxed_limit && stiffest.newton_per_metre <= limit) {
+            warnings.push_back(fmt::format(
+                "once the hand lets go this setting vibrates unless friction holds it: the relaxed "
+                "hand is calm up to {:.3g} N/m at T_s = {} ms, and feels up to {:.3g} N/m",
+                relaxed_limit, scene.period_ms, stiffest.newton_per_metre));
+        }
     }
     const double last_move = script.path.empty() ? 0 : script.path.back().time_s;
     if (last_move > scene.seconds) {

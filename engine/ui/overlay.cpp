@@ -54,12 +54,14 @@ void reading(const char* name, const std::string& value, const char* explanation
 // Centimetres that the handle goes for one Å of the molecule.
 double cm_per_angstrom(double displacement_gain) { return displacement_gain * 1e-8; }
 
-// The spring that the hand feels at this moment (N/m): slope of the force law times the molecule's
-// stiffness over the displacement gain.
+// The spring that the hand feels at this moment (N/m), at most: along the force the law's slope
+// counts, across it, in three dimensions, its gain.
 double felt_stiffness(const CouplingLaws& laws, const TouchModel& touch) {
     const double force = touch.force_newton.norm();
-    return hand_force_slope(laws.force, force) * touch.stiffness_N_per_m /
-           displacement_gain(laws.displacement, force);
+    const double slope = hand_force_slope(laws.force, force);
+    const double steepest =
+        touch.active_freedom > 1 ? std::max(slope, force_gain(laws.force, force)) : slope;
+    return steepest * touch.stiffness_N_per_m / displacement_gain(laws.displacement, force);
 }
 
 }  // namespace
@@ -450,22 +452,25 @@ void Overlay::draw_lesson() {
 
 void Overlay::draw_warnings(const Readout& readout, const OverlayStatus& status) {
     std::vector<std::string> warnings;
-    if (is_shaking(readout)) shaking_for_s_ = 2;
+    // Each stays for a while after its reason, or nobody could read it.
+    const auto warn = [&](double& left_s, bool is_so, auto&& text) {
+        if (is_so) left_s = 2;
+        left_s -= ImGui::GetIO().DeltaTime;
+        if (left_s > 0) warnings.push_back(text());
+    };
     if (stopped_) warnings.emplace_back("a force was not finite: no force until you reset (R)");
-    if (shaking_for_s_ > 0) {
-        shaking_for_s_ -= ImGui::GetIO().DeltaTime;
-        warnings.push_back(fmt::format(
+    warn(shaking_for_s_, is_shaking(readout), [&] {
+        return fmt::format(
             "this setting vibrates: K > B/(1.5 T_s). This hand keeps {:.3g} N/m calm at T_s = {} "
             "ms. Shorten the period, raise A_d, or lower the force gain.",
-            stiffness_limit_, settings_.period_ms));
-    }
-    if (clamped_) {
-        warnings.push_back(fmt::format("the force is cut off at {} N", settings_.coupling.clamp_N));
-    }
-    if (readout.step_ms > settings_.period_ms) {
-        warnings.push_back(fmt::format("a step takes {:.1f} ms, longer than its period of {} ms",
-                                       readout.step_ms, settings_.period_ms));
-    }
+            stiffness_limit_, settings_.period_ms);
+    });
+    warn(clamped_for_s_, clamped_,
+         [&] { return fmt::format("the force is cut off at {} N", settings_.coupling.clamp_N); });
+    warn(late_for_s_, readout.step_ms > settings_.period_ms, [&] {
+        return fmt::format("steps take longer than their period of {} ms: the force comes late",
+                           settings_.period_ms);
+    });
     if (!readout.problem.empty()) warnings.push_back(readout.problem);
     if (readout.paused) warnings.emplace_back("paused: P goes on");
     if (!status.notice.empty()) warnings.push_back(status.notice);

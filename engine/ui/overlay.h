@@ -72,7 +72,8 @@ private:
     ViewSettings view_;
     Plant plant_;
     double stiffness_limit_ = 0;  // N/m that this hand keeps calm at the present period
-    double shaking_for_s_ = 0;    // how long the warning stays
+    // How long each warning stays.
+    double shaking_for_s_ = 0, clamped_for_s_ = 0, late_for_s_ = 0;
 
     Lesson lesson_;
     History history_;

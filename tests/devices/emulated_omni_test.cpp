@@ -178,11 +178,10 @@ TEST_CASE("a live hand takes the handle where the mouse is, in three dimensions"
     CHECK(omni.true_position_m().x() == Approx(0.5).epsilon(0.01));
 }
 
-TEST_CASE("a hand that lets go leaves the handle with the force, its place and its speed",
+TEST_CASE("a hand that lets go wants no place any more, its mass and damping stay",
           "[devices][omni]") {
-    const Grip grip = GENERATE(Grip::Medium, Grip::FirmGrip);
     EmulatedOmniSettings settings = bare();
-    settings.hand = hand_model(grip);
+    settings.hand = hand_model(Grip::Medium);
     settings.script.path = {{0, 0}, {0.2, 0.02}};
     settings.script.release_s = 0.1;
     EmulatedOmni omni(settings);
@@ -191,10 +190,25 @@ TEST_CASE("a hand that lets go leaves the handle with the force, its place and i
     const double before = omni.true_position_m().x();
     play(omni, Vec3::Zero(), 1);
     const double released = omni.true_position_m().x(), v = (released - before) / 1e-3;
-    play(omni, Vec3(0.05, 0, 0), 100);
+    play(omni, Vec3(0.5, 0, 0), 100);
 
-    // From speed v and rest at the release, as a free handle under a constant force.
-    const double M = 0.045, B = 0.1, t = 0.1, fade = 1 - std::exp(-B * t / M);
-    const double expected = v * M / B * fade + 0.05 / B * (t - M / B * fade);
+    // From speed v at the release, as one mass with both dampings under a constant force.
+    const double M = 0.045 + 0.15, B = 0.1 + 4, t = 0.1, fade = 1 - std::exp(-B * t / M);
+    const double expected = v * M / B * fade + 0.5 / B * (t - M / B * fade);
     CHECK(omni.true_position_m().x() - released == Approx(expected).epsilon(0.01));
+}
+
+TEST_CASE("a hand that lets go behind a grip follows the handle, and pulls it nowhere",
+          "[devices][omni]") {
+    EmulatedOmniSettings settings = bare();
+    settings.hand = hand_model(Grip::FirmGrip);
+    settings.script.path = {{0, 0.03}};
+    settings.script.release_s = 0.1;
+    EmulatedOmni omni(settings);
+
+    play(omni, Vec3::Zero(), 1000);
+    CHECK(omni.true_position_m().x() == Approx(0.03));
+    play(omni, Vec3(-1, 0, 0), 500);
+    play(omni, Vec3::Zero(), 3000);
+    CHECK(omni.true_position_m().x() < 0);
 }
