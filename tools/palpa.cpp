@@ -43,6 +43,26 @@ void add_set_option(CLI::App& command, std::vector<std::string>& settings) {
         ->take_last();
 }
 
+void add_size_option(CLI::App& command, const std::string& option, std::uint32_t& width,
+                     std::uint32_t& height) {
+    command.add_option_function<std::string>(
+        option,
+        [option, &width, &height](const std::string& text) {
+            const std::size_t by = text.find('x');
+            const auto wide = palpa::find_integer(text.substr(0, by));
+            const auto high =
+                palpa::find_integer(by == std::string::npos ? "" : text.substr(by + 1));
+            if (!wide || !high || *wide < 1 || *high < 1 || *wide > 1'000'000 ||
+                *high > 1'000'000) {
+                throw CLI::ValidationError(option,
+                                           "'" + text + "' is no size; expected WIDTHxHEIGHT");
+            }
+            width = static_cast<std::uint32_t>(*wide);
+            height = static_cast<std::uint32_t>(*high);
+        },
+        fmt::format("WIDTHxHEIGHT in pixels, {}x{} unless given", width, height));
+}
+
 void add_run(CLI::App& program, palpa::RunOptions& options) {
     CLI::App& run = *program.add_subcommand("run", "Feel a scene: a hand on an emulated Omni");
     run.add_option("scene", options.scene, "scene folder, scene file or recorded session.toml")
@@ -51,7 +71,13 @@ void add_run(CLI::App& program, palpa::RunOptions& options) {
                  "in lockstep on a virtual clock, without a window");
     run.add_flag("--check", options.check_only,
                  "only read the scene and say what is wrong with it");
-    run.add_option("--record", options.record, "folder for trace.csv, summary.json, session.toml");
+    CLI::Option* const record = run.add_option(
+        "--record", options.record, "folder for trace.csv, summary.json, session.toml, frames");
+    run.add_option("--fps", options.frames_per_second,
+                   "frames/0000.png ... into the recording, this many a simulated second")
+        ->check(CLI::Range(0.01, 1000.0))
+        ->needs(record);
+    add_size_option(run, "--frame-size", options.frame_width, options.frame_height);
     run.add_flag("--json", options.json, "print the summary as JSON");
     run.add_flag_callback(
         "--keys",
@@ -75,6 +101,7 @@ void add_run(CLI::App& program, palpa::RunOptions& options) {
 void add_bench(CLI::App& program, palpa::BenchOptions& options) {
     CLI::App& bench = *program.add_subcommand("bench", "Speed against error on this machine");
     bench.add_option("scenes", options.scenes, "scene folders or files")->required();
+    bench.add_flag("--render", options.render, "time pictures instead of steps");
     bench.add_flag("--json", options.json, "print JSON");
     add_set_option(bench, options.settings);
 }
@@ -83,25 +110,19 @@ void add_render(CLI::App& program, palpa::RenderOptions& options) {
     CLI::App& render = *program.add_subcommand("render", "A picture of a scene; needs no display");
     render.add_option("scene", options.scene, "scene folder or file")->required();
     render.add_option("-o,--output", options.image, "PNG file to write")->required();
-    render.add_option_function<std::string>(
-        "--size",
-        [&options](const std::string& text) {
-            const std::size_t by = text.find('x');
-            const auto width = palpa::find_integer(text.substr(0, by));
-            const auto height =
-                palpa::find_integer(by == std::string::npos ? "" : text.substr(by + 1));
-            if (!width || !height || *width < 1 || *height < 1 || *width > 1'000'000 ||
-                *height > 1'000'000) {
-                throw CLI::ValidationError("--size",
-                                           "'" + text + "' is no size; expected WIDTHxHEIGHT");
-            }
-            options.width = static_cast<std::uint32_t>(*width);
-            options.height = static_cast<std::uint32_t>(*height);
-        },
-        "WIDTHxHEIGHT in pixels, 1280x720 unless given");
+    add_size_option(render, "--size", options.width, options.height);
     render.add_option("--time", options.time_s, "seconds that the hand plays before the picture")
         ->check(CLI::Range(0.0, 1e5));
     render.add_option("--as", options.representation, "ball-and-stick, space-filling or licorice");
+    render.add_option("--colour", options.colouring,
+                      "chain: carbons in a colour of their chain; or element");
+    render.add_option(
+        "--camera", options.camera,
+        "AZIMUTH,ELEVATION[,ZOOM]: degrees around what is framed and above it, and how "
+        "many times nearer; 0,0 unless given");
+    render.add_option("--look-at", options.look_at, "a molecule of the scene to frame, not all");
+    render.add_option("--samples", options.samples, "averaged for a pixel: 1, 4, 9 or 16")
+        ->check(CLI::IsMember({1, 4, 9, 16}));
     render.add_flag("!--no-arrow", options.arrow, "without the force on the molecule");
     add_set_option(render, options.settings);
 }

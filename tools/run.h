@@ -4,6 +4,7 @@
 #include "scene/description.h"
 #include "simulation/simulation.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -15,6 +16,8 @@ struct RunOptions {
     std::filesystem::path scene;
     std::vector<std::string> settings;  // "key=value", over the scene file
     std::optional<std::filesystem::path> record;
+    double frames_per_second = 0;  // 0: no frames in the recording
+    std::uint32_t frame_width = 640, frame_height = 360;
     bool check_only = false;
     bool json = false;      // the summary as JSON on standard output
     bool headless = false;  // asked for; the only way there is so far
