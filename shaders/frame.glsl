@@ -5,6 +5,7 @@ layout(push_constant) uniform Frame {
     vec4 projection;  // x scale, y scale, near, far
     vec4 size;        // of the picture: width, height, their inverses
     uint spheres;     // how many of the shapes are spheres; the cones stand behind them
+    int outline;      // its width in pixels
 } frame;
 
 // In view space. A sphere is a cone without axis and height.

@@ -12,8 +12,9 @@ uint id_at(ivec2 pixel) { return texelFetch(seen, clamp(pixel, ivec2(0), last), 
 // Background beside a shape.
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    uint beside = id_at(pixel + ivec2(1, 0)) | id_at(pixel - ivec2(1, 0)) |
-                  id_at(pixel + ivec2(0, 1)) | id_at(pixel - ivec2(0, 1));
+    ivec2 right = ivec2(frame.outline, 0), down = right.yx;
+    uint beside =
+        id_at(pixel + right) | id_at(pixel - right) | id_at(pixel + down) | id_at(pixel - down);
     if (beside == 0u) discard;
     colour = vec4(vec3(0.02), 1.0);
 }

@@ -37,8 +37,9 @@ void main() {
     uvec2 here = texelFetch(seen, pixel, 0).rg;
     float distance = uintBitsToFloat(here.g);
     // An outline where something much nearer is beside this pixel.
-    float nearest = min(min(distance_at(pixel + ivec2(1, 0)), distance_at(pixel - ivec2(1, 0))),
-                        min(distance_at(pixel + ivec2(0, 1)), distance_at(pixel - ivec2(0, 1))));
+    ivec2 right = ivec2(frame.outline, 0), down = right.yx;
+    float nearest = min(min(distance_at(pixel + right), distance_at(pixel - right)),
+                        min(distance_at(pixel + down), distance_at(pixel - down)));
     float outline = clamp((distance - nearest - 0.8) / 0.8, 0.0, 1.0);
 
     uint index = here.r - 1u;

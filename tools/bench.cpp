@@ -3,12 +3,16 @@
 #include "core/text.h"
 #include "core/version.h"
 #include "devices/emulated_omni.h"
+#include "gpu/device.h"
+#include "render/renderer.h"
 #include "scene/read_scene.h"
 #include "session/run_headless.h"
 #include "simulation/probe.h"
 #include "simulation/simulation.h"
 #include "simulation/step.h"
 #include "tools/run.h"
+#include "view/build_frame.h"
+#include "view/orbit_camera.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -125,6 +129,37 @@ Row bench_load(const std::string& scene_name, const std::filesystem::path& path,
     return row;
 }
 
+// Whole frames, recorded, submitted and waited for; and with the colours brought back.
+void bench_render(const std::string& scene_name, const Simulation& simulation,
+                  std::vector<Row>& rows) {
+    constexpr int warm_up = 5, frames = 60;
+    GpuDevice gpu{GpuOptions{}};
+    Renderer renderer(gpu);
+    FrameScene frame = build_frame(simulation, {});
+    for (const VkExtent2D size : {VkExtent2D{640, 360}, VkExtent2D{1280, 720}}) {
+        OrbitCamera camera;
+        frame_all(camera, frame, 16.0F / 9);
+        frame.camera = build_camera(camera, frame);
+        const auto time = [&](const char* what, const auto& draw) {
+            Row row{fmt::format("render/{}/{}x{}/ball-and-stick{}", scene_name, size.width,
+                                size.height, what),
+                    {},
+                    "ms",
+                    {},
+                    "",
+                    ""};
+            for (int i = 0; i < warm_up; ++i) draw();
+            for (int i = 0; i < frames; ++i) row.samples.push_back(1e3 * seconds_of(draw));
+            rows.push_back(row);
+        };
+        time("", [&] {
+            gpu.submit([&](VkCommandBuffer commands) { renderer.record(commands, frame, size); });
+        });
+        time("/read-back",
+             [&] { renderer.draw(frame, size.width, size.height, PictureContent::Colours); });
+    }
+}
+
 nlohmann::ordered_json as_json(const Row& row) {
     nlohmann::ordered_json json;
     json["name"] = row.name;
@@ -147,6 +182,10 @@ int bench_command(const BenchOptions& options) {
         const std::filesystem::path folder = std::filesystem::absolute(scene.file).parent_path();
         const std::string name = folder.filename().string();
         fmt::print(stderr, "timing {}\n", name);
+        if (options.render) {
+            bench_render(name, load_simulation(scene), rows);
+            continue;
+        }
         rows.push_back(bench_load(name, path, options.settings));
         rows.push_back(bench_step(name, load_simulation(scene)));
         rows.push_back(bench_lockstep(name, scene));

@@ -9,6 +9,7 @@ namespace palpa {
 struct BenchOptions {
     std::vector<std::filesystem::path> scenes;
     std::vector<std::string> settings;
+    bool render = false;  // pictures, instead of loading and steps
     bool json = false;
 };
 

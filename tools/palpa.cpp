@@ -44,24 +44,24 @@ void add_set_option(CLI::App& command, std::vector<std::string>& settings) {
         ->take_last();
 }
 
-// WIDTHxHEIGHT in pixels.
-void add_size(CLI::App& command, const std::string& option, const std::string& help,
-              std::uint32_t& width, std::uint32_t& height) {
+void add_size_option(CLI::App& command, const std::string& option, std::uint32_t& width,
+                     std::uint32_t& height) {
     command.add_option_function<std::string>(
         option,
         [option, &width, &height](const std::string& text) {
-            constexpr std::int64_t most = 1'000'000;
             const std::size_t by = text.find('x');
-            const auto w = palpa::find_integer(text.substr(0, by));
-            const auto h = palpa::find_integer(by == std::string::npos ? "" : text.substr(by + 1));
-            if (!w || !h || *w < 1 || *h < 1 || *w > most || *h > most) {
+            const auto wide = palpa::find_integer(text.substr(0, by));
+            const auto high =
+                palpa::find_integer(by == std::string::npos ? "" : text.substr(by + 1));
+            if (!wide || !high || *wide < 1 || *high < 1 || *wide > 1'000'000 ||
+                *high > 1'000'000) {
                 throw CLI::ValidationError(option,
                                            "'" + text + "' is no size; expected WIDTHxHEIGHT");
             }
-            width = static_cast<std::uint32_t>(*w);
-            height = static_cast<std::uint32_t>(*h);
+            width = static_cast<std::uint32_t>(*wide);
+            height = static_cast<std::uint32_t>(*high);
         },
-        "WIDTHxHEIGHT in pixels, " + help);
+        fmt::format("WIDTHxHEIGHT in pixels, {}x{} unless given", width, height));
 }
 
 void add_run(CLI::App& program, palpa::RunOptions& options) {
@@ -74,8 +74,14 @@ void add_run(CLI::App& program, palpa::RunOptions& options) {
                  "in a window: let the emulated hand play the scene's stroke, not the mouse");
     run.add_flag("--check", options.check_only,
                  "only read the scene and say what is wrong with it");
-    run.add_option("--record", options.record, "folder for trace.csv, summary.json, session.toml");
-    add_size(run, "--size", "of the window, 1280x800 unless given", options.width, options.height);
+    CLI::Option* const record = run.add_option(
+        "--record", options.record, "folder for trace.csv, summary.json, session.toml, frames");
+    run.add_option("--fps", options.frames_per_second,
+                   "frames/0000.png ... into the recording, this many a simulated second")
+        ->check(CLI::Range(0.01, 1000.0))
+        ->needs(record);
+    add_size_option(run, "--frame-size", options.frame_width, options.frame_height);
+    add_size_option(run, "--size", options.width, options.height);
     run.add_option("--screenshots", options.screenshots, "folder for screenshots of the window");
     run.add_flag("--validation", options.validation,
                  "let the Vulkan validation layer watch the window's drawing");
@@ -102,6 +108,7 @@ void add_run(CLI::App& program, palpa::RunOptions& options) {
 void add_bench(CLI::App& program, palpa::BenchOptions& options) {
     CLI::App& bench = *program.add_subcommand("bench", "Speed against error on this machine");
     bench.add_option("scenes", options.scenes, "scene folders or files")->required();
+    bench.add_flag("--render", options.render, "time pictures instead of steps");
     bench.add_flag("--json", options.json, "print JSON");
     add_set_option(bench, options.settings);
 }
@@ -110,10 +117,19 @@ void add_render(CLI::App& program, palpa::RenderOptions& options) {
     CLI::App& render = *program.add_subcommand("render", "A picture of a scene; needs no display");
     render.add_option("scene", options.scene, "scene folder or file")->required();
     render.add_option("-o,--output", options.image, "PNG file to write")->required();
-    add_size(render, "--size", "1280x720 unless given", options.width, options.height);
+    add_size_option(render, "--size", options.width, options.height);
     render.add_option("--time", options.time_s, "seconds that the hand plays before the picture")
         ->check(CLI::Range(0.0, 1e5));
     render.add_option("--as", options.representation, "ball-and-stick, space-filling or licorice");
+    render.add_option("--colour", options.colouring,
+                      "chain: carbons in a colour of their chain; or element");
+    render.add_option(
+        "--camera", options.camera,
+        "AZIMUTH,ELEVATION[,ZOOM]: degrees around what is framed and above it, and how "
+        "many times nearer; 0,0 unless given");
+    render.add_option("--look-at", options.look_at, "a molecule of the scene to frame, not all");
+    render.add_option("--samples", options.samples, "averaged for a pixel: 1, 4, 9 or 16")
+        ->check(CLI::IsMember({1, 4, 9, 16}));
     render.add_flag("!--no-arrow", options.arrow, "without the force on the molecule");
     add_set_option(render, options.settings);
 }

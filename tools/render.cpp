@@ -3,52 +3,127 @@
 #include "core/load_error.h"
 #include "core/text.h"
 #include "devices/emulated_omni.h"
-#include "gpu/device.h"
 #include "render/picture.h"
-#include "render/renderer.h"
 #include "scene/read_scene.h"
 #include "session/run_headless.h"
-#include "simulation/simulation.h"
+#include "simulation/components.h"
 #include "tools/run.h"
-#include "view/build_frame.h"
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <span>
+#include <system_error>
 
 namespace palpa {
 namespace {
 
-Representation representation_called(const std::string& name) {
-    const auto found = std::find(representation_names.begin(), representation_names.end(), name);
-    if (found == representation_names.end()) {
-        throw LoadError({"--as " + name},
-                        fmt::format("expected one of {}{}", fmt::join(representation_names, ", "),
-                                    near_name_hint(name, representation_names)));
+// Which of the names an option has.
+std::size_t choice_called(const std::string& option, const std::string& name,
+                          std::span<const std::string_view> names) {
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end()) {
+        throw LoadError({fmt::format("{} {}", option, name)},
+                        fmt::format("expected one of {}{}", fmt::join(names, ", "),
+                                    near_name_hint(name, names)));
     }
-    return static_cast<Representation>(found - representation_names.begin());
+    return static_cast<std::size_t>(found - names.begin());
+}
+
+// The molecule's atoms among the spheres.
+std::span<const SphereShape> shapes_of(Simulation& simulation, const FrameScene& frame,
+                                       const std::string& name) {
+    std::vector<std::string_view> names;
+    std::vector<AtomRange> ranges;
+    simulation.world.each<Molecule>([&](Entity, const Molecule& molecule) {
+        names.emplace_back(molecule.name);
+        ranges.push_back(molecule.atoms);
+    });
+    const AtomRange& atoms = ranges[choice_called("--look-at", name, names)];
+    return std::span(frame.spheres).subspan(atoms.first, atoms.count);
+}
+
+float aspect_of(std::uint32_t width, std::uint32_t height) {
+    return static_cast<float>(width) / static_cast<float>(std::max<std::uint32_t>(height, 1));
 }
 
 }  // namespace
 
+CameraChoice read_camera(std::string_view text) {
+    std::vector<double> numbers;
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t end = std::min(text.find(',', begin), text.size());
+        numbers.push_back(find_real(text.substr(begin, end - begin)).value_or(NAN));
+        begin = end + 1;
+    }
+    if (numbers.size() == 2) numbers.push_back(1);
+    if (numbers.size() != 3 || !std::isfinite(numbers[0]) || !(std::abs(numbers[1]) <= 90) ||
+        !(numbers[2] >= 0.01 && numbers[2] <= 100)) {
+        throw LoadError({fmt::format("--camera {}", text)},
+                        "expected AZIMUTH,ELEVATION[,ZOOM]: degrees, the second from -90 to 90, "
+                        "and a factor from 0.01 to 100");
+    }
+    constexpr double radian = std::numbers::pi / 180;
+    return {static_cast<float>(numbers[0] * radian), static_cast<float>(numbers[1] * radian),
+            static_cast<float>(numbers[2])};
+}
+
 int render_command(const RenderOptions& options) {
     SceneDescription scene = read_scene(options.scene, options.settings);
-    const ViewSettings view{representation_called(options.representation), options.arrow};
+    const ViewSettings view{
+        static_cast<Representation>(
+            choice_called("--as", options.representation, representation_names)),
+        static_cast<Colouring>(choice_called("--colour", options.colouring, colouring_names)),
+        options.arrow};
+    const CameraChoice choice = read_camera(options.camera);
     Simulation simulation = load_simulation(scene);
     if (options.time_s > 0) {
         scene.seconds = options.time_s;
         EmulatedOmni device(build_emulated_omni(scene, simulation));
         run_headless(scene, simulation, device, {}, nullptr, {});
     }
+    FrameScene frame = build_frame(simulation, view);
+    const float aspect = aspect_of(options.width, options.height);
+    OrbitCamera camera;
+    orbit(camera, choice.azimuth, choice.elevation);
+    if (options.look_at.empty()) {
+        frame_all(camera, frame, aspect);
+    } else {
+        focus(camera, shapes_of(simulation, frame, options.look_at), aspect);
+    }
+    zoom(camera, choice.zoom);
+    frame.camera = build_camera(camera, frame);
+
     GpuDevice gpu{GpuOptions{}};
     Renderer renderer(gpu);
-    const float aspect = static_cast<float>(options.width) /
-                         static_cast<float>(std::max<std::uint32_t>(options.height, 1));
-    const Picture picture = renderer.draw(build_frame(simulation, view, aspect), options.width,
-                                          options.height, PictureContent::Colours);
+    const auto side = static_cast<std::uint32_t>(std::lround(std::sqrt(options.samples)));
+    frame.outline = static_cast<int>(side);
+    const Picture drawn =
+        renderer.draw(frame, side * options.width, side * options.height, PictureContent::Colours);
+    const Picture picture = side == 1 ? drawn : average_down(drawn, side);
     write_png(options.image, picture);
     fmt::print("{}: {}x{} on {}\n", options.image.string(), picture.width, picture.height,
                gpu.name());
     return 0;
+}
+
+FrameWriter::FrameWriter(const std::filesystem::path& folder, std::uint32_t width,
+                         std::uint32_t height)
+    : folder_(folder), width_(width), height_(height), gpu_(GpuOptions{}), renderer_(gpu_) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) throw LoadError({folder.string()}, "cannot be made: " + error.message());
+}
+
+void FrameWriter::write(const Simulation& simulation) {
+    FrameScene frame = build_frame(simulation, {});
+    if (written_ == 0) frame_all(camera_, frame, aspect_of(width_, height_));
+    frame.camera = build_camera(camera_, frame);
+    write_png(folder_ / fmt::format("{:04}.png", written_++),
+              renderer_.draw(frame, width_, height_, PictureContent::Colours));
 }
 
 }  // namespace palpa

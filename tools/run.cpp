@@ -13,12 +13,14 @@
 #include "simulation/probe.h"
 #include "simulation/simulation.h"
 #include "simulation/step.h"
+#include "tools/render.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
 #include <cstddef>
 #include <cstdio>
 #include <numbers>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -159,7 +161,7 @@ int run_command(const RunOptions& options) {
     const SceneDescription scene = read_scene(options.scene, options.settings);
     Simulation simulation = load_simulation(scene);
     const EmulatedOmniSettings settings = build_emulated_omni(scene, simulation);
-    const std::vector<std::string> warnings = list_warnings(scene, simulation, settings.script);
+    std::vector<std::string> warnings = list_warnings(scene, simulation, settings.script);
     if (options.check_only) {
         fmt::print("{}: nothing wrong found\n", scene.file.string());
         print_line(scene, simulation);
@@ -169,6 +171,17 @@ int run_command(const RunOptions& options) {
     if (!options.headless) return run_in_window(scene, settings, options);
     std::optional<Recording> recording;
     if (options.record) recording.emplace(*options.record, scene);
+    std::unique_ptr<FrameWriter> writer;
+    FrameClock frames;
+    if (options.record && options.frames_per_second > 0) {
+        try {
+            writer = std::make_unique<FrameWriter>(*options.record / "frames", options.frame_width,
+                                                   options.frame_height);
+            frames = {options.frames_per_second, [&] { writer->write(simulation); }};
+        } catch (const GpuError& error) {
+            warnings.push_back(fmt::format("no frames are drawn: {}", error.what()));
+        }
+    }
     if (!scene.places.contains("coupling.mode")) {
         fmt::print(
             stderr,
@@ -183,7 +196,7 @@ int run_command(const RunOptions& options) {
     const bool watched = isatty(STDERR_FILENO) != 0 && !options.json;
     const Summary summary =
         run_headless(scene, simulation, device, warnings, recording ? &*recording : nullptr,
-                     watched ? ProgressFunction(show_progress) : ProgressFunction());
+                     watched ? ProgressFunction(show_progress) : ProgressFunction(), frames);
     for (std::size_t i = warnings.size(); i < summary.warnings.size(); ++i) {
         fmt::print(stderr, "warning: {}\n", summary.warnings[i]);
     }

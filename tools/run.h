@@ -16,6 +16,8 @@ struct RunOptions {
     std::filesystem::path scene;
     std::vector<std::string> settings;  // "key=value", over the scene file
     std::optional<std::filesystem::path> record;
+    double frames_per_second = 0;  // 0: no frames in the recording
+    std::uint32_t frame_width = 640, frame_height = 360;
     bool check_only = false;
     bool json = false;  // the summary as JSON on standard output
     bool headless = false;

@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <memory>
 #include <optional>
 #include <string>
@@ -31,7 +32,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr float radians_per_pixel = 0.008F;
-constexpr float zoom_per_notch = 0.9F;
+constexpr float zoom_per_notch = 1.1F;
 constexpr double angstrom_per_notch = 0.25;  // of the molecule in hand, towards the eye and away
 constexpr double notice_s = 4;
 constexpr float focus_distance = 18;  // Å
@@ -106,6 +107,7 @@ public:
 private:
     void frame();
     void look_at_all();
+    void look_at(const glm::vec3& place, float distance);
     void take_ticks();
     void take_input();
     void move_camera(const Input& input);
@@ -198,6 +200,11 @@ void Sandbox::look_at_all() {
     frame_all(camera_, frame_.picture, free / std::max(height, 1.0F));
 }
 
+void Sandbox::look_at(const glm::vec3& place, float distance) {
+    camera_.target = place;
+    camera_.distance = distance;
+}
+
 void Sandbox::take_ticks() {
     for (ServoTick tick; session_.pop_tick(tick);) {
         statistics_.add(tick);
@@ -229,7 +236,8 @@ void Sandbox::move_camera(const Input& input) {
     const bool shifts = input.is_down(MouseButton::Right) || input.is_down(MouseButton::Middle) ||
                         (input.is_down(MouseButton::Left) && input.shift);
     if (shifts) {
-        pan(camera_, dx, dy, static_cast<float>(window_.size().height));
+        const auto height = static_cast<float>(std::max(window_.size().height, 1U));
+        pan(camera_, {dx / height, -dy / height});
     } else if (input.is_down(MouseButton::Left)) {
         orbit(camera_, -radians_per_pixel * dx, radians_per_pixel * dy);
     }
@@ -238,11 +246,14 @@ void Sandbox::move_camera(const Input& input) {
 
 // The molecule would follow the mouse where nothing holds it: handle travel is A_d times its way.
 void Sandbox::move_hand(const Input& input) {
-    const float scale = angstrom_per_pixel(camera_, as_float(frame_.grabbed_angstrom),
-                                           static_cast<float>(window_.size().height));
-    const glm::vec3 way = scale * (static_cast<float>(input.mouse_dx) * rightward(camera_) -
-                                   static_cast<float>(input.mouse_dy) * upward(camera_)) -
-                          static_cast<float>(input.wheel * angstrom_per_notch) * backward(camera_);
+    const CameraAxes axes = camera_axes(camera_);
+    const glm::vec3 eye = camera_.target - camera_.distance * axes.forward;
+    const float depth = glm::dot(as_float(frame_.grabbed_angstrom) - eye, axes.forward);
+    const auto height = static_cast<float>(std::max(window_.size().height, 1U));
+    const float per_pixel = 2 * std::max(depth, 1.0F) * std::tan(camera_.vertical_angle / 2) / height;
+    const glm::vec3 way = per_pixel * (static_cast<float>(input.mouse_dx) * axes.right -
+                                       static_cast<float>(input.mouse_dy) * axes.up) +
+                          static_cast<float>(input.wheel * angstrom_per_notch) * axes.forward;
     const double gain = frame_.readout.touch.displacement_gain;
     hand_m_ += Vec3(way.x, way.y, way.z) * units::metre_per_angstrom * gain;
     options_.mouse_hand->post({hand_m_});
@@ -256,7 +267,7 @@ void Sandbox::perform(Action action) {
     }
     switch (action) {
         case Action::Focus:
-            focus(camera_, as_float(frame_.grabbed_angstrom), focus_distance);
+            look_at(as_float(frame_.grabbed_angstrom), focus_distance);
             break;
         case Action::FrameAll:
             look_at_all();
@@ -282,7 +293,7 @@ void Sandbox::look_at_pixel(double x, double y) {
                                  static_cast<std::uint32_t>(std::max(y, 0.0) * scale_.value()));
     for (const SphereShape& sphere : frame_.picture.spheres) {
         if (sphere.pick != pick) continue;
-        focus(camera_, sphere.centre, std::min(camera_.distance, focus_distance));
+        look_at(sphere.centre, std::min(camera_.distance, focus_distance));
         return;
     }
 }
@@ -311,7 +322,7 @@ void Sandbox::draw() {
     g.ui.end();
     for (const Command& command : commands) session_.send(command);
 
-    frame_.picture.camera = frame_camera(camera_, frame_.picture);
+    frame_.picture.camera = build_camera(camera_, frame_.picture);
     frame_.picture.background = background;
     const VkExtent2D size = picture_size();
     WindowShot shot;

@@ -34,6 +34,7 @@ struct FrameScene {
     std::vector<ConeShape> cones;
     FrameCamera camera;
     glm::vec3 background{1};
+    int outline = 1;  // its width in pixels
 };
 
 }  // namespace palpa

@@ -4,9 +4,48 @@
 #include "core/load_error.h"
 
 #include <png.h>
+#include <array>
+#include <cmath>
+#include <cstddef>
 #include <string>
 
 namespace palpa {
+namespace {
+
+// sRGB (IEC 61966-2-1) to linear light and back.
+float decode(std::uint8_t value) {
+    const float encoded = static_cast<float>(value) / 255;
+    return encoded <= 0.04045F ? encoded / 12.92F : std::pow((encoded + 0.055F) / 1.055F, 2.4F);
+}
+
+std::uint8_t encode(float light) {
+    const float encoded =
+        light <= 0.0031308F ? 12.92F * light : 1.055F * std::pow(light, 1 / 2.4F) - 0.055F;
+    return static_cast<std::uint8_t>(std::lround(255 * encoded));
+}
+
+}  // namespace
+
+Picture average_down(const Picture& picture, std::uint32_t factor) {
+    std::array<float, 256> light{};
+    for (std::size_t i = 0; i < light.size(); ++i) light[i] = decode(static_cast<std::uint8_t>(i));
+    Picture smaller{picture.width / factor, picture.height / factor, {}, {}, {}};
+    for (std::size_t y = 0; y < smaller.height; ++y) {
+        for (std::size_t x = 0; x < smaller.width; ++x) {
+            std::array<float, 3> sum{};
+            for (std::size_t part = 0; part < std::size_t{factor} * factor; ++part) {
+                const std::size_t from =
+                    (y * factor + part / factor) * picture.width + x * factor + part % factor;
+                for (std::size_t c = 0; c < 3; ++c) sum[c] += light[picture.rgba[4 * from + c]];
+            }
+            for (const float s : sum) {
+                smaller.rgba.push_back(encode(s / static_cast<float>(factor * factor)));
+            }
+            smaller.rgba.push_back(255);
+        }
+    }
+    return smaller;
+}
 
 void write_png(const std::filesystem::path& path, const Picture& picture) {
     png_image image{};

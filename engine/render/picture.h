@@ -19,6 +19,10 @@ struct Picture {
 // What is wanted of a picture: the colours cost the least.
 enum class PictureContent { Colours, All };
 
+// The colours of a picture `factor` times smaller either way: each pixel is the mean light of
+// factor x factor. The size must be a multiple.
+Picture average_down(const Picture& picture, std::uint32_t factor);
+
 // Writes the colours as PNG, whole or not at all. Throws LoadError if it cannot.
 void write_png(const std::filesystem::path& path, const Picture& picture);
 

@@ -35,6 +35,7 @@ struct GpuShape {
 struct GpuFrame {
     glm::vec4 projection, size;
     std::uint32_t spheres;
+    std::int32_t outline;
 };
 static_assert(sizeof(GpuFrame) <= 128, "push constants");
 // What the shapes' pass leaves of a pixel.
@@ -51,7 +52,8 @@ GpuFrame build_frame_constants(const FrameScene& scene, VkExtent2D size) {
     const float y_scale = 1 / std::tan(camera.vertical_angle / 2);
     return {{y_scale * height / width, y_scale, camera.near, camera.far},
             {width, height, 1 / width, 1 / height},
-            static_cast<std::uint32_t>(scene.spheres.size())};
+            static_cast<std::uint32_t>(scene.spheres.size()),
+            scene.outline};
 }
 
 GpuShape build_shape(const glm::mat4& view, const SphereShape& sphere) {

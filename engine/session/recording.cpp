@@ -189,6 +189,7 @@ Recording::Recording(const fs::path& folder, const SceneDescription& scene)
     std::error_code error;
     fs::remove(folder / "summary.json", error);
     fs::remove_all(folder / "inputs", error);
+    fs::remove_all(folder / "frames", error);
     fs::create_directories(folder / "inputs", error);
     if (error) throw LoadError({folder.string()}, "cannot be written: " + error.message());
     const std::map<fs::path, std::string> names = input_names(files);

@@ -112,7 +112,7 @@ std::vector<std::string> list_warnings(const SceneDescription& scene, const Simu
 
 Summary run_headless(const SceneDescription& scene, Simulation& simulation, Device& device,
                      const std::vector<std::string>& warnings, Recording* recording,
-                     const ProgressFunction& progress) {
+                     const ProgressFunction& progress, const FrameClock& frames) {
     const auto ticks = static_cast<std::uint64_t>(std::ceil(scene.seconds / tick_s - 1e-9));
     const auto ticks_per_step =
         static_cast<std::uint64_t>(std::lround(simulation.period_s / tick_s));
@@ -125,8 +125,13 @@ Summary run_headless(const SceneDescription& scene, Simulation& simulation, Devi
         statistics.add_step(took.count(), report.finite);
         return report.touch;
     };
-    std::uint64_t done = 0;
+    std::uint64_t done = 0, drawn = 0;
     const auto on_tick = [&](const ServoTick& tick) {
+        const double now_s = static_cast<double>(done) * tick_s;
+        if (frames.draw && now_s >= static_cast<double>(drawn) / frames.per_second - 1e-9) {
+            frames.draw();
+            ++drawn;
+        }
         statistics.add(tick);
         if (recording) recording->add(tick);
         ++done;

@@ -17,6 +17,13 @@ namespace palpa {
 // Share of the run that is done, 0 to 1; called about ten times a simulated second.
 using ProgressFunction = std::function<void(double share)>;
 
+// Draws a frame of the simulation as it stands, `per_second` times a simulated second and at its
+// start.
+struct FrameClock {
+    double per_second = 0;
+    std::function<void()> draw;
+};
+
 ServoSettings build_servo_settings(const SceneDescription& scene, const Simulation& simulation);
 
 // Where along the line the hand feels the stiffest spring, K = A_f k_e / A_d, up to the scene's
@@ -33,10 +40,10 @@ FeltStiffness stiffest_place(const SceneDescription& scene, const Simulation& si
 std::vector<std::string> list_warnings(const SceneDescription& scene, const Simulation& simulation,
                                        const HandScript& script);
 
-// `warnings` are put at the head of the summary's. `recording` and `progress` may be null or empty.
-// The simulation ends where the run leaves it.
+// `warnings` are put at the head of the summary's. `recording` and `progress` may be null or empty,
+// and there need not be frames. The simulation ends where the run leaves it.
 Summary run_headless(const SceneDescription& scene, Simulation& simulation, Device& device,
                      const std::vector<std::string>& warnings, Recording* recording,
-                     const ProgressFunction& progress);
+                     const ProgressFunction& progress, const FrameClock& frames = {});
 
 }  // namespace palpa

@@ -145,6 +145,11 @@ bool Overlay::perform(Action action, const Readout& readout, std::vector<Command
                 (static_cast<std::size_t>(view_.representation) + 1) % representation_names.size());
             commands.emplace_back(view_);
             return true;
+        case Action::NextColouring:
+            view_.colouring = static_cast<Colouring>(
+                (static_cast<std::size_t>(view_.colouring) + 1) % colouring_names.size());
+            commands.emplace_back(view_);
+            return true;
         case Action::ToggleOverlay:
             shows_overlays_ = !shows_overlays_;
             return true;

@@ -78,7 +78,7 @@ std::vector<double> round_ticks(PlotRange range, int count) {
     const double step = power * (lead < 1.5 ? 1 : lead < 3.5 ? 2 : lead < 7.5 ? 5 : 10);
     std::vector<double> ticks;
     for (double i = std::ceil(range.low / step); i * step <= range.high; ++i) {
-        ticks.push_back(i * step);
+        ticks.push_back(i * step + 0.0);  // no -0
     }
     return ticks;
 }

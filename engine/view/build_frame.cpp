@@ -8,8 +8,9 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <glm/geometric.hpp>
+#include <span>
 #include <string_view>
+#include <vector>
 
 namespace palpa {
 namespace {
@@ -33,7 +34,12 @@ constexpr std::array looks = std::to_array<ElementLook>({
 constexpr ElementLook other{"", 1.70F, {0.70F, 0.20F, 0.60F}};
 
 constexpr float ball_share = 0.28F, stick_radius = 0.14F, licorice_radius = 0.28F;
-constexpr float margin = 1.15F;  // around all atoms
+
+// Of carbons: the grabbed molecule's, and the chains' in turn. Green is no element's, and stands
+// out against all of the others.
+constexpr glm::vec3 grabbed_carbon{0.08F, 0.50F, 0.12F};
+constexpr std::array chain_carbons = std::to_array<glm::vec3>(
+    {{0.22F, 0.46F, 0.55F}, {0.58F, 0.44F, 0.24F}, {0.46F, 0.30F, 0.50F}, {0.36F, 0.42F, 0.24F}});
 
 const ElementLook& look_of(std::string_view element) {
     const auto found = std::find_if(looks.begin(), looks.end(), [&](const ElementLook& look) {
@@ -46,26 +52,54 @@ glm::vec3 as_float(const Vec3& v) {
     return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
 }
 
-void add_atoms(const AtomTable& atoms, Representation representation, FrameScene& frame) {
+// As the force field names it, or by the atom's first letter.
+std::string_view element_of(const AtomTable& atoms, std::size_t i) {
+    if (!atoms.element[i].empty()) return atoms.element[i];
+    const std::string_view name = atoms.names[i].atom;
+    const std::size_t letter = name.find_first_not_of("0123456789");
+    return letter == std::string_view::npos ? name : name.substr(letter, 1);
+}
+
+// One colour an atom.
+std::vector<glm::vec3> build_colours(const Simulation& simulation, Colouring colouring) {
+    const AtomTable& atoms = simulation.atoms;
+    const std::size_t grabbed = grabbed_points(simulation).positions.size();
+    std::size_t chain = 0;
+    std::vector<glm::vec3> colours;
     for (std::size_t i = 0; i < atoms.size(); ++i) {
-        const ElementLook& look = look_of(atoms.element[i]);
-        const float radius = representation == Representation::SpaceFilling ? look.radius
-                             : representation == Representation::BallAndStick
-                                 ? ball_share * look.radius
-                                 : licorice_radius;
+        if (i > grabbed && atoms.names[i].segment != atoms.names[i - 1].segment) ++chain;
+        const std::string_view element = element_of(atoms, i);
+        colours.push_back(look_of(element).colour);
+        if (element != "C") continue;
+        if (i < grabbed) {
+            colours.back() = grabbed_carbon;
+        } else if (colouring == Colouring::Chain) {
+            colours.back() = chain_carbons[chain % chain_carbons.size()];
+        }
+    }
+    return colours;
+}
+
+void add_atoms(const AtomTable& atoms, std::span<const glm::vec3> colours,
+               Representation representation, FrameScene& frame) {
+    for (std::size_t i = 0; i < atoms.size(); ++i) {
+        const float size = look_of(element_of(atoms, i)).radius;
+        const float radius = representation == Representation::SpaceFilling   ? size
+                             : representation == Representation::BallAndStick ? ball_share * size
+                                                                              : licorice_radius;
         frame.spheres.push_back(
-            {as_float(atoms.positions[i]), radius, look.colour, static_cast<std::uint32_t>(i)});
+            {as_float(atoms.positions[i]), radius, colours[i], static_cast<std::uint32_t>(i)});
     }
 }
 
-void add_bonds(const AtomTable& atoms, Representation representation, FrameScene& frame) {
+void add_bonds(const AtomTable& atoms, std::span<const glm::vec3> colours,
+               Representation representation, FrameScene& frame) {
     if (representation == Representation::SpaceFilling) return;
     const float radius =
         representation == Representation::BallAndStick ? stick_radius : licorice_radius;
     for (const auto& [a, b] : atoms.bonds) {
         frame.cones.push_back({as_float(atoms.positions[a]), as_float(atoms.positions[b]), radius,
-                               radius, look_of(atoms.element[a]).colour,
-                               look_of(atoms.element[b]).colour, a});
+                               radius, colours[a], colours[b], a});
     }
 }
 
@@ -85,40 +119,14 @@ void add_force_arrow(const Simulation& simulation, FrameScene& frame) {
                            colour, arrow_pick});
 }
 
-// Looks along -z at the middle of all shapes, from where the nearest side of the box around them
-// fills the picture one way or the other.
-FrameCamera frame_all(const FrameScene& frame, float aspect) {
-    FrameCamera camera;
-    if (frame.spheres.empty()) return camera;
-    glm::vec3 low = frame.spheres[0].centre, high = low;
-    const auto include = [&](const glm::vec3& place, float radius) {
-        low = glm::min(low, place - radius);
-        high = glm::max(high, place + radius);
-    };
-    for (const SphereShape& sphere : frame.spheres) include(sphere.centre, sphere.radius);
-    for (const ConeShape& cone : frame.cones) {
-        include(cone.a, cone.radius_a);
-        include(cone.b, cone.radius_b);
-    }
-    const glm::vec3 half = 0.5F * (high - low);
-    const float slope = std::tan(camera.vertical_angle / 2);
-    const float distance = half.z + margin * std::max(half.y / slope, half.x / (slope * aspect));
-    const float depth = 2 * glm::length(half);
-    camera.target = 0.5F * (low + high);
-    camera.eye = camera.target + glm::vec3(0, 0, distance);
-    camera.near = std::max(0.02F * distance, distance - depth);
-    camera.far = distance + depth;
-    return camera;
-}
-
 }  // namespace
 
-FrameScene build_frame(const Simulation& simulation, const ViewSettings& settings, float aspect) {
+FrameScene build_frame(const Simulation& simulation, const ViewSettings& settings) {
     FrameScene frame;
-    add_atoms(simulation.atoms, settings.representation, frame);
-    add_bonds(simulation.atoms, settings.representation, frame);
+    const std::vector<glm::vec3> colours = build_colours(simulation, settings.colouring);
+    add_atoms(simulation.atoms, colours, settings.representation, frame);
+    add_bonds(simulation.atoms, colours, settings.representation, frame);
     if (settings.force_arrow) add_force_arrow(simulation, frame);
-    frame.camera = frame_all(frame, aspect);
     return frame;
 }
 

@@ -13,16 +13,22 @@ enum class Representation { BallAndStick, SpaceFilling, Licorice };
 inline constexpr std::array<std::string_view, 3> representation_names{"ball-and-stick",
                                                                       "space-filling", "licorice"};
 
+// By chain: carbons in a colour of their chain, everything else as by element. Carbons of the
+// grabbed molecule have a colour of their own either way.
+enum class Colouring { Element, Chain };
+inline constexpr std::array<std::string_view, 2> colouring_names{"element", "chain"};
+
 struct ViewSettings {
     Representation representation = Representation::BallAndStick;
+    Colouring colouring = Colouring::Chain;
     bool force_arrow = true;  // on the grabbed molecule, 5 Å for 1 nN, at most 3 Å
 };
 
 // Atoms and bonds are picked by the index of the atom (of its first atom); the arrow by this.
 inline constexpr std::uint32_t arrow_pick = UINT32_MAX - 1;
 
-// Atoms as spheres in their elements' colours, bonds as sticks. The camera looks along -z at all
-// shapes, from as far as it takes to see them in a picture of that aspect (width over height).
-FrameScene build_frame(const Simulation& simulation, const ViewSettings& settings, float aspect);
+// Atoms as spheres, bonds as sticks, in Å as they stand. The camera is the caller's
+// (view/orbit_camera.h).
+FrameScene build_frame(const Simulation& simulation, const ViewSettings& settings);
 
 }  // namespace palpa

@@ -32,6 +32,20 @@ TEST_CASE("a PNG holds the picture's colours, row by row from the top", "[render
     CHECK(read == picture.rgba);
 }
 
+TEST_CASE("a smaller picture has the mean light, not the mean of its codes", "[render][picture]") {
+    Picture picture{4, 2, {}, {}, {}};
+    for (const int value : {0, 255, 80, 80, 255, 0, 80, 80}) {  // half black, half white; and grey
+        const auto code = static_cast<std::uint8_t>(value);
+        picture.rgba.insert(picture.rgba.end(), {code, code, code, 255});
+    }
+
+    const Picture smaller = average_down(picture, 2);
+
+    CHECK(smaller.width == 2);
+    CHECK(smaller.height == 1);
+    CHECK(smaller.rgba == std::vector<std::uint8_t>{188, 188, 188, 255, 80, 80, 80, 255});
+}
+
 TEST_CASE("a picture that cannot be written is a LoadError, and leaves nothing",
           "[render][picture]") {
     const test::TemporaryFolder folder;

@@ -57,6 +57,57 @@ class Render(unittest.TestCase):
             pictures.append(self.image.read_bytes())
         self.assertEqual(*pictures)
 
+    def test_the_camera_turns_comes_nearer_and_looks_at_a_molecule(self):
+        pictures = []
+        for choice in ((), ("--camera", "40,20"), ("--camera", "40,20,2"),
+                       ("--look-at", "moved"), ("--samples", "4")):
+            result = self.render("-o", self.image, "--size", "64x48", *choice)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertEqual(self.size_of_image(), (64, 48))
+            pictures.append(self.image.read_bytes())
+        self.assertEqual(len(set(pictures)), len(pictures))
+        self.image.unlink()
+        for camera in ("40", "a,b", "1,2,0", "1,91", "1,2,3,4"):
+            self.assert_bad_input(self.render("-o", self.image, f"--camera={camera}"),
+                                  "expected AZIMUTH,ELEVATION[,ZOOM]")
+        self.assert_bad_input(self.render("-o", self.image, "--look-at", "fixd"),
+                              "did you mean 'fixed'?")
+        self.assert_bad_input(self.render("-o", self.image, "--colour", "chan"),
+                              "did you mean 'chain'?")
+        self.assert_bad_input(self.render("-o", self.image, "--samples", "5"), "--samples")
+
+    def run_recorded(self, *arguments, **environment):
+        clean = {key: value for key, value in os.environ.items()
+                 if key not in ("DISPLAY", "WAYLAND_DISPLAY")}
+        recording = Path(self.folder.name) / "recording"
+        result = subprocess.run([PROGRAM, "run", WATER, "--headless", "--seconds", "2", "--record",
+                                 recording, *arguments], capture_output=True, text=True,
+                                env={**clean, **environment})
+        return result, recording
+
+    def test_a_recording_has_frames_on_the_virtual_clock(self):
+        result, recording = self.run_recorded("--fps", "4", "--frame-size", "64x48")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        frames = sorted(path.name for path in (recording / "frames").iterdir())
+        self.assertEqual(frames, [f"{i:04}.png" for i in range(8)])
+        first, last = ((recording / "frames" / frames[i]).read_bytes() for i in (0, -1))
+        self.assertNotEqual(first, last)
+
+        again, _ = self.run_recorded("--fps", "1", "--frame-size", "64x48")
+        self.assertEqual(again.returncode, 0, again.stderr)
+        self.assertEqual(len(list((recording / "frames").iterdir())), 2)
+        self.assertEqual((recording / "frames" / "0000.png").read_bytes(), first)
+
+    def test_without_vulkan_the_trace_is_still_written(self):
+        self.run_recorded("--fps", "1", "--frame-size", "64x48")
+        result, recording = self.run_recorded("--fps", "4", VK_DRIVER_FILES="/nowhere",
+                                              VK_ICD_FILENAMES="/nowhere")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        said = [line for line in result.stderr.splitlines() if "no frames" in line]
+        self.assertEqual(len(said), 1, result.stderr)
+        self.assertEqual(len((recording / "trace.csv").read_text().splitlines()), 2001)
+        self.assertFalse((recording / "frames").exists())
+
     def test_sizes_that_are_none(self):
         for size in ("0x10", "10x0", "10", "axb", "-1x5", "1e3x5"):
             with self.subTest(size=size):

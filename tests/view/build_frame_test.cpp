@@ -4,18 +4,24 @@
 #include "simulation/probe.h"
 #include "tests/support/gpu.h"
 #include "tests/support/water_scene.h"
+#include "view/orbit_camera.h"
 
 #include <catch2/catch.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <glm/geometric.hpp>
+#include <string>
+#include <vector>
 
 using namespace palpa;
 
 namespace {
 
 constexpr std::uint32_t height = 270;
-constexpr float aspect = 480.0F / 270;
+
+ViewSettings shown_as(Representation representation) {
+    return {.representation = representation, .force_arrow = false};
+}
 
 }  // namespace
 
@@ -24,7 +30,7 @@ TEST_CASE("two waters are six spheres and four sticks, and an arrow along the fo
     const double distance = GENERATE(2.5, 3.1);
     move_grabbed(simulation, distance);
 
-    const FrameScene frame = build_frame(simulation, {}, aspect);
+    const FrameScene frame = build_frame(simulation, {});
 
     CHECK(frame.spheres.size() == 6);
     REQUIRE(frame.cones.size() == 4 + 2);
@@ -36,8 +42,8 @@ TEST_CASE("two waters are six spheres and four sticks, and an arrow along the fo
     CHECK(glm::length(glm::cross(head.b - shaft.a, {1, 0, 0})) < 1e-5);
     if (distance > 3) CHECK(glm::length(head.b - shaft.a) == Approx(5 * 0.322).epsilon(0.01));
 
-    CHECK(build_frame(simulation, {Representation::SpaceFilling, false}, aspect).cones.empty());
-    CHECK(build_frame(simulation, {Representation::Licorice, false}, aspect).cones.size() == 4);
+    CHECK(build_frame(simulation, shown_as(Representation::SpaceFilling)).cones.empty());
+    CHECK(build_frame(simulation, shown_as(Representation::Licorice)).cones.size() == 4);
 }
 
 TEST_CASE("every atom that nothing hides is seen at its centre, and all fit the picture",
@@ -49,7 +55,10 @@ TEST_CASE("every atom that nothing hides is seen at its centre, and all fit the 
     GpuDevice device(test::validated());
     Renderer renderer(device);
     Simulation simulation = load_simulation(test::water_scene());
-    const FrameScene frame = build_frame(simulation, {representation, false}, shape);
+    FrameScene frame = build_frame(simulation, shown_as(representation));
+    OrbitCamera camera;
+    frame_all(camera, frame, shape);
+    frame.camera = build_camera(camera, frame);
 
     const Picture picture = renderer.draw(frame, wide, height);
 
@@ -73,5 +82,59 @@ TEST_CASE("every atom that nothing hides is seen at its centre, and all fit the 
         REQUIRE(picture.picks[x] == Picture::nothing_seen);
         REQUIRE(picture.picks[std::size_t{wide} * (height - 1) + x] == Picture::nothing_seen);
     }
+    test::check_silent(device);
+}
+
+TEST_CASE("chains have carbons of their own colours, the grabbed molecule's stand out", "[view]") {
+    Simulation simulation = load_simulation(test::water_scene());
+    for (std::string& element : simulation.atoms.element) element = "C";
+    simulation.atoms.names.back().segment = "OTHER";
+
+    const auto colours = [&](Colouring colouring) {
+        std::vector<glm::vec3> found;
+        for (const SphereShape& s : build_frame(simulation, {.colouring = colouring}).spheres) {
+            found.push_back(s.colour);
+        }
+        return found;
+    };
+    const std::vector<glm::vec3> by_chain = colours(Colouring::Chain),
+                                 by_element = colours(Colouring::Element);
+
+    CHECK(by_chain[0] != by_chain[3]);
+    CHECK(by_chain[3] == by_chain[4]);
+    CHECK(by_chain[4] != by_chain[5]);
+    CHECK(by_element[3] == by_element[5]);
+    CHECK(by_element[0] != by_element[3]);
+    CHECK(by_chain[0] == by_element[0]);
+}
+
+TEST_CASE("the arrow points along the force in the picture, and nearer things hide it",
+          "[view][gpu]") {
+    GpuDevice device(test::validated());
+    Renderer renderer(device);
+    Simulation simulation = load_simulation(test::water_scene());
+    const double distance = GENERATE(2.5, 3.1);
+    move_grabbed(simulation, distance);
+    FrameScene frame = build_frame(simulation, {});
+    OrbitCamera camera;
+    orbit(camera, 0.3F, 0.4F);
+    frame_all(camera, frame, 480.0F / 270);
+    frame.camera = build_camera(camera, frame);
+    const glm::vec3 base = project(frame.camera, frame.spheres[0].centre, 480, height);
+
+    const Picture picture = renderer.draw(frame, 480, height);
+
+    // Its visible part lies where the force goes: away from the fixed molecule, or towards it.
+    double columns = 0, pixels = 0;
+    for (std::size_t i = 0; i < picture.picks.size(); ++i) {
+        if (picture.picks[i] != arrow_pick) continue;
+        columns += static_cast<double>(i % 480);
+        ++pixels;
+    }
+    REQUIRE(pixels > 20);
+    CHECK((columns / pixels - base.x) * (distance < 2.7 ? 1 : -1) > 5);
+    CHECK(
+        picture.picks[static_cast<std::size_t>(base.y) * 480 + static_cast<std::size_t>(base.x)] ==
+        0);
     test::check_silent(device);
 }

@@ -1,0 +1,120 @@
+#include "view/orbit_camera.h"
+
+#include "render/renderer.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <vector>
+
+using namespace palpa;
+
+namespace {
+
+constexpr std::uint32_t width = 320, height = 180;
+constexpr float aspect = 320.0F / 180;
+
+// A long box of spheres, off the origin.
+FrameScene long_box() {
+    FrameScene scene;
+    for (int i = 0; i < 8; ++i) {
+        scene.spheres.push_back(
+            {{(i & 1) != 0 ? 25 : 5, (i & 2) != 0 ? 3 : 0, i >= 4 ? -9 : 0}, 1.5F});
+    }
+    return scene;
+}
+
+glm::vec3 seen_at(const OrbitCamera& camera, const glm::vec3& place) {
+    return project(build_camera(camera, {}), place, width, height);
+}
+
+}  // namespace
+
+TEST_CASE("without azimuth and elevation the camera looks along -z, y up", "[view][camera]") {
+    const OrbitCamera camera{.target = {1, 2, 3}, .distance = 20};
+
+    const FrameCamera built = build_camera(camera, {});
+
+    CHECK(glm::distance(built.eye, {1, 2, 23}) < 1e-5);
+    CHECK(seen_at(camera, {1, 3, 3}).y < 90);  // rows run down
+    CHECK(seen_at(camera, {2, 2, 3}).x > 160);
+}
+
+TEST_CASE("orbiting takes the camera to its right and up, around a target that stays in the middle",
+          "[view][camera]") {
+    OrbitCamera camera{.target = {1, 2, 3}, .distance = 20};
+
+    SECTION("a quarter to the right, it looks along -x") {
+        orbit(camera, 1.5707963F, 0);
+        CHECK(glm::distance(build_camera(camera, {}).eye, {21, 2, 3}) < 1e-4);
+    }
+    SECTION("up, but not over the pole") {
+        orbit(camera, 0.3F, 5);
+        CHECK(build_camera(camera, {}).eye.y == Approx(22).epsilon(0.001));
+        CHECK(std::isfinite(seen_at(camera, {4, 2, 3}).x));
+        orbit(camera, 0, -9);
+        CHECK(build_camera(camera, {}).eye.y == Approx(-18).epsilon(0.001));
+    }
+    SECTION("many turns are no turn") {
+        orbit(camera, 0.5F, 0);
+        for (int i = 0; i < 100; ++i) orbit(camera, 6.2831853F, 0);
+        CHECK(camera.azimuth == Approx(0.5).epsilon(0.001));
+    }
+
+    const glm::vec3 middle = seen_at(camera, camera.target);
+    CHECK(middle.x == Approx(160).epsilon(0.001));
+    CHECK(middle.y == Approx(90).epsilon(0.001));
+    CHECK(middle.z == Approx(20).epsilon(0.001));
+}
+
+TEST_CASE("what is at the target follows a pan as the pointer moves", "[view][camera]") {
+    OrbitCamera camera{.target = {1, 2, 3}, .distance = 20, .azimuth = 0.7F, .elevation = -0.4F};
+    const glm::vec3 place = camera.target;
+
+    pan(camera, {0.25F, 0.1F});
+
+    const glm::vec3 there = seen_at(camera, place);
+    CHECK(there.x == Approx(160 + 0.25 * 180).epsilon(0.001));
+    CHECK(there.y == Approx(90 - 0.1 * 180).epsilon(0.001));
+}
+
+TEST_CASE("a zoom comes nearer by its factor, within limits", "[view][camera]") {
+    OrbitCamera camera{.distance = 20};
+
+    zoom(camera, 2);
+    CHECK(camera.distance == Approx(10));
+    zoom(camera, 1e9F);
+    CHECK(camera.distance == Approx(0.5));
+    zoom(camera, 1e-9F);
+    CHECK(camera.distance == Approx(1e4));
+}
+
+TEST_CASE("everything that is framed fits, from every side, and not with much to spare",
+          "[view][camera]") {
+    const FrameScene scene = long_box();
+    OrbitCamera camera;
+    camera.azimuth = GENERATE(0.0F, 0.9F, 1.57F, 3.0F);
+    camera.elevation = GENERATE(-1.2F, 0.0F, 0.5F);
+
+    frame_all(camera, scene, aspect);
+
+    const FrameCamera built = build_camera(camera, scene);
+    float widest = 0;
+    for (const SphereShape& sphere : scene.spheres) {
+        const glm::vec3 there = project(built, sphere.centre, width, height);
+        const float radius = sphere.radius * 90 / std::tan(0.3F) / there.z;
+        widest = std::max({widest, (std::abs(there.x - 160) + radius) / 160,
+                           (std::abs(there.y - 90) + radius) / 90});
+        CHECK(there.z - sphere.radius > built.near);
+        CHECK(there.z + sphere.radius < built.far);
+    }
+    CHECK(widest < 0.99);
+    CHECK(widest > 0.6);
+
+    OrbitCamera same = camera;
+    focus(same, {}, aspect);
+    CHECK(same.distance == camera.distance);
+    focus(same, std::vector{scene.spheres[0]}, aspect);
+    CHECK(glm::distance(same.target, scene.spheres[0].centre) < 1e-4);
+    CHECK(same.distance < camera.distance);
+}
