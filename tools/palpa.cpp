@@ -83,6 +83,11 @@ void add_run(CLI::App& program, palpa::RunOptions& options) {
     add_size_option(run, "--frame-size", options.frame_width, options.frame_height);
     add_size_option(run, "--size", options.width, options.height);
     run.add_option("--screenshots", options.screenshots, "folder for screenshots of the window");
+    CLI::Option* const shot = run.add_option(
+        "--shot", options.last_shot, "PNG file: a picture of the window, which then closes");
+    run.add_option("--after", options.last_shot_s, "seconds until --shot, 5 unless given")
+        ->check(CLI::Range(0.0, 1e5))
+        ->needs(shot);
     run.add_flag("--validation", options.validation,
                  "let the Vulkan validation layer watch the window's drawing");
     run.add_flag("--json", options.json, "print the summary as JSON");

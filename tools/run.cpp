@@ -19,8 +19,8 @@
 #include <unistd.h>
 #include <cstddef>
 #include <cstdio>
-#include <numbers>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -116,6 +116,8 @@ int run_in_window(const SceneDescription& scene, EmulatedOmniSettings settings,
                                            {.width = options.width,
                                             .height = options.height,
                                             .screenshots = options.screenshots,
+                                            .last_shot = options.last_shot,
+                                            .last_shot_s = options.last_shot_s,
                                             .mouse_hand = settings.live,
                                             .validation = options.validation});
     SceneDescription played = scene;

@@ -24,6 +24,8 @@ struct RunOptions {
     bool play = false;  // in a window: the emulated hand plays the scene's stroke, no mouse
     std::uint32_t width = 1280, height = 800;  // of the window
     std::filesystem::path screenshots = ".";   // folder for those of the window
+    std::optional<std::filesystem::path> last_shot;  // of the window, which then closes
+    double last_shot_s = 5;
     bool validation = false;                   // of all that Vulkan is told
 };
 

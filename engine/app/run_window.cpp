@@ -135,6 +135,8 @@ private:
     Vec3 hand_m_ = Vec3::Zero();  // where the mouse wants the handle
     bool holding_ = false;
     RenderScale scale_;
+    const Clock::time_point start_ = Clock::now();
+    bool is_over_ = false;  // the last screenshot is due
     bool quitting_ = false, wants_shot_ = false, must_rebuild_ = false;
     std::string notice_;
     Clock::time_point notice_until_{};
@@ -184,6 +186,8 @@ void Sandbox::frame() {
     }
     if (has_frame_ && !std::exchange(framed_, has_frame_)) look_at_all();
     take_input();
+    is_over_ = options_.last_shot && ms_since(start_) > 1e3 * options_.last_shot_s;
+    wants_shot_ = wants_shot_ || is_over_;
     if (window_.size().width == 0 || window_.size().height == 0) return;  // folded away
     draw();
     last_frame_ms_ = ms_since(begin);
@@ -250,7 +254,8 @@ void Sandbox::move_hand(const Input& input) {
     const glm::vec3 eye = camera_.target - camera_.distance * axes.forward;
     const float depth = glm::dot(as_float(frame_.grabbed_angstrom) - eye, axes.forward);
     const auto height = static_cast<float>(std::max(window_.size().height, 1U));
-    const float per_pixel = 2 * std::max(depth, 1.0F) * std::tan(camera_.vertical_angle / 2) / height;
+    const float per_pixel =
+        2 * std::max(depth, 1.0F) * std::tan(camera_.vertical_angle / 2) / height;
     const glm::vec3 way = per_pixel * (static_cast<float>(input.mouse_dx) * axes.right -
                                        static_cast<float>(input.mouse_dy) * axes.up) +
                           static_cast<float>(input.wheel * angstrom_per_notch) * axes.forward;
@@ -341,6 +346,11 @@ void Sandbox::draw() {
 }
 
 void Sandbox::save(const WindowShot& shot) {
+    if (is_over_) {  // what was asked for on the command line is an error if it fails
+        write_png(*options_.last_shot, {shot.width, shot.height, shot.rgba, {}, {}});
+        quitting_ = true;
+        return;
+    }
     const std::filesystem::path path = next_screenshot(options_.screenshots);
     try {
         write_png(path, {shot.width, shot.height, shot.rgba, {}, {}});

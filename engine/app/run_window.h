@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 
 namespace palpa {
 
@@ -15,6 +16,8 @@ struct WindowOptions {
     ViewSettings view{};
     std::uint32_t width = 1280, height = 800;
     std::filesystem::path screenshots{"."};  // folder
+    std::optional<std::filesystem::path> last_shot{};  // taken after `last_shot_s`, then it quits
+    double last_shot_s = 5;
     HandTargets* mouse_hand = nullptr;  // where a mouse moves an emulated handle; null: nowhere
     double most_frames_per_s = 60;
     bool validation = false;  // of all that Vulkan is told; what it finds is thrown at the end
