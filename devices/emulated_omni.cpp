@@ -15,6 +15,9 @@ constexpr double sub_step_s = tick_s / sub_steps;
 constexpr double stop_stiffness_N_per_m = 2e4;
 constexpr double stop_damping_N_s_per_m = 20;
 
+// How quickly a live hand goes where the mouse is: as a critically damped mass would.
+constexpr double live_hand_rad_per_s = 40;
+
 // Force of the stop on a handle that is `position` from the centre; never pulls. A light handle
 // gets a softer stop: a sub-step of it must not throw the handle further than it came.
 double stop_force(double position, double velocity, double half_width, double mass) noexcept {
@@ -30,14 +33,15 @@ double stop_force(double position, double velocity, double half_width, double ma
 }  // namespace
 
 EmulatedOmni::EmulatedOmni(const EmulatedOmniSettings& settings)
-    : settings_(settings), operator_(settings.script, half_workspace_m.x()) {
+    : settings_(settings), operator_(settings.script, settings.half_workspace_m.x()) {
     spec_.name = "emulated Omni";
     spec_.peak_force_newton = settings.peak_force_newton;
     spec_.viscosity_N_s_per_m = settings.dynamics.viscosity_N_s_per_m;
-    spec_.half_workspace_m = half_workspace_m;
+    spec_.half_workspace_m = settings.half_workspace_m;
 
     const Plant plant = build_plant(settings.dynamics, settings.hand);
     plant_ = sample_plant(plant, sub_step_s);
+    free_plant_ = sample_plant(build_plant(settings.dynamics, std::nullopt), sub_step_s);
     handle_mass_kg_ = plant.handle_mass_kg;
     for (PlantState& axis : state_) axis = PlantState::Zero(plant.A.rows());
     // Handle and hand begin at rest where the script begins.
@@ -62,28 +66,54 @@ void EmulatedOmni::write(const Vec3& force_newton) noexcept {
     const double peak = settings_.peak_force_newton;
     const Vec3 motors = norm > peak ? Vec3(force_newton * (peak / norm)) : force_newton;
 
-    const ScriptedHand::Wish wish = operator_.step(tick_s);
-    buttons_ = wish.buttons;
+    const double now_s = static_cast<double>(tick_) * tick_s;
+    // Half a nanosecond keeps the tick from hanging on rounding.
+    if (settings_.hand && now_s > settings_.script.release_s.value_or(INFINITY) - 5e-10) let_go();
     Vec3 hand_drive = Vec3::Zero();
-    if (settings_.hand) {
-        hand_drive.x() = settings_.hand->stiffness_N_per_m * wish.x_m +
-                         settings_.hand->damping_N_s_per_m * wish.v_m_per_s;
+    if (settings_.live) {
+        hand_drive = follow_live_target();
+    } else {
+        const ScriptedHand::Wish wish = operator_.step(tick_s);
+        buttons_ = settings_.hand ? wish.buttons : 0;
+        if (settings_.hand) {
+            hand_drive.x() = settings_.hand->stiffness_N_per_m * wish.x_m +
+                             settings_.hand->damping_N_s_per_m * wish.v_m_per_s;
+        }
     }
-    const double kick = operator_.kick_newton(static_cast<double>(tick_) * tick_s);
+    const double kick = operator_.kick_newton(now_s);
     const Vec3 outside = motors + Vec3(kick, 0, 0);
 
     for (int sub_step = 0; sub_step < sub_steps; ++sub_step) {
         const Vec3 before = true_position_m();
         for (std::size_t axis = 0; axis < state_.size(); ++axis) {
             const auto i = static_cast<Eigen::Index>(axis);
-            const double stop =
-                stop_force(state_[axis](0), state_[axis](1), half_workspace_m(i), handle_mass_kg_);
+            const double stop = stop_force(state_[axis](0), state_[axis](1),
+                                           settings_.half_workspace_m(i), handle_mass_kg_);
             const Eigen::Vector2d inputs(outside(i) + stop, hand_drive(i));
             state_[axis] = (plant_.A * state_[axis] + plant_.B * inputs).eval();
         }
         apply_friction(before);
     }
     ++tick_;
+}
+
+Vec3 EmulatedOmni::follow_live_target() noexcept {
+    settings_.live->read(target_);
+    const Vec3& reach = settings_.half_workspace_m;
+    const Vec3 goal = target_.position_m.cwiseMax(-reach).cwiseMin(reach);
+    const double w = live_hand_rad_per_s;
+    wish_m_per_s_ += tick_s * (w * w * (goal - wish_m_) - 2 * w * wish_m_per_s_);
+    wish_m_ += tick_s * wish_m_per_s_;
+    if (!settings_.hand) return Vec3::Zero();
+    return settings_.hand->stiffness_N_per_m * wish_m_ +
+           settings_.hand->damping_N_s_per_m * wish_m_per_s_;
+}
+
+void EmulatedOmni::let_go() noexcept {
+    settings_.hand.reset();
+    plant_ = free_plant_;
+    handle_mass_kg_ = settings_.dynamics.inertia_kg;
+    for (PlantState& axis : state_) axis.conservativeResize(2);
 }
 
 // Takes speed away from the handle, whatever its direction, down to rest. A handle at rest stays

@@ -1,5 +1,6 @@
 // A Phantom Omni that is not there, and the hand on it: inertia, viscosity, Coulomb friction,
-// encoder steps, saturating motors, stops at the ends of the workspace, buttons.
+// encoder steps, saturating motors, stops at the ends of the workspace, buttons. The hand follows a
+// script, or a live person's mouse.
 #pragma once
 #include "devices/scripted_hand.h"
 #include "haptics/device.h"
@@ -13,6 +14,9 @@
 
 namespace palpa {
 
+// Half of the nominal workspace of 160 x 120 x 70 mm.
+inline const Vec3 omni_half_workspace_m{0.080, 0.060, 0.035};
+
 // Defaults as in the maker's data sheet for the Omni; inertia, friction and encoder step are quoted
 // from memory of it and are to be checked on a device.
 struct EmulatedOmniSettings {
@@ -22,15 +26,14 @@ struct EmulatedOmniSettings {
     double peak_force_newton = 3.3;    // motors give no more, whatever is written
     std::optional<HandModel> hand;     // nothing: the handle is free
     HandScript script;
+    HandTargets* live = nullptr;  // where the hand goes instead of the script, in three dimensions
+    Vec3 half_workspace_m = omni_half_workspace_m;
 };
 
 // Time is the servo's: each write moves device and hand on by one tick, exactly for the linear
 // part, in four sub-steps for friction and stops. The same settings give the same motion, always.
 class EmulatedOmni final : public Device {
 public:
-    // Half of the nominal workspace of 160 x 120 x 70 mm.
-    static inline const Vec3 half_workspace_m{0.080, 0.060, 0.035};
-
     explicit EmulatedOmni(const EmulatedOmniSettings& settings);
 
     const DeviceSpec& spec() const noexcept override { return spec_; }
@@ -41,16 +44,23 @@ public:
     Vec3 true_position_m() const noexcept;
 
 private:
+    // What the hand's spring and damper are drawn to (N), by axis.
+    Vec3 follow_live_target() noexcept;
+
+    // From here on nobody holds the handle; it keeps its place and speed.
+    void let_go() noexcept;
     // `before`: where the handle was a sub-step ago.
     void apply_friction(const Vec3& before) noexcept;
 
     EmulatedOmniSettings settings_;
     DeviceSpec spec_;
     ScriptedHand operator_;
-    SampledPlant plant_;  // over one sub-step
+    SampledPlant plant_, free_plant_;  // over one sub-step; with the hand until it lets go
     double handle_mass_kg_ = 0;
     std::array<PlantState, 3> state_;  // one per axis
     bool resting_ = true;              // friction held the handle through the last sub-step
+    HandTarget target_;                // of a live hand; it goes there smoothly
+    Vec3 wish_m_ = Vec3::Zero(), wish_m_per_s_ = Vec3::Zero();
     std::uint64_t tick_ = 0;
     std::uint32_t buttons_ = 0;  // as pressed during the last tick
 };

@@ -61,7 +61,7 @@ double energy(const Water& water, const Variables& v) {
     const std::vector<Vec3> fixed = acceptor(water, v(1)), moved = donor(water, v(0), v(2));
     return palpa::evaluate_pair_field({moved, water.charge, water.sqrt_epsilon, water.half_rmin},
                                       {fixed, water.charge, water.sqrt_epsilon, water.half_rmin},
-                                      palpa::units::charmm_coulomb_constant)
+                                      {palpa::units::charmm_coulomb_constant})
         .energy();
 }
 

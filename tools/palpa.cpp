@@ -3,6 +3,7 @@
 #include "core/text.h"
 #include "core/version.h"
 #include "gpu/device.h"
+#include "platform/window.h"
 #include "tools/bench.h"
 #include "tools/render.h"
 #include "tools/run.h"
@@ -43,24 +44,24 @@ void add_set_option(CLI::App& command, std::vector<std::string>& settings) {
         ->take_last();
 }
 
-void add_size_option(CLI::App& command, const std::string& option, std::uint32_t& width,
-                     std::uint32_t& height) {
+// WIDTHxHEIGHT in pixels.
+void add_size(CLI::App& command, const std::string& option, const std::string& help,
+              std::uint32_t& width, std::uint32_t& height) {
     command.add_option_function<std::string>(
         option,
         [option, &width, &height](const std::string& text) {
+            constexpr std::int64_t most = 1'000'000;
             const std::size_t by = text.find('x');
-            const auto wide = palpa::find_integer(text.substr(0, by));
-            const auto high =
-                palpa::find_integer(by == std::string::npos ? "" : text.substr(by + 1));
-            if (!wide || !high || *wide < 1 || *high < 1 || *wide > 1'000'000 ||
-                *high > 1'000'000) {
+            const auto w = palpa::find_integer(text.substr(0, by));
+            const auto h = palpa::find_integer(by == std::string::npos ? "" : text.substr(by + 1));
+            if (!w || !h || *w < 1 || *h < 1 || *w > most || *h > most) {
                 throw CLI::ValidationError(option,
                                            "'" + text + "' is no size; expected WIDTHxHEIGHT");
             }
-            width = static_cast<std::uint32_t>(*wide);
-            height = static_cast<std::uint32_t>(*high);
+            width = static_cast<std::uint32_t>(*w);
+            height = static_cast<std::uint32_t>(*h);
         },
-        fmt::format("WIDTHxHEIGHT in pixels, {}x{} unless given", width, height));
+        "WIDTHxHEIGHT in pixels, " + help);
 }
 
 void add_run(CLI::App& program, palpa::RunOptions& options) {
@@ -69,15 +70,22 @@ void add_run(CLI::App& program, palpa::RunOptions& options) {
         ->required();
     run.add_flag("--headless", options.headless,
                  "in lockstep on a virtual clock, without a window");
+    run.add_flag("--play", options.play,
+                 "in a window: let the emulated hand play the scene's stroke, not the mouse");
     run.add_flag("--check", options.check_only,
                  "only read the scene and say what is wrong with it");
     CLI::Option* const record = run.add_option(
         "--record", options.record, "folder for trace.csv, summary.json, session.toml, frames");
     run.add_option("--fps", options.frames_per_second,
-                   "frames/0000.png ... into the recording, this many a simulated second")
+                   "frames/0000.png ... into a headless recording, this many a simulated second")
         ->check(CLI::Range(0.01, 1000.0))
         ->needs(record);
-    add_size_option(run, "--frame-size", options.frame_width, options.frame_height);
+    add_size(run, "--frame-size", "640x360 unless given", options.frame_width,
+             options.frame_height);
+    add_size(run, "--size", "of the window, 1280x800 unless given", options.width, options.height);
+    run.add_option("--screenshots", options.screenshots, "folder for screenshots of the window");
+    run.add_flag("--validation", options.validation,
+                 "let the Vulkan validation layer watch the window's drawing");
     run.add_flag("--json", options.json, "print the summary as JSON");
     run.add_flag_callback(
         "--keys",
@@ -110,7 +118,7 @@ void add_render(CLI::App& program, palpa::RenderOptions& options) {
     CLI::App& render = *program.add_subcommand("render", "A picture of a scene; needs no display");
     render.add_option("scene", options.scene, "scene folder or file")->required();
     render.add_option("-o,--output", options.image, "PNG file to write")->required();
-    add_size_option(render, "--size", options.width, options.height);
+    add_size(render, "--size", "1280x720 unless given", options.width, options.height);
     render.add_option("--time", options.time_s, "seconds that the hand plays before the picture")
         ->check(CLI::Range(0.0, 1e5));
     render.add_option("--as", options.representation, "ball-and-stick, space-filling or licorice");
@@ -168,6 +176,9 @@ int main(int argc, char** argv) {
         return bad_input;
     } catch (const std::system_error&) {  // what fmt throws when it cannot print
         fmt::print(stderr, "palpa: the output cannot be written\n");
+        return bad_input;
+    } catch (const palpa::PlatformError& error) {
+        fmt::print(stderr, "palpa: {}\n", error.what());
         return bad_input;
     } catch (const palpa::GpuError& error) {
         fmt::print(stderr, "palpa: {}\n", error.what());

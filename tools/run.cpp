@@ -1,5 +1,7 @@
 #include "tools/run.h"
 
+#include "app/run_window.h"
+#include "core/load_error.h"
 #include "core/units.h"
 #include "devices/emulated_omni.h"
 #include "haptics/gains.h"
@@ -10,6 +12,7 @@
 #include "session/run_headless.h"
 #include "simulation/probe.h"
 #include "simulation/simulation.h"
+#include "simulation/step.h"
 #include "tools/render.h"
 
 #include <fmt/format.h>
@@ -17,6 +20,7 @@
 #include <cstddef>
 #include <cstdio>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,7 +38,18 @@ void show_progress(double share) {
 // What the molecule will meet on its line, found by looking along it.
 void print_line(const SceneDescription& scene, const Simulation& simulation) {
     constexpr double nN = units::newton_per_kcal_per_mol_angstrom * 1e9;
-    if (const std::optional<double> rest = equilibrium_distance(simulation)) {
+    if (simulation.relaxed) {
+        const RelaxReport& r = *simulation.relaxed;
+        const TouchModel start = build_touch_model(simulation, {});
+        fmt::print(
+            "  relaxed     {:.3f} to {:.3f} kcal/mol in {} looks, moved {:.3f} Å, turned "
+            "{:.2f}°, {:.3f} pN left\n",
+            r.energy_before, r.energy_after, r.evaluations, r.displacement,
+            r.angle * 180 / std::numbers::pi, r.force * nN * 1e3);
+        fmt::print("  start       {:.3f} kcal/mol, {:.3f} nN, {:.1f} N/m\n",
+                   start.potential_kcal_per_mol, start.force_newton.norm() * 1e9,
+                   start.stiffness_N_per_m);
+    } else if (const std::optional<double> rest = equilibrium_distance(simulation)) {
         const LineForce line = force_along_line_at(simulation, *rest);
         fmt::print("  rest        {:.3f} kcal/mol at {:.3f} Å, {:.1f} N/m\n", line.energy, *rest,
                    line.stiffness * units::newton_per_metre_per_kcal_per_mol_angstrom2);
@@ -50,7 +65,8 @@ void print_line(const SceneDescription& scene, const Simulation& simulation) {
                    hand_force(simulation.laws.force, strongest * 1e-9));
     }
     if (const std::optional<double> wall =
-            repulsion_distance(simulation, scene.hand.peak_nN / nN, 30)) {
+            repulsion_distance(simulation, scene.hand.peak_nN / nN,
+                               simulation.relaxed ? grabbed_distance(simulation) : 30)) {
         fmt::print("  repulsion   {} nN at {:.3f} Å, felt as {:.3f} N\n", scene.hand.peak_nN, *wall,
                    hand_force(simulation.laws.force, scene.hand.peak_nN * 1e-9));
     }
@@ -81,6 +97,45 @@ void print_summary(const SceneDescription& scene, const Summary& s) {
                s.step_p99_us, s.steps);
 }
 
+int run_in_window(const SceneDescription& scene, EmulatedOmniSettings settings,
+                  const RunOptions& options) {
+    if (options.record) {
+        throw LoadError(
+            {"--record"},
+            "a session in a window cannot be recorded yet; expected --headless with it");
+    }
+    HandTargets targets;
+    if (!options.play) {
+        settings.live = &targets;
+        settings.script = {};
+        // A mouse has no workspace: half a metre either way stands for that.
+        settings.half_workspace_m = Vec3::Constant(0.5);
+    }
+    EmulatedOmni device(settings);
+    const WindowReport report = run_window(scene, device,
+                                           {.width = options.width,
+                                            .height = options.height,
+                                            .screenshots = options.screenshots,
+                                            .mouse_hand = settings.live,
+                                            .validation = options.validation});
+    SceneDescription played = scene;
+    played.coupling = report.settings.coupling;
+    played.period_ms = report.settings.period_ms;
+    played.seconds = static_cast<double>(report.summary.ticks) / servo_rate_hz;
+    if (options.json) {
+        fmt::print("{}", format_summary(played, report.summary));
+        return 0;
+    }
+    print_summary(played, report.summary);
+    fmt::print("  drawn       {} frames, {:.1f} ms median, scale {:.2f} at the end\n",
+               report.frames, report.median_frame_ms, report.render_scale);
+    if (!scene.lesson.empty()) {
+        fmt::print("  lesson      {} of {} steps done\n", report.lesson_steps_done,
+                   scene.lesson.size());
+    }
+    return 0;
+}
+
 }  // namespace
 
 EmulatedOmniSettings build_emulated_omni(const SceneDescription& scene,
@@ -90,7 +145,7 @@ EmulatedOmniSettings build_emulated_omni(const SceneDescription& scene,
         .friction_newton = scene.device.friction_N,
         .encoder_step_m = scene.device.encoder_step_mm * 1e-3,
         .hand = hand_model(static_cast<Grip>(scene.hand.grip)),
-        .script = plan_hand(scene, simulation, EmulatedOmni::half_workspace_m.x()),
+        .script = plan_hand(scene, simulation, omni_half_workspace_m.x()),
     };
 }
 
@@ -113,6 +168,7 @@ int run_command(const RunOptions& options) {
         for (const std::string& warning : warnings) fmt::print("  warning: {}\n", warning);
         return 0;
     }
+    if (!options.headless) return run_in_window(scene, settings, options);
     std::optional<Recording> recording;
     if (options.record) recording.emplace(*options.record, scene);
     std::unique_ptr<FrameWriter> writer;
@@ -125,9 +181,6 @@ int run_command(const RunOptions& options) {
         } catch (const GpuError& error) {
             warnings.push_back(fmt::format("no frames are drawn: {}", error.what()));
         }
-    }
-    if (!options.headless) {
-        fmt::print(stderr, "there is no window yet: running headless, in lockstep\n");
     }
     if (!scene.places.contains("coupling.mode")) {
         fmt::print(

@@ -1,4 +1,4 @@
-// palpa run: a scene under the emulated hand, headless.
+// palpa run: a scene in a window, or headless under the emulated hand.
 #pragma once
 #include "devices/emulated_omni.h"
 #include "scene/description.h"
@@ -19,8 +19,12 @@ struct RunOptions {
     double frames_per_second = 0;  // 0: no frames in the recording
     std::uint32_t frame_width = 640, frame_height = 360;
     bool check_only = false;
-    bool json = false;      // the summary as JSON on standard output
-    bool headless = false;  // asked for; the only way there is so far
+    bool json = false;  // the summary as JSON on standard output
+    bool headless = false;
+    bool play = false;  // in a window: the emulated hand plays the scene's stroke, no mouse
+    std::uint32_t width = 1280, height = 800;  // of the window
+    std::filesystem::path screenshots = ".";   // folder for those of the window
+    bool validation = false;                   // of all that Vulkan is told
 };
 
 // The emulated device and hand that a scene describes.

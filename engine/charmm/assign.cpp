@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -108,22 +109,83 @@ void check_complete(const ForceField& force_field, const Structure& structure,
     }
 }
 
-// Molecules act on each other, so the types of those in the table count as well as the new ones.
-void check_nbfix(const ForceField& force_field, const AtomTable& table, std::set<std::string> used,
-                 Missing& missing) {
-    for (const AtomName& name : table.names) {
-        const auto residue = force_field.residues.find(name.residue);
-        if (residue == force_field.residues.end()) continue;
-        if (const ResidueAtom* const atom = find_atom(residue->second, name.atom)) {
-            used.insert(atom->type);
-        }
+// The atom's type by its name or by its number.
+auto find_type(const ForceField& force_field, const std::string& name) {
+    const auto found = force_field.types.find(name);
+    const std::optional<std::int64_t> number = find_integer(name);
+    if (found != force_field.types.end() || !number) return found;
+    return std::find_if(force_field.types.begin(), force_field.types.end(),
+                        [&](const auto& type) { return type.second.number == *number; });
+}
+
+std::uint32_t add_type(const std::string& name, AtomTable& table) {
+    const auto found = std::find(table.type_names.begin(), table.type_names.end(), name);
+    const auto index = static_cast<std::uint32_t>(found - table.type_names.begin());
+    if (found == table.type_names.end()) table.type_names.push_back(name);
+    return index;
+}
+
+struct NewAtom {
+    const AtomName& name;
+    const Vec3& position;
+    const std::string& type;
+    double charge;
+    std::optional<double> mass;  // else the type's
+};
+
+// Adds an atom with the numbers of its type, or notes what it lacks. `place`: of its type's name.
+void add_atom(const ForceField& force_field, const NewAtom& atom, const TextPlace& place,
+              AtomTable& table, Missing& missing) {
+    const auto type = find_type(force_field, atom.type);
+    const bool is_known = type != force_field.types.end();
+    if (!is_known) {
+        missing.add(place, fmt::format("unknown atom type '{}': no MASS line{}", atom.type,
+                                       near_name_hint(atom.type, keys(force_field.types))));
     }
-    for (const NbfixPair& pair : force_field.nbfix) {
-        if (used.contains(pair.a) && used.contains(pair.b)) {
-            missing.add(pair.place, fmt::format("NBFIX of '{}' and '{}' is needed here, and is not "
-                                                "supported yet",
-                                                pair.a, pair.b));
-        }
+    const std::string& name = is_known ? type->first : atom.type;
+    const auto nonbonded = force_field.nonbonded.find(name);
+    if (nonbonded == force_field.nonbonded.end()) {
+        missing.add(place, fmt::format("atom type '{}' has no NONBONDED parameters in {}", name,
+                                       fmt::join(force_field.files, ", ")));
+    }
+    if (!is_known || nonbonded == force_field.nonbonded.end()) return;
+    table.names.push_back(atom.name);
+    table.positions.push_back(atom.position);
+    table.element.push_back(type->second.element);
+    table.mass.push_back(atom.mass.value_or(type->second.mass));
+    table.charge.push_back(atom.charge);
+    table.sqrt_epsilon.push_back(std::sqrt(nonbonded->second.epsilon));
+    table.half_rmin.push_back(nonbonded->second.half_rmin);
+    table.type.push_back(add_type(name, table));
+}
+
+// All of `added` but its bonds behind what the table holds.
+AtomRange append(const AtomTable& added, AtomTable& table) {
+    const AtomRange range{static_cast<std::uint32_t>(table.size()),
+                          static_cast<std::uint32_t>(added.size())};
+    const auto behind = [](auto& to, const auto& from) {
+        to.insert(to.end(), from.begin(), from.end());
+    };
+    behind(table.names, added.names);
+    behind(table.positions, added.positions);
+    behind(table.element, added.element);
+    behind(table.mass, added.mass);
+    behind(table.charge, added.charge);
+    behind(table.sqrt_epsilon, added.sqrt_epsilon);
+    behind(table.half_rmin, added.half_rmin);
+    for (const std::uint32_t type : added.type) {
+        table.type.push_back(add_type(added.type_names[type], table));
+    }
+    return range;
+}
+
+void check_segment(const std::string& file, const std::vector<AtomName>& names,
+                   std::string_view segment) {
+    std::set<std::string_view> segments;
+    for (const AtomName& name : names) segments.insert(name.segment);
+    if (!segments.contains(segment)) {
+        throw LoadError(
+            {file}, fmt::format("no segment '{}' (only {})", segment, fmt::join(segments, ", ")));
     }
 }
 
@@ -151,57 +213,65 @@ void add_bonds(const ForceField& force_field, AtomRange range, AtomTable& table)
 
 AtomRange add_segment_atoms(const ForceField& force_field, const Structure& structure,
                             std::string_view segment, AtomTable& table) {
+    check_segment(structure.file, structure.names, segment);
     Missing missing;
-    std::set<std::string> used_types, segments;
     AtomTable added;
     for (std::size_t i = 0; i < structure.names.size(); ++i) {
         const AtomName& name = structure.names[i];
-        segments.insert(name.segment);
         if (name.segment != segment) continue;
         const ResidueAtom* const atom =
             find_template(force_field, name, {structure.file, structure.lines[i], 0}, missing);
         if (!atom) continue;
-        const auto type = force_field.types.find(atom->type);
-        if (type == force_field.types.end()) {
-            missing.add(atom->place,
-                        fmt::format("unknown atom type '{}': no MASS line{}", atom->type,
-                                    near_name_hint(atom->type, keys(force_field.types))));
-        }
-        const auto nonbonded = force_field.nonbonded.find(atom->type);
-        if (nonbonded == force_field.nonbonded.end()) {
-            missing.add(atom->place, fmt::format("atom type '{}' has no NONBONDED parameters in {}",
-                                                 atom->type, fmt::join(force_field.files, ", ")));
-        }
-        if (type == force_field.types.end() || nonbonded == force_field.nonbonded.end()) continue;
-        used_types.insert(atom->type);
-        added.names.push_back(name);
-        added.positions.push_back(structure.positions[i]);
-        added.element.push_back(type->second.element);
-        added.mass.push_back(type->second.mass);
-        added.charge.push_back(atom->charge);
-        added.sqrt_epsilon.push_back(std::sqrt(nonbonded->second.epsilon));
-        added.half_rmin.push_back(nonbonded->second.half_rmin);
-    }
-    if (!segments.contains(std::string(segment))) {
-        const std::vector<std::string_view> known(segments.begin(), segments.end());
-        throw LoadError({structure.file},
-                        fmt::format("no segment '{}' (only {})", segment, fmt::join(known, ", ")));
+        add_atom(force_field, {name, structure.positions[i], atom->type, atom->charge, {}},
+                 atom->place, added, missing);
     }
     check_complete(force_field, structure, segment, missing);
-    check_nbfix(force_field, table, std::move(used_types), missing);
     missing.throw_if_any();
-
-    const AtomRange range{static_cast<std::uint32_t>(table.size()),
-                          static_cast<std::uint32_t>(added.size())};
-    const auto append = [](auto& to, auto& from) { to.insert(to.end(), from.begin(), from.end()); };
-    append(table.names, added.names);
-    append(table.positions, added.positions);
-    append(table.element, added.element);
-    append(table.mass, added.mass);
-    append(table.charge, added.charge);
-    append(table.sqrt_epsilon, added.sqrt_epsilon);
-    append(table.half_rmin, added.half_rmin);
+    const AtomRange range = append(added, table);
     add_bonds(force_field, range, table);
+    return range;
+}
+
+AtomRange add_segment_atoms(const ForceField& force_field, const Topology& topology,
+                            const Structure& structure, std::string_view segment,
+                            AtomTable& table) {
+    check_segment(topology.file, topology.names, segment);
+    std::map<std::string, std::size_t> places;  // of what the structure has and is not yet used
+    for (std::size_t i = 0; i < structure.names.size(); ++i) {
+        if (structure.names[i].segment == segment) places[to_string(structure.names[i])] = i;
+    }
+    Missing missing;
+    AtomTable added;
+    std::map<std::uint32_t, std::uint32_t> new_index;  // of the topology's atoms
+    for (std::uint32_t i = 0; i < topology.names.size(); ++i) {
+        const AtomName& name = topology.names[i];
+        if (name.segment != segment) continue;
+        const TextPlace place{topology.file, topology.lines[i], 0};
+        const auto found = places.find(to_string(name));
+        if (found == places.end()) {
+            missing.add(place,
+                        fmt::format("atom {} has no place in {}", to_string(name), structure.file));
+            continue;
+        }
+        new_index[i] = static_cast<std::uint32_t>(table.size() + added.size());
+        add_atom(force_field,
+                 {name, structure.positions[found->second], topology.type[i], topology.charge[i],
+                  topology.mass[i]},
+                 place, added, missing);
+        places.erase(found);
+    }
+    for (const auto& [name, i] : places) {
+        missing.add({structure.file, structure.lines[i], 0},
+                    fmt::format("atom {} is not in {}", name, topology.file));
+    }
+    missing.throw_if_any();
+    const AtomRange range = append(added, table);
+    for (const auto& [a, b] : topology.bonds) {
+        const auto from = new_index.find(a), to = new_index.find(b);
+        if (from != new_index.end() && to != new_index.end()) {
+            table.bonds.push_back({from->second, to->second});
+        }
+    }
     return range;
 }
 

@@ -160,11 +160,12 @@ private:
         }
     }
 
-    // MASS number type mass [element]; the number is -1 or a place nobody needs.
+    // MASS number type mass [element]; the number is -1, or what old structure files call the type.
     void parse_mass(Words words) {
-        real(words, 1, "atom type's number");
+        const double number = real(words, 1, "atom type's number");
         const std::string type = name(words, 2, "atom type");
-        AtomType entry{real(words, 3, "mass"), words.size() > 4 ? std::string(words[4]) : "",
+        AtomType entry{number >= 1 && number < 1e9 ? static_cast<std::int64_t>(number) : -1,
+                       real(words, 3, "mass"), words.size() > 4 ? std::string(words[4]) : "",
                        place()};
         if (!(entry.mass >= 0))
             fail(fmt::format("a mass of {} amu; expected 0 or more", entry.mass));
@@ -227,9 +228,7 @@ private:
             case Section::Nonbonded:
                 return parse_nonbonded(words);
             case Section::Nbfix:
-                into_.nbfix.push_back(
-                    {name(words, 0, "atom type"), name(words, 1, "second atom type"), place()});
-                return;
+                return parse_nbfix(words);
             case Section::PassedOver:
                 return;
             case Section::Atoms:
@@ -242,14 +241,17 @@ private:
                         words[0]));
     }
 
+    static std::pair<std::string, std::string> in_order(std::string a, std::string b) {
+        if (b < a) std::swap(a, b);
+        return {std::move(a), std::move(b)};
+    }
+
     static bool same_values(const HarmonicParameter& a, const HarmonicParameter& b) {
         return a.k == b.k && a.value == b.value;
     }
 
     void parse_bond(Words words) {
-        std::pair<std::string, std::string> key(name(words, 0, "atom type"),
-                                                name(words, 1, "second atom type"));
-        if (key.second < key.first) std::swap(key.first, key.second);
+        auto key = in_order(name(words, 0, "atom type"), name(words, 1, "second atom type"));
         const HarmonicParameter bond{real(words, 2, "force constant"),
                                      real(words, 3, "bond length"), place()};
         const std::string what = fmt::format("bond {} {}", key.first, key.second);
@@ -265,6 +267,24 @@ private:
                                       place()};
         const std::string what = fmt::format("angle {} {} {}", key[0], key[1], key[2]);
         add_once(into_.angles, std::move(key), angle, what, same_values);
+    }
+
+    // type type -epsilon Rmin [the same of 1-4 pairs]
+    void parse_nbfix(Words words) {
+        auto key = in_order(name(words, 0, "atom type"), name(words, 1, "second atom type"));
+        const double epsilon = real(words, 2, "well depth");
+        const double rmin = real(words, 3, "Rmin");
+        const std::string what = fmt::format("NBFIX of '{}' and '{}'", key.first, key.second);
+        if (epsilon > 0 || rmin < 0) {
+            fail(
+                fmt::format("well depth {} and Rmin {} in the {}; CHARMM writes the depth as "
+                            "-epsilon and Rmin as 0 or more",
+                            epsilon, rmin, what));
+        }
+        add_once(into_.nbfix, std::move(key), NbfixPair{-epsilon, rmin, place()}, what,
+                 [](const NbfixPair& a, const NbfixPair& b) {
+                     return a.epsilon == b.epsilon && a.rmin == b.rmin;
+                 });
     }
 
     // type ignored -epsilon Rmin/2 [ignored -epsilon Rmin/2 of 1-4 pairs]

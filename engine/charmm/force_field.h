@@ -4,6 +4,7 @@
 #include "core/load_error.h"
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <span>
@@ -15,8 +16,9 @@
 namespace palpa {
 
 struct AtomType {
-    double mass = 0;      // amu
-    std::string element;  // "O"; empty where the file names none
+    std::int64_t number = -1;  // by which old topologies call it; -1: none
+    double mass = 0;           // amu
+    std::string element;       // "O"; empty where the file names none
     TextPlace place;
 };
 
@@ -46,9 +48,10 @@ struct HarmonicParameter {
     TextPlace place;
 };
 
-// A pair of types whose Lennard-Jones numbers replace the combination rule.
+// A pair of types' Lennard-Jones numbers in place of the combination rule.
 struct NbfixPair {
-    std::string a, b;
+    double epsilon = 0;  // kcal/mol, >= 0
+    double rmin = 0;     // Å
     TextPlace place;
 };
 
@@ -60,7 +63,7 @@ struct ForceField {
     std::map<std::string, NonbondedType, std::less<>> nonbonded;
     std::map<std::pair<std::string, std::string>, HarmonicParameter> bonds;  // either order
     std::map<std::array<std::string, 3>, HarmonicParameter> angles;          // either order
-    std::vector<NbfixPair> nbfix;
+    std::map<std::pair<std::string, std::string>, NbfixPair> nbfix;          // either order
 };
 
 // Reads the files in order, later ones adding to earlier ones. In a stream file the script lines

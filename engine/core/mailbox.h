@@ -8,22 +8,21 @@
 namespace palpa {
 
 // A triple buffer: one thread posts, one thread reads. A reader sees whole values only, each at
-// least as new as the one before; values that nobody read in time are overwritten.
+// least as new as the one before; values that nobody read in time are overwritten. Plain structs
+// pass without allocation; what owns memory is copied into what its slot held before.
 template <class Value>
 class Mailbox {
-    static_assert(std::is_trivially_destructible_v<Value>,
-                  "a mailbox copies plain structs, nothing "
-                  "that owns memory");
+    static constexpr bool plain = std::is_trivially_destructible_v<Value>;
 
 public:
-    void post(const Value& value) noexcept {
+    void post(const Value& value) noexcept(plain) {
         slots_[write_] = value;
         // The slot just written becomes the newest; the one that lay there is written next.
         write_ = newest_.exchange(write_ | fresh, std::memory_order_acq_rel) & slot_mask;
     }
 
     // The newest value posted. False, and `value` untouched, if none came since the last read.
-    bool read(Value& value) noexcept {
+    bool read(Value& value) noexcept(plain) {
         if ((newest_.load(std::memory_order_relaxed) & fresh) == 0) return false;
         read_ = newest_.exchange(read_, std::memory_order_acq_rel) & slot_mask;
         value = slots_[read_];

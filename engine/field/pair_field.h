@@ -2,16 +2,33 @@
 #pragma once
 #include "math/vec.h"
 
+#include <cstdint>
 #include <span>
 
 namespace palpa {
 
-// A set of points, an array per property, all of one length.
+// A set of points, an array per property, all of one length; `type` may be empty where no pair is
+// replaced.
 struct FieldPoints {
     std::span<const Vec3> positions;       // Å
     std::span<const double> charge;        // e
     std::span<const double> sqrt_epsilon;  // (kcal/mol)^(1/2)
     std::span<const double> half_rmin;     // Å
+    std::span<const std::uint32_t> type = {};
+};
+
+// Lennard-Jones numbers that two types have together in place of the combination rule: CHARMM's
+// NBFIX. Counts either way round.
+struct ReplacedPair {
+    std::uint32_t a = 0, b = 0;
+    double epsilon = 0;  // kcal/mol, >= 0
+    double rmin = 0;     // Å
+};
+
+// What all pairs have in common.
+struct PairRule {
+    double coulomb_constant = 0;  // kcal Å/mol/e^2
+    std::span<const ReplacedPair> replaced = {};
 };
 
 // What the environment does to the group as a whole.
@@ -19,9 +36,11 @@ struct FieldSum {
     double van_der_waals = 0;       // kcal/mol
     double electrostatic = 0;       // kcal/mol
     Vec3 force = Vec3::Zero();      // on the group, kcal/mol/Å
+    Vec3 torque = Vec3::Zero();     // on the group about the origin, kcal/mol
     Mat3 stiffness = Mat3::Zero();  // -d(force)/d(translation of the group), kcal/mol/Å^2
 
     double energy() const noexcept { return van_der_waals + electrostatic; }
+    Vec3 torque_about(const Vec3& place) const noexcept { return torque - place.cross(force); }
 };
 
 // Inside this distance (Å) a pair's force falls linearly to zero at zero distance, so that energy,
@@ -32,14 +51,15 @@ inline constexpr double pair_core_radius = 0.1;
 
 // Every pair of one point of the group and one of the environment, with CHARMM's combination rules:
 //   E = ε[(Rmin/r)^12 - 2 (Rmin/r)^6] + C q q'/r,  ε = (ε_i ε_j)^(1/2),  Rmin = Rmin_i/2 + Rmin_j/2
-// `coulomb_constant` C in kcal Å/mol/e^2. Sums run in the order of the points.
+// Sums run in one order, whatever the processor: four neighbours of the environment beside each
+// other.
 FieldSum evaluate_pair_field(const FieldPoints& group, const FieldPoints& environment,
-                             double coulomb_constant) noexcept;
+                             const PairRule& rule) noexcept;
 
 // The same pairs; adds the force on every point (kcal/mol/Å) to the two spans, of one entry a
 // point.
 FieldSum add_pair_forces(const FieldPoints& group, const FieldPoints& environment,
-                         double coulomb_constant, std::span<Vec3> group_forces,
+                         const PairRule& rule, std::span<Vec3> group_forces,
                          std::span<Vec3> environment_forces) noexcept;
 
 }  // namespace palpa

@@ -42,14 +42,20 @@ bool has_validation_layer() {
     });
 }
 
-// A queue family that draws, if the device has one.
-std::optional<std::uint32_t> find_graphics_family(VkPhysicalDevice device) {
+// A queue family that draws, and presents where there is a surface; if the device has one.
+std::optional<std::uint32_t> find_graphics_family(VkPhysicalDevice device, VkSurfaceKHR surface) {
     std::uint32_t count = 0;
     vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
     std::vector<VkQueueFamilyProperties> families(count);
     vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
     for (std::uint32_t i = 0; i < count; ++i) {
-        if ((families[i].queueFlags & VK_QUEUE_GRAPHICS_BIT) != 0) return i;
+        if ((families[i].queueFlags & VK_QUEUE_GRAPHICS_BIT) == 0) continue;
+        VkBool32 presents = VK_TRUE;
+        if (surface != VK_NULL_HANDLE) {
+            check_vulkan(vkGetPhysicalDeviceSurfaceSupportKHR(device, i, surface, &presents),
+                         "vkGetPhysicalDeviceSurfaceSupportKHR");
+        }
+        if (presents == VK_TRUE) return i;
     }
     return std::nullopt;
 }
@@ -70,10 +76,11 @@ int rank_of(VkPhysicalDeviceType type) {
 }  // namespace
 
 void check_vulkan(VkResult result, const char* call) {
-    if (result != VK_SUCCESS) {
-        throw GpuError(
-            fmt::format("{} failed with Vulkan result {}", call, static_cast<int>(result)));
-    }
+    if (result == VK_SUCCESS) return;
+    const std::string what =
+        fmt::format("{} failed with Vulkan result {}", call, static_cast<int>(result));
+    if (result == VK_ERROR_DEVICE_LOST) throw DeviceLost(what);
+    throw GpuError(what);
 }
 
 GpuDevice::GpuDevice() : messages_(std::make_unique<std::vector<std::string>>()) {}
@@ -82,6 +89,7 @@ GpuDevice::GpuDevice(const GpuOptions& options)
     : GpuDevice() {  // from here on the destructor runs, whatever is thrown
     options_ = options;
     create_instance();
+    if (options.create_surface) surface_ = options.create_surface(instance_);
     choose_physical_device();
     create_device();
 }
@@ -92,6 +100,7 @@ GpuDevice::~GpuDevice() {
         vkDestroyCommandPool(device_, pool_, nullptr);
         vkDestroyDevice(device_, nullptr);
     }
+    if (surface_ != VK_NULL_HANDLE) vkDestroySurfaceKHR(instance_, surface_, nullptr);
     if (messenger_ != VK_NULL_HANDLE) {
         const auto destroy = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
             vkGetInstanceProcAddr(instance_, "vkDestroyDebugUtilsMessengerEXT"));
@@ -146,8 +155,7 @@ void GpuDevice::create_instance() {
     VkInstanceCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
     info.pApplicationInfo = &application;
-    const std::array extensions{VK_EXT_DEBUG_UTILS_EXTENSION_NAME,
-                                VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
+    std::vector<const char*> extensions = options_.instance_extensions;
     const VkDebugUtilsMessengerCreateInfoEXT messenger = messenger_info(*messages_);
     const VkValidationFeatureEnableEXT synchronisation =
         VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
@@ -161,9 +169,11 @@ void GpuDevice::create_instance() {
         info.pNext = &features;
         info.enabledLayerCount = 1;
         info.ppEnabledLayerNames = &validation_layer;
-        info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
-        info.ppEnabledExtensionNames = extensions.data();
+        extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+        extensions.push_back(VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);
     }
+    info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
+    info.ppEnabledExtensionNames = extensions.data();
     if (vkCreateInstance(&info, nullptr, &instance_) != VK_SUCCESS) {
         throw GpuError("Vulkan cannot be started; is a driver installed (mesa-vulkan-drivers)?");
     }
@@ -186,10 +196,10 @@ void GpuDevice::choose_physical_device() {
     for (const VkPhysicalDevice device : devices) {
         VkPhysicalDeviceProperties properties;
         vkGetPhysicalDeviceProperties(device, &properties);
-        const std::optional<std::uint32_t> family = find_graphics_family(device);
+        const std::optional<std::uint32_t> family = find_graphics_family(device, surface_);
         if (properties.apiVersion < VK_API_VERSION_1_1 || !family) {
             refused += fmt::format("; {}: {}", properties.deviceName,
-                                   family ? "older than Vulkan 1.1" : "has no graphics queue");
+                                   family ? "older than Vulkan 1.1" : "has no queue that draws");
             continue;
         }
         if (rank_of(properties.deviceType) <= best) continue;
@@ -213,6 +223,11 @@ void GpuDevice::create_device() {
     info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
     info.queueCreateInfoCount = 1;
     info.pQueueCreateInfos = &queue;
+    const char* const swapchain = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
+    if (surface_ != VK_NULL_HANDLE) {
+        info.enabledExtensionCount = 1;
+        info.ppEnabledExtensionNames = &swapchain;
+    }
     check_vulkan(vkCreateDevice(physical_, &info, nullptr, &device_), "vkCreateDevice");
     vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
 

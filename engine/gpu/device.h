@@ -1,4 +1,4 @@
-// A Vulkan device to draw with, without a window: instance, device, one queue.
+// A Vulkan device to draw with, into pictures or a window: instance, device, one queue.
 #pragma once
 #include <vulkan/vulkan.h>
 #include <cstdint>
@@ -16,12 +16,24 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-// Throws GpuError, naming the call, unless the result is VK_SUCCESS.
+// The device is gone, with all that was on it; a new GpuDevice may find it again.
+class DeviceLost : public GpuError {
+public:
+    using GpuError::GpuError;
+};
+
+// Throws GpuError (DeviceLost where that is the reason), naming the call, unless the result is
+// VK_SUCCESS.
 void check_vulkan(VkResult result, const char* call);
 
 struct GpuOptions {
     bool validation = false;     // with synchronisation validation; needs the Khronos layer
     bool force_staging = false;  // upload through staging buffers even where memory is shared
+
+    // For a window: what its surface needs of the instance, and how it is made. The device then
+    // can present to it.
+    std::vector<const char*> instance_extensions{};
+    std::function<VkSurfaceKHR(VkInstance)> create_surface{};
 };
 
 // Owns instance, device, queue and command pool. Used by one thread.
@@ -34,7 +46,11 @@ public:
     GpuDevice& operator=(const GpuDevice&) = delete;
     ~GpuDevice();
 
+    VkInstance instance() const noexcept { return instance_; }
     VkDevice handle() const noexcept { return device_; }
+    VkQueue queue() const noexcept { return queue_; }
+    std::uint32_t queue_family() const noexcept { return queue_family_; }
+    VkSurfaceKHR surface() const noexcept { return surface_; }  // null without a window
     VkPhysicalDevice physical() const noexcept { return physical_; }
     const VkPhysicalDeviceLimits& limits() const noexcept { return properties_.limits; }
     std::string name() const { return properties_.deviceName; }
@@ -62,6 +78,7 @@ private:
     std::unique_ptr<std::vector<std::string>> messages_;  // the layer keeps its address
     VkInstance instance_ = VK_NULL_HANDLE;
     VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
+    VkSurfaceKHR surface_ = VK_NULL_HANDLE;
     VkPhysicalDevice physical_ = VK_NULL_HANDLE;
     VkPhysicalDeviceProperties properties_{};
     VkPhysicalDeviceMemoryProperties memory_{};

@@ -15,14 +15,15 @@ struct HandPose {
 // What the simulation tells the servo, every step, of the molecule in the hand. One simulation
 // step old when it is felt: the paper's z^-1.
 struct TouchModel {
-    double time_s = 0;                      // of the hand pose that it answers
-    Vec3 molecule_angstrom = Vec3::Zero();  // reference atom, from its counterpart
-    Vec3 force_newton = Vec3::Zero();       // on the molecule, along what it may do
-    double stiffness_N_per_m = 0;           // -dF/dx along its line of motion
-    double displacement_gain = 0;           // A_d of the step that led here
-    double potential_kcal_per_mol = 0;      // of the molecule and its environment
-    int active_freedom = 0;                 // degrees of freedom that the step could move
-    double period_s = 0;                    // of the simulation
+    double time_s = 0;                        // of the hand pose that it answers
+    Vec3 molecule_angstrom = Vec3::Zero();    // reference atom, from its counterpart
+    Vec3 force_newton = Vec3::Zero();         // on the molecule, along what it may do
+    Vec3 torque_newton_metre = Vec3::Zero();  // about its centre of mass; felt by no device so far
+    double stiffness_N_per_m = 0;       // -dF/dx where it is largest of what the molecule may do
+    double displacement_gain = 0;       // A_d of the step that led here
+    double potential_kcal_per_mol = 0;  // of the molecule and its environment
+    int active_freedom = 0;             // degrees of freedom that the step could move
+    double period_s = 0;                // of the simulation
 };
 
 struct Exchange {

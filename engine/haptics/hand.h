@@ -1,5 +1,8 @@
 // Models of the hand that holds the handle, and the path it wants to follow.
 #pragma once
+#include "core/mailbox.h"
+#include "math/vec.h"
+
 #include <array>
 #include <optional>
 #include <string_view>
@@ -45,12 +48,21 @@ double find_target(const std::vector<HandWaypoint>& path, double time_s) noexcep
 // A hand turns back this far (m) before the stops of the workspace.
 inline constexpr double stop_margin_m = 0.005;
 
-// A hand's plan for a session: a path along x, and an impulse that knocks the handle.
+// A hand's plan for a session: a path along x, when it lets go, and an impulse that knocks the
+// handle.
 struct HandScript {
     std::vector<HandWaypoint> path;  // times ascending
-    double kick_N_s = 0;             // along x, spread over `kick_duration_s`
+    std::optional<double> release_s = {};
+    double kick_N_s = 0;  // along x, spread over `kick_duration_s`
     double kick_time_s = 1.0;
     double kick_duration_s = 0.01;
 };
+
+// Where a person without a device wants the handle: a mouse's owner posts, the emulated device
+// reads.
+struct HandTarget {
+    Vec3 position_m = Vec3::Zero();
+};
+using HandTargets = Mailbox<HandTarget>;
 
 }  // namespace palpa

@@ -13,7 +13,7 @@ namespace palpa {
 inline constexpr int max_servo_delay_ticks = 7;
 
 struct ServoSettings {
-    ForceLaw force_law;
+    ForceLaw force_law = ConstantForceLaw{};
     double clamp_newton = 3.0;  // on the norm of the force
     int delay_ticks = 0;        // between a force and its sending, 0 to max_servo_delay_ticks
 };

@@ -1,6 +1,7 @@
 // The vector and matrix types of the physics, in double; pictures use their own in float.
 #pragma once
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 namespace palpa {
 

@@ -35,8 +35,8 @@ struct AtomRange {
     std::uint32_t count = 0;
 };
 
-// All atoms of a world; every array has one entry per atom. Written once on loading, but for
-// `positions`, which each simulation step updates.
+// All atoms of a world; every array up to `type` has one entry per atom. Written once on loading,
+// but for `positions`, which each simulation step updates.
 struct AtomTable {
     std::vector<AtomName> names;
     std::vector<Vec3> positions;       // Å
@@ -45,9 +45,12 @@ struct AtomTable {
     std::vector<double> charge;        // e
     std::vector<double> sqrt_epsilon;  // (kcal/mol)^(1/2), root of the Lennard-Jones well depth
     std::vector<double> half_rmin;     // Å, half the distance of the well's minimum
+    std::vector<std::uint32_t> type;   // index into `type_names`
 
     // Bonded pairs of atoms, by index.
     std::vector<std::array<std::uint32_t, 2>> bonds;
+
+    std::vector<std::string> type_names;  // of the force field, each once
 
     std::size_t size() const noexcept { return names.size(); }
 };

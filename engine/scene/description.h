@@ -16,8 +16,8 @@
 namespace palpa {
 
 // Every choice of a scene file: its names stand in the order of the enumerators.
-enum class Motion { Fixed, AlongX };
-inline constexpr std::array<std::string_view, 2> motion_names{"fixed", "along-x"};
+enum class Motion { Fixed, AlongX, Translate };
+inline constexpr std::array<std::string_view, 3> motion_names{"fixed", "along-x", "translate"};
 
 enum class Stroke { Hold, InOut, Path };
 inline constexpr std::array<std::string_view, 3> stroke_names{"hold", "in-out", "path"};
@@ -38,6 +38,11 @@ inline constexpr std::array<std::string_view, 6> coupling_mode_names{"1", "2", "
 inline constexpr std::array<std::string_view, 6> hand_names{"none",   "light", "slack",
                                                             "medium", "firm",  "firm-grip"};
 
+// What a step of a lesson looks at.
+enum class LessonQuantity { Distance, Force, FeltForce, Mode };
+inline constexpr std::array<std::string_view, 4> lesson_quantity_names{
+    "distance_angstrom", "force_nN", "felt_N", "mode"};
+
 struct ForceFieldDescription {
     std::vector<std::filesystem::path> files;
     double coulomb_constant = units::charmm_coulomb_constant;  // kcal Å/mol/e^2
@@ -46,8 +51,9 @@ struct ForceFieldDescription {
 struct MoleculeDescription {
     std::string name;
     std::filesystem::path structure;
+    std::filesystem::path topology;  // empty: the force field's residues tell
     std::string segment;
-    std::string reference_atom;  // that stands for the molecule's place
+    std::string reference_atom;  // that stands for the molecule's place: "OH2", or "25 CG"
     Motion motion = Motion::Fixed;
 };
 
@@ -60,10 +66,12 @@ struct HandDescription {
     std::size_t grip = 3;  // into hand_names: medium
     Stroke stroke = Stroke::InOut;
     std::optional<double> start_angstrom;
+    std::array<double, 3> start_offset_angstrom{};
     double peak_nN = 3;
     double stroke_s = 3;
     double pause_s = 1;
     std::int64_t cycles = 1;
+    std::optional<double> release_s;
     double kick_N_s = 0;
     std::vector<std::array<double, 2>> path;  // s, mm
 };
@@ -82,6 +90,16 @@ struct CouplingDescription {
     double F_h1_N = 1, F_h2_N = 3, F_0_nN = 1.5, A_f_min = 0.64e9, A_f_max = 5.1e9;  // eq. 2
     double gamma_per_N = 10e11, F_off_pN = 20, A_d_min = 0.005e9, A_d_max = 0.25e9;  // eq. 3
     double A_f = 0.64e9, A_d = 0.25e9;  // the constant gains
+
+    friend bool operator==(const CouplingDescription&, const CouplingDescription&) = default;
+};
+
+// One step of a lesson: what there is to know, what to do, and how to tell that it was done.
+struct LessonStepDescription {
+    std::string name, text, task;
+    LessonQuantity quantity = LessonQuantity::Distance;
+    std::optional<double> at_least, at_most;
+    double for_s = 0;  // without a break
 };
 
 struct SceneDescription {
@@ -93,6 +111,7 @@ struct SceneDescription {
     HandDescription hand;
     DeviceDescription device;
     CouplingDescription coupling;
+    std::vector<LessonStepDescription> lesson;  // in the order of the file
     double period_ms = 1;
     double seconds = 10;
     std::int64_t every = 1;

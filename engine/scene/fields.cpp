@@ -35,17 +35,23 @@ void visit_molecule(FieldVisitor& v, MoleculeDescription& m) {
     v.enter_table({.key = m.name, .meaning = "one molecule"});
     v.file({.key = "structure", .meaning = "CHARMM coordinate file (.crd)", .required = true},
            m.structure);
+    v.file({.key = "topology",
+            .meaning = "PSF file for types, charges, masses and bonds; unset: they come from the "
+                       "force field's residues"},
+           m.topology);
     v.text({.key = "segment",
             .meaning = "segment of that file whose atoms make up the molecule",
             .required = true},
            m.segment);
     v.text({.key = "reference_atom",
-            .meaning = "name of the atom that stands for the molecule's place",
+            .meaning = "atom that stands for the molecule's place: its name, with the residue "
+                       "number before it where the name alone is not enough (\"25 CG\")",
             .required = true},
            m.reference_atom);
     choose(v,
            {.key = "motion",
-            .meaning = "what the molecule may do: nothing, or move along x without turning"},
+            .meaning = "what the molecule may do without turning: nothing, move along x, or move "
+                       "in space after it was relaxed on loading"},
            motion_names, m.motion);
     v.leave_table();
 }
@@ -91,6 +97,12 @@ void visit_hand(FieldVisitor& v, HandDescription& h) {
                      .lowest = 0,
                      .highest = 1e3},
                     h.start_angstrom);
+    v.triple({.key = "start_offset_angstrom",
+              .meaning = "where a molecule that moves in space starts, [x, y, z] from its relaxed "
+                         "place",
+              .lowest = -1e3,
+              .highest = 1e3},
+             h.start_offset_angstrom);
     v.real({.key = "peak_nN",
             .meaning = "in-out: repulsion of the molecules at the innermost point",
             .lowest = 1e-3,
@@ -106,6 +118,11 @@ void visit_hand(FieldVisitor& v, HandDescription& h) {
            h.pause_s);
     v.integer({.key = "cycles", .meaning = "in-out: how often", .lowest = 1, .highest = 10000},
               h.cycles);
+    v.optional_real({.key = "release_s",
+                     .meaning = "when the hand lets go of the handle; unset: never",
+                     .lowest = 0,
+                     .highest = 1e5},
+                    h.release_s);
     v.real({.key = "kick_N_s",
             .meaning = "impulse that knocks the handle towards +x, spread over 10 ms at 1 s",
             .lowest = -0.1,
@@ -216,6 +233,38 @@ void visit_coupling(FieldVisitor& v, CouplingDescription& c) {
     v.leave_table();
 }
 
+void visit_lesson_step(FieldVisitor& v, LessonStepDescription& s) {
+    v.enter_table({.key = s.name, .meaning = "one step of the lesson"});
+    v.text({.key = "text", .meaning = "what there is to know", .required = true}, s.text);
+    v.text({.key = "task", .meaning = "what to do", .required = true}, s.task);
+    choose(v,
+           {.key = "quantity",
+            .meaning = "what tells that it was done: the distance of the reference atoms, the "
+                       "force on the molecule or on the hand (+ repels), the coupling's mode"},
+           lesson_quantity_names, s.quantity);
+    v.optional_real({.key = "at_least", .meaning = "smallest value that will do"}, s.at_least);
+    v.optional_real({.key = "at_most", .meaning = "largest value that will do"}, s.at_most);
+    v.real({.key = "for_s",
+            .meaning = "how long without a break, in simulated seconds",
+            .lowest = 0,
+            .highest = 1e3},
+           s.for_s);
+    v.leave_table();
+}
+
+void visit_lesson(FieldVisitor& v, std::vector<LessonStepDescription>& steps) {
+    v.enter_table({.key = "lesson", .meaning = "a first lesson, step by step"});
+    std::vector<std::string> names;
+    for (const LessonStepDescription& step : steps) names.push_back(step.name);
+    v.list_tables({.key = "STEP", .meaning = "one step, under a name of your choice"}, names);
+    steps.resize(names.size());
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        steps[i].name = names[i];
+        visit_lesson_step(v, steps[i]);
+    }
+    v.leave_table();
+}
+
 // Gathers the notes; the values visited are the defaults.
 class Lister final : public FieldVisitor {
 public:
@@ -235,6 +284,10 @@ public:
     void optional_real(const Field& field, std::optional<double>& /*value*/) override {
         add(field, fmt::format("number{}", range(field)), "unset");
     }
+    void triple(const Field& field, std::array<double, 3>& value) override {
+        add(field, fmt::format("three numbers{}", range(field)),
+            fmt::format("[{}]", fmt::join(value, ", ")));
+    }
     void integer(const Field& field, std::int64_t& value) override {
         add(field, fmt::format("whole number{}", range(field)), fmt::format("{}", value));
     }
@@ -247,7 +300,7 @@ public:
             fmt::format("\"{}\"", names[value]));
     }
     void file(const Field& field, std::filesystem::path& /*value*/) override {
-        add(field, "file name", "");
+        add(field, "file name", "unset");
     }
     void files(const Field& field, std::vector<std::filesystem::path>& /*value*/) override {
         add(field, "list of file names", "[]");
@@ -285,6 +338,7 @@ void visit_scene(FieldVisitor& v, SceneDescription& scene) {
     visit_hand(v, scene.hand);
     visit_device(v, scene.device);
     visit_coupling(v, scene.coupling);
+    visit_lesson(v, scene.lesson);
     v.enter_table({.key = "run", .meaning = "a headless run"});
     v.real({.key = "period_ms",
             .meaning = "declared period of the simulation, a whole number of 1 ms servo ticks",

@@ -167,6 +167,26 @@ public:
         if (!std::isnan(read)) value = read;
     }
 
+    void triple(const Field& field, std::array<double, 3>& value) override {
+        const toml::node* const node = find_value(field);
+        if (!node) return;
+        const toml::array* const list = node->as_array();
+        std::vector<double> read;
+        for (std::size_t i = 0; list && i < list->size(); ++i) {
+            const std::optional<double> number = list->get(i)->value<double>();
+            if (number && *number >= field.lowest && *number <= field.highest) {
+                read.push_back(*number);
+            }
+        }
+        if (!list || list->size() != value.size() || read.size() != value.size()) {
+            return problem(*node, expected(field, *node,
+                                           fmt::format("three numbers from {} to {}, [0.0, 1.0, "
+                                                       "2.0]",
+                                                       field.lowest, field.highest)));
+        }
+        std::copy(read.begin(), read.end(), value.begin());
+    }
+
     void integer(const Field& field, std::int64_t& value) override {
         const toml::node* const node = find_value(field);
         if (!node) return;
@@ -335,7 +355,7 @@ private:
 void check_grab(const SceneDescription& scene, Reader& reader) {
     std::vector<std::string_view> names;
     for (const MoleculeDescription& molecule : scene.molecules) names.emplace_back(molecule.name);
-    const auto check = [&](const std::string& key, const std::string& name, Motion motion,
+    const auto check = [&](const std::string& key, const std::string& name, bool moves,
                            const char* what) {
         const auto found =
             std::find_if(scene.molecules.begin(), scene.molecules.end(),
@@ -347,7 +367,7 @@ void check_grab(const SceneDescription& scene, Reader& reader) {
                 fmt::format("'{}' is \"{}\", which is no molecule of this scene; "
                             "expected one of {}{}",
                             key, name, fmt::join(names, ", "), near_name_hint(name, names)));
-        } else if (found->motion != motion) {
+        } else if ((found->motion != Motion::Fixed) != moves) {
             reader.problem(
                 reader.place_of_key(key),
                 fmt::format("'{}' is \"{}\", whose motion is \"{}\"; expected {}", key, name,
@@ -357,17 +377,33 @@ void check_grab(const SceneDescription& scene, Reader& reader) {
         }
         return false;
     };
-    check("grab.measured_from", scene.grab.measured_from, Motion::Fixed, "a fixed molecule");
+    check("grab.measured_from", scene.grab.measured_from, false, "a fixed molecule");
     // Without the right molecule in hand, what the others do is no problem of its own.
-    if (!check("grab.molecule", scene.grab.molecule, Motion::AlongX,
-               "a molecule that moves along-x")) {
+    if (!check("grab.molecule", scene.grab.molecule, true,
+               "a molecule that moves, along-x or translate")) {
         return;
     }
+    const auto grabbed =
+        std::find_if(scene.molecules.begin(), scene.molecules.end(),
+                     [&](const MoleculeDescription& m) { return m.name == scene.grab.molecule; });
+    const bool along_x = grabbed->motion == Motion::AlongX;
+    const bool has_offset = scene.hand.start_offset_angstrom != std::array<double, 3>{};
+    if (along_x && has_offset) {
+        reader.problem(reader.place_of_key("hand.start_offset_angstrom"),
+                       "'hand.start_offset_angstrom' is for a molecule that moves in space; "
+                       "expected hand.start_angstrom");
+    }
+    if (!along_x && scene.hand.start_angstrom) {
+        reader.problem(reader.place_of_key("hand.start_angstrom"),
+                       "'hand.start_angstrom' is for a molecule that moves along x; expected "
+                       "hand.start_offset_angstrom");
+    }
     for (const MoleculeDescription& molecule : scene.molecules) {
-        if (molecule.motion == Motion::AlongX && molecule.name != scene.grab.molecule) {
+        if (molecule.motion != Motion::Fixed && molecule.name != scene.grab.molecule) {
             const std::string key = "molecules." + molecule.name + ".motion";
             reader.problem(reader.place_of_key(key),
-                           fmt::format("'{}' is \"along-x\", but only grab.molecule moves", key));
+                           fmt::format("'{}' is \"{}\", but only grab.molecule moves", key,
+                                       motion_names[static_cast<std::size_t>(molecule.motion)]));
         }
     }
 }
@@ -398,6 +434,13 @@ void check_ranges(const SceneDescription& scene, Reader& reader) {
         check(h.path[i][0] > h.path[i - 1][0], "hand.path",
               fmt::format("'hand.path' has the time {} after {}; expected ascending times",
                           h.path[i][0], h.path[i - 1][0]));
+    }
+    for (const LessonStepDescription& step : scene.lesson) {
+        const std::string key = "lesson." + step.name;
+        check(step.at_least || step.at_most, key,
+              fmt::format("'{}' has neither at_least nor at_most; expected one or both", key));
+        check(!(step.at_least && step.at_most) || *step.at_least <= *step.at_most, key + ".at_most",
+              fmt::format("'{}.at_most' is below at_least; no value would do", key));
     }
 }
 
@@ -430,8 +473,11 @@ std::string full_setting_key(const std::string& key, const TextPlace& place) {
         }
         if (last == key) matches.push_back(field.key);
     }
-    // A field of NAME is one of every molecule.
-    if (matches.size() == 1 && matches[0].find("NAME") == std::string::npos) return matches[0];
+    // A field of NAME is one of every molecule, one of STEP one of every step of the lesson.
+    const auto is_of_many = [](const std::string& field) {
+        return field.find("NAME") != std::string::npos || field.find("STEP") != std::string::npos;
+    };
+    if (matches.size() == 1 && !is_of_many(matches[0])) return matches[0];
     if (matches.empty()) {
         throw LoadError(place, fmt::format("no field of a scene is called '{}'{}", key,
                                            near_name_hint(key, last_parts)));

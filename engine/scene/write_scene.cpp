@@ -55,6 +55,10 @@ public:
     void optional_real(const Field& field, std::optional<double>& value) override {
         if (value) add(field, format_real(*value));
     }
+    void triple(const Field& field, std::array<double, 3>& value) override {
+        add(field, fmt::format("[{}, {}, {}]", format_real(value[0]), format_real(value[1]),
+                               format_real(value[2])));
+    }
     void integer(const Field& field, std::int64_t& value) override {
         add(field, fmt::format("{}", value));
     }
@@ -64,7 +68,7 @@ public:
         add(field, in_quotes(names[value]));
     }
     void file(const Field& field, std::filesystem::path& value) override {
-        add(field, in_quotes(file_name_(value)));
+        if (!value.empty()) add(field, in_quotes(file_name_(value)));
     }
     void files(const Field& field, std::vector<std::filesystem::path>& value) override {
         std::vector<std::string> names;

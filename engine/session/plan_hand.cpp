@@ -2,7 +2,6 @@
 
 #include "core/load_error.h"
 #include "core/units.h"
-#include "simulation/components.h"
 #include "simulation/probe.h"
 
 #include <fmt/format.h>
@@ -11,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <variant>
 
 namespace palpa {
 namespace {
@@ -25,7 +25,11 @@ double newton_at(const Simulation& simulation, double distance) {
 
 // Handle travel (m) that takes the molecule from `far` in to `near` (Å): midpoint sum of A_d.
 double handle_travel(const Simulation& simulation, double near, double far) {
-    const auto steps = static_cast<int>(std::ceil((far - near) / 1e-3));
+    // Where A_d does not vary one step tells all, and a look at a large molecule takes
+    // milliseconds.
+    const bool constant =
+        std::holds_alternative<ConstantDisplacementLaw>(simulation.laws.displacement);
+    const auto steps = constant ? 1 : static_cast<int>(std::ceil((far - near) / 1e-3));
     const double width = (far - near) / steps;
     double sum = 0;
     for (int i = 0; i < steps; ++i) {
@@ -37,8 +41,7 @@ double handle_travel(const Simulation& simulation, double near, double far) {
 
 HandScript plan_in_out(const SceneDescription& scene, const Simulation& simulation,
                        double half_width_m) {
-    const Grab& grab = *simulation.world.find<Grab>(simulation.hand);
-    const double start = simulation.world.find<LineGuide>(grab.molecule)->distance;
+    const double start = grabbed_distance(simulation);
     const double peak_newton = scene.hand.peak_nN * 1e-9;
     const std::optional<double> innermost = repulsion_distance(
         simulation, peak_newton / units::newton_per_kcal_per_mol_angstrom, start);
@@ -101,6 +104,7 @@ HandScript plan_hand(const SceneDescription& scene, const Simulation& simulation
             break;
     }
     script.kick_N_s = scene.hand.kick_N_s;
+    script.release_s = scene.hand.release_s;
     check_speed(scene, script);
     return script;
 }

@@ -35,6 +35,9 @@ constexpr std::array columns = std::to_array<std::string_view>({"time_s",
                                                                 "force_x_nN",
                                                                 "force_y_nN",
                                                                 "force_z_nN",
+                                                                "torque_x_nN_angstrom",
+                                                                "torque_y_nN_angstrom",
+                                                                "torque_z_nN_angstrom",
                                                                 "device_force_x_N",
                                                                 "device_force_y_N",
                                                                 "device_force_z_N",
@@ -53,10 +56,14 @@ constexpr std::size_t flush_bytes = 1 << 16;
 std::vector<fs::path> input_files(const SceneDescription& scene) {
     std::vector<fs::path> files;
     const auto add = [&](const fs::path& file) {
-        if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
+        const bool is_new = std::find(files.begin(), files.end(), file) == files.end();
+        if (is_new && !file.empty()) files.push_back(file);
     };
     for (const fs::path& file : scene.force_field.files) add(file);
-    for (const MoleculeDescription& molecule : scene.molecules) add(molecule.structure);
+    for (const MoleculeDescription& molecule : scene.molecules) {
+        add(molecule.structure);
+        add(molecule.topology);
+    }
     return files;
 }
 
@@ -135,6 +142,12 @@ std::string format_summary(const SceneDescription& scene, const Summary& summary
     json["stroke"] = stroke_names[static_cast<std::size_t>(scene.hand.stroke)];
     json["mode"] = coupling_mode_names[static_cast<std::size_t>(scene.coupling.mode)];
     json["period_ms"] = scene.period_ms;
+    const CouplingDescription& c = scene.coupling;
+    json["coupling"] = {
+        {"clamp_N", c.clamp_N},         {"F_h1_N", c.F_h1_N},     {"F_h2_N", c.F_h2_N},
+        {"F_0_nN", c.F_0_nN},           {"A_f_min", c.A_f_min},   {"A_f_max", c.A_f_max},
+        {"gamma_per_N", c.gamma_per_N}, {"F_off_pN", c.F_off_pN}, {"A_d_min", c.A_d_min},
+        {"A_d_max", c.A_d_max},         {"A_f", c.A_f},           {"A_d", c.A_d}};
     json["friction_N"] = scene.device.friction_N;
     json["seed"] = scene.seed;
     json["seconds"] = scene.seconds;
@@ -155,7 +168,7 @@ std::string format_summary(const SceneDescription& scene, const Summary& summary
     json["last_angstrom"] = summary.last_angstrom;
     json["clamped_share"] = summary.clamped_share;
     json["stopped"] = summary.stopped;
-    json["overruns"] = 0;                                 // lockstep cannot be late
+    json["overruns"] = summary.overruns;
     json["neglected"] = nlohmann::ordered_json::array();  // rigid, all pairs: nothing
     json["warnings"] = summary.warnings;
     return json.dump(2) + "\n";
@@ -193,16 +206,18 @@ void Recording::add(const ServoTick& tick) {
     // Adding nothing makes -0 a plain 0.
     const Vec3 zero = Vec3::Zero();
     const Vec3 force_nN = touch.force_newton * 1e9 + zero;
+    const Vec3 torque = touch.torque_newton_metre * 1e19 + zero;  // nN Å
     const Vec3 sent = tick.sent_newton + zero;
     const Vec3 molecule = touch.molecule_angstrom + zero;
     const Vec3 handle = device.position_m + zero;
     fmt::format_to(std::back_inserter(rows_),
-                   "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
+                   "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
                    device.time_s, handle.x(), handle.y(), handle.z(), molecule.x(), molecule.y(),
-                   molecule.z(), force_nN.x(), force_nN.y(), force_nN.z(), sent.x(), sent.y(),
-                   sent.z(), tick.force_gain, touch.displacement_gain, touch.stiffness_N_per_m,
-                   tick.hand_energy_J, touch.potential_kcal_per_mol, touch.active_freedom,
-                   touch.period_s * 1e3, tick.clutched ? 1 : 0);
+                   molecule.z(), force_nN.x(), force_nN.y(), force_nN.z(), torque.x(), torque.y(),
+                   torque.z(), sent.x(), sent.y(), sent.z(), tick.force_gain,
+                   touch.displacement_gain, touch.stiffness_N_per_m, tick.hand_energy_J,
+                   touch.potential_kcal_per_mol, touch.active_freedom, touch.period_s * 1e3,
+                   tick.clutched ? 1 : 0);
     if (rows_.size() > flush_bytes) flush();
 }
 

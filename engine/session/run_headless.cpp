@@ -9,6 +9,7 @@
 #include "simulation/step.h"
 
 #include <fmt/format.h>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -20,6 +21,20 @@ namespace {
 constexpr double tick_s = 1 / servo_rate_hz;
 constexpr std::uint64_t ticks_between_progress = 100;
 
+// Largest eigenvalue (N/m over A_d) of what a hand feels of a stiffness through eq. 2 on the norm
+// of the force. Along the force that takes the law's slope, across it the gain.
+double felt_stiffness(const ForceLaw& law, const Vec3& force, const Mat3& stiffness) {
+    const double F_m = force.norm();
+    const double slope = hand_force_slope(law, F_m), gain = force_gain(law, F_m);
+    Mat3 jacobian = gain * Mat3::Identity();
+    if (F_m > 0) jacobian += (slope - gain) / (F_m * F_m) * force * force.transpose();
+    const Mat3 felt = jacobian * stiffness;
+    const Mat3 symmetric = 0.5 * (felt + felt.transpose());
+    return Eigen::SelfAdjointEigenSolver<Mat3>(symmetric, Eigen::EigenvaluesOnly)
+        .eigenvalues()
+        .maxCoeff();
+}
+
 }  // namespace
 
 ServoSettings build_servo_settings(const SceneDescription& scene, const Simulation& simulation) {
@@ -28,19 +43,33 @@ ServoSettings build_servo_settings(const SceneDescription& scene, const Simulati
 }
 
 FeltStiffness stiffest_place(const SceneDescription& scene, const Simulation& simulation) {
+    const Grab& grab = *simulation.world.find<Grab>(simulation.hand);
+    const Guide& guide = *simulation.world.find<Guide>(grab.molecule);
     FeltStiffness stiffest;
+    // False where the hand does not go: further in than its peak.
     const auto look_at = [&](double distance) {
-        const LineForce line = force_along_line_at(simulation, distance);
-        const double F_m = line.force * units::newton_per_kcal_per_mol_angstrom;
-        if (F_m > scene.hand.peak_nN * 1e-9) return;  // further in than the hand goes
-        const double K = hand_force_slope(simulation.laws.force, F_m) * line.stiffness *
-                         units::newton_per_metre_per_kcal_per_mol_angstrom2 /
+        const FieldSum field = field_on_grabbed_at(simulation, distance);
+        const Vec3 force = guide.projector * field.force * units::newton_per_kcal_per_mol_angstrom;
+        const double F_m = force.norm();
+        const bool pulls_outward = guide.freedom == 1 && force.x() < 0;
+        if (F_m > scene.hand.peak_nN * 1e-9 && !pulls_outward) return false;
+        const Mat3 stiffness = guide.projector * field.stiffness * guide.projector *
+                               units::newton_per_metre_per_kcal_per_mol_angstrom2;
+        const double K = felt_stiffness(simulation.laws.force, force, stiffness) /
                          displacement_gain(simulation.laws.displacement, F_m);
         if (K > stiffest.newton_per_metre) stiffest = {K, distance};
+        return true;
     };
-    for (double distance = 2; distance < 12; distance += 0.002) look_at(distance);
-    // Eq. 3 makes the rest place the stiffest, in a notch narrower than the scan.
-    if (const auto rest = equilibrium_distance(simulation)) look_at(*rest);
+    if (guide.freedom == 1) {
+        for (double distance = 2; distance < 12; distance += 0.002) look_at(distance);
+        // Eq. 3 makes the rest place the stiffest, in a notch narrower than the scan.
+        if (const auto rest = equilibrium_distance(simulation)) look_at(*rest);
+        return stiffest;
+    }
+    // In space from the start both ways; outward all gets soft soon.
+    const double start = grabbed_distance(simulation);
+    for (double in = 0; in < 60 && look_at(start - in);) in += 0.05;
+    for (double out = 0.05; out < 2 && look_at(start + out);) out += 0.05;
     return stiffest;
 }
 

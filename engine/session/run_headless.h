@@ -27,7 +27,8 @@ struct FrameClock {
 ServoSettings build_servo_settings(const SceneDescription& scene, const Simulation& simulation);
 
 // Where along the line the hand feels the stiffest spring, K = A_f k_e / A_d, up to the scene's
-// peak force.
+// peak force: in space the largest eigenvalue of sym(J k_e)/A_d, J the Jacobian of the force law on
+// the norm of the force.
 struct FeltStiffness {
     double newton_per_metre = 0;
     double angstrom = 0;

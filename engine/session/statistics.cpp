@@ -25,14 +25,16 @@ Statistics::Statistics(double tick_s) : tick_s_(tick_s), step_counts_(class_coun
 }
 
 void Statistics::add(const ServoTick& tick) {
-    const double distance = tick.touch.molecule_angstrom.x();
+    const Vec3& place = tick.touch.molecule_angstrom;
+    const double distance = place.stableNorm();
     if (running_.ticks == 0) {
-        first_angstrom_ = distance;
-        running_.closest_angstrom = std::abs(distance);
+        first_place_angstrom_ = place;
+        running_.closest_angstrom = distance;
     }
-    running_.closest_angstrom = std::min(running_.closest_angstrom, std::abs(distance));
-    running_.went_through = running_.went_through || distance * first_angstrom_ < 0;
-    running_.last_angstrom = distance;
+    const bool beyond = place.dot(first_place_angstrom_) < 0;
+    running_.closest_angstrom = std::min(running_.closest_angstrom, distance);
+    running_.went_through = running_.went_through || beyond;
+    running_.last_angstrom = beyond ? -distance : distance;
     running_.net_work_J = tick.hand_energy_J;
     running_.largest_attraction_N = std::max(running_.largest_attraction_N, -tick.sent_newton.x());
     running_.largest_repulsion_N = std::max(running_.largest_repulsion_N, tick.sent_newton.x());

@@ -18,11 +18,12 @@ struct Summary {
     double net_work_J = 0;                       // done on the hand; + = generated
     double largest_attraction_N = 0;             // felt, along -x
     double largest_repulsion_N = 0;              // felt, along +x
-    double closest_angstrom = 0;                 // smallest distance, whatever its sign
-    double last_angstrom = 0;
-    bool went_through = false;  // the molecule came out on the other side
-    double clamped_share = 0;   // of the time
-    bool stopped = false;       // a force was not finite
+    double closest_angstrom = 0;                 // smallest distance of the reference atoms
+    double last_angstrom = 0;                    // negative on the other side
+    bool went_through = false;                   // the molecule came out on the other side
+    double clamped_share = 0;                    // of the time
+    bool stopped = false;                        // a force was not finite
+    std::uint64_t overruns = 0;                  // servo ticks that came too late; none in lockstep
     std::vector<std::string> warnings;
 };
 
@@ -42,7 +43,7 @@ private:
 
     double tick_s_;
     Summary running_;
-    double first_angstrom_ = 0;
+    Vec3 first_place_angstrom_ = Vec3::Zero();
     std::uint64_t clamped_ticks_ = 0;
     std::vector<double> recent_force_;        // along x, N: a ring of the last 4 s
     std::vector<std::uint64_t> step_counts_;  // of step times, in classes 1 % wide

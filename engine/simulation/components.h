@@ -16,10 +16,17 @@ struct Molecule {
     std::uint32_t reference_atom = 0;  // index into the table; stands for the molecule's place
 };
 
-// A rigid molecule that may be moved along one line, and does not turn: one degree of freedom.
-struct LineGuide {
-    Vec3 axis = Vec3::UnitX();  // unit vector
-    double distance = 0;        // Å, of its reference atom from the grab's origin, along the axis
+// A rigid molecule that may be moved along x or in space, and does not turn. Places are its
+// reference atom's, from that of the molecule which the hand measures from.
+struct Guide {
+    int freedom = 1;                              // 1: along x, 3: in space
+    Mat3 projector = Vec3::UnitX().asDiagonal();  // onto what it may do
+    Vec3 place = Vec3::Zero();                    // Å
+
+    // The line on which the molecule is probed: along x through this place, where the distance is
+    // 0. For a molecule on a line that is its counterpart, for one in space its place of rest, or
+    // beside it where it starts beside it.
+    Vec3 line_origin = Vec3::Zero();  // Å
 };
 
 // A hand: which molecule it holds, where its distance is measured from, and what it did so far.

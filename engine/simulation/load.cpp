@@ -2,7 +2,10 @@
 #include "charmm/assign.h"
 #include "charmm/force_field.h"
 #include "core/load_error.h"
+#include "core/text.h"
+#include "core/units.h"
 #include "formats/crd.h"
+#include "formats/psf.h"
 #include "simulation/components.h"
 #include "simulation/probe.h"
 #include "simulation/simulation.h"
@@ -14,25 +17,52 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace palpa {
 namespace {
 
-// Structure files by path; several molecules may come from one.
-using Structures = std::map<std::filesystem::path, Structure>;
+// Below this the grabbed molecule is at rest; relaxing goes on to a two-hundredth of it.
+constexpr double resting_force = 20e-12 / units::newton_per_kcal_per_mol_angstrom;
 
-const Structure& find_or_read(Structures& structures, const std::filesystem::path& path) {
-    const auto found = structures.find(path);
-    if (found != structures.end()) return found->second;
-    return structures.emplace(path, read_crd(path)).first->second;
+// Files by path; several molecules may come from one.
+struct Files {
+    std::map<std::filesystem::path, Structure> structures;
+    std::map<std::filesystem::path, Topology> topologies;
+};
+
+template <class Content, class Read>
+const Content& find_or_read(std::map<std::filesystem::path, Content>& files,
+                            const std::filesystem::path& path, const Read& read) {
+    const auto found = files.find(path);
+    if (found != files.end()) return found->second;
+    return files.emplace(path, read(path)).first->second;
 }
 
+AtomRange add_atoms(const MoleculeDescription& molecule, const ForceField& force_field,
+                    Files& files, AtomTable& atoms) {
+    const Structure& structure = find_or_read(files.structures, molecule.structure, read_crd);
+    if (molecule.topology.empty()) {
+        return add_segment_atoms(force_field, structure, molecule.segment, atoms);
+    }
+    return add_segment_atoms(force_field,
+                             find_or_read(files.topologies, molecule.topology, read_psf), structure,
+                             molecule.segment, atoms);
+}
+
+// By name, or by residue number and name.
 std::uint32_t find_reference_atom(const MoleculeDescription& molecule, const AtomTable& atoms,
                                   AtomRange range) {
+    const std::vector<std::string_view> words = split_words(molecule.reference_atom);
     std::uint32_t reference = 0;
     int matches = 0;
     for (std::uint32_t i = range.first; i < range.first + range.count; ++i) {
-        if (atoms.names[i].atom != molecule.reference_atom) continue;
+        const AtomName& name = atoms.names[i];
+        if (words.empty() || words.size() > 2 || name.atom != words.back()) continue;
+        if (words.size() == 2 && name.number != words.front()) continue;
         reference = i;
         ++matches;
     }
@@ -47,15 +77,29 @@ std::uint32_t find_reference_atom(const MoleculeDescription& molecule, const Ato
 }
 
 Entity add_molecule(const MoleculeDescription& molecule, const ForceField& force_field,
-                    Structures& structures, Simulation& simulation) {
-    const AtomRange range =
-        add_segment_atoms(force_field, find_or_read(structures, molecule.structure),
-                          molecule.segment, simulation.atoms);
+                    Files& files, Simulation& simulation) {
+    const AtomRange range = add_atoms(molecule, force_field, files, simulation.atoms);
     const Entity entity = simulation.world.create();
     simulation.world.set(entity, Molecule{molecule.name, range,
                                           find_reference_atom(molecule, simulation.atoms, range)});
-    if (molecule.motion == Motion::AlongX) simulation.world.set(entity, LineGuide{});
+    if (molecule.motion == Motion::AlongX) simulation.world.set(entity, Guide{});
+    if (molecule.motion == Motion::Translate) {
+        simulation.world.set(entity, Guide{.freedom = 3, .projector = Mat3::Identity()});
+    }
     return entity;
+}
+
+std::vector<ReplacedPair> build_replaced_pairs(const ForceField& force_field,
+                                               const std::vector<std::string>& types) {
+    std::vector<ReplacedPair> pairs;
+    for (std::uint32_t a = 0; a < types.size(); ++a) {
+        for (std::uint32_t b = a; b < types.size(); ++b) {
+            const auto found = force_field.nbfix.find(std::minmax(types[a], types[b]));
+            if (found == force_field.nbfix.end()) continue;
+            pairs.push_back({a, b, found->second.epsilon, found->second.rmin});
+        }
+    }
+    return pairs;
 }
 
 // The grabbed molecule first, so that its environment is one range of the table.
@@ -68,19 +112,67 @@ std::vector<const MoleculeDescription*> grabbed_first(const SceneDescription& sc
     return order;
 }
 
-void place_grabbed(const SceneDescription& scene, Simulation& simulation) {
+Vec3 centre_of_mass(const AtomTable& atoms, AtomRange range) {
+    Vec3 sum = Vec3::Zero();
+    double mass = 0;
+    for (std::uint32_t i = range.first; i < range.first + range.count; ++i) {
+        sum += atoms.mass[i] * atoms.positions[i];
+        mass += atoms.mass[i];
+    }
+    return mass > 0 ? Vec3(sum / mass) : atoms.positions[range.first];
+}
+
+void relax_grabbed(const SceneDescription& scene, const Molecule& grabbed, Simulation& simulation) {
+    const std::span<Vec3> positions =
+        std::span(simulation.atoms.positions).first(grabbed.atoms.count);
+    const RelaxReport report = relax_rigid(
+        positions, centre_of_mass(simulation.atoms, grabbed.atoms), grabbed_points(simulation),
+        environment_points(simulation), pair_rule(simulation), resting_force / 200);
+    if (!(report.force < resting_force)) {
+        throw LoadError(
+            scene.place_of("grab.molecule"),
+            fmt::format("'{}' finds no rest where it stands: {:.3g} pN are left after {} "
+                        "evaluations; expected a structure that was minimised",
+                        grabbed.name, report.force * units::newton_per_kcal_per_mol_angstrom * 1e12,
+                        report.evaluations));
+    }
+    simulation.relaxed = report;
+}
+
+// Where the hand holds a molecule on a line.
+double find_start(const SceneDescription& scene, const Simulation& simulation, double distance) {
+    if (scene.hand.start_angstrom) return *scene.hand.start_angstrom;
+    if (scene.hand.stroke != Stroke::Hold) return distance;
+    const std::optional<double> rest = equilibrium_distance(simulation);
+    if (!rest) {
+        throw LoadError(scene.place_of("hand.stroke"),
+                        "'hand.stroke' is \"hold\", but there is no distance where the force "
+                        "vanishes; set hand.start_angstrom");
+    }
+    return *rest;
+}
+
+void start_grabbed(const SceneDescription& scene, Simulation& simulation) {
     const Grab& grab = *simulation.world.find<Grab>(simulation.hand);
     const Molecule& grabbed = *simulation.world.find<Molecule>(grab.molecule);
     const Molecule& origin = *simulation.world.find<Molecule>(grab.measured_from);
-    LineGuide& guide = *simulation.world.find<LineGuide>(grab.molecule);
+    Guide& guide = *simulation.world.find<Guide>(grab.molecule);
+    const bool on_line = guide.freedom == 1;
+    if (!on_line) relax_grabbed(scene, grabbed, simulation);
 
-    const Vec3 place = simulation.atoms.positions[grabbed.reference_atom];
+    const Vec3 reference = simulation.atoms.positions[grabbed.reference_atom];
     for (std::uint32_t i = 0; i < grabbed.atoms.count; ++i) {
-        simulation.grabbed_shape.push_back(simulation.atoms.positions[i] - place);
+        simulation.grabbed_shape.push_back(simulation.atoms.positions[i] - reference);
     }
-    const Vec3 from_origin = place - simulation.atoms.positions[origin.reference_atom];
-    guide.distance = from_origin.dot(guide.axis);
-    if ((from_origin - guide.distance * guide.axis).norm() > 1e-6) {
+    simulation.grabbed_centre = centre_of_mass(simulation.atoms, grabbed.atoms) - reference;
+    const Vec3 from_origin = reference - simulation.atoms.positions[origin.reference_atom];
+    if (!on_line) {
+        const Vec3 offset(scene.hand.start_offset_angstrom.data());
+        guide.line_origin = from_origin + Vec3(0, offset.y(), offset.z());
+        move_grabbed(simulation, offset.x());
+        return;
+    }
+    if ((from_origin - from_origin.x() * Vec3::UnitX()).norm() > 1e-6) {
         throw LoadError(
             scene.place_of("grab.measured_from"),
             fmt::format("the reference atoms of '{}' and '{}' are not on one line along "
@@ -88,17 +180,7 @@ void place_grabbed(const SceneDescription& scene, Simulation& simulation) {
                         grabbed.name, origin.name,
                         fmt::join(from_origin.begin(), from_origin.end(), ", ")));
     }
-
-    std::optional<double> start = scene.hand.start_angstrom;
-    if (!start && scene.hand.stroke == Stroke::Hold) {
-        start = equilibrium_distance(simulation);
-        if (!start) {
-            throw LoadError(scene.place_of("hand.stroke"),
-                            "'hand.stroke' is \"hold\", but there is no distance where the force "
-                            "vanishes; set hand.start_angstrom");
-        }
-    }
-    move_grabbed(simulation, start.value_or(guide.distance));
+    move_grabbed(simulation, find_start(scene, simulation, from_origin.x()));
 }
 
 }  // namespace
@@ -137,31 +219,39 @@ Simulation load_simulation(const SceneDescription& scene) {
     simulation.period_s = scene.period_ms * 1e-3;
 
     const ForceField force_field = read_force_field(scene.force_field.files);
-    Structures structures;
+    Files files;
     Grab grab;
     for (const MoleculeDescription* const molecule : grabbed_first(scene)) {
-        const Entity entity = add_molecule(*molecule, force_field, structures, simulation);
+        const Entity entity = add_molecule(*molecule, force_field, files, simulation);
         if (molecule->name == scene.grab.molecule) grab.molecule = entity;
         if (molecule->name == scene.grab.measured_from) grab.measured_from = entity;
     }
     simulation.hand = simulation.world.create();
     simulation.world.set(simulation.hand, grab);
-    place_grabbed(scene, simulation);
+    simulation.replaced_pairs = build_replaced_pairs(force_field, simulation.atoms.type_names);
+    start_grabbed(scene, simulation);
     return simulation;
 }
 
 FieldPoints grabbed_points(const Simulation& simulation) noexcept {
+    const Grab* const grab = simulation.world.find<Grab>(simulation.hand);
+    const std::size_t count = simulation.world.find<Molecule>(grab->molecule)->atoms.count;
     const AtomTable& atoms = simulation.atoms;
-    const std::size_t count = simulation.grabbed_shape.size();
     return {std::span(atoms.positions).first(count), std::span(atoms.charge).first(count),
-            std::span(atoms.sqrt_epsilon).first(count), std::span(atoms.half_rmin).first(count)};
+            std::span(atoms.sqrt_epsilon).first(count), std::span(atoms.half_rmin).first(count),
+            std::span(atoms.type).first(count)};
 }
 
 FieldPoints environment_points(const Simulation& simulation) noexcept {
+    const std::size_t from = grabbed_points(simulation).positions.size();
     const AtomTable& atoms = simulation.atoms;
-    const std::size_t from = simulation.grabbed_shape.size();
     return {std::span(atoms.positions).subspan(from), std::span(atoms.charge).subspan(from),
-            std::span(atoms.sqrt_epsilon).subspan(from), std::span(atoms.half_rmin).subspan(from)};
+            std::span(atoms.sqrt_epsilon).subspan(from), std::span(atoms.half_rmin).subspan(from),
+            std::span(atoms.type).subspan(from)};
+}
+
+PairRule pair_rule(const Simulation& simulation) noexcept {
+    return {simulation.coulomb_constant, simulation.replaced_pairs};
 }
 
 }  // namespace palpa

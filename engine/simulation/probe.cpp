@@ -1,14 +1,36 @@
 #include "simulation/probe.h"
 
-#include "core/assertion.h"
 #include "simulation/components.h"
 
 #include <cstddef>
+#include <vector>
 
 namespace palpa {
 namespace {
 
-constexpr double innermost = 1.0, scan_step = 0.005;  // Å
+const Guide& grabbed_guide(const Simulation& simulation) noexcept {
+    const Grab* const grab = simulation.world.find<Grab>(simulation.hand);
+    return *simulation.world.find<Guide>(grab->molecule);
+}
+
+Vec3 place_on_line(const Simulation& simulation, double distance) noexcept {
+    return grabbed_guide(simulation).line_origin + distance * Vec3::UnitX();
+}
+
+LineForce along_line(const FieldSum& field) noexcept {
+    return {field.energy(), field.force.x(), field.stiffness(0, 0)};
+}
+
+// How far in a scan goes and how finely (Å). In space walls are of many atoms, and every look at
+// them costs a thousand times more.
+struct Scan {
+    double innermost, step;
+};
+
+Scan scan_of(const Simulation& simulation) {
+    return grabbed_guide(simulation).freedom == 1 ? Scan{1, 0.005} : Scan{-60, 0.05};
+}
+
 // Forces weaker than this (kcal/mol/Å, 0.07 pN) far outside are no attraction.
 constexpr double negligible = 1e-3;
 
@@ -24,57 +46,77 @@ double bisect(const Simulation& simulation, double level, double inside, double 
 
 }  // namespace
 
-void move_grabbed(Simulation& simulation, double distance) noexcept {
+Vec3 grabbed_place(const Simulation& simulation) noexcept {
+    const Grab* const grab = simulation.world.find<Grab>(simulation.hand);
+    const Molecule* const grabbed = simulation.world.find<Molecule>(grab->molecule);
+    return simulation.atoms.positions[grabbed->reference_atom];
+}
+
+void place_grabbed(Simulation& simulation, const Vec3& place) noexcept {
     const Grab* const grab = simulation.world.find<Grab>(simulation.hand);
     const Molecule* const origin = simulation.world.find<Molecule>(grab->measured_from);
     const Molecule* const grabbed = simulation.world.find<Molecule>(grab->molecule);
-    LineGuide* const guide = simulation.world.find<LineGuide>(grab->molecule);
-    guide->distance = distance;
-    const Vec3 place = simulation.atoms.positions[origin->reference_atom] + distance * guide->axis;
+    simulation.world.find<Guide>(grab->molecule)->place = place;
+    const Vec3 reference = simulation.atoms.positions[origin->reference_atom] + place;
     for (std::size_t i = 0; i < simulation.grabbed_shape.size(); ++i) {
-        simulation.atoms.positions[grabbed->atoms.first + i] = place + simulation.grabbed_shape[i];
+        simulation.atoms.positions[grabbed->atoms.first + i] =
+            reference + simulation.grabbed_shape[i];
     }
 }
 
+void move_grabbed(Simulation& simulation, double distance) noexcept {
+    place_grabbed(simulation, place_on_line(simulation, distance));
+}
+
+double grabbed_distance(const Simulation& simulation) noexcept {
+    const Guide& guide = grabbed_guide(simulation);
+    return guide.place.x() - guide.line_origin.x();
+}
+
+FieldSum field_on_grabbed(const Simulation& simulation) noexcept {
+    return evaluate_pair_field(grabbed_points(simulation), environment_points(simulation),
+                               pair_rule(simulation));
+}
+
+FieldSum field_on_grabbed_at(const Simulation& simulation, double distance) {
+    const Grab& grab = *simulation.world.find<Grab>(simulation.hand);
+    const Molecule& origin = *simulation.world.find<Molecule>(grab.measured_from);
+    const Vec3 reference =
+        simulation.atoms.positions[origin.reference_atom] + place_on_line(simulation, distance);
+    std::vector<Vec3> positions;
+    for (const Vec3& offset : simulation.grabbed_shape) positions.push_back(reference + offset);
+    FieldPoints moved = grabbed_points(simulation);
+    moved.positions = positions;
+    return evaluate_pair_field(moved, environment_points(simulation), pair_rule(simulation));
+}
+
 LineForce force_along_line(const Simulation& simulation) noexcept {
-    const Grab* const grab = simulation.world.find<Grab>(simulation.hand);
-    const Vec3& axis = simulation.world.find<LineGuide>(grab->molecule)->axis;
-    const FieldSum field = evaluate_pair_field(
-        grabbed_points(simulation), environment_points(simulation), simulation.coulomb_constant);
-    return {field.energy(), field.force.dot(axis), axis.dot(field.stiffness * axis)};
+    return along_line(field_on_grabbed(simulation));
 }
 
 LineForce force_along_line_at(const Simulation& simulation, double distance) {
-    const Grab* const grab = simulation.world.find<Grab>(simulation.hand);
-    const Molecule* const origin = simulation.world.find<Molecule>(grab->measured_from);
-    const Vec3& axis = simulation.world.find<LineGuide>(grab->molecule)->axis;
-    const Vec3 place = simulation.atoms.positions[origin->reference_atom] + distance * axis;
-    std::vector<Vec3> positions;
-    for (const Vec3& offset : simulation.grabbed_shape) positions.push_back(place + offset);
-    FieldPoints moved = grabbed_points(simulation);
-    moved.positions = positions;
-    const FieldSum field =
-        evaluate_pair_field(moved, environment_points(simulation), simulation.coulomb_constant);
-    return {field.energy(), field.force.dot(axis), axis.dot(field.stiffness * axis)};
+    return along_line(field_on_grabbed_at(simulation, distance));
 }
 
 std::optional<double> repulsion_distance(const Simulation& simulation, double force,
                                          double outermost) {
     if (force_along_line_at(simulation, outermost).force > force) return std::nullopt;
-    for (double distance = outermost; distance > innermost; distance -= scan_step) {
+    const Scan scan = scan_of(simulation);
+    for (double distance = outermost; distance > scan.innermost; distance -= scan.step) {
         if (force_along_line_at(simulation, distance).force > force) {
-            return bisect(simulation, force, distance, distance + scan_step);
+            return bisect(simulation, force, distance, distance + scan.step);
         }
     }
     return std::nullopt;
 }
 
 std::optional<double> equilibrium_distance(const Simulation& simulation) {
+    const Scan scan = scan_of(simulation);
     bool attracted = false;
-    for (double distance = 30; distance > innermost; distance -= scan_step) {
+    for (double distance = 30; distance > scan.innermost; distance -= scan.step) {
         const double force = force_along_line_at(simulation, distance).force;
         if (force < -negligible) attracted = true;
-        if (attracted && force > 0) return bisect(simulation, 0, distance, distance + scan_step);
+        if (attracted && force > 0) return bisect(simulation, 0, distance, distance + scan.step);
     }
     return std::nullopt;
 }

@@ -10,23 +10,35 @@ namespace palpa {
 // What the environment does to the grabbed molecule along its line. Engine units.
 struct LineForce {
     double energy = 0;     // kcal/mol
-    double force = 0;      // kcal/mol/Å, + pushes away
+    double force = 0;      // kcal/mol/Å, + pushes to +x
     double stiffness = 0;  // kcal/mol/Å^2, -d(force)/d(distance)
 };
 
-// Puts the grabbed molecule's reference atom at that distance (Å) along its line.
-void move_grabbed(Simulation& simulation, double distance) noexcept;
+// Where the grabbed molecule's reference atom is (Å, in the world).
+Vec3 grabbed_place(const Simulation& simulation) noexcept;
 
-// The force where the grabbed molecule stands, and where it would stand at `distance` (Å).
+// Puts the grabbed molecule's reference atom at that place (Å) from its counterpart's, or at that
+// distance (Å) along its line; and tells the distance, wherever beside the line it is.
+void place_grabbed(Simulation& simulation, const Vec3& place) noexcept;
+void move_grabbed(Simulation& simulation, double distance) noexcept;
+double grabbed_distance(const Simulation& simulation) noexcept;
+
+// What the environment does to the grabbed molecule where it stands, and where it would stand at
+// `distance` (Å) along its line.
+FieldSum field_on_grabbed(const Simulation& simulation) noexcept;
+FieldSum field_on_grabbed_at(const Simulation& simulation, double distance);
+
+// The same along the line.
 LineForce force_along_line(const Simulation& simulation) noexcept;
 LineForce force_along_line_at(const Simulation& simulation, double distance);
 
 // The outermost distance (Å) at which the repulsion reaches `force` (kcal/mol/Å), to 1e-12 Å, if
-// it does so between 1 Å and `outermost`, where it must be weaker.
+// it does so between `outermost`, where it must be weaker, and 1 Å; for a molecule in space -60 Å.
 std::optional<double> repulsion_distance(const Simulation& simulation, double force,
                                          double outermost);
 
-// The outermost distance (Å) where repulsion turns into attraction, between 1 and 30 Å.
+// Of a molecule on a line, the outermost distance (Å) where repulsion turns into attraction,
+// between 1 and 30 Å. One in space has its place of rest from loading.
 std::optional<double> equilibrium_distance(const Simulation& simulation);
 
 }  // namespace palpa

@@ -7,7 +7,9 @@
 #include "math/vec.h"
 #include "molecule/atoms.h"
 #include "scene/description.h"
+#include "simulation/relax.h"
 
+#include <optional>
 #include <vector>
 
 namespace palpa {
@@ -19,10 +21,13 @@ struct Simulation {
 
     // written on loading
     CouplingLaws laws;
-    double coulomb_constant = 0;      // kcal Å/mol/e^2
-    double period_s = 0;              // declared
-    std::vector<Vec3> grabbed_shape;  // Å, the grabbed molecule's atoms from its reference atom
-    Entity hand;                      // has a Grab
+    double coulomb_constant = 0;               // kcal Å/mol/e^2
+    std::vector<ReplacedPair> replaced_pairs;  // of types in the table
+    double period_s = 0;                       // declared
+    std::vector<Vec3> grabbed_shape;     // Å, the grabbed molecule's atoms from its reference atom
+    Vec3 grabbed_centre = Vec3::Zero();  // Å, its centre of mass from its reference atom
+    std::optional<RelaxReport> relaxed;  // how the grabbed molecule came to rest, if it did
+    Entity hand;                         // has a Grab
 
     // written by every step
     World world;
@@ -32,12 +37,14 @@ struct Simulation {
 // The laws that a scene's mode asks for.
 CouplingLaws build_coupling_laws(const CouplingDescription& coupling);
 
-// Reads everything the scene names and puts the grabbed molecule at its start. Throws LoadError
+// Reads everything the scene names, relaxes a grabbed molecule that moves in space as a rigid body,
+// until less than 20 pN pull at it, and puts the grabbed molecule at its start. Throws LoadError
 // with the place of what is wrong.
 Simulation load_simulation(const SceneDescription& scene);
 
 // The grabbed molecule and all other atoms, as the pair kernel wants them.
 FieldPoints grabbed_points(const Simulation& simulation) noexcept;
 FieldPoints environment_points(const Simulation& simulation) noexcept;
+PairRule pair_rule(const Simulation& simulation) noexcept;
 
 }  // namespace palpa

@@ -9,7 +9,7 @@ namespace palpa {
 // finite, so that the servo stops, unless it was the hand's pose.
 struct [[nodiscard]] StepReport {
     TouchModel touch;  // for the hand, one period later
-    double move = 0;   // Å, of the grabbed molecule
+    double move = 0;   // Å, how far the grabbed molecule went
     bool finite = true;
 };
 
@@ -18,6 +18,10 @@ struct [[nodiscard]] StepReport {
 // with its one-step delay.
 StepReport step_simulation(Simulation& simulation, const HandPose& hand,
                            const TouchModel& felt) noexcept;
+
+// The hand takes hold of the molecule where both are: what the handle travelled since the last step
+// moves nothing.
+void take_hold(Simulation& simulation, const HandPose& hand) noexcept;
 
 // The touch model of the molecule where it stands, before any step.
 TouchModel build_touch_model(const Simulation& simulation, const HandPose& hand) noexcept;

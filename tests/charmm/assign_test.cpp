@@ -3,8 +3,10 @@
 #include "formats/crd.h"
 #include "tests/support/load_error_of.h"
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -156,32 +158,68 @@ TEST_CASE("all that is missing is told at once, each thing once", "[charmm][assi
     CHECK(error.find("unknown atom type 'CG332'", once + 1) == std::string::npos);
 }
 
-TEST_CASE("a pair that NBFIX would change is refused where it is needed", "[charmm][assign]") {
-    const ForceField force_field = water_with("NBFIX\nSOD CLA -0.083875 3.731\n");
-    const std::vector<AtomName> salt{{"A", "SOD", "1", "SOD"},  {"A", "CLA", "2", "CLA"},
-                                     {"B", "SOD", "1", "SOD"},  {"C", "CLA", "1", "CLA"},
-                                     {"D", "TIP3", "1", "OH2"}, {"D", "TIP3", "1", "H1"},
-                                     {"D", "TIP3", "1", "H2"}};
-    const std::string refusal = "a.str:22: NBFIX of 'SOD' and 'CLA' is needed here";
+TEST_CASE("each type is named once in the table, and its atoms point to it", "[charmm][assign]") {
+    AtomTable table;
+    add_segment_atoms(water_with(), structure_of(two_waters), "B", table);
+    add_segment_atoms(water_with(), structure_of(two_waters), "A", table);
 
-    SECTION("in one segment") {
-        CHECK_THAT(error_of(force_field, salt, "A"), StartsWith(refusal));
-        // Without the NBFIX line the same segment is fine.
-        CHECK(error_of(water_with(), salt, "A") == "no error");
+    CHECK(table.type_names == std::vector<std::string>{"HT", "OT"});
+    CHECK(table.type == std::vector<std::uint32_t>{0, 1, 0, 1, 0, 0});
+}
+
+TEST_CASE("with a topology, numbers and order are its own and places are found by name",
+          "[charmm][assign]") {
+    const ForceField force_field = water_with();
+    Topology topology;
+    topology.file = "t.psf";
+    topology.names = {{"B", "TIP3", "1", "OH2"},
+                      {"A", "TIP3", "1", "H2"},
+                      {"A", "TIP3", "1", "OH2"},
+                      {"A", "TIP3", "1", "H1"}};
+    topology.type = {"OT", "HT", "OT", "HT"};
+    topology.charge = {-0.8, 0.4, -0.9, 0.5};
+    topology.mass = {16, 2, 17, 3};
+    topology.lines = {5, 6, 7, 8};
+    topology.bonds = {{2, 1}, {2, 3}, {0, 3}};
+    AtomTable table;
+
+    SECTION("as they are") {
+        const AtomRange range =
+            add_segment_atoms(force_field, topology, structure_of(two_waters), "A", table);
+
+        CHECK(range.count == 3);
+        CHECK(table.charge == std::vector<double>{0.4, -0.9, 0.5});
+        CHECK(table.mass == std::vector<double>{2, 17, 3});
+        CHECK(table.positions == std::vector<Vec3>{{2, 0, 0}, {0, 0, 0}, {1, 0, 0}});
+        CHECK(table.half_rmin == std::vector<double>{0.2245, 1.7682, 0.2245});
+        // The bond to the other segment is left out.
+        CHECK(table.bonds == std::vector<std::array<std::uint32_t, 2>>{{1, 0}, {1, 2}});
     }
-    SECTION("between two segments") {
-        AtomTable table;
-        add_segment_atoms(force_field, structure_of(salt), "B", table);
-        CHECK_THAT(
-            load_error_of([&] { add_segment_atoms(force_field, structure_of(salt), "C", table); }),
-            StartsWith(refusal));
-        CHECK(table.size() == 1);
+    SECTION("types by the numbers of MASS lines") {
+        ForceField numbered = force_field;
+        numbered.types.at("HT").number = 4;
+        numbered.types.at("OT").number = 75;
+        topology.type = {"75", "4", "75", "4"};
+        add_segment_atoms(numbered, topology, structure_of(two_waters), "A", table);
+
+        CHECK(table.type_names == std::vector<std::string>{"HT", "OT"});
     }
-    SECTION("not where only one of the types occurs") {
-        AtomTable table;
-        add_segment_atoms(force_field, structure_of(salt), "B", table);
-        add_segment_atoms(force_field, structure_of(salt), "D", table);
-        CHECK(table.size() == 4);
+    SECTION("all that is missing on either side is told at once") {
+        topology.type[1] = "HX";
+        topology.names[3].number = "2";
+
+        CHECK(load_error_of([&] {
+                  add_segment_atoms(force_field, topology, structure_of(two_waters), "A", table);
+              }) ==
+              "t.psf:6: unknown atom type 'HX': no MASS line; did you mean 'HT'?; t.psf:6: atom "
+              "type 'HX' has no NONBONDED parameters in a.str; t.psf:8: atom A TIP3 2 H1 has no "
+              "place in s.crd; s.crd:5: atom A TIP3 1 H1 is not in t.psf");
+        CHECK(table.size() == 0);
+        CHECK_THAT(load_error_of([&] {
+                       add_segment_atoms(force_field, topology, structure_of(two_waters), "X",
+                                         table);
+                   }),
+                   Contains("t.psf: no segment 'X' (only A, B)"));
     }
 }
 

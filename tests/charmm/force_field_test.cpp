@@ -140,8 +140,9 @@ TEST_CASE("a stream file of TIP3P is read, topology and parameters in one",
     CHECK(force_field.bonds.size() == 2);
     CHECK(force_field.angles.size() == 1);
     REQUIRE(force_field.nbfix.size() == 1);
-    CHECK(force_field.nbfix[0].a == "HT");
-    CHECK(force_field.nbfix[0].b == "OT");
+    const NbfixPair& pair = force_field.nbfix.at({"HT", "OT"});
+    CHECK(pair.epsilon == 0.05);
+    CHECK(pair.rmin == 2.0);
     CHECK(force_field.files == std::vector<std::string>{"a.str"});
 }
 
@@ -155,7 +156,7 @@ TEST_CASE("every entry knows the line it came from", "[charmm][force_field]") {
     CHECK(to_string(force_field.bonds.at({"HT", "OT"}).place) == "a.str:47");
     CHECK(to_string(force_field.angles.at({"HT", "OT", "HT"}).place) == "a.str:50");
     CHECK(to_string(force_field.nonbonded.at("OT").place) == "a.str:62");
-    CHECK(to_string(force_field.nbfix[0].place) == "a.str:66");
+    CHECK(to_string(force_field.nbfix.at({"HT", "OT"}).place) == "a.str:66");
 }
 
 TEST_CASE("CHARMM's own file of water and ions gives TIP3P's published numbers",
@@ -298,6 +299,10 @@ TEST_CASE("a value that does not parse is told with its line", "[charmm][force_f
         {"NONBONDED\nOT 0.0 0.1521 1.7682\n", "2", "CHARMM writes the depth as -epsilon"},
         {"NONBONDED\nOT 0.0 -0.1521 -1.7682\n", "2", "Rmin/2 as 0 or more"},
         {"NBFIX\nHT\n", "2", "no second atom type here"},
+        {"NBFIX\nHT OT 0.1 2.0\n", "2", "CHARMM writes the depth as -epsilon"},
+        {"NBFIX\nHT OT -0.1 -2.0\n", "2", "Rmin as 0 or more"},
+        {"NBFIX\nHT OT -0.1 2.0\nOT HT -0.2 2.0\n", "3",
+         "again with other values, first in a.str:2"},
     }));
     INFO(row.text);
 

@@ -4,6 +4,8 @@
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <thread>
+#include <utility>
+#include <vector>
 
 namespace {
 
@@ -40,6 +42,16 @@ TEST_CASE("a mailbox hands out each newest value once", "[core][mailbox]") {
     box.post(3);
     CHECK(box.read(value));
     CHECK(value == 3);
+}
+
+TEST_CASE("a mailbox passes on what owns memory as well", "[core][mailbox]") {
+    palpa::Mailbox<std::vector<int>> box;
+    box.post({1, 2, 3});
+    std::vector<int> value;
+    REQUIRE(box.read(value));
+    CHECK(value == std::vector{1, 2, 3});
+    static_assert(!noexcept(box.post(value)));
+    static_assert(noexcept(std::declval<palpa::Mailbox<int>&>().post(1)));
 }
 
 TEST_CASE("a mailbox between two threads gives whole values in order, the last one surely",

@@ -84,9 +84,9 @@ TEST_CASE("stops keep the handle in the workspace of 160 x 120 x 70 mm", "[devic
     // Full force into the stop gives 3.3 N / 20 kN/m = 0.165 mm once at rest.
     play(omni, 3.3 * sign * Vec3::Unit(axis), 3000);
 
-    const double half = EmulatedOmni::half_workspace_m(axis);
+    const double half = omni_half_workspace_m(axis);
     CHECK(sign * omni.true_position_m()(axis) == Approx(half + 0.165e-3).epsilon(1e-3));
-    CHECK(omni.spec().half_workspace_m == EmulatedOmni::half_workspace_m);
+    CHECK(omni.spec().half_workspace_m == omni_half_workspace_m);
 }
 
 TEST_CASE("a hand pulls the handle along its path", "[devices][omni]") {
@@ -149,4 +149,52 @@ TEST_CASE("stops hold the lightest and the heaviest handle that a scene may have
     // 100 m/s, at worst, go 25 mm in a sub-step; the stop turns them within a few.
     CHECK(widest < 0.5);
     CHECK(std::abs(omni.true_position_m().x()) < 0.09);
+}
+
+TEST_CASE("a live hand takes the handle where the mouse is, in three dimensions",
+          "[devices][omni]") {
+    HandTargets targets;
+    EmulatedOmniSettings settings = bare();
+    settings.hand = hand_model(Grip::Medium);
+    settings.live = &targets;
+    settings.half_workspace_m = Vec3::Constant(0.5);
+    EmulatedOmni omni(settings);
+    const Vec3 target(0.2, -0.1, 0.15);
+
+    CHECK(omni.read().position_m.isZero());
+    targets.post({target});
+    play(omni, Vec3::Zero(), 1);
+    CHECK(omni.true_position_m().norm() < 1e-3);  // goes there, does not jump
+    play(omni, Vec3::Zero(), 4000);
+    CHECK((omni.true_position_m() - target).norm() < 1e-5);
+
+    // A force bends the hand by its spring alone.
+    play(omni, Vec3(0, 1, 0), 4000);
+    CHECK(omni.true_position_m().y() - target.y() ==
+          Approx(1 / settings.hand->stiffness_N_per_m).epsilon(1e-3));
+
+    targets.post({Vec3(9, 0, 0)});
+    play(omni, Vec3::Zero(), 4000);
+    CHECK(omni.true_position_m().x() == Approx(0.5).epsilon(0.01));
+}
+
+TEST_CASE("a hand that lets go leaves the handle with the force, its place and its speed",
+          "[devices][omni]") {
+    const Grip grip = GENERATE(Grip::Medium, Grip::FirmGrip);
+    EmulatedOmniSettings settings = bare();
+    settings.hand = hand_model(grip);
+    settings.script.path = {{0, 0}, {0.2, 0.02}};
+    settings.script.release_s = 0.1;
+    EmulatedOmni omni(settings);
+
+    play(omni, Vec3::Zero(), 99);
+    const double before = omni.true_position_m().x();
+    play(omni, Vec3::Zero(), 1);
+    const double released = omni.true_position_m().x(), v = (released - before) / 1e-3;
+    play(omni, Vec3(0.05, 0, 0), 100);
+
+    // From speed v and rest at the release, as a free handle under a constant force.
+    const double M = 0.045, B = 0.1, t = 0.1, fade = 1 - std::exp(-B * t / M);
+    const double expected = v * M / B * fade + 0.05 / B * (t - M / B * fade);
+    CHECK(omni.true_position_m().x() - released == Approx(expected).epsilon(0.01));
 }

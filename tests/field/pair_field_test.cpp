@@ -2,9 +2,10 @@
 
 #include "core/units.h"
 
-#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <random>
 #include <vector>
@@ -51,7 +52,7 @@ TEST_CASE("two argon-like points rest at Rmin with an energy of -epsilon", "[fie
     a.add({0, 0, 0}, 0, 0.2, 1.9);
     b.add({3.8, 0, 0}, 0, 0.2, 1.9);
 
-    const FieldSum sum = evaluate_pair_field(b.view(), a.view(), coulomb);
+    const FieldSum sum = evaluate_pair_field(b.view(), a.view(), {coulomb});
 
     CHECK(sum.van_der_waals == Approx(-0.2).epsilon(1e-14));
     CHECK(sum.electrostatic == 0);
@@ -66,7 +67,7 @@ TEST_CASE("two unit charges 2 Å apart repel as Coulomb says", "[field][pair]") 
     a.add({0, 0, 0}, 1, 0, 0);
     b.add({0, 2, 0}, 1, 0, 0);
 
-    const FieldSum sum = evaluate_pair_field(b.view(), a.view(), coulomb);
+    const FieldSum sum = evaluate_pair_field(b.view(), a.view(), {coulomb});
 
     CHECK(sum.electrostatic == Approx(332.0716 / 2).epsilon(1e-14));
     CHECK(sum.force.y() == Approx(332.0716 / 4).epsilon(1e-14));
@@ -79,7 +80,7 @@ TEST_CASE("force and stiffness of a group are the derivatives of its energy", "[
     const Points environment = random_points(random, 12, 4, Vec3::Zero());
     const Points group = random_points(random, 5, 2, {6, 1, -2});
     const auto at = [&](const Vec3& by) {
-        return evaluate_pair_field(translated(group, by).view(), environment.view(), coulomb);
+        return evaluate_pair_field(translated(group, by).view(), environment.view(), {coulomb});
     };
     constexpr double h = 1e-5;
 
@@ -94,6 +95,59 @@ TEST_CASE("force and stiffness of a group are the derivatives of its energy", "[
     }
 }
 
+TEST_CASE("the torque is what turning the group costs, about any place", "[field][pair]") {
+    std::mt19937 random(9);
+    const Points environment = random_points(random, 11, 4, Vec3::Zero());
+    const Points group = random_points(random, 6, 2, {6, -1, 2});
+    const Vec3 centre(5, 0, 1);
+    const auto energy = [&](const Vec3& axis, double angle) {
+        Points turned = group;
+        const Eigen::AngleAxisd turn(angle, axis);
+        for (Vec3& place : turned.positions) place = centre + turn * (place - centre);
+        return evaluate_pair_field(turned.view(), environment.view(), {coulomb}).energy();
+    };
+    constexpr double h = 1e-5;
+
+    const FieldSum sum = evaluate_pair_field(group.view(), environment.view(), {coulomb});
+
+    for (int i = 0; i < 3; ++i) {
+        const Vec3 axis = Vec3::Unit(i);
+        CHECK(sum.torque_about(centre)(i) ==
+              Approx(-(energy(axis, h) - energy(axis, -h)) / (2 * h)).epsilon(1e-7).margin(1e-7));
+    }
+}
+
+TEST_CASE("a replaced pair takes its own well, and only that pair does", "[field][pair]") {
+    Points sodium, ions;
+    sodium.add({0, 0, 0}, 0, 0.0469, 1.41075);
+    std::vector<std::uint32_t> types;
+    for (int i = 0; i < 7; ++i) {  // a chloride in any lane
+        ions.add({0, 3.731 + i, 0}, 0, 0.15, 2.27);
+        types.push_back(7);
+    }
+    const auto chloride = static_cast<std::size_t>(GENERATE(0, 3, 6));
+    types[chloride] = 2;
+    const std::vector<std::uint32_t> sodium_type{5};
+    const std::vector<ReplacedPair> replaced{{2, 5, 0.083875, 3.731}, {2, 2, 9, 9}};
+    FieldPoints group = sodium.view(), environment = ions.view();
+    group.type = sodium_type;
+    environment.type = types;
+
+    const FieldSum plain = evaluate_pair_field(group, environment, {coulomb});
+    const FieldSum sum = evaluate_pair_field(group, environment, {coulomb, replaced});
+    const FieldSum turned = evaluate_pair_field(environment, group, {coulomb, replaced});
+
+    const auto well = [](double epsilon, double rmin, double r) {
+        const double s6 = std::pow(rmin / r, 6);
+        return epsilon * (s6 * s6 - 2 * s6);
+    };
+    const double r = 3.731 + static_cast<double>(chloride);
+    CHECK(sum.van_der_waals - plain.van_der_waals ==
+          Approx(well(0.083875, 3.731, r) - well(std::sqrt(0.0469 * 0.15), 1.41075 + 2.27, r))
+              .epsilon(1e-10));
+    CHECK(turned.van_der_waals == Approx(sum.van_der_waals).epsilon(1e-14));
+}
+
 TEST_CASE("forces on single points add up to the group's, and to nothing over all",
           "[field][pair]") {
     std::mt19937 random(8);
@@ -102,7 +156,7 @@ TEST_CASE("forces on single points add up to the group's, and to nothing over al
     std::vector<Vec3> on_group(4, Vec3::Zero()), on_environment(9, Vec3::Zero());
 
     const FieldSum sum =
-        add_pair_forces(group.view(), environment.view(), coulomb, on_group, on_environment);
+        add_pair_forces(group.view(), environment.view(), {coulomb}, on_group, on_environment);
 
     Vec3 total = Vec3::Zero(), torque = Vec3::Zero(), of_group = Vec3::Zero();
     for (std::size_t i = 0; i < 4; ++i) {
@@ -128,7 +182,7 @@ TEST_CASE("the field is finite and continuous at any distance, zero included", "
         other = {};
         other.add({distance, 0, 0}, hydrogen ? 0.417 : -0.834, hydrogen ? 0.046 : 0.1521,
                   hydrogen ? 0.2245 : 1.7682);
-        return evaluate_pair_field(other.view(), oxygen.view(), coulomb);
+        return evaluate_pair_field(other.view(), oxygen.view(), {coulomb});
     };
 
     for (const double distance :

@@ -71,7 +71,12 @@ void expect_consistent(const ForceField& force_field, std::size_t line_count) {
         PALPA_EXPECT(types[0] <= types[2]);
         PALPA_EXPECT(std::isfinite(angle.k) && std::isfinite(angle.value));
     }
-    for (const NbfixPair& pair : force_field.nbfix) expect_place(pair.place, line_count);
+    for (const auto& [types, pair] : force_field.nbfix) {
+        PALPA_EXPECT(types.first <= types.second);
+        expect_place(pair.place, line_count);
+        PALPA_EXPECT(std::isfinite(pair.epsilon) && pair.epsilon >= 0);
+        PALPA_EXPECT(std::isfinite(pair.rmin) && pair.rmin >= 0);
+    }
 }
 
 // One whole residue of each kind, all in one segment.

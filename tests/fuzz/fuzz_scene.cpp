@@ -7,6 +7,7 @@
 #include "scene/write_scene.h"
 #include "tests/fuzz/expect.h"
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -45,6 +46,9 @@ public:
     void optional_real(const Field& field, std::optional<double>& value) override {
         if (value) real(field, *value);
     }
+    void triple(const Field& field, std::array<double, 3>& value) override {
+        for (double& number : value) real(field, number);
+    }
     void integer(const Field& field, std::int64_t& value) override {
         auto real_value = static_cast<double>(value);
         real(field, real_value);
@@ -56,8 +60,8 @@ public:
                 std::size_t& value) override {
         PALPA_EXPECT(value < names.size());
     }
-    void file(const Field& /*field*/, std::filesystem::path& value) override {
-        PALPA_EXPECT(!value.empty());
+    void file(const Field& field, std::filesystem::path& value) override {
+        PALPA_EXPECT(!field.required || !value.empty());
     }
     void files(const Field& /*field*/, std::vector<std::filesystem::path>& value) override {
         PALPA_EXPECT(!value.empty());

@@ -165,6 +165,9 @@ TEST_CASE("a value of the wrong type is told with what it is and should be", "[s
         {"[coupling]\nclamp_N = [1]", 18, 11, "'coupling.clamp_N' is a list; expected a number"},
         {"[coupling]\nclamp_N = 2020-01-01", 18, 11, "is a date or time; expected a number"},
         {"[hand]\nstart_angstrom = \"far\"", 18, 18, "expected a number"},
+        {"[hand]\nstart_offset_angstrom = [1, 2]", 18, 25, "expected three numbers from -1000"},
+        {"[hand]\nstart_offset_angstrom = [1, 2, 3e3]", 18, 25, "expected three numbers"},
+        {"[hand]\nstart_offset_angstrom = 3", 18, 25, "expected three numbers"},
         {"[hand]\ncycles = 1.0", 18, 10,
          "'hand.cycles' is 1.0; expected a whole number from 1 to 10000"},
         {"[hand]\ncycles = \"1\"", 18, 10, "expected a whole number"},
@@ -308,6 +311,10 @@ TEST_CASE("fields that contradict each other are told at one of them", "[scene][
         StartsWith(at(15, 17) + "'grab.measured_from' is \"moved\", whose motion is \"along-x\""));
     CHECK_THAT(error_of(replaced(base, "motion = \"along-x\"\n", "")),
                StartsWith(at(13, 12) + "'grab.molecule' is \"moved\", whose motion is \"fixed\""));
+    CHECK_THAT(error_of(base + "[hand]\nstart_offset_angstrom = [1, 0, 0]\n"),
+               Contains("expected hand.start_angstrom"));
+    CHECK_THAT(error_of(replaced(base, "along-x", "translate") + "[hand]\nstart_angstrom = 3\n"),
+               Contains("expected hand.start_offset_angstrom"));
 
     struct Row {
         const char* lines;

@@ -53,6 +53,7 @@ TEST_CASE("odd values survive being written and read, to the last bit", "[scene]
     scene.hand.grip = 5;
     scene.hand.stroke = Stroke::Path;
     scene.hand.start_angstrom = std::numeric_limits<double>::denorm_min();
+    scene.hand.release_s = 1e-3;
     scene.hand.kick_N_s = -0.0;
     scene.hand.peak_nN = 0.1 + 0.2;
     scene.hand.path = {
@@ -63,6 +64,8 @@ TEST_CASE("odd values survive being written and read, to the last bit", "[scene]
     scene.coupling.gamma_per_N = 1e18;
     scene.period_ms = 10000;
     scene.seed = 1'000'000'000'000'000;
+    scene.lesson = {{"zuerst", "two\nlines \"quoted\"", "do", LessonQuantity::Force, -0.25, {}, 0},
+                    {"dann", "text", "task", LessonQuantity::Mode, {}, 4.0, 0.5}};
 
     const std::string text = formatted(scene);
     INFO(text);
@@ -79,16 +82,27 @@ TEST_CASE("odd values survive being written and read, to the last bit", "[scene]
     CHECK(back.molecules[1].motion == Motion::AlongX);
     CHECK(back.hand.start_angstrom == scene.hand.start_angstrom);
     CHECK(std::signbit(back.hand.kick_N_s));
+    CHECK(back.hand.release_s == scene.hand.release_s);
     CHECK(back.hand.peak_nN == scene.hand.peak_nN);
     CHECK(back.hand.path == scene.hand.path);
     CHECK(back.coupling.mode == CouplingMode::NoForce);
     CHECK(back.coupling.A_f_min == scene.coupling.A_f_min);
     CHECK(back.seed == scene.seed);
+    REQUIRE(back.lesson.size() == 2);
+    CHECK(back.lesson[0].name == "zuerst");
+    CHECK(back.lesson[0].text == scene.lesson[0].text);
+    CHECK(back.lesson[0].at_least == -0.25);
+    CHECK_FALSE(back.lesson[0].at_most);
+    CHECK(back.lesson[1].quantity == LessonQuantity::Mode);
+    CHECK(back.lesson[1].for_s == 0.5);
 }
 
 TEST_CASE("every field is written, under its full key", "[scene][write]") {
     SceneDescription scene = water();
     scene.hand.start_angstrom = 3;
+    scene.lesson = {{"STEP", "text", "task", LessonQuantity::Force, 1.0, 2.0, 0.5}};
+    scene.hand.release_s = 4;
+    for (MoleculeDescription& molecule : scene.molecules) molecule.topology = folder / "dimer.psf";
 
     const std::string text = formatted(scene);
 

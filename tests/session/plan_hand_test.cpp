@@ -13,7 +13,7 @@ namespace {
 
 HandScript plan(const std::vector<std::string>& settings) {
     const SceneDescription scene = test::water_scene(settings);
-    return plan_hand(scene, load_simulation(scene), EmulatedOmni::half_workspace_m.x());
+    return plan_hand(scene, load_simulation(scene), omni_half_workspace_m.x());
 }
 
 }  // namespace

@@ -35,6 +35,20 @@ TEST_CASE("the extremes of a run are kept with their signs", "[session][statisti
     CHECK_FALSE(summary.ripple.has_value());
 }
 
+TEST_CASE("in space a molecule is as far as it is, and beyond where it was turned from",
+          "[session][statistics]") {
+    Statistics statistics(1e-3);
+    for (const Vec3& place : {Vec3(3, 4, 0), Vec3(0, 0, -2), Vec3(0, 1, 0)}) {
+        ServoTick tick;
+        tick.touch.molecule_angstrom = place;
+        statistics.add(tick);
+    }
+
+    CHECK(statistics.summary().closest_angstrom == 1);
+    CHECK(statistics.summary().last_angstrom == 1);
+    CHECK_FALSE(statistics.summary().went_through);
+}
+
 TEST_CASE("step times are told to a percent, whatever their size", "[session][statistics]") {
     const double unit = GENERATE(1e-8, 1e-6, 1e-3, 1.0);
     Statistics statistics(1e-3);

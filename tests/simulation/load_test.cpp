@@ -17,7 +17,7 @@ namespace {
 
 double distance(const Simulation& simulation) {
     const Grab& grab = *simulation.world.find<Grab>(simulation.hand);
-    return simulation.world.find<LineGuide>(grab.molecule)->distance;
+    return simulation.world.find<Guide>(grab.molecule)->place.x();
 }
 
 // What loading says of a scene whose parameter file lacks the line that begins with `without`.
@@ -50,7 +50,7 @@ TEST_CASE("the water scene becomes two molecules and a hand", "[simulation][load
         CHECK(simulation.atoms.names[molecule.reference_atom].atom == "OH2");
         ++molecules;
     });
-    simulation.world.each<Molecule, LineGuide>([&](Entity, Molecule& molecule, LineGuide&) {
+    simulation.world.each<Molecule, Guide>([&](Entity, Molecule& molecule, Guide&) {
         CHECK(molecule.name == "moved");
         ++guided;
     });

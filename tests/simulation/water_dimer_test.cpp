@@ -80,10 +80,10 @@ TEST_CASE("every reference pose of two waters has OpenMM's energies and forces",
         const std::span<const Vec3> all(places);
         std::vector<Vec3> forces(6, Vec3::Zero());
 
-        const FieldSum sum =
-            add_pair_forces({all.first(3), water.charge, sqrt_epsilon, half_rmin},
-                            {all.last(3), water.charge, sqrt_epsilon, half_rmin}, reference_coulomb,
-                            std::span(forces).first(3), std::span(forces).last(3));
+        const FieldSum sum = add_pair_forces({all.first(3), water.charge, sqrt_epsilon, half_rmin},
+                                             {all.last(3), water.charge, sqrt_epsilon, half_rmin},
+                                             {reference_coulomb}, std::span(forces).first(3),
+                                             std::span(forces).last(3));
 
         CHECK_THAT(sum.van_der_waals * 4.184, WithinRel(frame.lj, 1e-9));
         CHECK_THAT(sum.electrostatic * 4.184, WithinRel(frame.coulomb, 1e-9));

@@ -98,7 +98,7 @@ class Cli(unittest.TestCase):
         self.run_water("--seconds", "0.2", "--record", self.tmp / "first")
         trace = (self.tmp / "first" / "trace.csv").read_bytes()
         shutil.move(self.tmp / "first", self.tmp / "elsewhere")
-        result = self.palpa("run", "elsewhere/session.toml", "--record", "again")
+        result = self.palpa("run", "elsewhere/session.toml", "--headless", "--record", "again")
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual((self.tmp / "again" / "trace.csv").read_bytes(), trace)
 
@@ -137,7 +137,7 @@ class Cli(unittest.TestCase):
         self.assertIn("vibrates", self.palpa("run", "--check", WATER, "--mode", "1").stdout)
 
     def test_lost_output_is_no_success(self):
-        for arguments in (["run", WATER, "--seconds", "0.1"], ["run", "--keys"], ["bench", WATER]):
+        for arguments in (["run", WATER, "--headless", "--seconds", "0.1"], ["run", "--keys"], ["bench", WATER]):
             with self.subTest(arguments=arguments), open("/dev/full", "w") as full:
                 result = subprocess.run([PROGRAM, *map(str, arguments)], stdout=full,
                                         stderr=subprocess.PIPE, text=True)
@@ -168,7 +168,7 @@ class Cli(unittest.TestCase):
             with self.subTest(value=value):
                 file.write_text(text.replace("seconds = 10.0", f"seconds = {value}"))
                 line = text[:text.index("seconds =")].count("\n") + 1
-                result = self.palpa("run", scene, "--record", self.tmp / "r")
+                result = self.palpa("run", scene, "--headless", "--record", self.tmp / "r")
                 self.assert_bad_input(result, f"scene.toml:{line}:")
                 self.assertFalse((self.tmp / "r").exists())
 
@@ -184,7 +184,7 @@ class Cli(unittest.TestCase):
         file = scene / "tip3p.str"
         file.write_text("".join(line for line in file.read_text().splitlines(True)
                                 if not line.startswith("HT ")))
-        result = self.palpa("run", scene, "--record", self.tmp / "r")
+        result = self.palpa("run", scene, "--headless", "--record", self.tmp / "r")
         self.assert_bad_input(result, "tip3p.str:", "'HT' has no NONBONDED parameters")
         self.assertRegex(result.stderr, r"tip3p\.str:\d+: ")
         self.assertFalse((self.tmp / "r").exists())
@@ -197,15 +197,15 @@ class Cli(unittest.TestCase):
 
     def test_a_folder_that_cannot_be_written(self):
         (self.tmp / "file").write_text("mine")
-        self.assert_bad_input(self.palpa("run", WATER, "--record", self.tmp / "file" / "r"), "file")
-        self.assert_bad_input(self.palpa("run", WATER, "--record", self.tmp / "file"), "is a file")
-        self.assert_bad_input(self.palpa("run", WATER, "--record", "/proc/palpa"), "/proc/palpa")
+        self.assert_bad_input(self.palpa("run", WATER, "--headless", "--record", self.tmp / "file" / "r"), "file")
+        self.assert_bad_input(self.palpa("run", WATER, "--headless", "--record", self.tmp / "file"), "is a file")
+        self.assert_bad_input(self.palpa("run", WATER, "--headless", "--record", "/proc/palpa"), "/proc/palpa")
         self.assertEqual((self.tmp / "file").read_text(), "mine")
 
     def test_a_folder_with_other_things_is_not_recorded_into(self):
         (self.tmp / "mine").mkdir()
         (self.tmp / "mine" / "trace.csv").write_text("not a recording's")
-        self.assert_bad_input(self.palpa("run", WATER, "--record", self.tmp / "mine"), "mine")
+        self.assert_bad_input(self.palpa("run", WATER, "--headless", "--record", self.tmp / "mine"), "mine")
         self.assertEqual((self.tmp / "mine" / "trace.csv").read_text(), "not a recording's")
 
     def test_settings_that_name_nothing(self):

@@ -1,0 +1,186 @@
+#include "app/live_session.h"
+
+#include "core/load_error.h"
+#include "session/run_headless.h"
+#include "simulation/probe.h"
+#include "simulation/step.h"
+
+#include <pthread.h>
+#include <sched.h>
+#include <chrono>
+#include <exception>
+#include <utility>
+
+namespace palpa {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::microseconds servo_tick{1'000'000 / static_cast<int>(servo_rate_hz)};
+
+// Above all ordinary threads, where the system lets us.
+bool ask_for_real_time() noexcept {
+    sched_param parameters{};
+    parameters.sched_priority = 50;
+    return pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters) == 0;
+}
+
+Clock::duration period_of(const Simulation& simulation) {
+    return std::chrono::duration_cast<Clock::duration>(
+        std::chrono::duration<double>(simulation.period_s));
+}
+
+// While nothing moves, the hand feels nothing.
+TouchModel without_force(TouchModel touch) noexcept {
+    touch.force_newton.setZero();
+    return touch;
+}
+
+}  // namespace
+
+LiveSession::LiveSession(const SceneDescription& scene, const ViewSettings& view, Device& device)
+    : scene_(scene), device_(device), state_{load_simulation(scene), view, {}, {}, {}, false, {}} {
+    state_.next = build_touch_model(state_.simulation, {});
+    exchange_.touch.post(state_.next);
+    const ServoOrder order{build_servo_settings(scene, state_.simulation)};
+    servo_thread_ = std::thread([this, order] { run_servo(order); });
+    simulation_thread_ = std::thread([this] { run_simulation(state_); });
+}
+
+LiveSession::~LiveSession() {
+    {
+        const std::lock_guard lock(mutex_);
+        stopping_ = true;
+    }
+    has_command_.notify_one();
+    servo_thread_.join();
+    simulation_thread_.join();
+    device_.write(Vec3::Zero());
+}
+
+void LiveSession::send(const Command& command) {
+    {
+        const std::lock_guard lock(mutex_);
+        commands_.push_back(command);
+    }
+    has_command_.notify_one();
+}
+
+bool LiveSession::read_frame(LiveFrame& frame) {
+    const bool is_new = frames_.read(frame);
+    frame_wanted_ = true;
+    return is_new;
+}
+
+ServoHealth LiveSession::servo_health() const noexcept { return {overruns_, real_time_}; }
+
+void LiveSession::run_servo(ServoOrder order) {
+    real_time_ = ask_for_real_time();
+    ServoState state;
+    Clock::time_point next = Clock::now();
+    while (!stopping_) {
+        const std::uint32_t restarts = order.restarts;
+        if (servo_orders_.read(order) && order.restarts != restarts) state.stopped = false;
+        const ServoTick tick = step_servo(order.settings, state, exchange_, device_.read());
+        device_.write(tick.sent_newton);
+        ticks_.push(tick);
+        next += servo_tick;
+        const Clock::time_point now = Clock::now();
+        if (now - next > servo_tick) {
+            overruns_ += static_cast<std::uint64_t>((now - next) / servo_tick);
+            next = now;
+        }
+        std::this_thread::sleep_until(next);
+    }
+}
+
+// The same order as in lockstep: where a period begins, the last step's answer is published, and
+// the next step starts from the hand's pose at that moment. Commands are obeyed at once, between
+// steps.
+void LiveSession::run_simulation(State& state) {
+    Clock::time_point next = Clock::now();
+    while (!stopping_) {
+        if (!state.readout.paused || state.step_once) {
+            step(state);
+        } else {
+            exchange_.hand.read(state.hand);
+            take_hold(state.simulation, state.hand);
+            exchange_.touch.post(state.felt = without_force(state.next));
+        }
+        next += period_of(state.simulation);
+        const Clock::time_point now = Clock::now();
+        if (now > next) {
+            ++state.readout.late_steps;
+            next = now;
+        }
+        post_frame_if_wanted(state);
+        for (bool waited = false; !waited && !stopping_;) {
+            std::vector<Command> commands;
+            {
+                std::unique_lock lock(mutex_);
+                waited = !has_command_.wait_until(lock, next,
+                                                  [&] { return stopping_ || !commands_.empty(); });
+                commands.swap(commands_);
+            }
+            for (const Command& command : commands) obey(state, command);
+            if (!commands.empty()) post_frame_if_wanted(state);
+        }
+    }
+}
+
+void LiveSession::step(State& state) {
+    state.step_once = false;
+    exchange_.touch.post(state.felt = state.next);
+    exchange_.hand.read(state.hand);
+    const Clock::time_point begin = Clock::now();
+    state.next = step_simulation(state.simulation, state.hand, state.felt).touch;
+    state.readout.step_ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+    ++state.readout.steps;
+}
+
+void LiveSession::obey(State& state, const Command& command) {
+    if (const auto* const settings = std::get_if<LiveSettings>(&command)) {
+        scene_.coupling = settings->coupling;
+        scene_.period_ms = settings->period_ms;
+        state.simulation.laws = build_coupling_laws(scene_.coupling);
+        state.simulation.period_s = scene_.period_ms * 1e-3;
+        order_servo(state);
+    } else if (const auto* const view = std::get_if<ViewSettings>(&command)) {
+        state.view = *view;
+    } else if (const auto* const pause = std::get_if<Pause>(&command)) {
+        state.readout.paused = pause->paused;
+    } else if (std::holds_alternative<StepOnce>(command)) {
+        state.readout.paused = state.step_once = true;
+    } else {
+        reset(state);
+    }
+}
+
+void LiveSession::reset(State& state) {
+    try {
+        state.simulation = load_simulation(scene_);
+    } catch (const LoadError& error) {  // the files changed meanwhile: what runs, runs on
+        state.readout.problem = error.what();
+        return;
+    }
+    state.readout.problem.clear();
+    exchange_.hand.read(state.hand);
+    take_hold(state.simulation, state.hand);
+    state.next = build_touch_model(state.simulation, state.hand);
+    ++restarts_;
+    order_servo(state);
+}
+
+void LiveSession::order_servo(const State& state) {
+    servo_orders_.post({build_servo_settings(scene_, state.simulation), restarts_});
+}
+
+void LiveSession::post_frame_if_wanted(const State& state) {
+    if (!frame_wanted_.exchange(false)) return;
+    LiveFrame frame{build_frame(state.simulation, state.view), grabbed_place(state.simulation),
+                    state.readout};
+    frame.readout.touch = state.next;
+    frames_.post(frame);
+}
+
+}  // namespace palpa

@@ -1,0 +1,99 @@
+// A scene that runs in real time: the servo at 1 kHz and the simulation at its declared period,
+// each on a thread of its own, and what a third one, with the window, may ask of them and see of
+// them.
+#pragma once
+#include "core/mailbox.h"
+#include "core/ring.h"
+#include "haptics/device.h"
+#include "haptics/exchange.h"
+#include "haptics/servo.h"
+#include "render/frame_scene.h"
+#include "scene/description.h"
+#include "session/commands.h"
+#include "simulation/simulation.h"
+#include "view/build_frame.h"
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace palpa {
+
+// What the window shows, all of one moment between two steps.
+struct LiveFrame {
+    FrameScene picture;                    // its camera is the window's business
+    Vec3 grabbed_angstrom = Vec3::Zero();  // the reference atom in hand, in the world
+    Readout readout;
+};
+
+// The device must outlive the session, and belongs to its servo thread meanwhile.
+class LiveSession {
+public:
+    // Loads the scene and starts both threads. Throws LoadError.
+    LiveSession(const SceneDescription& scene, const ViewSettings& view, Device& device);
+    LiveSession(const LiveSession&) = delete;
+    LiveSession& operator=(const LiveSession&) = delete;
+    ~LiveSession();
+
+    void send(const Command& command);
+
+    // The newest frame; asks for the next one. False if none came since the last call.
+    bool read_frame(LiveFrame& frame);
+
+    // Every servo tick in its order, as long as somebody takes them out.
+    bool pop_tick(ServoTick& tick) noexcept { return ticks_.pop(tick); }
+
+    ServoHealth servo_health() const noexcept;
+
+private:
+    // What only the simulation's thread touches.
+    struct State {
+        Simulation simulation;
+        ViewSettings view;
+        HandPose hand;
+        TouchModel felt, next;  // by the hand now; the last step's answer
+        bool step_once = false;
+        Readout readout;
+    };
+
+    // What the servo is told.
+    struct ServoOrder {
+        ServoSettings settings;
+        std::uint32_t restarts = 0;  // another number ends a latched stop
+    };
+
+    void run_servo(ServoOrder order);
+    void run_simulation(State& state);
+    void step(State& state);
+    void obey(State& state, const Command& command);
+    void reset(State& state);
+    void order_servo(const State& state);
+    void post_frame_if_wanted(const State& state);
+
+    static constexpr std::size_t ring_size = 8192;  // 8 s of ticks
+
+    SceneDescription scene_;
+    Device& device_;
+    Exchange exchange_;
+    Mailbox<ServoOrder> servo_orders_;
+    std::uint32_t restarts_ = 0;
+    Mailbox<LiveFrame> frames_;
+    Ring<ServoTick, ring_size> ticks_;
+    std::atomic<bool> frame_wanted_{true};
+    std::atomic<std::uint64_t> overruns_{0};
+    std::atomic<bool> real_time_{false};
+
+    std::mutex mutex_;  // of the commands
+    std::condition_variable has_command_;
+    std::vector<Command> commands_;
+    std::atomic<bool> stopping_{false};
+
+    State state_;
+    std::thread simulation_thread_, servo_thread_;
+};
+
+}  // namespace palpa

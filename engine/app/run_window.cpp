@@ -1,0 +1,363 @@
+#include "app/run_window.h"
+
+#include "app/live_session.h"
+#include "app/render_scale.h"
+#include "core/load_error.h"
+#include "core/units.h"
+#include "gpu/swapchain.h"
+#include "platform/window.h"
+#include "render/picture.h"
+#include "render/renderer.h"
+#include "ui/backend.h"
+#include "ui/overlay.h"
+#include "view/orbit_camera.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace palpa {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr float radians_per_pixel = 0.008F;
+constexpr float zoom_per_notch = 0.9F;
+constexpr double angstrom_per_notch = 0.25;  // of the molecule in hand, towards the eye and away
+constexpr double notice_s = 4;
+constexpr float focus_distance = 18;  // Å
+constexpr glm::vec3 background{0.86F, 0.89F, 0.93F};
+
+// All that is lost with a device, made and thrown away as one.
+struct Graphics {
+    Graphics(const Window& window, bool validation)
+        : device({.validation = validation,
+                  .instance_extensions = window.vulkan_extensions(),
+                  .create_surface =
+                      [&window](VkInstance instance) { return window.create_surface(instance); }}),
+          swapchain(device, window.size()),
+          renderer(device),
+          ui(window, device, swapchain.overlay_pass(), swapchain.image_count()) {}
+
+    GpuDevice device;
+    Swapchain swapchain;
+    Renderer renderer;
+    UiBackend ui;
+};
+
+double ms_since(Clock::time_point begin) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+}
+
+// Stretches the renderer's picture over an image of the window.
+void blit(VkCommandBuffer commands, VkImage from, VkExtent2D from_size, VkImage to,
+          VkExtent2D to_size) {
+    const auto corner = [](VkExtent2D size) {
+        return VkOffset3D{static_cast<std::int32_t>(size.width),
+                          static_cast<std::int32_t>(size.height), 1};
+    };
+    VkImageBlit region{};
+    region.srcSubresource = region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    region.srcOffsets[1] = corner(from_size);
+    region.dstOffsets[1] = corner(to_size);
+    const bool same = from_size.width == to_size.width && from_size.height == to_size.height;
+    vkCmdBlitImage(commands, from, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to,
+                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region,
+                   same ? VK_FILTER_NEAREST : VK_FILTER_LINEAR);
+}
+
+glm::vec3 as_float(const Vec3& v) {
+    return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+}
+
+std::filesystem::path next_screenshot(const std::filesystem::path& folder) {
+    for (int number = 1;; ++number) {
+        std::filesystem::path path = folder / fmt::format("palpa-{:04}.png", number);
+        std::error_code error;
+        if (!std::filesystem::exists(path, error)) return path;
+    }
+}
+
+class Sandbox {
+public:
+    Sandbox(const SceneDescription& scene, Device& device, const WindowOptions& options)
+        : options_(options),
+          window_("Palpa - " + scene.title, options.width, options.height),
+          graphics_(std::make_unique<Graphics>(window_, options.validation)),
+          session_(scene, options.view, device),
+          overlay_(scene, options.view),
+          statistics_(1 / servo_rate_hz),
+          device_name_(device.spec().name) {}
+
+    WindowReport run();
+
+private:
+    void frame();
+    void look_at_all();
+    void take_ticks();
+    void take_input();
+    void move_camera(const Input& input);
+    void move_hand(const Input& input);
+    void perform(Action action);
+    void look_at_pixel(double x, double y);
+    void draw();
+    void save(const WindowShot& shot);
+    void restart_graphics();
+    void notice(std::string text);
+    VkExtent2D picture_size() const;
+    void keep_validation_messages();
+
+    const WindowOptions options_;
+    Window window_;
+    std::unique_ptr<Graphics> graphics_;
+    LiveSession session_;
+    Overlay overlay_;
+    Statistics statistics_;
+    std::string device_name_;
+
+    LiveFrame frame_;
+    bool has_frame_ = false, framed_ = false;
+    OrbitCamera camera_;
+    Vec3 hand_m_ = Vec3::Zero();  // where the mouse wants the handle
+    bool holding_ = false;
+    RenderScale scale_;
+    bool quitting_ = false, wants_shot_ = false, must_rebuild_ = false;
+    std::string notice_;
+    Clock::time_point notice_until_{};
+    std::vector<double> frame_ms_;
+    std::vector<std::string> validation_messages_;
+    double last_frame_ms_ = 0;
+};
+
+WindowReport Sandbox::run() {
+    const auto shortest = std::chrono::duration_cast<Clock::duration>(
+        std::chrono::duration<double>(1 / options_.most_frames_per_s));
+    int losses = 0;
+    Clock::time_point next = Clock::now();
+    while (!quitting_ && !window_.should_close()) {
+        try {
+            frame();
+        } catch (const DeviceLost&) {
+            if (++losses > 3) throw;
+            restart_graphics();
+            notice("the graphics device was lost, and is back");
+        }
+        // The display's own pace does not throttle everywhere.
+        next = std::max(next + shortest, Clock::now());
+        std::this_thread::sleep_until(next);
+    }
+    keep_validation_messages();
+    if (!validation_messages_.empty()) throw GpuError("validation: " + validation_messages_[0]);
+    WindowReport report{statistics_.summary(), overlay_.settings(),        frame_ms_.size(), 0,
+                        scale_.value(),        overlay_.lesson().current()};
+    report.summary.steps = frame_.readout.steps;
+    report.summary.overruns = session_.servo_health().overruns;
+    if (!frame_ms_.empty()) {
+        std::nth_element(frame_ms_.begin(),
+                         frame_ms_.begin() + static_cast<std::ptrdiff_t>(frame_ms_.size() / 2),
+                         frame_ms_.end());
+        report.median_frame_ms = frame_ms_[frame_ms_.size() / 2];
+    }
+    return report;
+}
+
+void Sandbox::frame() {
+    const Clock::time_point begin = Clock::now();
+    take_ticks();
+    if (session_.read_frame(frame_)) {
+        has_frame_ = true;
+        statistics_.add_step(frame_.readout.step_ms * 1e-3, true);
+    }
+    if (has_frame_ && !std::exchange(framed_, has_frame_)) look_at_all();
+    take_input();
+    if (window_.size().width == 0 || window_.size().height == 0) return;  // folded away
+    draw();
+    last_frame_ms_ = ms_since(begin);
+    scale_.add_frame(last_frame_ms_);
+    constexpr std::size_t most = 100'000;
+    if (frame_ms_.size() < most) frame_ms_.push_back(last_frame_ms_);
+}
+
+// In the middle, between the overlays.
+void Sandbox::look_at_all() {
+    const auto width = static_cast<float>(window_.size().width);
+    const auto height = static_cast<float>(window_.size().height);
+    const float free = width - 2 * overlay_.covered_pixels(width);
+    frame_all(camera_, frame_.picture, free / std::max(height, 1.0F));
+}
+
+void Sandbox::take_ticks() {
+    for (ServoTick tick; session_.pop_tick(tick);) {
+        statistics_.add(tick);
+        overlay_.add_tick(tick);
+    }
+}
+
+void Sandbox::take_input() {
+    const Input& input = window_.poll();
+    must_rebuild_ = must_rebuild_ || input.resized;
+    if (!graphics_->ui.wants_keys()) {
+        for (const Key key : input.pressed) {
+            if (const std::optional<Action> action = find_action(key, input.control)) {
+                perform(*action);
+            }
+        }
+    }
+    holding_ = options_.mouse_hand && input.is_held(Key::Space);
+    if (holding_) {
+        move_hand(input);
+    } else if (!graphics_->ui.wants_mouse()) {
+        move_camera(input);
+        if (input.double_clicked) look_at_pixel(input.mouse_x, input.mouse_y);
+    }
+}
+
+void Sandbox::move_camera(const Input& input) {
+    const auto dx = static_cast<float>(input.mouse_dx), dy = static_cast<float>(input.mouse_dy);
+    const bool shifts = input.is_down(MouseButton::Right) || input.is_down(MouseButton::Middle) ||
+                        (input.is_down(MouseButton::Left) && input.shift);
+    if (shifts) {
+        pan(camera_, dx, dy, static_cast<float>(window_.size().height));
+    } else if (input.is_down(MouseButton::Left)) {
+        orbit(camera_, -radians_per_pixel * dx, radians_per_pixel * dy);
+    }
+    if (input.wheel != 0) zoom(camera_, std::pow(zoom_per_notch, static_cast<float>(input.wheel)));
+}
+
+// The molecule would follow the mouse where nothing holds it: handle travel is A_d times its way.
+void Sandbox::move_hand(const Input& input) {
+    const float scale = angstrom_per_pixel(camera_, as_float(frame_.grabbed_angstrom),
+                                           static_cast<float>(window_.size().height));
+    const glm::vec3 way = scale * (static_cast<float>(input.mouse_dx) * rightward(camera_) -
+                                   static_cast<float>(input.mouse_dy) * upward(camera_)) -
+                          static_cast<float>(input.wheel * angstrom_per_notch) * backward(camera_);
+    const double gain = frame_.readout.touch.displacement_gain;
+    hand_m_ += Vec3(way.x, way.y, way.z) * units::metre_per_angstrom * gain;
+    options_.mouse_hand->post({hand_m_});
+}
+
+void Sandbox::perform(Action action) {
+    std::vector<Command> commands;
+    if (overlay_.perform(action, frame_.readout, commands)) {
+        for (const Command& command : commands) session_.send(command);
+        return;
+    }
+    switch (action) {
+        case Action::Focus:
+            focus(camera_, as_float(frame_.grabbed_angstrom), focus_distance);
+            break;
+        case Action::FrameAll:
+            look_at_all();
+            break;
+        case Action::Screenshot:
+            wants_shot_ = true;
+            break;
+        case Action::RestartGraphics:
+            restart_graphics();
+            break;
+        case Action::Quit:
+            quitting_ = true;
+            break;
+        default:
+            break;
+    }
+}
+
+void Sandbox::look_at_pixel(double x, double y) {
+    graphics_->swapchain.wait();
+    const std::uint32_t pick =
+        graphics_->renderer.pick(static_cast<std::uint32_t>(std::max(x, 0.0) * scale_.value()),
+                                 static_cast<std::uint32_t>(std::max(y, 0.0) * scale_.value()));
+    for (const SphereShape& sphere : frame_.picture.spheres) {
+        if (sphere.pick != pick) continue;
+        focus(camera_, sphere.centre, std::min(camera_.distance, focus_distance));
+        return;
+    }
+}
+
+VkExtent2D Sandbox::picture_size() const {
+    const VkExtent2D size = graphics_->swapchain.size();
+    const auto scaled = [&](std::uint32_t pixels) {
+        return std::max(1U, static_cast<std::uint32_t>(std::lround(pixels * scale_.value())));
+    };
+    return {scaled(size.width), scaled(size.height)};
+}
+
+void Sandbox::draw() {
+    Graphics& g = *graphics_;
+    if (std::exchange(must_rebuild_, false)) g.swapchain.rebuild(window_.size());
+    g.ui.begin();
+    std::vector<Command> commands;
+    std::vector<Action> actions;
+    if (has_frame_) {
+        const bool is_news = Clock::now() < notice_until_;
+        overlay_.draw(frame_.readout,
+                      {session_.servo_health(), device_name_, g.device.name(), last_frame_ms_,
+                       scale_.value(), holding_, is_news ? notice_ : std::string()},
+                      commands, actions);
+    }
+    g.ui.end();
+    for (const Command& command : commands) session_.send(command);
+
+    frame_.picture.camera = frame_camera(camera_, frame_.picture);
+    frame_.picture.background = background;
+    const VkExtent2D size = picture_size();
+    WindowShot shot;
+    const bool shows = g.swapchain.present(
+        [&](VkCommandBuffer buffer, VkImage image) {
+            g.renderer.record(buffer, frame_.picture, size);
+            blit(buffer, g.renderer.colour_image(), size, image, g.swapchain.size());
+        },
+        [&](VkCommandBuffer buffer) { g.ui.draw(buffer); }, wants_shot_ ? &shot : nullptr);
+    must_rebuild_ = !shows;
+    if (!shot.rgba.empty()) {
+        wants_shot_ = false;
+        save(shot);
+    }
+    for (const Action action : actions) perform(action);
+}
+
+void Sandbox::save(const WindowShot& shot) {
+    const std::filesystem::path path = next_screenshot(options_.screenshots);
+    try {
+        write_png(path, {shot.width, shot.height, shot.rgba, {}, {}});
+        notice(fmt::format("saved {}", path.string()));
+    } catch (const LoadError& error) {
+        notice(error.what());
+    }
+}
+
+void Sandbox::restart_graphics() {
+    keep_validation_messages();
+    graphics_.reset();
+    graphics_ = std::make_unique<Graphics>(window_, options_.validation);
+}
+
+void Sandbox::keep_validation_messages() {
+    for (const std::string& message : graphics_->device.validation_messages()) {
+        validation_messages_.push_back(message);
+    }
+}
+
+void Sandbox::notice(std::string text) {
+    notice_ = std::move(text);
+    notice_until_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                       std::chrono::duration<double>(notice_s));
+}
+
+}  // namespace
+
+WindowReport run_window(const SceneDescription& scene, Device& device,
+                        const WindowOptions& options) {
+    return Sandbox(scene, device, options).run();
+}
+
+}  // namespace palpa

@@ -1,0 +1,36 @@
+// The sandbox in a window: draws a running scene, and lets a person take part.
+#pragma once
+#include "haptics/device.h"
+#include "haptics/hand.h"
+#include "scene/description.h"
+#include "session/commands.h"
+#include "session/statistics.h"
+
+#include <cstdint>
+#include <filesystem>
+
+namespace palpa {
+
+struct WindowOptions {
+    ViewSettings view{};
+    std::uint32_t width = 1280, height = 800;
+    std::filesystem::path screenshots{"."};  // folder
+    HandTargets* mouse_hand = nullptr;  // where a mouse moves an emulated handle; null: nowhere
+    double most_frames_per_s = 60;
+    bool validation = false;  // of all that Vulkan is told; what it finds is thrown at the end
+};
+
+struct WindowReport {
+    Summary summary;
+    LiveSettings settings;  // as the person left them
+    std::uint64_t frames = 0;
+    double median_frame_ms = 0;
+    double render_scale = 1;  // at the end
+    std::size_t lesson_steps_done = 0;
+};
+
+// Runs until the person quits. Throws PlatformError without a display, GpuError, LoadError.
+WindowReport run_window(const SceneDescription& scene, Device& device,
+                        const WindowOptions& options);
+
+}  // namespace palpa

@@ -1,0 +1,327 @@
+#include "formats/psf.h"
+
+#include "core/files.h"
+#include "core/load_error.h"
+#include "core/text.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <map>
+#include <optional>
+#include <set>
+#include <span>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace palpa {
+namespace {
+
+// What every file has, in the order in which a missing one is told.
+constexpr std::array required_sections = std::to_array<std::string_view>(
+    {"NATOM", "NBOND", "NTHETA", "NPHI", "NIMPHI", "NDON", "NACC", "NNB", "NGRP"});
+constexpr std::array known_flags =
+    std::to_array<std::string_view>({"EXT", "CMAP", "CHEQ", "XPLOR", "NAMD"});
+
+class Reader {
+public:
+    Reader(std::string_view text, const std::string& file)
+        : lines_(split_lines(text)), size_(text.size()) {
+        topology_.file = file;
+    }
+
+    Topology read() {
+        read_flags();
+        while (skip_blank_lines()) read_section();
+        for (const std::string_view section : required_sections) require(section);
+        if (has_cmap_) require("NCRTERM");
+        return std::move(topology_);
+    }
+
+private:
+    [[noreturn]] void fail(std::size_t line, const std::string& what) const {
+        throw LoadError({topology_.file, line, 0}, what);
+    }
+
+    void require(std::string_view section) const {
+        if (!sections_.contains(section)) {
+            fail(lines_.size(), fmt::format("ends without a section !{}", section));
+        }
+    }
+
+    // False at the end of the file.
+    bool skip_blank_lines() {
+        while (at_ < lines_.size() && trimmed(lines_[at_]).empty()) ++at_;
+        return at_ < lines_.size();
+    }
+
+    void read_flags() {
+        const std::vector<std::string_view> words =
+            lines_.empty() ? std::vector<std::string_view>{} : split_words(lines_[0]);
+        if (words.empty() || words[0] != "PSF") fail(1, "no PSF file; expected PSF on line 1");
+        for (const std::string_view flag : std::span(words).subspan(1)) {
+            if (std::find(known_flags.begin(), known_flags.end(), flag) == known_flags.end()) {
+                fail(1, fmt::format("'{}' is no kind of PSF file that can be read; expected {}",
+                                    flag, fmt::join(known_flags, ", ")));
+            }
+            has_cmap_ = has_cmap_ || flag == "CMAP";
+        }
+        at_ = 1;
+    }
+
+    // "count ... !NAME: text", then what it holds.
+    void read_section() {
+        header_line_ = at_ + 1;
+        const std::string_view line = lines_[at_];
+        const std::size_t mark = line.find('!');
+        if (mark == std::string_view::npos) {
+            fail(header_line_, fmt::format("'{}' is no head of a section; expected a count and "
+                                           "!NAME",
+                                           trimmed(line).substr(0, 40)));
+        }
+        std::vector<std::size_t> counts;
+        for (const std::string_view word : split_words(line.substr(0, mark))) {
+            counts.push_back(whole_number(word, header_line_, "count"));
+        }
+        const std::vector<std::string_view> name = split_words(line.substr(mark + 1));
+        if (counts.empty() || name.empty()) fail(header_line_, "a section without count or name");
+        const std::string section(name[0].substr(0, name[0].find(':')));
+        const auto [first, is_new] = sections_.emplace(section, header_line_);
+        if (!is_new) {
+            fail(header_line_,
+                 fmt::format("section !{} again, first on line {}", section, first->second));
+        }
+        if (section != "NTITLE" && section != "NATOM" && !sections_.contains("NATOM")) {
+            fail(header_line_, fmt::format("section !{} before the atoms", section));
+        }
+        ++at_;
+        read_content(section, counts);
+    }
+
+    void read_content(const std::string& section, const std::vector<std::size_t>& counts) {
+        const std::size_t count = counts[0];
+        if (section == "NTITLE") {
+            for (std::size_t i = 0; i < count; ++i, ++at_) {
+                if (at_ == lines_.size()) fail(at_, fmt::format("ends within {} titles", count));
+            }
+        } else if (section == "NATOM") {
+            read_atoms(count);
+        } else if (section == "NBOND") {
+            read_tuples(count, topology_.bonds);
+            check_bonds();
+        } else if (section == "NTHETA") {
+            read_tuples(count, topology_.angles);
+        } else if (section == "NPHI") {
+            read_tuples(count, topology_.dihedrals);
+        } else if (section == "NIMPHI") {
+            read_tuples(count, topology_.impropers);
+        } else if (section == "NCRTERM") {
+            read_tuples(count, topology_.cmaps);
+        } else if (section == "NDON" || section == "NACC") {
+            read_numbers(2 * whole_count(count));  // 0: no hydrogen, no antecedent
+        } else if (section == "NNB") {
+            read_exclusions(count);
+        } else if (section == "NGRP") {
+            read_numbers(3 * whole_count(count));
+        } else if (section == "MOLNT") {
+            read_numbers(topology_.names.size());
+        } else if (std::any_of(counts.begin(), counts.end(), [](std::size_t n) { return n > 0; })) {
+            fail(header_line_, fmt::format("section !{} is not empty, and not supported", section));
+        }
+    }
+
+    // A count that the file has no room for is wrong, however large it is.
+    std::size_t whole_count(std::size_t count) const {
+        if (count > size_) {
+            fail(header_line_,
+                 fmt::format("{} entries announced, more than the file holds", count));
+        }
+        return count;
+    }
+
+    std::size_t whole_number(std::string_view word, std::size_t line, const char* what) const {
+        const std::optional<std::int64_t> value = find_integer(word);
+        if (!value || *value < 0) {
+            fail(line, fmt::format("'{}' is not a {}; expected a whole number from 0", word, what));
+        }
+        return static_cast<std::size_t>(*value);
+    }
+
+    double real(std::string_view word, const char* what) const {
+        const std::optional<double> value = find_real(word);
+        if (!value) fail(at_ + 1, fmt::format("'{}' is not a {}", word, what));
+        return *value;
+    }
+
+    void read_atoms(std::size_t count) {
+        if (count == 0) fail(header_line_, "no atoms; expected a count from 1");
+        for (std::size_t atom = 0; atom < count; ++atom, ++at_) {
+            if (at_ == lines_.size() || trimmed(lines_[at_]).empty()) {
+                fail(at_ + 1, fmt::format("ends after {} of {} atoms", atom, count));
+            }
+            read_atom(atom, split_words(lines_[at_]));
+        }
+    }
+
+    // number segment residue-number residue atom type charge mass imove [two numbers of CHEQ]
+    void read_atom(std::size_t atom, std::span<const std::string_view> words) {
+        if (words.size() != 9 && words.size() != 11) {
+            fail(at_ + 1,
+                 fmt::format("{} fields; expected the 9 of an atom (number, segment, residue "
+                             "number, residue, atom, type, charge, mass, 0) or 11 with CHEQ",
+                             words.size()));
+        }
+        if (whole_number(words[0], at_ + 1, "number of an atom") != atom + 1) {
+            fail(at_ + 1, fmt::format("atom number {}; expected {}", words[0], atom + 1));
+        }
+        AtomName name{std::string(words[1]), std::string(words[3]), std::string(words[2]),
+                      std::string(words[4])};
+        const auto [first, is_new] =
+            seen_.emplace(std::tuple(name.segment, name.residue, name.number, name.atom), at_ + 1);
+        if (!is_new) {
+            fail(at_ + 1,
+                 fmt::format("atom {} again, first on line {}", to_string(name), first->second));
+        }
+        const double charge = real(words[6], "charge");
+        const double mass = real(words[7], "mass");
+        if (mass < 0) fail(at_ + 1, fmt::format("a mass of {} amu; expected 0 or more", mass));
+        for (const std::string_view word : words.subspan(8)) real(word, "number");
+        topology_.names.push_back(std::move(name));
+        topology_.type.push_back(upper_case(words[5]));
+        topology_.charge.push_back(charge);
+        topology_.mass.push_back(mass);
+        topology_.lines.push_back(at_ + 1);
+    }
+
+    // Calls use(number, line) for `count` numbers, however many stand on a line.
+    template <class Use>
+    void each_number(std::size_t count, const Use& use) {
+        for (std::size_t read = 0; read < count; ++at_) {
+            const bool ends = at_ == lines_.size() || lines_[at_].find('!') != std::string::npos;
+            if (ends || (trimmed(lines_[at_]).empty() && read > 0)) {
+                fail(at_ + 1, fmt::format("ends after {} of {} numbers", read, count));
+            }
+            const std::vector<std::string_view> words = split_words(lines_[at_]);
+            if (words.size() > count - read) {
+                fail(at_ + 1, fmt::format("more than the {} numbers announced", count));
+            }
+            for (const std::string_view word : words) use(word, at_ + 1);
+            read += words.size();
+        }
+    }
+
+    void read_numbers(std::size_t count) {
+        each_number(count, [this](std::string_view word, std::size_t line) {
+            if (!find_integer(word)) fail(line, fmt::format("'{}' is not a whole number", word));
+        });
+    }
+
+    template <std::size_t Size>
+    void read_tuples(std::size_t count, std::vector<std::array<std::uint32_t, Size>>& into) {
+        std::array<std::uint32_t, Size> tuple{};
+        std::size_t filled = 0;
+        each_number(Size * whole_count(count), [&](std::string_view word, std::size_t line) {
+            const std::size_t index = whole_number(word, line, "number of an atom");
+            if (index < 1 || index > topology_.names.size()) {
+                fail(line, fmt::format("atom number {}; expected 1 to {}", index,
+                                       topology_.names.size()));
+            }
+            tuple[filled++] = static_cast<std::uint32_t>(index - 1);
+            if (filled < Size) return;
+            // Of a cross-term's eight atoms, each dihedral has four of its own.
+            for (std::size_t i = 0; i < Size; ++i) {
+                for (std::size_t j = i + 1; j < std::min(Size, i / 4 * 4 + 4); ++j) {
+                    if (tuple[i] == tuple[j]) {
+                        fail(line, fmt::format("atom number {} twice in one entry", index));
+                    }
+                }
+            }
+            into.push_back(tuple);
+            filled = 0;
+        });
+    }
+
+    void check_bonds() const {
+        std::set<std::pair<std::uint32_t, std::uint32_t>> seen;
+        for (const auto& [a, b] : topology_.bonds) {
+            if (seen.insert(std::minmax(a, b)).second) continue;
+            fail(header_line_,
+                 fmt::format("the bond of {} and {} comes twice", to_string(topology_.names[a]),
+                             to_string(topology_.names[b])));
+        }
+    }
+
+    // The excluded atoms, then for each atom where its own end; some files leave the latter out
+    // where there are none.
+    void read_exclusions(std::size_t count) {
+        read_numbers(whole_count(count));
+        if (skip_blank_lines() && lines_[at_].find('!') == std::string::npos) {
+            read_numbers(topology_.names.size());
+        }
+    }
+
+    std::vector<std::string_view> lines_;
+    std::size_t size_;    // of the text
+    std::size_t at_ = 0;  // the line to be read next
+    std::size_t header_line_ = 0;
+    bool has_cmap_ = false;
+    std::map<std::string, std::size_t, std::less<>> sections_;
+    std::map<std::tuple<std::string, std::string, std::string, std::string>, std::size_t> seen_;
+    Topology topology_;
+};
+
+// Entries side by side, up to `width` on a line.
+template <std::size_t Size>
+void append_tuples(const std::vector<std::array<std::uint32_t, Size>>& tuples, std::size_t width,
+                   std::string_view name, std::string& text) {
+    text += fmt::format("\n{:10} !{}\n", tuples.size(), name);
+    for (std::size_t i = 0; i < tuples.size(); ++i) {
+        for (const std::uint32_t atom : tuples[i]) text += fmt::format("{:10}", atom + 1);
+        if ((i + 1) % width == 0 || i + 1 == tuples.size()) text += "\n";
+    }
+}
+
+}  // namespace
+
+Topology parse_psf(std::string_view text, const std::string& file) {
+    return Reader(text, file).read();
+}
+
+Topology read_psf(const std::filesystem::path& path) {
+    return parse_psf(read_text_file(path), path.string());
+}
+
+std::string format_psf(const Topology& topology, std::string_view title) {
+    const std::vector<std::string_view> titles = split_lines(title);
+    std::string text = fmt::format("PSF EXT {}XPLOR\n\n{:10} !NTITLE\n",
+                                   topology.cmaps.empty() ? "" : "CMAP ", titles.size());
+    for (const std::string_view line : titles) text += fmt::format(" REMARKS {}\n", line);
+    text += fmt::format("\n{:10} !NATOM\n", topology.names.size());
+    for (std::size_t i = 0; i < topology.names.size(); ++i) {
+        const AtomName& name = topology.names[i];
+        fmt::format_to(std::back_inserter(text),
+                       "{:10} {:<8} {:<8} {:<8} {:<8} {:<6} {:14.6f}{:14.4f}{:8}\n", i + 1,
+                       name.segment, name.number, name.residue, name.atom, topology.type[i],
+                       topology.charge[i], topology.mass[i], 0);
+    }
+    append_tuples(topology.bonds, 4, "NBOND: bonds", text);
+    append_tuples(topology.angles, 3, "NTHETA: angles", text);
+    append_tuples(topology.dihedrals, 2, "NPHI: dihedrals", text);
+    append_tuples(topology.impropers, 2, "NIMPHI: impropers", text);
+    for (const char* const empty : {"NDON: donors", "NACC: acceptors", "NNB"}) {
+        text += fmt::format("\n{:10} !{}\n", 0, empty);
+    }
+    for (std::size_t i = 0; i < topology.names.size(); ++i) {
+        text += fmt::format("{:10}", 0);
+        if ((i + 1) % 8 == 0 || i + 1 == topology.names.size()) text += "\n";
+    }
+    text += fmt::format("\n{:10}{:10} !NGRP NST2\n{:10}{:10}{:10}\n", 1, 0, 0, 0, 0);
+    if (!topology.cmaps.empty()) append_tuples(topology.cmaps, 1, "NCRTERM: cross-terms", text);
+    return text;
+}
+
+}  // namespace palpa

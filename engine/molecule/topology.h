@@ -1,0 +1,29 @@
+// What a structure's atoms are and which of them are bonded, as a PSF file tells it.
+#pragma once
+#include "molecule/atoms.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace palpa {
+
+// Atoms in the order of the file, an array per property; everything else names them by index.
+struct Topology {
+    std::string file;
+    std::vector<AtomName> names;
+    std::vector<std::string> type;   // "CT1"; in old files a number
+    std::vector<double> charge;      // e
+    std::vector<double> mass;        // amu
+    std::vector<std::size_t> lines;  // the atom's line in the file, for messages
+
+    std::vector<std::array<std::uint32_t, 2>> bonds;
+    std::vector<std::array<std::uint32_t, 3>> angles;
+    std::vector<std::array<std::uint32_t, 4>> dihedrals;  // one that has several terms may recur
+    std::vector<std::array<std::uint32_t, 4>> impropers;
+    std::vector<std::array<std::uint32_t, 8>> cmaps;  // two dihedrals each
+};
+
+}  // namespace palpa

@@ -1,0 +1,176 @@
+#include "platform/window.h"
+
+#include <fmt/format.h>
+#include <cmath>
+#include <optional>
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+namespace palpa {
+namespace {
+
+// GLFW's name of a key, and ours.
+struct KeyName {
+    int glfw;
+    Key key;
+};
+constexpr std::array key_names = std::to_array<KeyName>({
+    {GLFW_KEY_SPACE, Key::Space}, {GLFW_KEY_ESCAPE, Key::Escape}, {GLFW_KEY_TAB, Key::Tab},
+    {GLFW_KEY_HOME, Key::Home},   {GLFW_KEY_F1, Key::F1},         {GLFW_KEY_F5, Key::F5},
+    {GLFW_KEY_F12, Key::F12},     {GLFW_KEY_PERIOD, Key::Period}, {GLFW_KEY_1, Key::Digit1},
+    {GLFW_KEY_2, Key::Digit2},    {GLFW_KEY_3, Key::Digit3},      {GLFW_KEY_4, Key::Digit4},
+    {GLFW_KEY_5, Key::Digit5},    {GLFW_KEY_A, Key::A},           {GLFW_KEY_C, Key::C},
+    {GLFW_KEY_F, Key::F},         {GLFW_KEY_H, Key::H},           {GLFW_KEY_L, Key::L},
+    {GLFW_KEY_O, Key::O},         {GLFW_KEY_P, Key::P},           {GLFW_KEY_R, Key::R},
+    {GLFW_KEY_V, Key::V},         {GLFW_KEY_Y, Key::Y},           {GLFW_KEY_Z, Key::Z},
+});
+static_assert(key_names.size() == static_cast<std::size_t>(Key::Count));
+
+std::optional<Key> find_key(int glfw, const char* printed) {
+    // Letters count by what is printed on them, whatever the keyboard's layout.
+    if (printed && printed[0] >= 'a' && printed[0] <= 'z' && printed[1] == 0) {
+        glfw = GLFW_KEY_A + (printed[0] - 'a');
+    }
+    for (const KeyName& name : key_names) {
+        if (name.glfw == glfw) return name.key;
+    }
+    return std::nullopt;
+}
+
+std::string last_glfw_error() {
+    const char* reason = nullptr;
+    glfwGetError(&reason);
+    return reason ? reason : "no reason given";
+}
+
+Window& window_of(GLFWwindow* window) {
+    return *static_cast<Window*>(glfwGetWindowUserPointer(window));
+}
+
+// Two clicks are one double click within this time and distance.
+constexpr double double_click_s = 0.35, double_click_pixels = 6;
+
+}  // namespace
+
+Window::Window(const std::string& title, std::uint32_t width, std::uint32_t height) {
+    if (glfwInit() != GLFW_TRUE) {
+        throw PlatformError(
+            fmt::format("no display ({}); palpa run --headless needs none", last_glfw_error()));
+    }
+    glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
+    window_ = glfwCreateWindow(static_cast<int>(width), static_cast<int>(height), title.c_str(),
+                               nullptr, nullptr);
+    if (!window_) {
+        const std::string reason = last_glfw_error();
+        glfwTerminate();
+        throw PlatformError(fmt::format("no window can be opened ({})", reason));
+    }
+    glfwSetWindowSizeLimits(window_, 320, 240, GLFW_DONT_CARE, GLFW_DONT_CARE);
+    glfwSetWindowUserPointer(window_, this);
+    listen(window_);
+}
+
+Window::~Window() {
+    glfwDestroyWindow(window_);
+    glfwTerminate();
+}
+
+void Window::listen(GLFWwindow* window) {
+    glfwSetKeyCallback(window, [](GLFWwindow* w, int code, int scancode, int action, int mods) {
+        Input& input = window_of(w).input_;
+        input.shift = (mods & GLFW_MOD_SHIFT) != 0;
+        input.control = (mods & GLFW_MOD_CONTROL) != 0;
+        const std::optional<Key> key = find_key(code, glfwGetKeyName(code, scancode));
+        if (!key) return;
+        input.held[static_cast<std::size_t>(*key)] = action != GLFW_RELEASE;
+        if (action == GLFW_PRESS) input.pressed.push_back(*key);
+    });
+    glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int mods) {
+        Input& input = window_of(w).input_;
+        input.shift = (mods & GLFW_MOD_SHIFT) != 0;
+        if (button > GLFW_MOUSE_BUTTON_MIDDLE) return;
+        const auto index = static_cast<std::size_t>(button);  // left, right, middle, as ours
+        input.down[index] = action == GLFW_PRESS;
+        if (action == GLFW_PRESS) press(window_of(w), static_cast<MouseButton>(button));
+    });
+    glfwSetScrollCallback(
+        window, [](GLFWwindow* w, double /*x*/, double y) { window_of(w).input_.wheel += y; });
+    glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int /*width*/, int /*height*/) {
+        window_of(w).input_.resized = true;
+    });
+    // A key that is let go elsewhere is never reported here.
+    glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int focused) {
+        if (focused == GLFW_TRUE) return;
+        window_of(w).input_.held.fill(false);
+        window_of(w).input_.down.fill(false);
+    });
+}
+
+void Window::press(Window& window, MouseButton button) {
+    window.input_.clicked[static_cast<std::size_t>(button)] = true;
+    if (button != MouseButton::Left) return;
+    double x = 0, y = 0;
+    glfwGetCursorPos(window.window_, &x, &y);
+    const double now = glfwGetTime();
+    const double moved = std::hypot(x - window.last_click_x_, y - window.last_click_y_);
+    window.input_.double_clicked =
+        now - window.last_click_s_ < double_click_s && moved < double_click_pixels;
+    window.last_click_s_ = now;
+    window.last_click_x_ = x;
+    window.last_click_y_ = y;
+}
+
+std::vector<const char*> Window::vulkan_extensions() const {
+    std::uint32_t count = 0;
+    const char* const* const names = glfwGetRequiredInstanceExtensions(&count);
+    if (!names) throw PlatformError("this display cannot show what Vulkan draws");
+    return {names, names + count};
+}
+
+VkSurfaceKHR Window::create_surface(VkInstance instance) const {
+    VkSurfaceKHR surface = VK_NULL_HANDLE;
+    if (glfwCreateWindowSurface(instance, window_, nullptr, &surface) != VK_SUCCESS) {
+        throw PlatformError(
+            fmt::format("Vulkan cannot draw into the window ({})", last_glfw_error()));
+    }
+    return surface;
+}
+
+VkExtent2D Window::size() const {
+    int width = 0, height = 0;
+    glfwGetFramebufferSize(window_, &width, &height);
+    return {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
+}
+
+const Input& Window::poll(double wait_s) {
+    input_.pressed.clear();
+    input_.clicked.fill(false);
+    input_.double_clicked = false;
+    input_.wheel = 0;
+    input_.resized = false;
+    if (wait_s > 0) {
+        glfwWaitEventsTimeout(wait_s);
+    } else {
+        glfwPollEvents();
+    }
+    int width = 0, height = 0;
+    glfwGetWindowSize(window_, &width, &height);
+    const VkExtent2D pixels = size();
+    double x = 0, y = 0;
+    glfwGetCursorPos(window_, &x, &y);
+    if (width > 0) x *= static_cast<double>(pixels.width) / width;
+    if (height > 0) y *= static_cast<double>(pixels.height) / height;
+    input_.mouse_dx = has_mouse_ ? x - input_.mouse_x : 0;
+    input_.mouse_dy = has_mouse_ ? y - input_.mouse_y : 0;
+    input_.mouse_x = x;
+    input_.mouse_y = y;
+    has_mouse_ = true;
+    return input_;
+}
+
+bool Window::should_close() const { return glfwWindowShouldClose(window_) == GLFW_TRUE; }
+
+void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
+
+}  // namespace palpa

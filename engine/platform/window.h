@@ -1,0 +1,105 @@
+// A window on the display: its size, its keys and its mouse, and a surface to draw on.
+#pragma once
+#include <vulkan/vulkan.h>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+struct GLFWwindow;
+
+namespace palpa {
+
+// No display, or one that cannot show a window: a sentence for the user.
+class PlatformError : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+enum class MouseButton { Left, Right, Middle };
+
+// Keys that mean something; all others are passed over.
+enum class Key {
+    Space,
+    Escape,
+    Tab,
+    Home,
+    F1,
+    F5,
+    F12,
+    Period,
+    Digit1,
+    Digit2,
+    Digit3,
+    Digit4,
+    Digit5,
+    A,
+    C,
+    F,
+    H,
+    L,
+    O,
+    P,
+    R,
+    V,
+    Y,
+    Z,
+    Count
+};
+
+// What came in since the last poll. Mouse places in pixels of the picture, from the upper left.
+struct Input {
+    double mouse_x = 0, mouse_y = 0;
+    double mouse_dx = 0, mouse_dy = 0;
+    double wheel = 0;               // notches, + away from the user
+    std::array<bool, 3> down{};     // by MouseButton, at this moment
+    std::array<bool, 3> clicked{};  // went down since the last poll
+    bool double_clicked = false;    // the left one, twice at one place
+    std::array<bool, static_cast<std::size_t>(Key::Count)> held{};
+    std::vector<Key> pressed;  // since the last poll, in their order
+    bool shift = false, control = false;
+    bool resized = false;  // of the picture
+
+    bool is_held(Key key) const { return held[static_cast<std::size_t>(key)]; }
+    bool is_down(MouseButton button) const { return down[static_cast<std::size_t>(button)]; }
+    bool was_clicked(MouseButton button) const { return clicked[static_cast<std::size_t>(button)]; }
+};
+
+// One at a time, on the main thread.
+class Window {
+public:
+    // Throws PlatformError where there is no display.
+    Window(const std::string& title, std::uint32_t width, std::uint32_t height);
+    Window(const Window&) = delete;
+    Window& operator=(const Window&) = delete;
+    ~Window();
+
+    // What a surface needs of the Vulkan instance, and the surface, which belongs to the caller.
+    std::vector<const char*> vulkan_extensions() const;
+    VkSurfaceKHR create_surface(VkInstance instance) const;
+
+    // Of the picture, in pixels; 0x0 while the window is folded away.
+    VkExtent2D size() const;
+
+    // Takes in what happened. `wait_s`: for that long at most while nothing happens.
+    const Input& poll(double wait_s = 0);
+
+    bool should_close() const;
+    void set_title(const std::string& title);
+
+    // For the overlay library's own listening.
+    GLFWwindow* handle() const noexcept { return window_; }
+
+private:
+    static void listen(GLFWwindow* window);
+    static void press(Window& window, MouseButton button);
+
+    GLFWwindow* window_ = nullptr;
+    Input input_;
+    bool has_mouse_ = false;
+    double last_click_s_ = -1, last_click_x_ = 0, last_click_y_ = 0;
+};
+
+}  // namespace palpa

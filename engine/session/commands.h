@@ -1,0 +1,45 @@
+// What may be asked of a running scene, and what it tells of itself.
+#pragma once
+#include "haptics/exchange.h"
+#include "scene/description.h"
+#include "view/build_frame.h"
+
+#include <cstdint>
+#include <string>
+#include <variant>
+
+namespace palpa {
+
+// What a person may change while a scene runs.
+struct LiveSettings {
+    CouplingDescription coupling;
+    double period_ms = 1;
+
+    friend bool operator==(const LiveSettings&, const LiveSettings&) = default;
+};
+
+// Commands are taken between two steps, in the order in which they were sent.
+struct Pause {
+    bool paused = true;  // while it lasts nothing moves, and the hand feels nothing
+};
+struct StepOnce {};  // and pause
+struct Reset {};     // load the scene again; the settings stay
+using Command = std::variant<LiveSettings, ViewSettings, Pause, StepOnce, Reset>;
+
+// What a running scene tells, all of one moment between two steps.
+struct Readout {
+    TouchModel touch;
+    std::uint64_t steps = 0;
+    std::uint64_t late_steps = 0;  // that took longer than the period
+    double step_ms = 0;            // wall time of the last step
+    bool paused = false;
+    std::string problem;  // why the last Reset failed; else empty
+};
+
+// How the servo fares.
+struct ServoHealth {
+    std::uint64_t overruns = 0;  // ticks that were skipped because one began too late
+    bool real_time = false;      // the system granted real-time priority
+};
+
+}  // namespace palpa

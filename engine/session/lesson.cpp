@@ -1,0 +1,53 @@
+#include "session/lesson.h"
+
+#include <algorithm>
+
+namespace palpa {
+namespace {
+
+constexpr double tick_s = 1 / servo_rate_hz;
+
+double value_of(LessonQuantity quantity, const Reading& reading, CouplingMode mode) noexcept {
+    switch (quantity) {
+        case LessonQuantity::Distance:
+            return reading.distance_angstrom;
+        case LessonQuantity::Force:
+            return reading.molecular_nN;
+        case LessonQuantity::FeltForce:
+            return reading.hand_N;
+        case LessonQuantity::Mode:
+            break;
+    }
+    return static_cast<double>(mode) + 1;  // modes are counted from 1
+}
+
+}  // namespace
+
+void Lesson::update(const Reading& reading, CouplingMode mode) noexcept {
+    if (is_done()) return;
+    const LessonStepDescription& step = steps_[current_];
+    const double value = value_of(step.quantity, reading, mode);
+    const bool holds =
+        (!step.at_least || value >= *step.at_least) && (!step.at_most || value <= *step.at_most);
+    held_s_ = holds ? held_s_ + tick_s : 0;
+    // Half a tick keeps the count from hanging on rounding.
+    if (holds && held_s_ > step.for_s - 0.5 * tick_s) skip();
+}
+
+double Lesson::share() const noexcept {
+    if (is_done() || steps_[current_].for_s <= 0) return 0;
+    return std::min(held_s_ / steps_[current_].for_s, 1.0);
+}
+
+void Lesson::skip() noexcept {
+    if (is_done()) return;
+    ++current_;
+    held_s_ = 0;
+}
+
+void Lesson::restart() noexcept {
+    current_ = 0;
+    held_s_ = 0;
+}
+
+}  // namespace palpa

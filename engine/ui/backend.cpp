@@ -1,0 +1,107 @@
+#include "ui/backend.h"
+
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_vulkan.h>
+#include <imgui.h>
+#include <filesystem>
+#include <system_error>
+
+namespace palpa {
+namespace {
+
+// Where systems keep a font that can be read; the library's own bitmap font is the last resort.
+constexpr const char* font_files[] = {
+    "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
+    "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf",
+    "C:\\Windows\\Fonts\\segoeui.ttf",
+    "/System/Library/Fonts/Helvetica.ttc",
+};
+
+void add_font(float text_pixels) {
+    // Latin, Greek, sub- and superscripts, arrows, mathematics: what formulas need.
+    static constexpr ImWchar ranges[] = {0x20,   0xFF,   0x370,  0x3FF,  0x2010, 0x2027, 0x2070,
+                                         0x209F, 0x2190, 0x21FF, 0x2200, 0x22FF, 0};
+    ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
+    for (const char* const file : font_files) {
+        std::error_code error;
+        if (!std::filesystem::is_regular_file(file, error)) continue;
+        if (atlas.AddFontFromFileTTF(file, text_pixels, nullptr, ranges)) return;
+    }
+    atlas.AddFontDefault();
+}
+
+}  // namespace
+
+void set_ui_style(float text_pixels) {
+    add_font(text_pixels);
+    ImGui::StyleColorsLight();
+    ImGuiStyle& style = ImGui::GetStyle();
+    style.WindowRounding = 6;
+    style.FrameRounding = style.GrabRounding = style.TabRounding = 4;
+    style.WindowBorderSize = 0;
+    style.WindowPadding = {10, 8};
+    style.ItemSpacing = {8, 5};
+    style.Colors[ImGuiCol_WindowBg] = {1, 1, 1, 0.86F};
+    style.Colors[ImGuiCol_PopupBg] = {1, 1, 0.97F, 0.97F};
+    style.Colors[ImGuiCol_TitleBg] =
+        style.Colors[ImGuiCol_TitleBgActive] = {0.86F, 0.90F, 0.95F, 0.95F};
+    style.Colors[ImGuiCol_FrameBg] = {0.90F, 0.92F, 0.95F, 1};
+}
+
+UiBackend::UiBackend(const Window& window, GpuDevice& device, VkRenderPass pass,
+                     std::uint32_t images)
+    : device_(device) {
+    const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 4};
+    VkDescriptorPoolCreateInfo pool{};
+    pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
+    pool.flags = VK_DESCRIPTOR_POOL_CREATE_FREE_DESCRIPTOR_SET_BIT;
+    pool.maxSets = 4;
+    pool.poolSizeCount = 1;
+    pool.pPoolSizes = &size;
+    check_vulkan(vkCreateDescriptorPool(device.handle(), &pool, nullptr, &descriptors_),
+                 "vkCreateDescriptorPool");
+
+    ImGui::CreateContext();
+    ImGui::GetIO().IniFilename = nullptr;
+    set_ui_style(15);
+    ImGui_ImplGlfw_InitForVulkan(window.handle(), true);
+    ImGui_ImplVulkan_InitInfo info{};
+    info.Instance = device.instance();
+    info.PhysicalDevice = device.physical();
+    info.Device = device.handle();
+    info.QueueFamily = device.queue_family();
+    info.Queue = device.queue();
+    info.DescriptorPool = descriptors_;
+    info.MinImageCount = 2;
+    info.ImageCount = images;
+    info.CheckVkResultFn = [](VkResult result) { check_vulkan(result, "the overlay's drawing"); };
+    ImGui_ImplVulkan_Init(&info, pass);
+    device.submit([](VkCommandBuffer commands) { ImGui_ImplVulkan_CreateFontsTexture(commands); });
+    ImGui_ImplVulkan_DestroyFontUploadObjects();
+}
+
+UiBackend::~UiBackend() {
+    vkDeviceWaitIdle(device_.handle());
+    ImGui_ImplVulkan_Shutdown();
+    ImGui_ImplGlfw_Shutdown();
+    ImGui::DestroyContext();
+    vkDestroyDescriptorPool(device_.handle(), descriptors_, nullptr);
+}
+
+void UiBackend::begin() {
+    ImGui_ImplVulkan_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+}
+
+void UiBackend::end() { ImGui::Render(); }
+
+void UiBackend::draw(VkCommandBuffer commands) {
+    ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), commands);
+}
+
+bool UiBackend::wants_mouse() const { return ImGui::GetIO().WantCaptureMouse; }
+
+bool UiBackend::wants_keys() const { return ImGui::GetIO().WantTextInput; }
+
+}  // namespace palpa

@@ -1,0 +1,28 @@
+// The last seconds of a session, thinned, for the plots.
+#pragma once
+#include "session/reading.h"
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace palpa {
+
+class History {
+public:
+    static constexpr double seconds = 10;
+    static constexpr int ticks_per_sample = 10;
+
+    // Every tick in its order; one of ten is kept.
+    void add(const Reading& reading);
+    void clear();
+
+    // Those of the last seconds, in the order of time.
+    std::span<const Reading> samples() const noexcept;
+
+private:
+    std::vector<Reading> samples_;
+    int ticks_ = 0;
+};
+
+}  // namespace palpa

@@ -1,0 +1,88 @@
+// The overlays of a running scene: what is felt and why, and everything that can be changed.
+#pragma once
+#include "haptics/plant.h"
+#include "scene/description.h"
+#include "session/commands.h"
+#include "session/lesson.h"
+#include "ui/history.h"
+#include "ui/shortcuts.h"
+
+#include <string>
+#include <vector>
+
+namespace palpa {
+
+// What the window knows beside the readout.
+struct OverlayStatus {
+    ServoHealth servo;
+    std::string device_name, gpu_name;
+    double frame_ms = 0;
+    double render_scale = 1;
+    bool holding = false;  // the hand is on the molecule
+    std::string notice;    // of the last seconds, such as where a screenshot went
+};
+
+class Overlay {
+public:
+    Overlay(const SceneDescription& scene, const ViewSettings& view);
+
+    void add_tick(const ServoTick& tick);
+
+    // Describes all overlays to the overlay library, between begin and end of its frame. What the
+    // person asks for is appended to `commands` and `actions`.
+    void draw(const Readout& readout, const OverlayStatus& status, std::vector<Command>& commands,
+              std::vector<Action>& actions);
+
+    // Does what an action means for settings and overlays; false where it is the window's business.
+    bool perform(Action action, const Readout& readout, std::vector<Command>& commands);
+
+    // The hand feels a spring, at this moment, that it cannot keep calm at the present period.
+    bool is_shaking(const Readout& readout) const;
+
+    // Pixels at the left and at the right that the overlays cover, of a window that wide.
+    float covered_pixels(float window_width) const noexcept;
+
+    const LiveSettings& settings() const noexcept { return settings_; }
+    const ViewSettings& view() const noexcept { return view_; }
+    const Lesson& lesson() const noexcept { return lesson_; }
+
+private:
+    void draw_scene(const Readout& readout, const OverlayStatus& status,
+                    std::vector<Command>& commands, std::vector<Action>& actions);
+    void draw_readings(const Readout& readout, const OverlayStatus& status);
+    void draw_gains(std::vector<Command>& commands);
+    void draw_gain_sliders();
+    void draw_history();
+    void draw_lesson();
+    void draw_warnings(const Readout& readout, const OverlayStatus& status);
+    void draw_help();
+
+    // Of the slider just described: an edit that ends becomes one step of undo.
+    void remember_edit(const LiveSettings& before);
+    // One slider over a setting.
+    void slide(const char* label, double& value, double low, double high, const char* format,
+               bool logarithmic, const char* tip);
+    void set_mode(CouplingMode mode, std::vector<Command>& commands);
+    void change_settings(const LiveSettings& settings, std::vector<Command>& commands);
+    void update_limit();
+
+    SceneDescription scene_;
+    LiveSettings settings_, before_edit_;
+    std::vector<LiveSettings> undo_, redo_;
+    ViewSettings view_;
+    Plant plant_;
+    double stiffness_limit_ = 0;  // N/m that this hand keeps calm at the present period
+    double shaking_for_s_ = 0;    // how long the warning stays
+
+    Lesson lesson_;
+    History history_;
+    Reading last_;
+    bool clamped_ = false, stopped_ = false;
+    double force_gain_ = 0;
+    float gains_bottom_ = 0;  // pixels, where the next panel of that column may begin
+
+    bool shows_overlays_ = true, shows_lesson_ = true, shows_help_ = false;
+    std::vector<double> x_, y_, z_;  // of the plots, kept for their room
+};
+
+}  // namespace palpa

@@ -1,0 +1,41 @@
+// A small plot in an overlay: axes with round numbers, lines, points.
+#pragma once
+#include <imgui.h>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace palpa {
+
+struct PlotRange {
+    double low = 0, high = 1;
+};
+
+// Room for all values, at least `least` wide, with a margin; around 0 where there are none.
+PlotRange range_around(std::span<const double> values, double least);
+
+// About `count` round numbers inside the range, 1, 2 or 5 times a power of ten apart.
+std::vector<double> round_ticks(PlotRange range, int count);
+
+struct PlotLine {
+    std::span<const double> x, y;  // of one length
+    ImU32 colour = 0;
+    std::string_view name;  // in the legend; empty: none
+};
+
+struct PlotPoint {
+    double x = 0, y = 0;
+    ImU32 colour = 0;
+};
+
+struct Plot {
+    std::string_view x_label, y_label;  // with unit; without x_label no numbers stand below
+    PlotRange x, y;
+    std::span<const PlotLine> lines;
+    std::span<const PlotPoint> points{};
+};
+
+// Draws the plot at the cursor, `height` pixels high and as wide as the window.
+void draw_plot(const char* id, const Plot& plot, float height);
+
+}  // namespace palpa

@@ -1,0 +1,57 @@
+#include "ui/shortcuts.h"
+
+#include <array>
+
+namespace palpa {
+namespace {
+
+constexpr std::array list = std::to_array<Shortcut>({
+    {Key::P, false, Action::PauseOrGo, "P", "pause, go on"},
+    {Key::Period, false, Action::StepOnce, ".", "one single step"},
+    {Key::R, false, Action::Reset, "R", "back to the start"},
+    {Key::Digit1, false, Action::Mode1, "1", "variable force and displacement gain"},
+    {Key::Digit2, false, Action::Mode2, "2", "variable force gain"},
+    {Key::Digit3, false, Action::Mode3, "3", "variable displacement gain"},
+    {Key::Digit4, false, Action::Mode4, "4", "constant gains"},
+    {Key::Digit5, false, Action::Mode5, "5", "no force"},
+    {Key::Z, true, Action::Undo, "Ctrl+Z", "undo a change of the settings"},
+    {Key::Y, true, Action::Redo, "Ctrl+Y", "do it again"},
+    {Key::V, false, Action::NextRepresentation, "V", "another representation"},
+    {Key::C, false, Action::NextColouring, "C", "other colours"},
+    {Key::F, false, Action::Focus, "F", "look at the molecule in hand"},
+    {Key::Home, false, Action::FrameAll, "Home", "look at everything"},
+    {Key::A, false, Action::FrameAll, "A", "look at everything"},
+    {Key::O, false, Action::ToggleOverlay, "O", "overlays on, off"},
+    {Key::Tab, false, Action::ToggleOverlay, "Tab", "overlays on, off"},
+    {Key::L, false, Action::ToggleLesson, "L", "lesson on, off"},
+    {Key::H, false, Action::ToggleHelp, "H", "this list"},
+    {Key::F1, false, Action::ToggleHelp, "F1", "this list"},
+    {Key::F12, false, Action::Screenshot, "F12", "screenshot"},
+    {Key::F5, false, Action::RestartGraphics, "F5", "set the graphics up again"},
+    {Key::Escape, false, Action::Quit, "Esc", "quit"},
+});
+
+constexpr std::array gesture_list = std::to_array<Gesture>({
+    {"hold Space, move the mouse", "take the molecule in hand and pull it"},
+    {"hold Space, turn the wheel", "push it away from you, draw it near"},
+    {"drag", "turn the view"},
+    {"right drag, Shift+drag", "shift the view"},
+    {"wheel", "nearer, farther"},
+    {"double click on an atom", "look at it"},
+    {"Ctrl+click on a slider", "type a number"},
+});
+
+}  // namespace
+
+std::span<const Shortcut> shortcuts() noexcept { return list; }
+
+std::span<const Gesture> gestures() noexcept { return gesture_list; }
+
+std::optional<Action> find_action(Key key, bool control) noexcept {
+    for (const Shortcut& shortcut : list) {
+        if (shortcut.key == key && shortcut.control == control) return shortcut.action;
+    }
+    return std::nullopt;
+}
+
+}  // namespace palpa

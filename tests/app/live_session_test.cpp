@@ -1,0 +1,114 @@
+// Servo and simulation on their own threads: what is asked happens, in its order, and nothing
+// races. No test here says how fast; they wait until something is so.
+#include "app/live_session.h"
+
+#include "devices/emulated_omni.h"
+#include "haptics/hand.h"
+#include "simulation/step.h"
+#include "tests/support/water_scene.h"
+
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <functional>
+#include <thread>
+#include <vector>
+
+using namespace palpa;
+
+namespace {
+
+// A live session of the water scene with a mouse's hand on the handle.
+struct Live {
+    explicit Live(const std::vector<std::string>& settings = {})
+        : device(make_settings(&targets)), session(test::water_scene(settings), {}, device) {}
+
+    static EmulatedOmniSettings make_settings(HandTargets* targets) {
+        EmulatedOmniSettings settings;
+        settings.hand = hand_model(Grip::Medium);
+        settings.live = targets;
+        settings.half_workspace_m = Vec3::Constant(0.5);
+        return settings;
+    }
+
+    // Looks again and again until it is so; a minute is for machines that do other things as well.
+    bool wait_until(const std::function<bool(const LiveFrame&)>& is_so) {
+        const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+        while (std::chrono::steady_clock::now() < end) {
+            for (ServoTick tick; session.pop_tick(tick);) last = tick;
+            if (session.read_frame(frame) && is_so(frame)) return true;
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        }
+        return false;
+    }
+    bool wait_for_steps(std::uint64_t more) {
+        const std::uint64_t from = frame.readout.steps;
+        return wait_until([&](const LiveFrame& f) { return f.readout.steps >= from + more; });
+    }
+    double distance() const { return frame.readout.touch.molecule_angstrom.x(); }
+
+    HandTargets targets;
+    EmulatedOmni device;
+    LiveSession session;
+    LiveFrame frame;
+    ServoTick last;
+};
+
+}  // namespace
+
+TEST_CASE("the mouse's hand draws the molecule near, and the hand feels it", "[app][threads]") {
+    Live live;
+    REQUIRE(live.wait_for_steps(10));
+    CHECK(live.distance() == Approx(7).margin(0.01));
+    CHECK(live.frame.picture.spheres.size() == 6);
+
+    live.targets.post({Vec3(-0.0925, 0, 0)});  // 3.7 Å at 2.5 cm/Å
+
+    CHECK(live.wait_until([&](const LiveFrame&) { return live.distance() < 3.5; }));
+    CHECK(live.wait_until([&](const LiveFrame&) { return live.last.sent_newton.x() < -0.5; }));
+    CHECK(live.frame.grabbed_angstrom.x() - live.distance() == Approx(0).margin(1e-9));
+}
+
+TEST_CASE("while paused nothing moves and nothing is felt and going on nothing jumps",
+          "[app][threads]") {
+    Live live({"start_angstrom=3.1"});
+    REQUIRE(live.wait_until([&](const LiveFrame&) { return live.last.sent_newton.x() < -0.5; }));
+    live.session.send(Pause{true});
+    REQUIRE(live.wait_until([](const LiveFrame& f) { return f.readout.paused; }));
+    REQUIRE(live.wait_until([&](const LiveFrame&) { return live.last.sent_newton.isZero(); }));
+    const double there = live.distance();
+    const std::uint64_t steps = live.frame.readout.steps;
+    live.targets.post({Vec3(-0.2, 0, 0)});
+    REQUIRE(live.wait_until(
+        [&](const LiveFrame&) { return live.last.reading.position_m.x() < -0.19; }));
+    CHECK(live.distance() == there);
+    CHECK(live.frame.readout.steps == steps);
+
+    live.session.send(StepOnce{});
+    REQUIRE(live.wait_until([&](const LiveFrame& f) { return f.readout.steps == steps + 1; }));
+    CHECK(live.frame.readout.paused);
+    CHECK(live.distance() == Approx(there).margin(0.5));
+
+    live.session.send(Pause{false});
+    REQUIRE(live.wait_for_steps(2));
+    CHECK(live.distance() == Approx(there).margin(0.5));  // not 8 Å further on
+}
+
+TEST_CASE("settings, view and reset reach the running scene", "[app][threads]") {
+    Live live;
+    LiveSettings settings{test::water_scene().coupling, 5};
+    settings.coupling.A_d = 1e9;
+    live.session.send(settings);
+    live.session.send(
+        ViewSettings{.representation = Representation::SpaceFilling, .force_arrow = false});
+    REQUIRE(live.wait_until([](const LiveFrame& f) {
+        return f.readout.touch.period_s == 0.005 && f.readout.touch.displacement_gain == 1e9 &&
+               f.picture.cones.empty();
+    }));
+
+    live.targets.post({Vec3(-0.2, 0, 0)});
+    REQUIRE(live.wait_until([&](const LiveFrame&) { return live.distance() < 5.5; }));
+    live.session.send(Reset{});
+    CHECK(live.wait_until([&](const LiveFrame&) { return live.distance() > 6.5; }));
+    CHECK(live.frame.readout.touch.displacement_gain == 1e9);  // the settings stay
+    CHECK(live.frame.readout.problem.empty());
+}

@@ -1,0 +1,162 @@
+"""One session in a window under Xvfb: start, drag the molecule, move a slider, switch the mode, take
+a screenshot, set the graphics up again, change the size, quit. Vulkan's validation watches."""
+import json
+import os
+import shutil
+import struct
+import subprocess
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+PROGRAM = os.environ["PALPA_PROGRAM"]
+ROOT = Path(os.environ["PALPA_ROOT"])
+
+
+def size_of_png(path):
+    data = path.read_bytes()
+    assert data[:8] == b"\x89PNG\r\n\x1a\n"
+    return struct.unpack(">II", data[16:24])
+
+
+class Display:
+    """A display that nobody sees, on a number that is free."""
+
+    def __enter__(self):
+        read, write = os.pipe()
+        self.server = subprocess.Popen(
+            ["Xvfb", "-displayfd", str(write), "-screen", "0", "1280x800x24", "-nolisten", "tcp"],
+            pass_fds=[write], stderr=subprocess.DEVNULL)
+        os.close(write)
+        with os.fdopen(read) as pipe:
+            self.name = ":" + pipe.readline().strip()
+        return self
+
+    def __exit__(self, *_):
+        self.server.terminate()
+        self.server.wait()
+
+    def do(self, *words):
+        subprocess.run(["xdotool", *map(str, words)], check=True,
+                       env={**os.environ, "DISPLAY": self.name}, stdout=subprocess.DEVNULL)
+
+    def find_window(self):
+        return subprocess.run(["xdotool", "search", "--name", "^Palpa - "], capture_output=True,
+                              text=True, env={**os.environ, "DISPLAY": self.name}).stdout.split()
+
+
+class Session(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp())
+
+    def tearDown(self):
+        keep = os.environ.get("PALPA_KEEP_SCREENSHOTS")
+        if keep:
+            shutil.copytree(self.folder, keep, dirs_exist_ok=True)
+        shutil.rmtree(self.folder)
+
+    def wait_until(self, is_so, what):
+        for _ in range(1200):
+            if is_so():
+                return
+            self.assertIsNone(self.program.poll(), "the program ended early")
+            time.sleep(0.05)
+        self.fail("waited in vain for " + what)
+
+    def start(self, display, *options):
+        self.program = subprocess.Popen(
+            [PROGRAM, "run", ROOT / "scenes" / "water", "--screenshots", self.folder, "--json",
+             "--validation", *map(str, options)],
+            env={**os.environ, "DISPLAY": display.name}, stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE, text=True)
+        self.wait_until(display.find_window, "the window")
+        display.do("windowfocus", "--sync", display.find_window()[0])
+        self.screenshots = 0
+        self.screenshot(display)  # the first picture is there: it takes part from now on
+
+    def screenshot(self, display):
+        self.screenshots += 1
+        path = self.folder / f"palpa-{self.screenshots:04}.png"
+        display.do("key", "F12")
+        self.wait_until(path.exists, path.name)
+        return path
+
+    def quit(self, display):
+        display.do("key", "Escape")
+        out, err = self.program.communicate(timeout=60)
+        self.assertEqual(self.program.returncode, 0, err)
+        return json.loads(out)
+
+    def test_a_session_with_mouse_and_keys(self):
+        with Display() as display:
+            self.start(display)
+            first = self.folder / "palpa-0001.png"
+            self.assertEqual(size_of_png(first), (1280, 800))
+
+            # A plain drag turns the view and pushes no atoms.
+            display.do("mousemove", 640, 330, "mousedown", 1)
+            for _ in range(10):
+                display.do("mousemove_relative", "--", -8, 2)
+            display.do("mouseup", 1)
+            display.do("key", "Home")
+            # With Space held the molecule comes along.
+            display.do("mousemove", 660, 330, "keydown", "space")
+            for _ in range(30):
+                display.do("mousemove_relative", "--", -6, 0)
+                time.sleep(0.02)
+            time.sleep(0.5)
+            display.do("keyup", "space")
+            second = self.screenshot(display)
+            self.assertNotEqual(first.read_bytes(), second.read_bytes())
+
+            # The first slider of the gains, A_f max, to its far right.
+            display.do("mousemove", 1000, 302, "mousedown", 1)
+            time.sleep(0.2)
+            display.do("mousemove", 1178, 302)
+            time.sleep(0.2)
+            display.do("mouseup", 1)
+            display.do("key", "3")
+            display.do("key", "v")
+            display.do("key", "F5")
+            self.screenshot(display)
+            display.do("windowsize", "--sync", display.find_window()[0], 900, 600)
+            self.wait_until(lambda: size_of_png(self.screenshot(display)) == (900, 600),
+                            "the new size")
+            summary = self.quit(display)
+
+        self.assertLess(summary["closest_angstrom"], 6.5)
+        self.assertEqual(summary["mode"], "3")
+        self.assertGreater(summary["coupling"]["A_f_max"], 6e9)
+        self.assertGreater(summary["steps"], 0)
+        self.assertFalse(summary["stopped"])
+
+    def test_a_hand_that_nobody_moves_moves_nothing(self):
+        with Display() as display:
+            self.start(display)
+            display.do("mousemove", 640, 330, "mousedown", 1)
+            for _ in range(10):
+                display.do("mousemove_relative", "--", -20, 0)
+            display.do("mouseup", 1)
+            summary = self.quit(display)
+        self.assertAlmostEqual(summary["closest_angstrom"], 7, delta=0.05)
+
+    def test_the_emulated_hand_can_play(self):
+        with Display() as display:
+            self.start(display, "--play", "--set", "stroke_s=0.5")
+            time.sleep(2)
+            summary = self.quit(display)
+        self.assertLess(summary["closest_angstrom"], 3.2)
+
+    def test_no_display_is_one_line(self):
+        clean = {key: value for key, value in os.environ.items()
+                 if key not in ("DISPLAY", "WAYLAND_DISPLAY")}
+        result = subprocess.run([PROGRAM, "run", ROOT / "scenes" / "water"], env=clean,
+                                capture_output=True, text=True)
+        self.assertEqual(result.returncode, 2)
+        self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
+        self.assertIn("no display", result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

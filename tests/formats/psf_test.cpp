@@ -1,0 +1,252 @@
+#include "formats/psf.h"
+
+#include "core/text.h"
+#include "tests/support/load_error_of.h"
+
+#include <fmt/format.h>
+#include <catch2/catch.hpp>
+#include <cstddef>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+using namespace palpa;
+using Catch::Contains;
+using Catch::StartsWith;
+using test::load_error_of;
+
+namespace {
+
+// Typed by hand after CHARMM's (I8,1X,A4,1X,A4,1X,A4,1X,A4,1X,I4,1X,2G14.6,I8): a hydroxyl and a
+// water, types by number, the two more columns of CHEQ.
+const std::string charmm = R"(PSF CMAP CHEQ
+
+       1 !NTITLE
+* A TITLE WITH AN EXCLAMATION MARK!
+
+       5 !NATOM
+       1 SOLV 1    MEOH O      73  -0.650000       15.9994           0   0.00000     -0.301140E-02
+       2 SOLV 1    MEOH H      43   0.420000       1.00800           0   0.00000     -0.301140E-02
+       3 SOLV 2A   TIP3 OH2    75  -0.834000       15.9994           0   0.00000     -0.301140E-02
+       4 SOLV 2A   TIP3 H1      4   0.417000       1.00800           0   0.00000     -0.301140E-02
+       5 SOLV 2A   TIP3 H2      4   0.417000       1.00800           0   0.00000     -0.301140E-02
+
+       3 !NBOND: bonds
+       1       2       3       4       3       5
+
+       1 !NTHETA: angles
+       4       3       5
+
+       1 !NPHI: dihedrals
+       1       2       3       4
+
+       1 !NIMPHI: impropers
+       5       4       3       2
+
+       1 !NDON: donors
+       1       2
+
+       2 !NACC: acceptors
+       1       0       3       0
+
+       0 !NNB
+
+       0       0       0       0       0
+
+       2       0 !NGRP NST2
+       0       1       0       2       2       0
+
+       1 !MOLNT
+       1       1       1       1       1
+
+       0       0 !NUMLP NUMLPH
+
+       1 !NCRTERM: cross-terms
+       1       2       3       4       2       3       4       5
+)";
+
+// (I10,1X,A8,1X,A8,1X,A8,1X,A8,1X,A6,1X,2G14.6,I8), types by name.
+const std::string extended = R"(PSF EXT XPLOR
+
+         0 !NTITLE
+
+         2 !NATOM
+         1 PROTEINA 1        LIGAND   O58      OG2D1   -0.450000       15.9994           0
+         2 PROTEINA 1        LIGAND   C81      CG2O6    0.450000       12.0110           0
+
+         1 !NBOND: bonds
+         1         2
+
+         0 !NTHETA: angles
+
+
+         0 !NPHI: dihedrals
+
+
+         0 !NIMPHI: impropers
+
+
+         0 !NDON: donors
+
+
+         0 !NACC: acceptors
+
+
+         0 !NNB
+
+         0         0
+
+         1         0 !NGRP NST2
+         0         0         0
+)";
+
+// psfgen: fields wherever the blanks put them.
+const std::string namd = R"(PSF NAMD
+
+       1 !NTITLE
+ REMARKS made for NAMD
+
+       2 !NATOM
+ 1 A 1 SOD SOD SOD 1.0 22.9898 0
+ 2 A 2 CLA CLA CLA -1.0 35.45 0
+
+       0 !NBOND: bonds
+       0 !NTHETA: angles
+       0 !NPHI: dihedrals
+       0 !NIMPHI: impropers
+       0 !NDON: donors
+       0 !NACC: acceptors
+       1 !NNB
+       2
+       1       1
+       0       0 !NGRP
+)";
+
+std::string replaced(std::string text, const std::string& old, const std::string& by) {
+    const std::size_t at = text.find(old);
+    REQUIRE(at != std::string::npos);
+    return text.replace(at, old.size(), by);
+}
+
+std::string error_of(const std::string& text) {
+    return load_error_of([&] { parse_psf(text, "w.psf"); });
+}
+
+}  // namespace
+
+TEST_CASE("CHARMM's own form is read with all its sections", "[formats][psf]") {
+    const Topology topology = parse_psf(charmm, "w.psf");
+
+    REQUIRE(topology.names.size() == 5);
+    CHECK(to_string(topology.names[2]) == "SOLV TIP3 2A OH2");
+    CHECK(topology.type == std::vector<std::string>{"73", "43", "75", "4", "4"});
+    CHECK(topology.charge == std::vector<double>{-0.65, 0.42, -0.834, 0.417, 0.417});
+    CHECK(topology.mass[1] == 1.008);
+    CHECK(topology.lines == std::vector<std::size_t>{7, 8, 9, 10, 11});
+    CHECK(topology.bonds == std::vector<std::array<std::uint32_t, 2>>{{0, 1}, {2, 3}, {2, 4}});
+    CHECK(topology.angles == std::vector<std::array<std::uint32_t, 3>>{{3, 2, 4}});
+    CHECK(topology.dihedrals == std::vector<std::array<std::uint32_t, 4>>{{0, 1, 2, 3}});
+    CHECK(topology.impropers == std::vector<std::array<std::uint32_t, 4>>{{4, 3, 2, 1}});
+    CHECK(topology.cmaps == std::vector<std::array<std::uint32_t, 8>>{{0, 1, 2, 3, 1, 2, 3, 4}});
+}
+
+TEST_CASE("the extended form and NAMD's are read", "[formats][psf]") {
+    const Topology wide = parse_psf(extended, "w.psf");
+    CHECK(to_string(wide.names[1]) == "PROTEINA LIGAND 1 C81");
+    CHECK(wide.type[1] == "CG2O6");
+    CHECK(wide.bonds.size() == 1);
+
+    const Topology free = parse_psf(namd, "w.psf");
+    CHECK(free.type == std::vector<std::string>{"SOD", "CLA"});
+    CHECK(free.charge[1] == -1);
+    CHECK(free.bonds.empty());
+}
+
+TEST_CASE("what is written reads the same", "[formats][psf]") {
+    Topology topology = parse_psf(GENERATE_COPY(charmm, extended, namd), "w.psf");
+
+    const Topology back = parse_psf(format_psf(topology, "one\ntwo"), "back.psf");
+
+    REQUIRE(back.names.size() == topology.names.size());
+    for (std::size_t i = 0; i < back.names.size(); ++i) {
+        CHECK(to_string(back.names[i]) == to_string(topology.names[i]));
+    }
+    CHECK(back.type == topology.type);
+    CHECK(back.charge == topology.charge);
+    CHECK(back.mass == topology.mass);
+    CHECK(back.bonds == topology.bonds);
+    CHECK(back.angles == topology.angles);
+    CHECK(back.dihedrals == topology.dihedrals);
+    CHECK(back.impropers == topology.impropers);
+    CHECK(back.cmaps == topology.cmaps);
+}
+
+TEST_CASE("what is wrong in a PSF file is told with its line", "[formats][psf]") {
+    struct Row {
+        const char *old, *by, *error;
+    };
+    const auto row = GENERATE(values<Row>({
+        {"PSF CMAP", "psf CMAP", "w.psf:1: no PSF file"},
+        {"CHEQ", "DRUDE", "w.psf:1: 'DRUDE' is no kind"},
+        {"5 !NATOM", "0 !NATOM", "w.psf:6: no atoms"},
+        {"5 !NATOM", "6 !NATOM", "w.psf:12: ends after 5 of 6 atoms"},
+        {"5 !NATOM", "4 !NATOM", "w.psf:11: '5 SOLV 2A"},
+        {"5 !NATOM", "-5 !NATOM", "w.psf:6: '-5' is not a count"},
+        {"5 !NATOM", "5 NATOM", "w.psf:6: '5 NATOM' is no head"},
+        {"       3 SOLV", "       4 SOLV", "w.psf:9: atom number 4; expected 3"},
+        {"2A   TIP3 H2 ", "2A   TIP3 H1 ",
+         "w.psf:11: atom SOLV TIP3 2A H1 again, first on line 10"},
+        {"-0.834000", "-0.83x000", "w.psf:9: '-0.83x000' is not a charge"},
+        {"       15.9994 ", "      -15.9994 ", "w.psf:7: a mass of -15.9994"},
+        {"MEOH O ", "     O ", "w.psf:7: 10 fields; expected the 9"},
+        {"3 !NBOND", "4 !NBOND", "w.psf:15: ends after 6 of 8 numbers"},
+        {"3 !NBOND", "2 !NBOND", "w.psf:14: more than the 4 numbers"},
+        {"3 !NBOND", "999999999999999999 !NBOND", "more than the file holds"},
+        {"       3       5\n\n       1 !NTHETA", "       3       6\n\n       1 !NTHETA",
+         "w.psf:14: atom number 6; expected 1 to 5"},
+        {"       3       5\n\n       1 !NTHETA", "       3       0\n\n       1 !NTHETA",
+         "w.psf:14: atom number 0; expected 1 to 5"},
+        {"       3       5\n\n       1 !NTHETA", "       5       5\n\n       1 !NTHETA",
+         "w.psf:14: atom number 5 twice"},
+        {"       3       5\n\n       1 !NTHETA", "       4       3\n\n       1 !NTHETA",
+         "the bond of SOLV TIP3 2A H1 and SOLV TIP3 2A OH2 comes twice"},
+        {"!NTHETA", "!NBOND", "w.psf:16: section !NBOND again, first on line 13"},
+        {"1 !NPHI", "1 !NFOO", "w.psf:19: section !NFOO is not empty"},
+        {"1       0       3       0", "1       0       3       x", "'x' is not a whole number"},
+        {"0       0 !NUMLP", "1       0 !NUMLP", "section !NUMLP is not empty"},
+        {"1 !NCRTERM", "0 !NUMOTHER", "is no head of a section"},
+    }));
+    INFO(row.old << " -> " << row.by);
+
+    CHECK_THAT(error_of(replaced(charmm, row.old, row.by)), Contains(row.error));
+}
+
+TEST_CASE("a PSF file that is cut off anywhere is refused", "[formats][psf]") {
+    // Without its last line end nothing is lost.
+    for (std::size_t length = 0; length + 1 < charmm.size(); ++length) {
+        const std::string error = error_of(charmm.substr(0, length));
+        // Of the last number any first digits are a number.
+        if (length + 2 >= charmm.size()) continue;
+        INFO(length);
+        CHECK_THAT(error, StartsWith("w.psf:"));
+    }
+    CHECK_THAT(error_of(""), StartsWith("w.psf:1: no PSF file"));
+}
+
+TEST_CASE("CHARMM's trialanine is read", "[formats][psf]") {
+    const char* const data = std::getenv("PALPA_DATA");
+    if (!data) {
+        WARN("SKIPPED: PALPA_DATA names no folder with data/energies");
+        return;
+    }
+    const Topology topology =
+        read_psf(std::filesystem::path(data) / "data/energies/ala_ala_ala/ala_ala_ala.psf");
+
+    CHECK(topology.names.size() == 33);
+    CHECK(topology.bonds.size() == 32);
+    CHECK(topology.angles.size() == 57);
+    CHECK(topology.dihedrals.size() == 74);
+    CHECK(topology.impropers.size() == 5);
+    CHECK(topology.cmaps.size() == 1);
+}

@@ -1,0 +1,119 @@
+// The lesson of a scene: what counts as done, and the water scene's own, played by the operator.
+#include "session/lesson.h"
+
+#include "devices/emulated_omni.h"
+#include "session/lockstep.h"
+#include "session/run_headless.h"
+#include "simulation/step.h"
+#include "tests/support/water_run.h"
+
+#include <catch2/catch.hpp>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+using namespace palpa;
+
+namespace {
+
+LessonStepDescription step_of(LessonQuantity quantity, std::optional<double> at_least,
+                              std::optional<double> at_most, double for_s = 0) {
+    return {"step", "text", "task", quantity, at_least, at_most, for_s};
+}
+
+constexpr CouplingMode mode_2 = CouplingMode::VariableForceConstantDisplacement;
+
+// Plays the water scene as the operator's path has it, and follows the lesson from `mode`.
+Lesson play_water(const std::vector<std::string>& settings, Lesson lesson) {
+    const SceneDescription scene = test::water_scene(settings);
+    Simulation simulation = load_simulation(scene);
+    EmulatedOmni device(build_emulated_omni(scene, simulation));
+    const auto step = [&](const HandPose& hand, const TouchModel& felt) {
+        return step_simulation(simulation, hand, felt).touch;
+    };
+    run_lockstep(
+        {static_cast<std::uint64_t>(scene.seconds * servo_rate_hz), 1},
+        build_servo_settings(scene, simulation), device, build_touch_model(simulation, {}), step,
+        [&](const ServoTick& tick) { lesson.update(read_tick(tick), scene.coupling.mode); });
+    return lesson;
+}
+
+}  // namespace
+
+TEST_CASE("a step is done when its value held for its time without a break", "[session][lesson]") {
+    Lesson lesson({step_of(LessonQuantity::Distance, 2.0, 3.0, 0.01),
+                   step_of(LessonQuantity::Force, {}, -0.3)});
+    Reading reading;
+    reading.distance_angstrom = 2.5;
+    for (int tick = 0; tick < 9; ++tick) lesson.update(reading, mode_2);
+    CHECK(lesson.current() == 0);
+    CHECK(lesson.share() == Approx(0.9));
+
+    reading.distance_angstrom = 3.5;  // a break: the time starts again
+    lesson.update(reading, mode_2);
+    CHECK(lesson.share() == 0);
+    reading.distance_angstrom = 3.0;
+    for (int tick = 0; tick < 10; ++tick) lesson.update(reading, mode_2);
+    CHECK(lesson.current() == 1);
+
+    reading.molecular_nN = -0.29;
+    lesson.update(reading, mode_2);
+    CHECK_FALSE(lesson.is_done());
+    reading.molecular_nN = -0.3;
+    lesson.update(reading, mode_2);
+    CHECK(lesson.is_done());
+    lesson.update(reading, mode_2);  // nothing left to do
+    CHECK(lesson.current() == 2);
+    lesson.restart();
+    CHECK(lesson.current() == 0);
+}
+
+TEST_CASE("a step can ask for what the hand feels, and for a mode as the keys count it",
+          "[session][lesson]") {
+    Lesson lesson(
+        {step_of(LessonQuantity::FeltForce, 1.0, {}), step_of(LessonQuantity::Mode, 4.0, 4.0)});
+    Reading reading;
+    reading.hand_N = 1.5;
+    lesson.update(reading, mode_2);
+    REQUIRE(lesson.current() == 1);
+    lesson.update(reading, mode_2);
+    CHECK(lesson.current() == 1);
+    lesson.update(reading, CouplingMode::ConstantForceConstantDisplacement);
+    CHECK(lesson.is_done());
+}
+
+TEST_CASE("on one axis what drives apart is positive, in three dimensions a force is a norm",
+          "[session][lesson]") {
+    ServoTick tick;
+    tick.touch.molecule_angstrom = {-3, 0, 0};  // on the other side of its counterpart
+    tick.touch.force_newton = {-2e-9, 0, 0};
+    tick.sent_newton = {0.5, 0, 0};
+    tick.touch.active_freedom = 1;
+    CHECK(read_tick(tick).distance_angstrom == 3);
+    CHECK(read_tick(tick).molecular_nN == Approx(2));
+    CHECK(read_tick(tick).hand_N == -0.5);
+    tick.touch.active_freedom = 3;
+    CHECK(read_tick(tick).hand_N == 0.5);
+}
+
+TEST_CASE("the emulated operator does the water scene's first lesson",
+          "[session][lesson][coupling]") {
+    // mm of the handle, 25 to 1 Å: to 3.9 Å, the strongest pull, the rest, the wall.
+    const std::vector<std::string> path{"stroke=path", "seconds=24",
+                                        "path=[[0.2, 77.5], [4, 0], [8, -20.0], [9, -20.0], [11, "
+                                        "-28.3], [14, -28.3], [16, -42.0]]"};
+    const Lesson lesson(test::water_scene().lesson);
+    REQUIRE(lesson.steps().size() == 5);
+
+    const Lesson first = play_water(path, lesson);
+    INFO("stopped at " << (first.is_done() ? "the end" : first.steps()[first.current()].name));
+    REQUIRE(first.current() == 4);
+
+    // The last task is a key.
+    Lesson second = first;
+    second.update({}, CouplingMode::ConstantForceConstantDisplacement);
+    CHECK(second.is_done());
+
+    // A hand that does nothing learns nothing.
+    CHECK(play_water({"stroke=path", "path=[[0, 0]]", "seconds=2"}, lesson).current() == 0);
+}

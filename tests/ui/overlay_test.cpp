@@ -1,0 +1,146 @@
+// The overlays without a window: a mouse that is only numbers moves sliders and presses buttons.
+#include "ui/overlay.h"
+
+#include "simulation/step.h"
+#include "tests/support/water_scene.h"
+
+#include <imgui.h>
+#include <catch2/catch.hpp>
+#include <limits>
+#include <variant>
+#include <vector>
+
+using namespace palpa;
+
+namespace {
+
+// An overlay of the water scene on a screen that is not there.
+struct Screen {
+    explicit Screen(const SceneDescription& scene = test::water_scene()) : overlay(scene, {}) {
+        ImGui::CreateContext();
+        ImGuiIO& io = ImGui::GetIO();
+        io.IniFilename = nullptr;
+        io.DisplaySize = {1280, 800};
+        io.DeltaTime = 1 / 60.0F;
+        unsigned char* pixels = nullptr;
+        int width = 0, height = 0;
+        io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
+        Simulation simulation = load_simulation(scene);
+        readout.touch = build_touch_model(simulation, {});
+        ServoTick tick;
+        tick.touch = readout.touch;
+        for (int i = 0; i < 100; ++i) overlay.add_tick(tick);
+    }
+    Screen(const Screen&) = delete;
+    Screen& operator=(const Screen&) = delete;
+    ~Screen() { ImGui::DestroyContext(); }
+
+    void frame() {
+        ImGui::NewFrame();
+        overlay.draw(readout, status, commands, actions);
+        ImGui::Render();
+    }
+    void drag(ImVec2 from, ImVec2 to) {
+        ImGuiIO& io = ImGui::GetIO();
+        io.MousePos = from;
+        frame();
+        io.MouseDown[0] = true;
+        frame();
+        io.MousePos = to;
+        frame();
+        io.MouseDown[0] = false;
+        frame();
+        frame();
+    }
+    // Everything that is written on the screen has been laid out: vertices say so.
+    int vertices() const { return ImGui::GetDrawData()->TotalVtxCount; }
+
+    Overlay overlay;
+    Readout readout;
+    OverlayStatus status;
+    std::vector<Command> commands;
+    std::vector<Action> actions;
+};
+
+}  // namespace
+
+TEST_CASE("a dragged slider changes a gain at once, and one undo takes the whole drag back",
+          "[ui][overlay]") {
+    Screen screen;
+    screen.frame();
+    screen.frame();
+    const LiveSettings before = screen.overlay.settings();
+    ImVec2 slider{};
+    // The sliders stand in the right column; find the first that answers.
+    for (float y = 200; y < 500 && screen.commands.empty(); y += 6) {
+        slider = {1000, y};
+        screen.drag(slider, {1130, y});
+    }
+    REQUIRE_FALSE(screen.commands.empty());
+    const LiveSettings after = std::get<LiveSettings>(screen.commands.back());
+    CHECK_FALSE(after == before);
+    CHECK(after == screen.overlay.settings());
+    CHECK(after.coupling.mode == before.coupling.mode);
+
+    screen.commands.clear();
+    CHECK(screen.overlay.perform(Action::Undo, screen.readout, screen.commands));
+    REQUIRE(screen.commands.size() == 1);
+    CHECK(std::get<LiveSettings>(screen.commands[0]) == before);
+    screen.overlay.perform(Action::Redo, screen.readout, screen.commands);
+    CHECK(screen.overlay.settings() == after);
+    screen.overlay.perform(Action::Undo, screen.readout, screen.commands);
+    screen.overlay.perform(Action::Undo, screen.readout, screen.commands);  // nothing is left
+    CHECK(screen.overlay.settings() == before);
+}
+
+TEST_CASE("keys switch modes, pause, step and reset", "[ui][overlay]") {
+    Screen screen;
+    std::vector<Command>& commands = screen.commands;
+    CHECK(screen.overlay.perform(Action::Mode4, screen.readout, commands));
+    CHECK(std::get<LiveSettings>(commands.at(0)).coupling.mode ==
+          CouplingMode::ConstantForceConstantDisplacement);
+    screen.overlay.perform(Action::Mode4, screen.readout, commands);  // it is on already
+    CHECK(commands.size() == 1);
+    screen.overlay.perform(Action::PauseOrGo, screen.readout, commands);
+    CHECK(std::get<Pause>(commands.at(1)).paused);
+    screen.readout.paused = true;
+    screen.overlay.perform(Action::PauseOrGo, screen.readout, commands);
+    CHECK_FALSE(std::get<Pause>(commands.at(2)).paused);
+    screen.overlay.perform(Action::StepOnce, screen.readout, commands);
+    CHECK(std::holds_alternative<StepOnce>(commands.at(3)));
+    screen.overlay.perform(Action::Reset, screen.readout, commands);
+    CHECK(std::holds_alternative<Reset>(commands.at(4)));
+    CHECK_FALSE(screen.overlay.perform(Action::Screenshot, screen.readout, commands));
+    CHECK_FALSE(screen.overlay.perform(Action::Quit, screen.readout, commands));
+}
+
+TEST_CASE("every mode and size of window can be drawn, whatever the values", "[ui][overlay]") {
+    Screen screen;
+    const auto mode =
+        GENERATE(Action::Mode1, Action::Mode2, Action::Mode3, Action::Mode4, Action::Mode5);
+    const auto size = GENERATE(ImVec2(1280, 800), ImVec2(320, 240), ImVec2(3840, 2160));
+    ImGui::GetIO().DisplaySize = size;
+    screen.overlay.perform(mode, screen.readout, screen.commands);
+    screen.overlay.perform(Action::ToggleHelp, screen.readout, screen.commands);
+    ServoTick broken;
+    broken.touch.force_newton.setConstant(std::numeric_limits<double>::quiet_NaN());
+    broken.stopped = true;
+    screen.overlay.add_tick(broken);
+
+    for (int i = 0; i < 3; ++i) screen.frame();
+
+    CHECK(screen.vertices() > 1000);
+    screen.overlay.perform(Action::ToggleHelp, screen.readout, screen.commands);
+    screen.overlay.perform(Action::ToggleLesson, screen.readout, screen.commands);
+    screen.overlay.perform(Action::ToggleOverlay, screen.readout, screen.commands);
+    const int many = screen.vertices();
+    screen.frame();
+    CHECK(screen.vertices() < many / 2);
+}
+
+TEST_CASE("a spring stiffer than the hand keeps calm is called out", "[ui][overlay]") {
+    const bool shakes = GENERATE(true, false);
+    Screen screen(
+        test::water_scene({shakes ? "period_ms=14" : "period_ms=1", "start_angstrom=2.77"}));
+    CHECK(screen.overlay.is_shaking(screen.readout) == shakes);
+}

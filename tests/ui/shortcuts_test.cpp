@@ -1,0 +1,20 @@
+#include "ui/shortcuts.h"
+
+#include <catch2/catch.hpp>
+#include <set>
+#include <utility>
+
+using namespace palpa;
+
+TEST_CASE("every key means one thing, and the help tells it", "[ui]") {
+    std::set<std::pair<Key, bool>> seen;
+    for (const Shortcut& shortcut : shortcuts()) {
+        CHECK(seen.emplace(shortcut.key, shortcut.control).second);
+        CHECK(find_action(shortcut.key, shortcut.control) == shortcut.action);
+        CHECK_FALSE(shortcut.name.empty());
+        CHECK_FALSE(shortcut.does.empty());
+    }
+    // The hand's own key starts nothing else.
+    CHECK_FALSE(find_action(Key::Space, false));
+    CHECK_FALSE(find_action(Key::P, true));
+}
