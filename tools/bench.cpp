@@ -139,7 +139,7 @@ void bench_render(const std::string& scene_name, const Simulation& simulation,
     for (const VkExtent2D size : {VkExtent2D{640, 360}, VkExtent2D{1280, 720}}) {
         OrbitCamera camera;
         frame_all(camera, frame, 16.0F / 9);
-        frame.camera = build_camera(camera, frame);
+        frame.camera = frame_camera(camera, frame);
         const auto time = [&](const char* what, const auto& draw) {
             Row row{fmt::format("render/{}/{}x{}/ball-and-stick{}", scene_name, size.width,
                                 size.height, what),

@@ -92,10 +92,10 @@ int render_command(const RenderOptions& options) {
     if (options.look_at.empty()) {
         frame_all(camera, frame, aspect);
     } else {
-        focus(camera, shapes_of(simulation, frame, options.look_at), aspect);
+        frame_shapes(camera, shapes_of(simulation, frame, options.look_at), aspect);
     }
-    zoom(camera, choice.zoom);
-    frame.camera = build_camera(camera, frame);
+    zoom(camera, 1 / choice.zoom);
+    frame.camera = frame_camera(camera, frame);
 
     GpuDevice gpu{GpuOptions{}};
     Renderer renderer(gpu);
@@ -121,7 +121,7 @@ FrameWriter::FrameWriter(const std::filesystem::path& folder, std::uint32_t widt
 void FrameWriter::write(const Simulation& simulation) {
     FrameScene frame = build_frame(simulation, {});
     if (written_ == 0) frame_all(camera_, frame, aspect_of(width_, height_));
-    frame.camera = build_camera(camera_, frame);
+    frame.camera = frame_camera(camera_, frame);
     write_png(folder_ / fmt::format("{:04}.png", written_++),
               renderer_.draw(frame, width_, height_, PictureContent::Colours));
 }

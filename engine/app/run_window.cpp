@@ -13,11 +13,9 @@
 #include "view/orbit_camera.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <memory>
 #include <optional>
 #include <string>
@@ -32,7 +30,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr float radians_per_pixel = 0.008F;
-constexpr float zoom_per_notch = 1.1F;
+constexpr float zoom_per_notch = 0.9F;
 constexpr double angstrom_per_notch = 0.25;  // of the molecule in hand, towards the eye and away
 constexpr double notice_s = 4;
 constexpr float focus_distance = 18;  // Å
@@ -93,21 +91,17 @@ public:
     Sandbox(const SceneDescription& scene, Device& device, const WindowOptions& options)
         : options_(options),
           window_("Palpa - " + scene.title, options.width, options.height),
+          graphics_(std::make_unique<Graphics>(window_, options.validation)),
           session_(scene, options.view, device),
           overlay_(scene, options.view),
           statistics_(1 / servo_rate_hz),
-          device_name_(device.spec().name) {
-        // Drawing, which may be done by threads of the driver, comes after feeling.
-        (void)nice(5);
-        graphics_ = std::make_unique<Graphics>(window_, options.validation);
-    }
+          device_name_(device.spec().name) {}
 
     WindowReport run();
 
 private:
     void frame();
     void look_at_all();
-    void look_at(const glm::vec3& place, float distance);
     void take_ticks();
     void take_input();
     void move_camera(const Input& input);
@@ -123,8 +117,8 @@ private:
 
     const WindowOptions options_;
     Window window_;
-    LiveSession session_;
     std::unique_ptr<Graphics> graphics_;
+    LiveSession session_;
     Overlay overlay_;
     Statistics statistics_;
     std::string device_name_;
@@ -204,11 +198,6 @@ void Sandbox::look_at_all() {
     frame_all(camera_, frame_.picture, free / std::max(height, 1.0F));
 }
 
-void Sandbox::look_at(const glm::vec3& place, float distance) {
-    camera_.target = place;
-    camera_.distance = distance;
-}
-
 void Sandbox::take_ticks() {
     for (ServoTick tick; session_.pop_tick(tick);) {
         statistics_.add(tick);
@@ -240,8 +229,7 @@ void Sandbox::move_camera(const Input& input) {
     const bool shifts = input.is_down(MouseButton::Right) || input.is_down(MouseButton::Middle) ||
                         (input.is_down(MouseButton::Left) && input.shift);
     if (shifts) {
-        const auto height = static_cast<float>(std::max(window_.size().height, 1U));
-        pan(camera_, {dx / height, -dy / height});
+        pan(camera_, dx, dy, static_cast<float>(window_.size().height));
     } else if (input.is_down(MouseButton::Left)) {
         orbit(camera_, -radians_per_pixel * dx, radians_per_pixel * dy);
     }
@@ -250,15 +238,11 @@ void Sandbox::move_camera(const Input& input) {
 
 // The molecule would follow the mouse where nothing holds it: handle travel is A_d times its way.
 void Sandbox::move_hand(const Input& input) {
-    const CameraAxes axes = camera_axes(camera_);
-    const glm::vec3 eye = camera_.target - camera_.distance * axes.forward;
-    const float depth = glm::dot(as_float(frame_.grabbed_angstrom) - eye, axes.forward);
-    const auto height = static_cast<float>(std::max(window_.size().height, 1U));
-    const float per_pixel =
-        2 * std::max(depth, 1.0F) * std::tan(camera_.vertical_angle / 2) / height;
-    const glm::vec3 way = per_pixel * (static_cast<float>(input.mouse_dx) * axes.right -
-                                       static_cast<float>(input.mouse_dy) * axes.up) +
-                          static_cast<float>(input.wheel * angstrom_per_notch) * axes.forward;
+    const float scale = angstrom_per_pixel(camera_, as_float(frame_.grabbed_angstrom),
+                                           static_cast<float>(window_.size().height));
+    const glm::vec3 way = scale * (static_cast<float>(input.mouse_dx) * rightward(camera_) -
+                                   static_cast<float>(input.mouse_dy) * upward(camera_)) -
+                          static_cast<float>(input.wheel * angstrom_per_notch) * backward(camera_);
     const double gain = frame_.readout.touch.displacement_gain;
     hand_m_ += Vec3(way.x, way.y, way.z) * units::metre_per_angstrom * gain;
     options_.mouse_hand->post({hand_m_});
@@ -272,7 +256,7 @@ void Sandbox::perform(Action action) {
     }
     switch (action) {
         case Action::Focus:
-            look_at(as_float(frame_.grabbed_angstrom), focus_distance);
+            focus(camera_, as_float(frame_.grabbed_angstrom), focus_distance);
             break;
         case Action::FrameAll:
             look_at_all();
@@ -298,7 +282,7 @@ void Sandbox::look_at_pixel(double x, double y) {
                                  static_cast<std::uint32_t>(std::max(y, 0.0) * scale_.value()));
     for (const SphereShape& sphere : frame_.picture.spheres) {
         if (sphere.pick != pick) continue;
-        look_at(sphere.centre, std::min(camera_.distance, focus_distance));
+        focus(camera_, sphere.centre, std::min(camera_.distance, focus_distance));
         return;
     }
 }
@@ -327,7 +311,7 @@ void Sandbox::draw() {
     g.ui.end();
     for (const Command& command : commands) session_.send(command);
 
-    frame_.picture.camera = build_camera(camera_, frame_.picture);
+    frame_.picture.camera = frame_camera(camera_, frame_.picture);
     frame_.picture.background = background;
     const VkExtent2D size = picture_size();
     WindowShot shot;

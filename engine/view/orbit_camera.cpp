@@ -4,96 +4,104 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <limits>
 #include <vector>
 
 namespace palpa {
 namespace {
 
-constexpr float margin = 1.12F;  // around what is framed
-constexpr float pole = 1.55F;    // rad, the highest elevation: up must not be forward
-constexpr float nearest = 0.5F, furthest = 1e4F;  // Å
-constexpr float near_share = 0.02F;               // of the distance; nothing nearer is drawn
+constexpr float steepest = 1.55F;                        // rad
+constexpr float nearest_view = 1, farthest_view = 2000;  // Å, from the target
+constexpr float margin = 1.12F;                          // around what is framed
 
-// What a scene shows, as spheres: a cone's ends stand for it.
-std::vector<SphereShape> outlines(const FrameScene& scene) {
-    std::vector<SphereShape> spheres = scene.spheres;
-    for (const ConeShape& cone : scene.cones) {
-        spheres.push_back({cone.a, cone.radius_a});
-        spheres.push_back({cone.b, cone.radius_b});
+// What a scene shows, as balls: a cone's ends stand for it.
+std::vector<SphereShape> balls_of(const FrameScene& frame) {
+    std::vector<SphereShape> balls = frame.spheres;
+    for (const ConeShape& cone : frame.cones) {
+        balls.push_back({cone.a, cone.radius_a});
+        balls.push_back({cone.b, cone.radius_b});
     }
-    return spheres;
+    return balls;
 }
 
 }  // namespace
 
-CameraAxes camera_axes(const OrbitCamera& camera) {
-    const float sine = std::sin(camera.azimuth), cosine = std::cos(camera.azimuth);
-    const float level = std::cos(camera.elevation);
-    const glm::vec3 forward(-sine * level, -std::sin(camera.elevation), -cosine * level);
-    const glm::vec3 right(cosine, 0, -sine);
-    return {forward, right, glm::cross(right, forward)};
+glm::vec3 backward(const OrbitCamera& c) {
+    return {std::cos(c.elevation) * std::sin(c.azimuth), std::sin(c.elevation),
+            std::cos(c.elevation) * std::cos(c.azimuth)};
 }
+
+glm::vec3 rightward(const OrbitCamera& c) { return {std::cos(c.azimuth), 0, -std::sin(c.azimuth)}; }
+
+glm::vec3 upward(const OrbitCamera& c) { return glm::cross(backward(c), rightward(c)); }
 
 void orbit(OrbitCamera& camera, float azimuth, float elevation) {
-    camera.azimuth = std::remainder(camera.azimuth + azimuth, 6.2831853F);
-    camera.elevation = std::clamp(camera.elevation + elevation, -pole, pole);
+    camera.azimuth += azimuth;
+    camera.elevation = std::clamp(camera.elevation + elevation, -steepest, steepest);
 }
 
-void pan(OrbitCamera& camera, const glm::vec2& move) {
-    const CameraAxes axes = camera_axes(camera);
-    const float height = 2 * camera.distance * std::tan(camera.vertical_angle / 2);
-    camera.target -= height * (move.x * axes.right + move.y * axes.up);
+float angstrom_per_pixel(const OrbitCamera& camera, const glm::vec3& place, float height) {
+    const glm::vec3 eye = camera.target + camera.distance * backward(camera);
+    const float depth = std::max(glm::dot(eye - place, backward(camera)), 0.1F);
+    return 2 * depth * std::tan(camera.vertical_angle / 2) / std::max(height, 1.0F);
+}
+
+void pan(OrbitCamera& camera, float right, float down, float height) {
+    const float scale = angstrom_per_pixel(camera, camera.target, height);
+    camera.target += scale * (down * upward(camera) - right * rightward(camera));
 }
 
 void zoom(OrbitCamera& camera, float factor) {
-    camera.distance = std::clamp(camera.distance / factor, nearest, furthest);
+    camera.distance = std::clamp(camera.distance * factor, nearest_view, farthest_view);
 }
 
-void focus(OrbitCamera& camera, std::span<const SphereShape> shapes, float aspect) {
+void frame_all(OrbitCamera& camera, const FrameScene& frame, float aspect) {
+    frame_shapes(camera, balls_of(frame), aspect);
+}
+
+void frame_shapes(OrbitCamera& camera, std::span<const SphereShape> shapes, float aspect) {
     if (shapes.empty()) return;
-    const CameraAxes axes = camera_axes(camera);
-    const auto in_view = [&](const glm::vec3& p) {
-        return glm::vec3(glm::dot(p, axes.right), glm::dot(p, axes.up), -glm::dot(p, axes.forward));
+    const glm::vec3 right = rightward(camera), up = upward(camera), back = backward(camera);
+    const auto across = [&](const glm::vec3& p) {
+        return glm::vec3(glm::dot(p, right), glm::dot(p, up), glm::dot(p, back));
     };
-    glm::vec3 low(std::numeric_limits<float>::max()), high = -low;
+    glm::vec3 low = across(shapes[0].centre), high = low;
     for (const SphereShape& shape : shapes) {
-        low = glm::min(low, in_view(shape.centre) - shape.radius);
-        high = glm::max(high, in_view(shape.centre) + shape.radius);
+        low = glm::min(low, across(shape.centre) - shape.radius);
+        high = glm::max(high, across(shape.centre) + shape.radius);
     }
     const glm::vec3 middle = 0.5F * (low + high);
     const float slope = std::tan(camera.vertical_angle / 2);
-    float distance = nearest;
+    camera.target = middle.x * right + middle.y * up + middle.z * back;
+    camera.distance = nearest_view;
     for (const SphereShape& shape : shapes) {
-        const glm::vec3 off = glm::abs(in_view(shape.centre) - middle) + shape.radius;
-        const float before = in_view(shape.centre).z - middle.z + shape.radius;
-        distance = std::max(distance, before + margin * std::max(off.y, off.x / aspect) / slope);
+        const glm::vec3 off = across(shape.centre) - middle;
+        const glm::vec3 reach = glm::abs(off) + shape.radius;
+        const float before = off.z + shape.radius;
+        camera.distance = std::max(camera.distance,
+                                   before + margin * std::max(reach.y, reach.x / aspect) / slope);
     }
-    camera.target = middle.x * axes.right + middle.y * axes.up - middle.z * axes.forward;
-    camera.distance = std::min(distance, furthest);
 }
 
-void frame_all(OrbitCamera& camera, const FrameScene& scene, float aspect) {
-    focus(camera, outlines(scene), aspect);
+void focus(OrbitCamera& camera, const glm::vec3& place, float distance) {
+    camera.target = place;
+    camera.distance = distance;
 }
 
-FrameCamera build_camera(const OrbitCamera& camera, const FrameScene& scene) {
-    const CameraAxes axes = camera_axes(camera);
-    FrameCamera built;
-    built.eye = camera.target - camera.distance * axes.forward;
-    built.target = camera.target;
-    built.up = axes.up;
-    built.vertical_angle = camera.vertical_angle;
-    built.near = camera.distance;
-    built.far = camera.distance;
-    for (const SphereShape& shape : outlines(scene)) {
-        const float away = glm::dot(shape.centre - built.eye, axes.forward);
-        built.near = std::min(built.near, away - 1.01F * shape.radius);
-        built.far = std::max(built.far, away + 1.01F * shape.radius);
+FrameCamera frame_camera(const OrbitCamera& camera, const FrameScene& frame) {
+    FrameCamera made;
+    const glm::vec3 back = backward(camera);
+    made.target = camera.target;
+    made.eye = camera.target + camera.distance * back;
+    made.vertical_angle = camera.vertical_angle;
+    float nearest = camera.distance, farthest = camera.distance;
+    for (const SphereShape& ball : balls_of(frame)) {
+        const float depth = glm::dot(made.eye - ball.centre, back);
+        nearest = std::min(nearest, depth - ball.radius);
+        farthest = std::max(farthest, depth + ball.radius);
     }
-    built.near = std::max(0.9F * built.near, near_share * camera.distance);
-    built.far = std::max(1.1F * built.far, 2 * built.near);
-    return built;
+    made.far = std::max(1.02F * farthest, 1.0F);
+    made.near = std::max(0.98F * nearest, 1e-3F * made.far);
+    return made;
 }
 
 }  // namespace palpa

@@ -1,43 +1,43 @@
-// A camera that circles around a place: how it moves, and from where it sees all of something.
+// A camera that a person turns about what they look at.
 #pragma once
 #include "render/frame_scene.h"
 
-#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <span>
 
 namespace palpa {
 
-// Without azimuth and elevation it looks along -z, y up. The azimuth takes it to its right around
-// the target, the elevation above it, almost to the poles and no further.
+// Looks at `target` from `distance` away; y is up.
 struct OrbitCamera {
-    glm::vec3 target{0};               // Å
-    float distance = 10;               // Å, from the target
-    float azimuth = 0, elevation = 0;  // rad
-    float vertical_angle = 0.6F;       // rad, of the whole picture
+    glm::vec3 target{0};
+    float distance = 10;          // Å
+    float azimuth = 0;            // rad, about y; 0 looks along -z
+    float elevation = 0;          // rad, + from above
+    float vertical_angle = 0.6F;  // rad
 };
 
-// From the camera to its target, and to its right and up in the picture: unit vectors.
-struct CameraAxes {
-    glm::vec3 forward, right, up;
-};
-CameraAxes camera_axes(const OrbitCamera& camera);
+// The direction from the target to the eye, and to the right and upwards in the picture.
+glm::vec3 backward(const OrbitCamera& camera);
+glm::vec3 rightward(const OrbitCamera& camera);
+glm::vec3 upward(const OrbitCamera& camera);
 
+// Turns; never over the top.
 void orbit(OrbitCamera& camera, float azimuth, float elevation);
-
-// Takes what is at the target along with a pointer that moves right and up by these shares of the
-// picture's height.
-void pan(OrbitCamera& camera, const glm::vec2& move);
-
-// Comes nearer by this factor; further away below 1. Stays between 0.5 and 10,000 Å.
+// Shifts by pixels of a picture `height` pixels high, so that what is at the target's depth
+// follows.
+void pan(OrbitCamera& camera, float right, float down, float height);
+// Å at the depth of a place that a pixel covers, in a picture `height` pixels high.
+float angstrom_per_pixel(const OrbitCamera& camera, const glm::vec3& place, float height);
+// Nearer for factors below 1.
 void zoom(OrbitCamera& camera, float factor);
+// All shapes, or these, fit a picture of that aspect with a margin, seen in the direction in which
+// the camera looks. Where there are none, nothing changes.
+void frame_all(OrbitCamera& camera, const FrameScene& frame, float aspect);
+void frame_shapes(OrbitCamera& camera, std::span<const SphereShape> shapes, float aspect);
+// Looks at one place, from near.
+void focus(OrbitCamera& camera, const glm::vec3& place, float distance);
 
-// Looks at shapes from where all of them fit into a picture of that aspect (width over height) with
-// a margin, in the direction in which it looks already. Where there are none, nothing changes.
-void focus(OrbitCamera& camera, std::span<const SphereShape> shapes, float aspect);
-void frame_all(OrbitCamera& camera, const FrameScene& scene, float aspect);
-
-// The camera as the renderer wants it, with near and far around everything that the scene shows.
-FrameCamera build_camera(const OrbitCamera& camera, const FrameScene& scene);
+// With clip planes in front of and behind all shapes.
+FrameCamera frame_camera(const OrbitCamera& camera, const FrameScene& frame);
 
 }  // namespace palpa

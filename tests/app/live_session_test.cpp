@@ -98,7 +98,8 @@ TEST_CASE("settings, view and reset reach the running scene", "[app][threads]") 
     LiveSettings settings{test::water_scene().coupling, 5};
     settings.coupling.A_d = 1e9;
     live.session.send(settings);
-    live.session.send(ViewSettings{Representation::SpaceFilling, Colouring::Element, false});
+    live.session.send(
+        ViewSettings{.representation = Representation::SpaceFilling, .force_arrow = false});
     REQUIRE(live.wait_until([](const LiveFrame& f) {
         return f.readout.touch.period_s == 0.005 && f.readout.touch.displacement_gain == 1e9 &&
                f.picture.cones.empty();

@@ -58,7 +58,7 @@ TEST_CASE("every atom that nothing hides is seen at its centre, and all fit the 
     FrameScene frame = build_frame(simulation, shown_as(representation));
     OrbitCamera camera;
     frame_all(camera, frame, shape);
-    frame.camera = build_camera(camera, frame);
+    frame.camera = frame_camera(camera, frame);
 
     const Picture picture = renderer.draw(frame, wide, height);
 
@@ -119,7 +119,7 @@ TEST_CASE("the arrow points along the force in the picture, and nearer things hi
     OrbitCamera camera;
     orbit(camera, 0.3F, 0.4F);
     frame_all(camera, frame, 480.0F / 270);
-    frame.camera = build_camera(camera, frame);
+    frame.camera = frame_camera(camera, frame);
     const glm::vec3 base = project(frame.camera, frame.spheres[0].centre, 480, height);
 
     const Picture picture = renderer.draw(frame, 480, height);
