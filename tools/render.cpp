@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <system_error>
 
@@ -73,13 +74,17 @@ CameraChoice read_camera(std::string_view text) {
 
 int render_command(const RenderOptions& options) {
     SceneDescription scene = read_scene(options.scene, options.settings);
-    const ViewSettings view{
-        static_cast<Representation>(
-            choice_called("--as", options.representation, representation_names)),
-        static_cast<Colouring>(choice_called("--colour", options.colouring, colouring_names)),
-        options.arrow};
     const CameraChoice choice = read_camera(options.camera);
+    const auto colouring =
+        static_cast<Colouring>(choice_called("--colour", options.colouring, colouring_names));
+    std::optional<Representation> representation;
+    if (!options.representation.empty()) {
+        representation = static_cast<Representation>(
+            choice_called("--as", options.representation, representation_names));
+    }
     Simulation simulation = load_simulation(scene);
+    const ViewSettings view{representation.value_or(default_view(simulation).representation),
+                            colouring, options.arrow};
     if (options.time_s > 0) {
         scene.seconds = options.time_s;
         EmulatedOmni device(build_emulated_omni(scene, simulation));
@@ -119,7 +124,7 @@ FrameWriter::FrameWriter(const std::filesystem::path& folder, std::uint32_t widt
 }
 
 void FrameWriter::write(const Simulation& simulation) {
-    FrameScene frame = build_frame(simulation, {});
+    FrameScene frame = build_frame(simulation, default_view(simulation));
     if (written_ == 0) frame_all(camera_, frame, aspect_of(width_, height_));
     frame.camera = frame_camera(camera_, frame);
     write_png(folder_ / fmt::format("{:04}.png", written_++),

@@ -97,7 +97,7 @@ void print_summary(const SceneDescription& scene, const Summary& s) {
                s.step_p99_us, s.steps);
 }
 
-int run_in_window(const SceneDescription& scene, EmulatedOmniSettings settings,
+int run_in_window(const SceneDescription& scene, const Simulation& simulation, EmulatedOmniSettings settings,
                   const RunOptions& options) {
     if (options.record) {
         throw LoadError(
@@ -113,7 +113,8 @@ int run_in_window(const SceneDescription& scene, EmulatedOmniSettings settings,
     }
     EmulatedOmni device(settings);
     const WindowReport report = run_window(scene, device,
-                                           {.width = options.width,
+                                           {.view = default_view(simulation),
+                                            .width = options.width,
                                             .height = options.height,
                                             .screenshots = options.screenshots,
                                             .last_shot = options.last_shot,
@@ -170,7 +171,7 @@ int run_command(const RunOptions& options) {
         for (const std::string& warning : warnings) fmt::print("  warning: {}\n", warning);
         return 0;
     }
-    if (!options.headless) return run_in_window(scene, settings, options);
+    if (!options.headless) return run_in_window(scene, simulation, settings, options);
     std::optional<Recording> recording;
     if (options.record) recording.emplace(*options.record, scene);
     std::unique_ptr<FrameWriter> writer;

@@ -177,7 +177,7 @@ void LiveSession::order_servo(const State& state) {
 
 void LiveSession::post_frame_if_wanted(const State& state) {
     if (!frame_wanted_.exchange(false)) return;
-    LiveFrame frame{build_frame(state.simulation, state.view), grabbed_place(state.simulation),
+    LiveFrame frame{build_frame(state.simulation, state.next, state.view), grabbed_place(state.simulation),
                     state.readout};
     frame.readout.touch = state.next;
     frames_.post(frame);

@@ -13,6 +13,7 @@
 #include "view/orbit_camera.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -91,11 +92,14 @@ public:
     Sandbox(const SceneDescription& scene, Device& device, const WindowOptions& options)
         : options_(options),
           window_("Palpa - " + scene.title, options.width, options.height),
-          graphics_(std::make_unique<Graphics>(window_, options.validation)),
           session_(scene, options.view, device),
           overlay_(scene, options.view),
           statistics_(1 / servo_rate_hz),
-          device_name_(device.spec().name) {}
+          device_name_(device.spec().name) {
+        // Drawing, which may be done by threads of the driver, comes after feeling.
+        (void)nice(5);
+        graphics_ = std::make_unique<Graphics>(window_, options.validation);
+    }
 
     WindowReport run();
 
@@ -117,8 +121,8 @@ private:
 
     const WindowOptions options_;
     Window window_;
-    std::unique_ptr<Graphics> graphics_;
     LiveSession session_;
+    std::unique_ptr<Graphics> graphics_;
     Overlay overlay_;
     Statistics statistics_;
     std::string device_name_;

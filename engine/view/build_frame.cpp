@@ -34,6 +34,7 @@ constexpr std::array looks = std::to_array<ElementLook>({
 constexpr ElementLook other{"", 1.70F, {0.70F, 0.20F, 0.60F}};
 
 constexpr float ball_share = 0.28F, stick_radius = 0.14F, licorice_radius = 0.28F;
+constexpr float thin_radius = 0.09F;
 
 // Of carbons: the grabbed molecule's, and the chains' in turn. Green is no element's, and stands
 // out against all of the others.
@@ -80,33 +81,52 @@ std::vector<glm::vec3> build_colours(const Simulation& simulation, Colouring col
     return colours;
 }
 
-void add_atoms(const AtomTable& atoms, std::span<const glm::vec3> colours,
-               Representation representation, FrameScene& frame) {
-    for (std::size_t i = 0; i < atoms.size(); ++i) {
-        const float size = look_of(element_of(atoms, i)).radius;
-        const float radius = representation == Representation::SpaceFilling   ? size
-                             : representation == Representation::BallAndStick ? ball_share * size
-                                                                              : licorice_radius;
-        frame.spheres.push_back(
-            {as_float(atoms.positions[i]), radius, colours[i], static_cast<std::uint32_t>(i)});
+// How thick an atom and the sticks at it are drawn (Å); 0: not at all.
+struct Thickness {
+    float atom = 0, stick = 0;
+};
+
+Thickness thickness_of(Representation representation, std::string_view element, bool in_hand) {
+    const float size = look_of(element).radius;
+    switch (representation) {
+        case Representation::SpaceFilling:
+            return {size, 0};
+        case Representation::Licorice:
+            return {licorice_radius, licorice_radius};
+        case Representation::InHand:
+            if (in_hand) break;
+            return element == "H" ? Thickness{} : Thickness{thin_radius, thin_radius};
+        case Representation::BallAndStick:
+            break;
     }
+    return {ball_share * size, stick_radius};
 }
 
-void add_bonds(const AtomTable& atoms, std::span<const glm::vec3> colours,
-               Representation representation, FrameScene& frame) {
-    if (representation == Representation::SpaceFilling) return;
-    const float radius =
-        representation == Representation::BallAndStick ? stick_radius : licorice_radius;
+void add_shapes(const Simulation& simulation, std::span<const glm::vec3> colours,
+                Representation representation, FrameScene& frame) {
+    const AtomTable& atoms = simulation.atoms;
+    const std::size_t grabbed = grabbed_points(simulation).positions.size();
+    std::vector<float> sticks;
+    for (std::size_t i = 0; i < atoms.size(); ++i) {
+        const auto [atom, stick] =
+            thickness_of(representation, element_of(atoms, i), i < grabbed);
+        sticks.push_back(stick);
+        if (atom == 0) continue;
+        frame.spheres.push_back(
+            {as_float(atoms.positions[i]), atom, colours[i], static_cast<std::uint32_t>(i)});
+    }
     for (const auto& [a, b] : atoms.bonds) {
+        const float radius = std::min(sticks[a], sticks[b]);
+        if (radius == 0) continue;
         frame.cones.push_back({as_float(atoms.positions[a]), as_float(atoms.positions[b]), radius,
                                radius, colours[a], colours[b], a});
     }
 }
 
-void add_force_arrow(const Simulation& simulation, FrameScene& frame) {
+void add_force_arrow(const Simulation& simulation, const TouchModel& touch, FrameScene& frame) {
     const Grab& grab = *simulation.world.find<Grab>(simulation.hand);
     const Molecule& grabbed = *simulation.world.find<Molecule>(grab.molecule);
-    const Vec3 force_nN = build_touch_model(simulation, {}).force_newton * 1e9;
+    const Vec3 force_nN = touch.force_newton * 1e9;
     const double length = std::min(5 * force_nN.norm(), 3.0);  // Å
     if (!(length > 0.05)) return;
     const Vec3 from = simulation.atoms.positions[grabbed.reference_atom];
@@ -121,13 +141,23 @@ void add_force_arrow(const Simulation& simulation, FrameScene& frame) {
 
 }  // namespace
 
-FrameScene build_frame(const Simulation& simulation, const ViewSettings& settings) {
+FrameScene build_frame(const Simulation& simulation, const TouchModel& touch,
+                       const ViewSettings& settings) {
     FrameScene frame;
     const std::vector<glm::vec3> colours = build_colours(simulation, settings.colouring);
-    add_atoms(simulation.atoms, colours, settings.representation, frame);
-    add_bonds(simulation.atoms, colours, settings.representation, frame);
-    if (settings.force_arrow) add_force_arrow(simulation, frame);
+    add_shapes(simulation, colours, settings.representation, frame);
+    if (settings.force_arrow) add_force_arrow(simulation, touch, frame);
     return frame;
+}
+
+FrameScene build_frame(const Simulation& simulation, const ViewSettings& settings) {
+    return build_frame(simulation, build_touch_model(simulation, {}), settings);
+}
+
+ViewSettings default_view(const Simulation& simulation) {
+    constexpr std::size_t many = 300;
+    const bool hides = environment_points(simulation).positions.size() > many;
+    return {.representation = hides ? Representation::InHand : Representation::BallAndStick};
 }
 
 }  // namespace palpa

@@ -1,5 +1,6 @@
 // What one picture of a simulation shows. The only place where doubles become floats.
 #pragma once
+#include "haptics/exchange.h"
 #include "render/frame_scene.h"
 #include "simulation/simulation.h"
 
@@ -9,9 +10,10 @@
 
 namespace palpa {
 
-enum class Representation { BallAndStick, SpaceFilling, Licorice };
-inline constexpr std::array<std::string_view, 3> representation_names{"ball-and-stick",
-                                                                      "space-filling", "licorice"};
+// In hand: the grabbed molecule as balls and sticks, all others as thin sticks without hydrogens.
+enum class Representation { BallAndStick, SpaceFilling, Licorice, InHand };
+inline constexpr std::array<std::string_view, 4> representation_names{
+    "ball-and-stick", "space-filling", "licorice", "in-hand"};
 
 // By chain: carbons in a colour of their chain, everything else as by element. Carbons of the
 // grabbed molecule have a colour of their own either way.
@@ -27,8 +29,14 @@ struct ViewSettings {
 // Atoms and bonds are picked by the index of the atom (of its first atom); the arrow by this.
 inline constexpr std::uint32_t arrow_pick = UINT32_MAX - 1;
 
-// Atoms as spheres, bonds as sticks, in Å as they stand. The camera is the caller's
-// (view/orbit_camera.h).
+// Atoms as spheres, bonds as sticks, in Å as they stand, and the force of `touch` as an arrow. The
+// camera is the caller's (view/orbit_camera.h).
+FrameScene build_frame(const Simulation& simulation, const TouchModel& touch,
+                       const ViewSettings& settings);
+// The same with the force as it is now, for which the pairs are summed again.
 FrameScene build_frame(const Simulation& simulation, const ViewSettings& settings);
+
+// What shows a scene best: balls and sticks, but `in-hand` where others would hide the molecule.
+ViewSettings default_view(const Simulation& simulation);
 
 }  // namespace palpa

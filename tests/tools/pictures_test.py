@@ -17,7 +17,7 @@ PROGRAM = os.environ["PALPA_PROGRAM"]
 ROOT = Path(os.environ["PALPA_ROOT"])
 PICTURES = ROOT / "tests" / "data" / "pictures"
 CAMERAS = {"water": "30,15", "hiv": "90,15"}
-LOOKS = ("ball-and-stick", "space-filling", "licorice")
+LOOKS = ("ball-and-stick", "space-filling", "licorice", "in-hand")
 
 NOTABLE = 24        # levels of 255 by which a channel must be off for a pixel to count as different
 MOST_DIFFERENT = 0.02

@@ -36,7 +36,7 @@ class Render(unittest.TestCase):
         self.assertFalse(self.image.exists())
 
     def test_a_picture_needs_no_display(self):
-        for look in ("ball-and-stick", "space-filling", "licorice"):
+        for look in ("ball-and-stick", "space-filling", "licorice", "in-hand"):
             with self.subTest(look=look):
                 result = self.render("-o", self.image, "--size", "64x48", "--as", look)
                 self.assertEqual(result.returncode, 0, result.stderr)

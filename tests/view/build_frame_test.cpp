@@ -44,6 +44,11 @@ TEST_CASE("two waters are six spheres and four sticks, and an arrow along the fo
 
     CHECK(build_frame(simulation, shown_as(Representation::SpaceFilling)).cones.empty());
     CHECK(build_frame(simulation, shown_as(Representation::Licorice)).cones.size() == 4);
+    // In hand: the fixed water is its oxygen alone.
+    const FrameScene in_hand = build_frame(simulation, shown_as(Representation::InHand));
+    CHECK(in_hand.spheres.size() == 4);
+    CHECK(in_hand.cones.size() == 2);
+    CHECK(default_view(simulation).representation == Representation::BallAndStick);
 }
 
 TEST_CASE("every atom that nothing hides is seen at its centre, and all fit the picture",
