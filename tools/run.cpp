@@ -19,8 +19,8 @@
 #include <unistd.h>
 #include <cstddef>
 #include <cstdio>
-#include <numbers>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
