@@ -125,8 +125,10 @@ void add_render(CLI::App& program, palpa::RenderOptions& options) {
     add_size_option(render, "--size", options.width, options.height);
     render.add_option("--time", options.time_s, "seconds that the hand plays before the picture")
         ->check(CLI::Range(0.0, 1e5));
-    render.add_option("--as", options.representation, "ball-and-stick, space-filling, licorice or in-hand: all but the molecule in hand "
-                      "thin; unless given, what shows the scene best");
+    render.add_option(
+        "--as", options.representation,
+        "ball-and-stick, space-filling, licorice or in-hand: all but the molecule in hand "
+        "thin; unless given, what shows the scene best");
     render.add_option("--colour", options.colouring,
                       "chain: carbons in a colour of their chain; or element");
     render.add_option(

@@ -19,8 +19,9 @@ struct RenderOptions {
     std::vector<std::string> settings;
     std::filesystem::path image;
     std::uint32_t width = 1280, height = 720;
-    double time_s = 0;  // simulated, under the emulated hand, before the picture
-    std::string representation = "ball-and-stick", colouring = "chain";
+    double time_s = 0;           // simulated, under the emulated hand, before the picture
+    std::string representation;  // empty: what shows the scene best
+    std::string colouring = "chain";
     std::string camera = "0,0";  // azimuth, elevation in degrees, zoom
     std::string look_at;         // a molecule's name; all of them if empty
     std::uint32_t samples = 1;   // a pixel: 1, 4, 9 or 16

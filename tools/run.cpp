@@ -97,8 +97,8 @@ void print_summary(const SceneDescription& scene, const Summary& s) {
                s.step_p99_us, s.steps);
 }
 
-int run_in_window(const SceneDescription& scene, const Simulation& simulation, EmulatedOmniSettings settings,
-                  const RunOptions& options) {
+int run_in_window(const SceneDescription& scene, const Simulation& simulation,
+                  EmulatedOmniSettings settings, const RunOptions& options) {
     if (options.record) {
         throw LoadError(
             {"--record"},

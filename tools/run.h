@@ -22,11 +22,11 @@ struct RunOptions {
     bool json = false;  // the summary as JSON on standard output
     bool headless = false;
     bool play = false;  // in a window: the emulated hand plays the scene's stroke, no mouse
-    std::uint32_t width = 1280, height = 800;  // of the window
-    std::filesystem::path screenshots = ".";   // folder for those of the window
+    std::uint32_t width = 1280, height = 800;        // of the window
+    std::filesystem::path screenshots = ".";         // folder for those of the window
     std::optional<std::filesystem::path> last_shot;  // of the window, which then closes
     double last_shot_s = 5;
-    bool validation = false;                   // of all that Vulkan is told
+    bool validation = false;  // of all that Vulkan is told
 };
 
 // The emulated device and hand that a scene describes.

@@ -177,8 +177,8 @@ void LiveSession::order_servo(const State& state) {
 
 void LiveSession::post_frame_if_wanted(const State& state) {
     if (!frame_wanted_.exchange(false)) return;
-    LiveFrame frame{build_frame(state.simulation, state.next, state.view), grabbed_place(state.simulation),
-                    state.readout};
+    LiveFrame frame{build_frame(state.simulation, state.next, state.view),
+                    grabbed_place(state.simulation), state.readout};
     frame.readout.touch = state.next;
     frames_.post(frame);
 }

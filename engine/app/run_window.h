@@ -15,7 +15,7 @@ namespace palpa {
 struct WindowOptions {
     ViewSettings view{};
     std::uint32_t width = 1280, height = 800;
-    std::filesystem::path screenshots{"."};  // folder
+    std::filesystem::path screenshots{"."};            // folder
     std::optional<std::filesystem::path> last_shot{};  // taken after `last_shot_s`, then it quits
     double last_shot_s = 5;
     HandTargets* mouse_hand = nullptr;  // where a mouse moves an emulated handle; null: nowhere

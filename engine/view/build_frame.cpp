@@ -108,8 +108,7 @@ void add_shapes(const Simulation& simulation, std::span<const glm::vec3> colours
     const std::size_t grabbed = grabbed_points(simulation).positions.size();
     std::vector<float> sticks;
     for (std::size_t i = 0; i < atoms.size(); ++i) {
-        const auto [atom, stick] =
-            thickness_of(representation, element_of(atoms, i), i < grabbed);
+        const auto [atom, stick] = thickness_of(representation, element_of(atoms, i), i < grabbed);
         sticks.push_back(stick);
         if (atom == 0) continue;
         frame.spheres.push_back(
