@@ -8,7 +8,7 @@
 #include "formats/psf.h"
 #include "math/vec.h"
 #include "molecule/atoms.h"
-#include "molecule/topology.h"
+#include "molecule/connectivity.h"
 
 #include <fmt/format.h>
 #include <Eigen/Eigenvalues>
@@ -52,7 +52,7 @@ struct Type {
 };
 
 struct System {
-    palpa::Topology topology;
+    palpa::Connectivity connectivity;
     std::map<std::string, Type> types;
     std::map<std::pair<std::string, std::string>, Lennard> nbfix;
 };
@@ -61,16 +61,16 @@ System build_system(const nlohmann::json& force_field) {
     System system;
     for (const nlohmann::json& row : force_field.at("atoms").at("rows")) {
         const auto type = row.at(3).get<std::string>();
-        palpa::Topology& topology = system.topology;
-        topology.names.push_back({segment_name(row.at(8)), row.at(1),
-                                  fmt::format("{}", row.at(2).get<int>()), row.at(0)});
-        topology.type.push_back(type);
-        topology.mass.push_back(row.at(4));
-        topology.charge.push_back(row.at(5));
+        palpa::Connectivity& connectivity = system.connectivity;
+        connectivity.names.push_back({segment_name(row.at(8)), row.at(1),
+                                      fmt::format("{}", row.at(2).get<int>()), row.at(0)});
+        connectivity.type.push_back(type);
+        connectivity.mass.push_back(row.at(4));
+        connectivity.charge.push_back(row.at(5));
         system.types[type] = {row.at(4), from_sigma(row.at(6), row.at(7))};
     }
     for (const nlohmann::json& bond : force_field.at("bond")) {
-        system.topology.bonds.push_back({bond.at(0), bond.at(1)});
+        system.connectivity.bonds.push_back({bond.at(0), bond.at(1)});
     }
     for (const nlohmann::json& pair : force_field.at("nbfix")) {
         system.nbfix[{pair.at(0), pair.at(1)}] = from_sigma(pair.at(2), pair.at(3));
@@ -89,12 +89,12 @@ std::vector<Vec3> read_places(const nlohmann::json& frame) {
 
 // Mean place of the atoms that a rule picks.
 template <class Rule>
-Vec3 mean_place(const palpa::Topology& topology, const std::vector<Vec3>& places,
+Vec3 mean_place(const palpa::Connectivity& connectivity, const std::vector<Vec3>& places,
                 const Rule& rule) {
     Vec3 sum = Vec3::Zero();
     int count = 0;
     for (std::size_t i = 0; i < places.size(); ++i) {
-        if (!rule(topology.names[i], topology.mass[i])) continue;
+        if (!rule(connectivity.names[i], connectivity.mass[i])) continue;
         sum += places[i];
         ++count;
     }
@@ -109,16 +109,16 @@ bool is_heavy_ligand_atom(const palpa::AtomName& name, double mass) {
 // chain A towards chain B, that y goes from the catalytic aspartates to the flaps, and that the
 // inhibitor's middle is at the origin. Six decimals are far below what matters, and the same from
 // every compiler.
-std::vector<Vec3> orient(const palpa::Topology& topology, std::vector<Vec3> places) {
-    const Vec3 middle = mean_place(topology, places, is_heavy_ligand_atom);
+std::vector<Vec3> orient(const palpa::Connectivity& connectivity, std::vector<Vec3> places) {
+    const Vec3 middle = mean_place(connectivity, places, is_heavy_ligand_atom);
     palpa::Mat3 spread = palpa::Mat3::Zero();
     for (std::size_t i = 0; i < places.size(); ++i) {
-        if (!is_heavy_ligand_atom(topology.names[i], topology.mass[i])) continue;
+        if (!is_heavy_ligand_atom(connectivity.names[i], connectivity.mass[i])) continue;
         spread += (places[i] - middle) * (places[i] - middle).transpose();
     }
     const auto place_of = [&](std::string_view segment, std::string_view number,
                               std::string_view atom) {
-        return mean_place(topology, places, [&](const palpa::AtomName& name, double) {
+        return mean_place(connectivity, places, [&](const palpa::AtomName& name, double) {
             return name.segment != ligand && (segment.empty() || name.segment == segment) &&
                    name.number == number && name.atom == atom;
         });
@@ -182,23 +182,23 @@ int make_scene(const std::filesystem::path& force_field, const std::filesystem::
                const std::filesystem::path& folder) {
     const System system = build_system(read_json(force_field));
     const std::vector<Vec3> places = read_places(read_json(frame));
-    if (places.size() != system.topology.names.size()) {
+    if (places.size() != system.connectivity.names.size()) {
         throw palpa::LoadError({frame.string()},
                                fmt::format("{} atoms; expected the {} of the force field",
-                                           places.size(), system.topology.names.size()));
+                                           places.size(), system.connectivity.names.size()));
     }
     palpa::Structure structure;
-    structure.names = system.topology.names;
-    structure.positions = orient(system.topology, places);
+    structure.names = system.connectivity.names;
+    structure.positions = orient(system.connectivity, places);
     palpa::write_text_file(
         folder / "system.psf",
-        palpa::format_psf(system.topology, fmt::format("{}\nAtoms and bonds only: all that "
-                                                       "rigid molecules need.",
-                                                       origin)));
+        palpa::format_psf(system.connectivity, fmt::format("{}\nAtoms and bonds only: all that "
+                                                           "rigid molecules need.",
+                                                           origin)));
     palpa::write_text_file(folder / "system.crd", palpa::format_crd(structure, origin));
     palpa::write_text_file(folder / "system.prm", format_parameters(system));
     fmt::print("{} atoms, {} bonds, {} types, {} replaced pairs\n", places.size(),
-               system.topology.bonds.size(), system.types.size(), system.nbfix.size());
+               system.connectivity.bonds.size(), system.types.size(), system.nbfix.size());
     return 0;
 }
 

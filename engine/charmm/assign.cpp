@@ -232,21 +232,21 @@ AtomRange add_segment_atoms(const ForceField& force_field, const Structure& stru
     return range;
 }
 
-AtomRange add_segment_atoms(const ForceField& force_field, const Topology& topology,
+AtomRange add_segment_atoms(const ForceField& force_field, const Connectivity& connectivity,
                             const Structure& structure, std::string_view segment,
                             AtomTable& table) {
-    check_segment(topology.file, topology.names, segment);
+    check_segment(connectivity.file, connectivity.names, segment);
     std::map<std::string, std::size_t> places;  // of what the structure has and is not yet used
     for (std::size_t i = 0; i < structure.names.size(); ++i) {
         if (structure.names[i].segment == segment) places[to_string(structure.names[i])] = i;
     }
     Missing missing;
     AtomTable added;
-    std::map<std::uint32_t, std::uint32_t> new_index;  // of the topology's atoms
-    for (std::uint32_t i = 0; i < topology.names.size(); ++i) {
-        const AtomName& name = topology.names[i];
+    std::map<std::uint32_t, std::uint32_t> new_index;  // of the connectivity's atoms
+    for (std::uint32_t i = 0; i < connectivity.names.size(); ++i) {
+        const AtomName& name = connectivity.names[i];
         if (name.segment != segment) continue;
-        const TextPlace place{topology.file, topology.lines[i], 0};
+        const TextPlace place{connectivity.file, connectivity.lines[i], 0};
         const auto found = places.find(to_string(name));
         if (found == places.end()) {
             missing.add(place,
@@ -255,18 +255,18 @@ AtomRange add_segment_atoms(const ForceField& force_field, const Topology& topol
         }
         new_index[i] = static_cast<std::uint32_t>(table.size() + added.size());
         add_atom(force_field,
-                 {name, structure.positions[found->second], topology.type[i], topology.charge[i],
-                  topology.mass[i]},
+                 {name, structure.positions[found->second], connectivity.type[i],
+                  connectivity.charge[i], connectivity.mass[i]},
                  place, added, missing);
         places.erase(found);
     }
     for (const auto& [name, i] : places) {
         missing.add({structure.file, structure.lines[i], 0},
-                    fmt::format("atom {} is not in {}", name, topology.file));
+                    fmt::format("atom {} is not in {}", name, connectivity.file));
     }
     missing.throw_if_any();
     const AtomRange range = append(added, table);
-    for (const auto& [a, b] : topology.bonds) {
+    for (const auto& [a, b] : connectivity.bonds) {
         const auto from = new_index.find(a), to = new_index.find(b);
         if (from != new_index.end() && to != new_index.end()) {
             table.bonds.push_back({from->second, to->second});

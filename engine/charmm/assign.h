@@ -2,7 +2,7 @@
 #pragma once
 #include "charmm/force_field.h"
 #include "molecule/atoms.h"
-#include "molecule/topology.h"
+#include "molecule/connectivity.h"
 
 #include <string_view>
 
@@ -15,10 +15,10 @@ namespace palpa {
 AtomRange add_segment_atoms(const ForceField& force_field, const Structure& structure,
                             std::string_view segment, AtomTable& table);
 
-// The same with types, charges, masses and bonds of a topology, in its order; only the coordinates
-// come from the structure, by segment, residue number, residue and atom name. Types may be names or
-// the numbers of MASS lines. Bonds to other segments are left out.
-AtomRange add_segment_atoms(const ForceField& force_field, const Topology& topology,
+// The same with types, charges, masses and bonds of a connectivity, in its order; only the
+// coordinates come from the structure, by segment, residue number, residue and atom name. Types may
+// be names or the numbers of MASS lines. Bonds to other segments are left out.
+AtomRange add_segment_atoms(const ForceField& force_field, const Connectivity& connectivity,
                             const Structure& structure, std::string_view segment, AtomTable& table);
 
 }  // namespace palpa

@@ -31,20 +31,20 @@ class Reader {
 public:
     Reader(std::string_view text, const std::string& file)
         : lines_(split_lines(text)), size_(text.size()) {
-        topology_.file = file;
+        connectivity_.file = file;
     }
 
-    Topology read() {
+    Connectivity read() {
         read_flags();
         while (skip_blank_lines()) read_section();
         for (const std::string_view section : required_sections) require(section);
         if (has_cmap_) require("NCRTERM");
-        return std::move(topology_);
+        return std::move(connectivity_);
     }
 
 private:
     [[noreturn]] void fail(std::size_t line, const std::string& what) const {
-        throw LoadError({topology_.file, line, 0}, what);
+        throw LoadError({connectivity_.file, line, 0}, what);
     }
 
     void require(std::string_view section) const {
@@ -111,16 +111,16 @@ private:
         } else if (section == "NATOM") {
             read_atoms(count);
         } else if (section == "NBOND") {
-            read_tuples(count, topology_.bonds);
+            read_tuples(count, connectivity_.bonds);
             check_bonds();
         } else if (section == "NTHETA") {
-            read_tuples(count, topology_.angles);
+            read_tuples(count, connectivity_.angles);
         } else if (section == "NPHI") {
-            read_tuples(count, topology_.dihedrals);
+            read_tuples(count, connectivity_.dihedrals);
         } else if (section == "NIMPHI") {
-            read_tuples(count, topology_.impropers);
+            read_tuples(count, connectivity_.impropers);
         } else if (section == "NCRTERM") {
-            read_tuples(count, topology_.cmaps);
+            read_tuples(count, connectivity_.cmaps);
         } else if (section == "NDON" || section == "NACC") {
             read_numbers(2 * whole_count(count));  // 0: no hydrogen, no antecedent
         } else if (section == "NNB") {
@@ -128,7 +128,7 @@ private:
         } else if (section == "NGRP") {
             read_numbers(3 * whole_count(count));
         } else if (section == "MOLNT") {
-            read_numbers(topology_.names.size());
+            read_numbers(connectivity_.names.size());
         } else if (std::any_of(counts.begin(), counts.end(), [](std::size_t n) { return n > 0; })) {
             fail(header_line_, fmt::format("section !{} is not empty, and not supported", section));
         }
@@ -190,11 +190,11 @@ private:
         const double mass = real(words[7], "mass");
         if (mass < 0) fail(at_ + 1, fmt::format("a mass of {} amu; expected 0 or more", mass));
         for (const std::string_view word : words.subspan(8)) real(word, "number");
-        topology_.names.push_back(std::move(name));
-        topology_.type.push_back(upper_case(words[5]));
-        topology_.charge.push_back(charge);
-        topology_.mass.push_back(mass);
-        topology_.lines.push_back(at_ + 1);
+        connectivity_.names.push_back(std::move(name));
+        connectivity_.type.push_back(upper_case(words[5]));
+        connectivity_.charge.push_back(charge);
+        connectivity_.mass.push_back(mass);
+        connectivity_.lines.push_back(at_ + 1);
     }
 
     // Calls use(number, line) for `count` numbers, however many stand on a line.
@@ -226,9 +226,9 @@ private:
         std::size_t filled = 0;
         each_number(Size * whole_count(count), [&](std::string_view word, std::size_t line) {
             const std::size_t index = whole_number(word, line, "number of an atom");
-            if (index < 1 || index > topology_.names.size()) {
+            if (index < 1 || index > connectivity_.names.size()) {
                 fail(line, fmt::format("atom number {}; expected 1 to {}", index,
-                                       topology_.names.size()));
+                                       connectivity_.names.size()));
             }
             tuple[filled++] = static_cast<std::uint32_t>(index - 1);
             if (filled < Size) return;
@@ -247,11 +247,11 @@ private:
 
     void check_bonds() const {
         std::set<std::pair<std::uint32_t, std::uint32_t>> seen;
-        for (const auto& [a, b] : topology_.bonds) {
+        for (const auto& [a, b] : connectivity_.bonds) {
             if (seen.insert(std::minmax(a, b)).second) continue;
             fail(header_line_,
-                 fmt::format("the bond of {} and {} comes twice", to_string(topology_.names[a]),
-                             to_string(topology_.names[b])));
+                 fmt::format("the bond of {} and {} comes twice", to_string(connectivity_.names[a]),
+                             to_string(connectivity_.names[b])));
         }
     }
 
@@ -260,7 +260,7 @@ private:
     void read_exclusions(std::size_t count) {
         read_numbers(whole_count(count));
         if (skip_blank_lines() && lines_[at_].find('!') == std::string::npos) {
-            read_numbers(topology_.names.size());
+            read_numbers(connectivity_.names.size());
         }
     }
 
@@ -271,7 +271,7 @@ private:
     bool has_cmap_ = false;
     std::map<std::string, std::size_t, std::less<>> sections_;
     std::map<std::tuple<std::string, std::string, std::string, std::string>, std::size_t> seen_;
-    Topology topology_;
+    Connectivity connectivity_;
 };
 
 // Entries side by side, up to `width` on a line.
@@ -287,40 +287,41 @@ void append_tuples(const std::vector<std::array<std::uint32_t, Size>>& tuples, s
 
 }  // namespace
 
-Topology parse_psf(std::string_view text, const std::string& file) {
+Connectivity parse_psf(std::string_view text, const std::string& file) {
     return Reader(text, file).read();
 }
 
-Topology read_psf(const std::filesystem::path& path) {
+Connectivity read_psf(const std::filesystem::path& path) {
     return parse_psf(read_text_file(path), path.string());
 }
 
-std::string format_psf(const Topology& topology, std::string_view title) {
+std::string format_psf(const Connectivity& connectivity, std::string_view title) {
     const std::vector<std::string_view> titles = split_lines(title);
     std::string text = fmt::format("PSF EXT {}XPLOR\n\n{:10} !NTITLE\n",
-                                   topology.cmaps.empty() ? "" : "CMAP ", titles.size());
+                                   connectivity.cmaps.empty() ? "" : "CMAP ", titles.size());
     for (const std::string_view line : titles) text += fmt::format(" REMARKS {}\n", line);
-    text += fmt::format("\n{:10} !NATOM\n", topology.names.size());
-    for (std::size_t i = 0; i < topology.names.size(); ++i) {
-        const AtomName& name = topology.names[i];
+    text += fmt::format("\n{:10} !NATOM\n", connectivity.names.size());
+    for (std::size_t i = 0; i < connectivity.names.size(); ++i) {
+        const AtomName& name = connectivity.names[i];
         fmt::format_to(std::back_inserter(text),
                        "{:10} {:<8} {:<8} {:<8} {:<8} {:<6} {:14.6f}{:14.4f}{:8}\n", i + 1,
-                       name.segment, name.number, name.residue, name.atom, topology.type[i],
-                       topology.charge[i], topology.mass[i], 0);
+                       name.segment, name.number, name.residue, name.atom, connectivity.type[i],
+                       connectivity.charge[i], connectivity.mass[i], 0);
     }
-    append_tuples(topology.bonds, 4, "NBOND: bonds", text);
-    append_tuples(topology.angles, 3, "NTHETA: angles", text);
-    append_tuples(topology.dihedrals, 2, "NPHI: dihedrals", text);
-    append_tuples(topology.impropers, 2, "NIMPHI: impropers", text);
+    append_tuples(connectivity.bonds, 4, "NBOND: bonds", text);
+    append_tuples(connectivity.angles, 3, "NTHETA: angles", text);
+    append_tuples(connectivity.dihedrals, 2, "NPHI: dihedrals", text);
+    append_tuples(connectivity.impropers, 2, "NIMPHI: impropers", text);
     for (const char* const empty : {"NDON: donors", "NACC: acceptors", "NNB"}) {
         text += fmt::format("\n{:10} !{}\n", 0, empty);
     }
-    for (std::size_t i = 0; i < topology.names.size(); ++i) {
+    for (std::size_t i = 0; i < connectivity.names.size(); ++i) {
         text += fmt::format("{:10}", 0);
-        if ((i + 1) % 8 == 0 || i + 1 == topology.names.size()) text += "\n";
+        if ((i + 1) % 8 == 0 || i + 1 == connectivity.names.size()) text += "\n";
     }
     text += fmt::format("\n{:10}{:10} !NGRP NST2\n{:10}{:10}{:10}\n", 1, 0, 0, 0, 0);
-    if (!topology.cmaps.empty()) append_tuples(topology.cmaps, 1, "NCRTERM: cross-terms", text);
+    if (!connectivity.cmaps.empty())
+        append_tuples(connectivity.cmaps, 1, "NCRTERM: cross-terms", text);
     return text;
 }
 

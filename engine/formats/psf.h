@@ -1,6 +1,6 @@
 // Protein structure files (.psf) of CHARMM, X-PLOR and NAMD.
 #pragma once
-#include "molecule/topology.h"
+#include "molecule/connectivity.h"
 
 #include <filesystem>
 #include <string>
@@ -15,10 +15,10 @@ namespace palpa {
 // refused. Throws LoadError with the line of what is wrong: a number that does not parse, an index
 // of no atom, a count that is not met, a section that is missing or comes twice, two atoms of one
 // name, a bond that comes twice or goes nowhere.
-Topology read_psf(const std::filesystem::path& path);
-Topology parse_psf(std::string_view text, const std::string& file);
+Connectivity read_psf(const std::filesystem::path& path);
+Connectivity parse_psf(std::string_view text, const std::string& file);
 
 // The EXT form with types by name, charges to six decimals. `title`: lines without "REMARKS".
-std::string format_psf(const Topology& topology, std::string_view title);
+std::string format_psf(const Connectivity& connectivity, std::string_view title);
 
 }  // namespace palpa

@@ -31,7 +31,7 @@ constexpr double resting_force = 20e-12 / units::newton_per_kcal_per_mol_angstro
 // Files by path; several molecules may come from one.
 struct Files {
     std::map<std::filesystem::path, Structure> structures;
-    std::map<std::filesystem::path, Topology> topologies;
+    std::map<std::filesystem::path, Connectivity> connectivities;
 };
 
 template <class Content, class Read>
@@ -49,8 +49,8 @@ AtomRange add_atoms(const MoleculeDescription& molecule, const ForceField& force
         return add_segment_atoms(force_field, structure, molecule.segment, atoms);
     }
     return add_segment_atoms(force_field,
-                             find_or_read(files.topologies, molecule.topology, read_psf), structure,
-                             molecule.segment, atoms);
+                             find_or_read(files.connectivities, molecule.topology, read_psf),
+                             structure, molecule.segment, atoms);
 }
 
 // By name, or by residue number and name.

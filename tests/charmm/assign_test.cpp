@@ -167,25 +167,25 @@ TEST_CASE("each type is named once in the table, and its atoms point to it", "[c
     CHECK(table.type == std::vector<std::uint32_t>{0, 1, 0, 1, 0, 0});
 }
 
-TEST_CASE("with a topology, numbers and order are its own and places are found by name",
+TEST_CASE("with a connectivity, numbers and order are its own and places are found by name",
           "[charmm][assign]") {
     const ForceField force_field = water_with();
-    Topology topology;
-    topology.file = "t.psf";
-    topology.names = {{"B", "TIP3", "1", "OH2"},
-                      {"A", "TIP3", "1", "H2"},
-                      {"A", "TIP3", "1", "OH2"},
-                      {"A", "TIP3", "1", "H1"}};
-    topology.type = {"OT", "HT", "OT", "HT"};
-    topology.charge = {-0.8, 0.4, -0.9, 0.5};
-    topology.mass = {16, 2, 17, 3};
-    topology.lines = {5, 6, 7, 8};
-    topology.bonds = {{2, 1}, {2, 3}, {0, 3}};
+    Connectivity connectivity;
+    connectivity.file = "t.psf";
+    connectivity.names = {{"B", "TIP3", "1", "OH2"},
+                          {"A", "TIP3", "1", "H2"},
+                          {"A", "TIP3", "1", "OH2"},
+                          {"A", "TIP3", "1", "H1"}};
+    connectivity.type = {"OT", "HT", "OT", "HT"};
+    connectivity.charge = {-0.8, 0.4, -0.9, 0.5};
+    connectivity.mass = {16, 2, 17, 3};
+    connectivity.lines = {5, 6, 7, 8};
+    connectivity.bonds = {{2, 1}, {2, 3}, {0, 3}};
     AtomTable table;
 
     SECTION("as they are") {
         const AtomRange range =
-            add_segment_atoms(force_field, topology, structure_of(two_waters), "A", table);
+            add_segment_atoms(force_field, connectivity, structure_of(two_waters), "A", table);
 
         CHECK(range.count == 3);
         CHECK(table.charge == std::vector<double>{0.4, -0.9, 0.5});
@@ -199,24 +199,25 @@ TEST_CASE("with a topology, numbers and order are its own and places are found b
         ForceField numbered = force_field;
         numbered.types.at("HT").number = 4;
         numbered.types.at("OT").number = 75;
-        topology.type = {"75", "4", "75", "4"};
-        add_segment_atoms(numbered, topology, structure_of(two_waters), "A", table);
+        connectivity.type = {"75", "4", "75", "4"};
+        add_segment_atoms(numbered, connectivity, structure_of(two_waters), "A", table);
 
         CHECK(table.type_names == std::vector<std::string>{"HT", "OT"});
     }
     SECTION("all that is missing on either side is told at once") {
-        topology.type[1] = "HX";
-        topology.names[3].number = "2";
+        connectivity.type[1] = "HX";
+        connectivity.names[3].number = "2";
 
         CHECK(load_error_of([&] {
-                  add_segment_atoms(force_field, topology, structure_of(two_waters), "A", table);
+                  add_segment_atoms(force_field, connectivity, structure_of(two_waters), "A",
+                                    table);
               }) ==
               "t.psf:6: unknown atom type 'HX': no MASS line; did you mean 'HT'?; t.psf:6: atom "
               "type 'HX' has no NONBONDED parameters in a.str; t.psf:8: atom A TIP3 2 H1 has no "
               "place in s.crd; s.crd:5: atom A TIP3 1 H1 is not in t.psf");
         CHECK(table.size() == 0);
         CHECK_THAT(load_error_of([&] {
-                       add_segment_atoms(force_field, topology, structure_of(two_waters), "X",
+                       add_segment_atoms(force_field, connectivity, structure_of(two_waters), "X",
                                          table);
                    }),
                    Contains("t.psf: no segment 'X' (only A, B)"));

@@ -136,50 +136,51 @@ std::string error_of(const std::string& text) {
 }  // namespace
 
 TEST_CASE("CHARMM's own form is read with all its sections", "[formats][psf]") {
-    const Topology topology = parse_psf(charmm, "w.psf");
+    const Connectivity connectivity = parse_psf(charmm, "w.psf");
 
-    REQUIRE(topology.names.size() == 5);
-    CHECK(to_string(topology.names[2]) == "SOLV TIP3 2A OH2");
-    CHECK(topology.type == std::vector<std::string>{"73", "43", "75", "4", "4"});
-    CHECK(topology.charge == std::vector<double>{-0.65, 0.42, -0.834, 0.417, 0.417});
-    CHECK(topology.mass[1] == 1.008);
-    CHECK(topology.lines == std::vector<std::size_t>{7, 8, 9, 10, 11});
-    CHECK(topology.bonds == std::vector<std::array<std::uint32_t, 2>>{{0, 1}, {2, 3}, {2, 4}});
-    CHECK(topology.angles == std::vector<std::array<std::uint32_t, 3>>{{3, 2, 4}});
-    CHECK(topology.dihedrals == std::vector<std::array<std::uint32_t, 4>>{{0, 1, 2, 3}});
-    CHECK(topology.impropers == std::vector<std::array<std::uint32_t, 4>>{{4, 3, 2, 1}});
-    CHECK(topology.cmaps == std::vector<std::array<std::uint32_t, 8>>{{0, 1, 2, 3, 1, 2, 3, 4}});
+    REQUIRE(connectivity.names.size() == 5);
+    CHECK(to_string(connectivity.names[2]) == "SOLV TIP3 2A OH2");
+    CHECK(connectivity.type == std::vector<std::string>{"73", "43", "75", "4", "4"});
+    CHECK(connectivity.charge == std::vector<double>{-0.65, 0.42, -0.834, 0.417, 0.417});
+    CHECK(connectivity.mass[1] == 1.008);
+    CHECK(connectivity.lines == std::vector<std::size_t>{7, 8, 9, 10, 11});
+    CHECK(connectivity.bonds == std::vector<std::array<std::uint32_t, 2>>{{0, 1}, {2, 3}, {2, 4}});
+    CHECK(connectivity.angles == std::vector<std::array<std::uint32_t, 3>>{{3, 2, 4}});
+    CHECK(connectivity.dihedrals == std::vector<std::array<std::uint32_t, 4>>{{0, 1, 2, 3}});
+    CHECK(connectivity.impropers == std::vector<std::array<std::uint32_t, 4>>{{4, 3, 2, 1}});
+    CHECK(connectivity.cmaps ==
+          std::vector<std::array<std::uint32_t, 8>>{{0, 1, 2, 3, 1, 2, 3, 4}});
 }
 
 TEST_CASE("the extended form and NAMD's are read", "[formats][psf]") {
-    const Topology wide = parse_psf(extended, "w.psf");
+    const Connectivity wide = parse_psf(extended, "w.psf");
     CHECK(to_string(wide.names[1]) == "PROTEINA LIGAND 1 C81");
     CHECK(wide.type[1] == "CG2O6");
     CHECK(wide.bonds.size() == 1);
 
-    const Topology free = parse_psf(namd, "w.psf");
+    const Connectivity free = parse_psf(namd, "w.psf");
     CHECK(free.type == std::vector<std::string>{"SOD", "CLA"});
     CHECK(free.charge[1] == -1);
     CHECK(free.bonds.empty());
 }
 
 TEST_CASE("what is written reads the same", "[formats][psf]") {
-    Topology topology = parse_psf(GENERATE_COPY(charmm, extended, namd), "w.psf");
+    Connectivity connectivity = parse_psf(GENERATE_COPY(charmm, extended, namd), "w.psf");
 
-    const Topology back = parse_psf(format_psf(topology, "one\ntwo"), "back.psf");
+    const Connectivity back = parse_psf(format_psf(connectivity, "one\ntwo"), "back.psf");
 
-    REQUIRE(back.names.size() == topology.names.size());
+    REQUIRE(back.names.size() == connectivity.names.size());
     for (std::size_t i = 0; i < back.names.size(); ++i) {
-        CHECK(to_string(back.names[i]) == to_string(topology.names[i]));
+        CHECK(to_string(back.names[i]) == to_string(connectivity.names[i]));
     }
-    CHECK(back.type == topology.type);
-    CHECK(back.charge == topology.charge);
-    CHECK(back.mass == topology.mass);
-    CHECK(back.bonds == topology.bonds);
-    CHECK(back.angles == topology.angles);
-    CHECK(back.dihedrals == topology.dihedrals);
-    CHECK(back.impropers == topology.impropers);
-    CHECK(back.cmaps == topology.cmaps);
+    CHECK(back.type == connectivity.type);
+    CHECK(back.charge == connectivity.charge);
+    CHECK(back.mass == connectivity.mass);
+    CHECK(back.bonds == connectivity.bonds);
+    CHECK(back.angles == connectivity.angles);
+    CHECK(back.dihedrals == connectivity.dihedrals);
+    CHECK(back.impropers == connectivity.impropers);
+    CHECK(back.cmaps == connectivity.cmaps);
 }
 
 TEST_CASE("what is wrong in a PSF file is told with its line", "[formats][psf]") {
@@ -240,13 +241,13 @@ TEST_CASE("CHARMM's trialanine is read", "[formats][psf]") {
         WARN("SKIPPED: PALPA_DATA names no folder with data/energies");
         return;
     }
-    const Topology topology =
+    const Connectivity connectivity =
         read_psf(std::filesystem::path(data) / "data/energies/ala_ala_ala/ala_ala_ala.psf");
 
-    CHECK(topology.names.size() == 33);
-    CHECK(topology.bonds.size() == 32);
-    CHECK(topology.angles.size() == 57);
-    CHECK(topology.dihedrals.size() == 74);
-    CHECK(topology.impropers.size() == 5);
-    CHECK(topology.cmaps.size() == 1);
+    CHECK(connectivity.names.size() == 33);
+    CHECK(connectivity.bonds.size() == 32);
+    CHECK(connectivity.angles.size() == 57);
+    CHECK(connectivity.dihedrals.size() == 74);
+    CHECK(connectivity.impropers.size() == 5);
+    CHECK(connectivity.cmaps.size() == 1);
 }

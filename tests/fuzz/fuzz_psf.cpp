@@ -16,7 +16,7 @@ using namespace palpa;
 
 namespace {
 
-std::optional<Topology> read_or_refuse(std::string_view text) {
+std::optional<Connectivity> read_or_refuse(std::string_view text) {
     try {
         return parse_psf(text, "fuzz.psf");
     } catch (const LoadError&) {
@@ -36,29 +36,29 @@ void expect_indices(const Tuples& tuples, std::size_t count) {
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view text(reinterpret_cast<const char*>(data), size);
-    const std::optional<Topology> topology = read_or_refuse(text);
-    if (!topology) return 0;
+    const std::optional<Connectivity> connectivity = read_or_refuse(text);
+    if (!connectivity) return 0;
 
-    const std::size_t count = topology->names.size();
+    const std::size_t count = connectivity->names.size();
     PALPA_EXPECT(count > 0 && count <= size);
-    PALPA_EXPECT(topology->type.size() == count && topology->lines.size() == count);
-    PALPA_EXPECT(topology->charge.size() == count && topology->mass.size() == count);
+    PALPA_EXPECT(connectivity->type.size() == count && connectivity->lines.size() == count);
+    PALPA_EXPECT(connectivity->charge.size() == count && connectivity->mass.size() == count);
     for (std::size_t i = 0; i < count; ++i) {
-        PALPA_EXPECT(std::isfinite(topology->charge[i]) && topology->mass[i] >= 0);
+        PALPA_EXPECT(std::isfinite(connectivity->charge[i]) && connectivity->mass[i] >= 0);
     }
-    expect_indices(topology->bonds, count);
-    expect_indices(topology->angles, count);
-    expect_indices(topology->dihedrals, count);
-    expect_indices(topology->impropers, count);
-    expect_indices(topology->cmaps, count);
+    expect_indices(connectivity->bonds, count);
+    expect_indices(connectivity->angles, count);
+    expect_indices(connectivity->dihedrals, count);
+    expect_indices(connectivity->impropers, count);
+    expect_indices(connectivity->cmaps, count);
 
-    const std::optional<Topology> back = read_or_refuse(format_psf(*topology, "fuzz"));
+    const std::optional<Connectivity> back = read_or_refuse(format_psf(*connectivity, "fuzz"));
     PALPA_EXPECT(back && back->names.size() == count);
     for (std::size_t i = 0; i < count; ++i) {
-        PALPA_EXPECT(to_string(back->names[i]) == to_string(topology->names[i]));
-        PALPA_EXPECT(back->type[i] == topology->type[i]);
+        PALPA_EXPECT(to_string(back->names[i]) == to_string(connectivity->names[i]));
+        PALPA_EXPECT(back->type[i] == connectivity->type[i]);
     }
-    PALPA_EXPECT(back->bonds == topology->bonds && back->angles == topology->angles);
-    PALPA_EXPECT(back->dihedrals == topology->dihedrals && back->cmaps == topology->cmaps);
+    PALPA_EXPECT(back->bonds == connectivity->bonds && back->angles == connectivity->angles);
+    PALPA_EXPECT(back->dihedrals == connectivity->dihedrals && back->cmaps == connectivity->cmaps);
     return 0;
 }

@@ -11,7 +11,7 @@
 namespace palpa {
 
 // Atoms in the order of the file, an array per property; everything else names them by index.
-struct Topology {
+struct Connectivity {
     std::string file;
     std::vector<AtomName> names;
     std::vector<std::string> type;   // "CT1"; in old files a number
