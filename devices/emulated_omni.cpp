@@ -40,7 +40,7 @@ EmulatedOmni::EmulatedOmni(const EmulatedOmniSettings& settings)
     spec_.half_workspace_m = settings.half_workspace_m;
 
     const Plant plant = build_plant(settings.dynamics, settings.hand);
-    plant_ = sample_plant(plant, sub_step_s);
+    plant_ = holding_plant_ = sample_plant(plant, sub_step_s);
     relaxed_plant_ =
         sample_plant(build_plant(settings.dynamics, relaxed(settings.hand)), sub_step_s);
     handle_mass_kg_ = plant.handle_mass_kg;
@@ -67,7 +67,8 @@ void EmulatedOmni::write(const Vec3& force_newton) noexcept {
     const double peak = settings_.peak_force_newton;
     const Vec3 motors = norm > peak ? Vec3(force_newton * (peak / norm)) : force_newton;
 
-    const double now_s = static_cast<double>(tick_) * tick_s;
+    if (!take_orders()) return;
+    const double now_s = static_cast<double>(tick_ - start_tick_) * tick_s;
     // Half a nanosecond keeps the tick from hanging on rounding.
     if (!released_ && now_s > settings_.script.release_s.value_or(INFINITY) - 5e-10) let_go();
     Vec3 hand_drive = Vec3::Zero();
@@ -98,16 +99,41 @@ void EmulatedOmni::write(const Vec3& force_newton) noexcept {
     ++tick_;
 }
 
+bool EmulatedOmni::take_orders() noexcept {
+    if (!settings_.orders) return true;
+    const HandOrder before = order_;
+    settings_.orders->read(order_);
+    if (order_.restarts != before.restarts) {
+        operator_.restart();
+        released_ = false;
+        plant_ = holding_plant_;
+        start_tick_ = tick_;
+        wish_m_ = true_position_m();
+        wish_m_per_s_.setZero();
+    }
+    if (order_.grants != before.grants) granted_ticks_ = order_.granted_ticks;
+    if (!order_.frozen) return true;
+    if (granted_ticks_ == 0) return false;
+    --granted_ticks_;
+    return true;
+}
+
 Vec3 EmulatedOmni::follow_live_target() noexcept {
-    settings_.live->read(target_);
-    const Vec3& reach = settings_.half_workspace_m;
-    const Vec3 goal = target_.position_m.cwiseMax(-reach).cwiseMin(reach);
-    const double w = live_hand_rad_per_s;
-    wish_m_per_s_ += tick_s * (w * w * (goal - wish_m_) - 2 * w * wish_m_per_s_);
-    wish_m_ += tick_s * wish_m_per_s_;
     if (!settings_.hand) return Vec3::Zero();
-    return settings_.hand->stiffness_N_per_m * wish_m_ +
-           settings_.hand->damping_N_s_per_m * wish_m_per_s_;
+    const double stiffness = settings_.hand->stiffness_N_per_m;
+    const Vec3& reach = settings_.half_workspace_m;
+    const Vec3 handle = true_position_m();
+    const double w = live_hand_rad_per_s;
+    const Vec3 before = wish_m_;
+    wish_m_per_s_ += tick_s * (w * w * (order_.target_m - wish_m_) - 2 * w * wish_m_per_s_);
+    wish_m_per_s_ *= std::min(1.0, live_hand_m_per_s / std::max(wish_m_per_s_.norm(), 1e-12));
+    wish_m_ += tick_s * wish_m_per_s_;
+    const Vec3 ahead = wish_m_ - handle;
+    const double pull = stiffness * ahead.norm();
+    if (pull > live_hand_newton) wish_m_ = handle + ahead * (live_hand_newton / pull);
+    wish_m_ = wish_m_.cwiseMax(-reach).cwiseMin(reach);
+    wish_m_per_s_ = (wish_m_ - before) / tick_s;  // held back, the damper pulls no more either
+    return stiffness * wish_m_ + settings_.hand->damping_N_s_per_m * wish_m_per_s_;
 }
 
 void EmulatedOmni::let_go() noexcept {

@@ -26,7 +26,8 @@ struct EmulatedOmniSettings {
     double peak_force_newton = 3.3;    // motors give no more, whatever is written
     std::optional<HandModel> hand;     // nothing: the handle is free
     HandScript script;
-    HandTargets* live = nullptr;  // where the hand goes instead of the script, in three dimensions
+    HandOrders* orders = nullptr;  // of a window
+    bool live = false;             // the hand goes to the orders' target, not along the script
     Vec3 half_workspace_m = omni_half_workspace_m;
 };
 
@@ -44,6 +45,8 @@ public:
     Vec3 true_position_m() const noexcept;
 
 private:
+    // False where time stands still.
+    bool take_orders() noexcept;
     // What the hand's spring and damper are drawn to (N), by axis.
     Vec3 follow_live_target() noexcept;
 
@@ -55,15 +58,17 @@ private:
     EmulatedOmniSettings settings_;
     DeviceSpec spec_;
     ScriptedHand operator_;
-    SampledPlant plant_, relaxed_plant_;  // over one sub-step, until the hand lets go and after
+    // Over one sub-step: the present one; until the hand lets go, and after.
+    SampledPlant plant_, holding_plant_, relaxed_plant_;
     bool released_ = false;
     double handle_mass_kg_ = 0;
     std::array<PlantState, 3> state_;  // one per axis
     bool resting_ = true;              // friction held the handle through the last sub-step
-    HandTarget target_;                // of a live hand; it goes there smoothly
+    HandOrder order_;
+    int granted_ticks_ = 0;  // that may still go by while frozen
     Vec3 wish_m_ = Vec3::Zero(), wish_m_per_s_ = Vec3::Zero();
-    std::uint64_t tick_ = 0;
-    std::uint32_t buttons_ = 0;  // as pressed during the last tick
+    std::uint64_t tick_ = 0, start_tick_ = 0;  // since the beginning; where the script began
+    std::uint32_t buttons_ = 0;                // as pressed during the last tick
 };
 
 }  // namespace palpa

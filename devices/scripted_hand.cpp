@@ -14,7 +14,13 @@ constexpr double wait_s = 0.5, press_s = 0.1, carry_s = 0.5, settle_s = 0.3;
 
 ScriptedHand::ScriptedHand(HandScript script, double half_width_m)
     : script_(std::move(script)), reach_m_(half_width_m - stop_margin_m) {
+    restart();
+}
+
+void ScriptedHand::restart() noexcept {
     const double start = find_target(script_.path, 0);
+    script_time_s_ = 0;
+    clutch_time_s_ = -1;
     last_x_m_ = std::clamp(start, -reach_m_, reach_m_);
     shift_m_ = last_x_m_ - start;
 }

@@ -23,6 +23,9 @@ public:
         std::uint32_t buttons = 0;
     };
 
+    // From the beginning of the script, at its first place.
+    void restart() noexcept;
+
     // Moves on by one tick.
     Wish step(double tick_s) noexcept;
 

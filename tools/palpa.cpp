@@ -44,6 +44,17 @@ void add_set_option(CLI::App& command, std::vector<std::string>& settings) {
         ->take_last();
 }
 
+// A number between two, which a NaN is not.
+CLI::Validator in_range(double lowest, double highest) {
+    return CLI::Validator(
+        [lowest, highest](const std::string& text) {
+            const std::optional<double> value = palpa::find_real(text);
+            if (value && *value >= lowest && *value <= highest) return std::string();
+            return fmt::format("'{}' is not a number from {} to {}", text, lowest, highest);
+        },
+        fmt::format("{} to {}", lowest, highest));
+}
+
 void add_size_option(CLI::App& command, const std::string& option, std::uint32_t& width,
                      std::uint32_t& height) {
     command.add_option_function<std::string>(
@@ -78,7 +89,7 @@ void add_run(CLI::App& program, palpa::RunOptions& options) {
         "--record", options.record, "folder for trace.csv, summary.json, session.toml, frames");
     run.add_option("--fps", options.frames_per_second,
                    "frames/0000.png ... into the recording, this many a simulated second")
-        ->check(CLI::Range(0.01, 1000.0))
+        ->check(in_range(0.01, 1000.0))
         ->needs(record);
     add_size_option(run, "--frame-size", options.frame_width, options.frame_height);
     add_size_option(run, "--size", options.width, options.height);
@@ -86,8 +97,9 @@ void add_run(CLI::App& program, palpa::RunOptions& options) {
     CLI::Option* const shot = run.add_option(
         "--shot", options.last_shot, "PNG file: a picture of the window, which then closes");
     run.add_option("--after", options.last_shot_s, "seconds until --shot, 5 unless given")
-        ->check(CLI::Range(0.0, 1e5))
+        ->check(in_range(0.0, 1e5))
         ->needs(shot);
+    run.add_option("--lose-device-at", options.lose_device_at)->group("");  // a test's
     run.add_flag("--validation", options.validation,
                  "let the Vulkan validation layer watch the window's drawing");
     run.add_flag("--json", options.json, "print the summary as JSON");
@@ -124,7 +136,7 @@ void add_render(CLI::App& program, palpa::RenderOptions& options) {
     render.add_option("-o,--output", options.image, "PNG file to write")->required();
     add_size_option(render, "--size", options.width, options.height);
     render.add_option("--time", options.time_s, "seconds that the hand plays before the picture")
-        ->check(CLI::Range(0.0, 1e5));
+        ->check(in_range(0.0, 1e5));
     render.add_option(
         "--as", options.representation,
         "ball-and-stick, space-filling, licorice or in-hand: all but the molecule in hand "

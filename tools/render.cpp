@@ -118,12 +118,13 @@ int render_command(const RenderOptions& options) {
 FrameWriter::FrameWriter(const std::filesystem::path& folder, std::uint32_t width,
                          std::uint32_t height)
     : folder_(folder), width_(width), height_(height), gpu_(GpuOptions{}), renderer_(gpu_) {
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error) throw LoadError({folder.string()}, "cannot be made: " + error.message());
+    renderer_.check_size({width, height});
 }
 
 void FrameWriter::write(const Simulation& simulation) {
+    std::error_code error;
+    std::filesystem::create_directories(folder_, error);
+    if (error) throw LoadError({folder_.string()}, "cannot be made: " + error.message());
     FrameScene frame = build_frame(simulation, default_view(simulation));
     if (written_ == 0) frame_all(camera_, frame, aspect_of(width_, height_));
     frame.camera = frame_camera(camera_, frame);

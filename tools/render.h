@@ -43,12 +43,11 @@ CameraChoice read_camera(std::string_view text);
 // stands still.
 class FrameWriter {
 public:
-    // Throws GpuError where nothing can draw, LoadError where nothing can be written.
+    // Throws GpuError where nothing can draw, or nothing of that size.
     FrameWriter(const std::filesystem::path& folder, std::uint32_t width, std::uint32_t height);
 
+    // Throws GpuError, or LoadError where it cannot be written.
     void write(const Simulation& simulation);
-
-    std::uint32_t written() const noexcept { return written_; }
 
 private:
     std::filesystem::path folder_;

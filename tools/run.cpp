@@ -22,6 +22,7 @@
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -97,6 +98,17 @@ void print_summary(const SceneDescription& scene, const Summary& s) {
                s.step_p99_us, s.steps);
 }
 
+// A frame that cannot be drawn or written is the last one; the run goes on.
+void write_frame(std::unique_ptr<FrameWriter>& writer, const Simulation& simulation) {
+    if (!writer) return;
+    try {
+        writer->write(simulation);
+    } catch (const std::runtime_error& error) {
+        fmt::print(stderr, "warning: no more frames: {}\n", error.what());
+        writer.reset();
+    }
+}
+
 int run_in_window(const SceneDescription& scene, const Simulation& simulation,
                   EmulatedOmniSettings settings, const RunOptions& options) {
     if (options.record) {
@@ -104,13 +116,16 @@ int run_in_window(const SceneDescription& scene, const Simulation& simulation,
             {"--record"},
             "a session in a window cannot be recorded yet; expected --headless with it");
     }
-    HandTargets targets;
+    HandOrders orders;
+    settings.orders = &orders;
+    if (!settings.hand) settings.hand = hand_model(Grip::Medium);  // a window needs somebody
     if (!options.play) {
-        settings.live = &targets;
+        settings.live = true;
         settings.script = {};
         // A mouse has no workspace: half a metre either way stands for that.
         settings.half_workspace_m = Vec3::Constant(0.5);
     }
+    const double reach_m = live_hand_newton / settings.hand->stiffness_N_per_m;
     EmulatedOmni device(settings);
     const WindowReport report = run_window(scene, device,
                                            {.view = default_view(simulation),
@@ -119,9 +134,12 @@ int run_in_window(const SceneDescription& scene, const Simulation& simulation,
                                             .screenshots = options.screenshots,
                                             .last_shot = options.last_shot,
                                             .last_shot_s = options.last_shot_s,
-                                            .mouse_hand = settings.live,
+                                            .orders = &orders,
+                                            .mouse_reach_m = options.play ? 0 : reach_m,
+                                            .lose_device_at = options.lose_device_at,
                                             .validation = options.validation});
     SceneDescription played = scene;
+    if (!options.play) played.hand.stroke = Stroke::Path;  // wherever the mouse went
     played.coupling = report.settings.coupling;
     played.period_ms = report.settings.period_ms;
     played.seconds = static_cast<double>(report.summary.ticks) / servo_rate_hz;
@@ -171,20 +189,24 @@ int run_command(const RunOptions& options) {
         for (const std::string& warning : warnings) fmt::print("  warning: {}\n", warning);
         return 0;
     }
+    if (options.headless && (options.last_shot || options.play)) {
+        throw LoadError({options.play ? "--play" : "--shot"},
+                        "is of a window; expected it without --headless");
+    }
     if (!options.headless) return run_in_window(scene, simulation, settings, options);
-    std::optional<Recording> recording;
-    if (options.record) recording.emplace(*options.record, scene);
     std::unique_ptr<FrameWriter> writer;
-    FrameClock frames;
     if (options.record && options.frames_per_second > 0) {
-        try {
+        try {  // its complaints about the size come before a recording is begun
             writer = std::make_unique<FrameWriter>(*options.record / "frames", options.frame_width,
                                                    options.frame_height);
-            frames = {options.frames_per_second, [&] { writer->write(simulation); }};
         } catch (const GpuError& error) {
             warnings.push_back(fmt::format("no frames are drawn: {}", error.what()));
         }
     }
+    std::optional<Recording> recording;
+    if (options.record) recording.emplace(*options.record, scene);
+    FrameClock frames;
+    if (writer) frames = {options.frames_per_second, [&] { write_frame(writer, simulation); }};
     if (!scene.places.contains("coupling.mode")) {
         fmt::print(
             stderr,

@@ -8,7 +8,7 @@
 #include <pthread.h>
 #include <sched.h>
 #include <chrono>
-#include <exception>
+#include <cmath>
 #include <utility>
 
 namespace palpa {
@@ -17,6 +17,13 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::microseconds servo_tick{1'000'000 / static_cast<int>(servo_rate_hz)};
+
+// How long after a reset the hand comes to rest before it has hold of the molecule again.
+constexpr std::chrono::milliseconds settle_time{400};
+
+int ticks_of(double period_ms) {
+    return static_cast<int>(std::lround(period_ms * 1e-3 * servo_rate_hz));
+}
 
 // Above all ordinary threads, where the system lets us.
 bool ask_for_real_time() noexcept {
@@ -38,8 +45,13 @@ TouchModel without_force(TouchModel touch) noexcept {
 
 }  // namespace
 
-LiveSession::LiveSession(const SceneDescription& scene, const ViewSettings& view, Device& device)
-    : scene_(scene), device_(device), state_{load_simulation(scene), view, {}, {}, {}, false, {}} {
+LiveSession::LiveSession(const SceneDescription& scene, const ViewSettings& view, Device& device,
+                         HandOrders* orders)
+    : scene_(scene),
+      device_(device),
+      orders_(orders),
+      state_{load_simulation(scene), view, {}, {}, {}, false, {}, {}} {
+    order_.granted_ticks = ticks_of(scene.period_ms);
     state_.next = build_touch_model(state_.simulation, {});
     exchange_.touch.post(state_.next);
     const ServoOrder order{build_servo_settings(scene, state_.simulation)};
@@ -59,11 +71,27 @@ LiveSession::~LiveSession() {
 }
 
 void LiveSession::send(const Command& command) {
+    if (const auto* const pause = std::get_if<Pause>(&command)) {
+        order_.frozen = pause->paused;
+    } else if (std::holds_alternative<StepOnce>(command)) {
+        order_.frozen = true;
+        ++order_.grants;
+    } else if (std::holds_alternative<Reset>(command)) {
+        ++order_.restarts;
+    } else if (const auto* const settings = std::get_if<LiveSettings>(&command)) {
+        order_.granted_ticks = ticks_of(settings->period_ms);
+    }
+    if (orders_) orders_->post(order_);
     {
         const std::lock_guard lock(mutex_);
         commands_.push_back(command);
     }
     has_command_.notify_one();
+}
+
+void LiveSession::move_hand(const Vec3& target_m) {
+    order_.target_m = target_m;
+    if (orders_) orders_->post(order_);
 }
 
 bool LiveSession::read_frame(LiveFrame& frame) {
@@ -100,19 +128,16 @@ void LiveSession::run_servo(ServoOrder order) {
 void LiveSession::run_simulation(State& state) {
     Clock::time_point next = Clock::now();
     while (!stopping_) {
-        if (!state.readout.paused || state.step_once) {
+        if (Clock::now() < state.settled) {
+            hold(state);
+        } else if (!state.readout.paused || state.step_once) {
             step(state);
-        } else {
-            exchange_.hand.read(state.hand);
-            take_hold(state.simulation, state.hand);
-            exchange_.touch.post(state.felt = without_force(state.next));
+        } else if (!orders_) {  // an emulated handle stands still by itself
+            hold(state);
         }
         next += period_of(state.simulation);
         const Clock::time_point now = Clock::now();
-        if (now > next) {
-            ++state.readout.late_steps;
-            next = now;
-        }
+        if (now > next) next = now;  // late: the clock goes on from here
         post_frame_if_wanted(state);
         for (bool waited = false; !waited && !stopping_;) {
             std::vector<Command> commands;
@@ -126,6 +151,13 @@ void LiveSession::run_simulation(State& state) {
             if (!commands.empty()) post_frame_if_wanted(state);
         }
     }
+}
+
+// Whatever the hand does meanwhile moves nothing, and it feels nothing.
+void LiveSession::hold(State& state) {
+    exchange_.hand.read(state.hand);
+    take_hold(state.simulation, state.hand);
+    exchange_.touch.post(state.felt = without_force(state.next));
 }
 
 void LiveSession::step(State& state) {
@@ -148,6 +180,7 @@ void LiveSession::obey(State& state, const Command& command) {
     } else if (const auto* const view = std::get_if<ViewSettings>(&command)) {
         state.view = *view;
     } else if (const auto* const pause = std::get_if<Pause>(&command)) {
+        if (!orders_) hold(state);  // not what was travelled since the last look
         state.readout.paused = pause->paused;
     } else if (std::holds_alternative<StepOnce>(command)) {
         state.readout.paused = state.step_once = true;
@@ -164,8 +197,8 @@ void LiveSession::reset(State& state) {
         return;
     }
     state.readout.problem.clear();
-    exchange_.hand.read(state.hand);
-    take_hold(state.simulation, state.hand);
+    state.settled = Clock::now() + settle_time;
+    hold(state);
     state.next = build_touch_model(state.simulation, state.hand);
     ++restarts_;
     order_servo(state);
@@ -177,7 +210,9 @@ void LiveSession::order_servo(const State& state) {
 
 void LiveSession::post_frame_if_wanted(const State& state) {
     if (!frame_wanted_.exchange(false)) return;
-    LiveFrame frame{build_frame(state.simulation, state.next, state.view),
+    const auto grabbed =
+        static_cast<std::uint32_t>(grabbed_points(state.simulation).positions.size());
+    LiveFrame frame{build_frame(state.simulation, state.next, state.view), grabbed,
                     grabbed_place(state.simulation), state.readout};
     frame.readout.touch = state.next;
     frames_.post(frame);

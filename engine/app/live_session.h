@@ -6,6 +6,7 @@
 #include "core/ring.h"
 #include "haptics/device.h"
 #include "haptics/exchange.h"
+#include "haptics/hand.h"
 #include "haptics/servo.h"
 #include "render/frame_scene.h"
 #include "scene/description.h"
@@ -14,6 +15,7 @@
 #include "view/build_frame.h"
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <mutex>
@@ -26,6 +28,7 @@ namespace palpa {
 // What the window shows, all of one moment between two steps.
 struct LiveFrame {
     FrameScene picture;                    // its camera is the window's business
+    std::uint32_t grabbed_atoms = 0;       // what is picked below this is in hand
     Vec3 grabbed_angstrom = Vec3::Zero();  // the reference atom in hand, in the world
     Readout readout;
 };
@@ -33,13 +36,18 @@ struct LiveFrame {
 // The device must outlive the session, and belongs to its servo thread meanwhile.
 class LiveSession {
 public:
-    // Loads the scene and starts both threads. Throws LoadError.
-    LiveSession(const SceneDescription& scene, const ViewSettings& view, Device& device);
+    // Loads the scene and starts both threads. `orders`: of an emulated device's hand; null where
+    // the device cannot stand still. Throws LoadError.
+    LiveSession(const SceneDescription& scene, const ViewSettings& view, Device& device,
+                HandOrders* orders);
     LiveSession(const LiveSession&) = delete;
     LiveSession& operator=(const LiveSession&) = delete;
     ~LiveSession();
 
     void send(const Command& command);
+
+    // Where a live hand wants the handle, m.
+    void move_hand(const Vec3& target_m);
 
     // The newest frame; asks for the next one. False if none came since the last call.
     bool read_frame(LiveFrame& frame);
@@ -57,6 +65,7 @@ private:
         HandPose hand;
         TouchModel felt, next;  // by the hand now; the last step's answer
         bool step_once = false;
+        std::chrono::steady_clock::time_point settled{};  // after a reset, until the hand rests
         Readout readout;
     };
 
@@ -69,6 +78,7 @@ private:
     void run_servo(ServoOrder order);
     void run_simulation(State& state);
     void step(State& state);
+    void hold(State& state);
     void obey(State& state, const Command& command);
     void reset(State& state);
     void order_servo(const State& state);
@@ -78,6 +88,8 @@ private:
 
     SceneDescription scene_;
     Device& device_;
+    HandOrders* orders_;
+    HandOrder order_;  // as posted last
     Exchange exchange_;
     Mailbox<ServoOrder> servo_orders_;
     std::uint32_t restarts_ = 0;

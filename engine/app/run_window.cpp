@@ -8,6 +8,7 @@
 #include "platform/window.h"
 #include "render/picture.h"
 #include "render/renderer.h"
+#include "session/run_headless.h"
 #include "ui/backend.h"
 #include "ui/overlay.h"
 #include "view/orbit_camera.h"
@@ -34,7 +35,7 @@ constexpr float radians_per_pixel = 0.008F;
 constexpr float zoom_per_notch = 0.9F;
 constexpr double angstrom_per_notch = 0.25;  // of the molecule in hand, towards the eye and away
 constexpr double notice_s = 4;
-constexpr float focus_distance = 18;  // Å
+constexpr float surroundings = 1.6F;  // times the distance that fits the molecule in hand alone
 constexpr glm::vec3 background{0.86F, 0.89F, 0.93F};
 
 // All that is lost with a device, made and thrown away as one.
@@ -92,10 +93,15 @@ public:
     Sandbox(const SceneDescription& scene, Device& device, const WindowOptions& options)
         : options_(options),
           window_("Palpa - " + scene.title, options.width, options.height),
-          session_(scene, options.view, device),
+          session_(scene, options.view, device, options.orders),
           overlay_(scene, options.view),
           statistics_(1 / servo_rate_hz),
           device_name_(device.spec().name) {
+        std::error_code error;
+        if (!std::filesystem::is_directory(options.screenshots, error)) {
+            throw LoadError({options.screenshots.string()},
+                            "is no folder; expected one for screenshots");
+        }
         // Drawing, which may be done by threads of the driver, comes after feeling.
         (void)nice(5);
         graphics_ = std::make_unique<Graphics>(window_, options.validation);
@@ -106,6 +112,9 @@ public:
 private:
     void frame();
     void look_at_all();
+    void look_at_grabbed();
+    float free_aspect() const;
+    bool has_mouse_hand() const { return options_.orders && options_.mouse_reach_m > 0; }
     void take_ticks();
     void take_input();
     void move_camera(const Input& input);
@@ -130,7 +139,9 @@ private:
     LiveFrame frame_;
     bool has_frame_ = false, framed_ = false;
     OrbitCamera camera_;
-    Vec3 hand_m_ = Vec3::Zero();  // where the mouse wants the handle
+    Vec3 hand_m_ = Vec3::Zero();    // where the mouse wants the handle
+    Vec3 handle_m_ = Vec3::Zero();  // where it is
+    VkExtent2D drawn_size_{};       // of the last picture
     bool holding_ = false;
     RenderScale scale_;
     const Clock::time_point start_ = Clock::now();
@@ -146,14 +157,16 @@ private:
 WindowReport Sandbox::run() {
     const auto shortest = std::chrono::duration_cast<Clock::duration>(
         std::chrono::duration<double>(1 / options_.most_frames_per_s));
+    constexpr int most_losses = 3;  // without a picture in between
     int losses = 0;
     Clock::time_point next = Clock::now();
     while (!quitting_ && !window_.should_close()) {
         try {
+            if (losses > 0 || !graphics_) restart_graphics();
             frame();
+            losses = 0;
         } catch (const DeviceLost&) {
-            if (++losses > 3) throw;
-            restart_graphics();
+            if (++losses > most_losses) throw;
             notice("the graphics device was lost, and is back");
         }
         // The display's own pace does not throttle everywhere.
@@ -165,6 +178,7 @@ WindowReport Sandbox::run() {
     WindowReport report{statistics_.summary(), overlay_.settings(),        frame_ms_.size(), 0,
                         scale_.value(),        overlay_.lesson().current()};
     report.summary.steps = frame_.readout.steps;
+    warn_of_outcome(report.summary);
     report.summary.overruns = session_.servo_health().overruns;
     if (!frame_ms_.empty()) {
         std::nth_element(frame_ms_.begin(),
@@ -184,9 +198,16 @@ void Sandbox::frame() {
     }
     if (has_frame_ && !std::exchange(framed_, has_frame_)) look_at_all();
     take_input();
+    if (frame_ms_.size() + 1 == options_.lose_device_at) {
+        frame_ms_.push_back(0);
+        throw DeviceLost("the device was given up on request");
+    }
     is_over_ = options_.last_shot && ms_since(start_) > 1e3 * options_.last_shot_s;
     wants_shot_ = wants_shot_ || is_over_;
-    if (window_.size().width == 0 || window_.size().height == 0) return;  // folded away
+    if (window_.size().width == 0 || window_.size().height == 0) {  // folded away
+        if (is_over_) throw GpuError("the window is folded away: no picture of it");
+        return;
+    }
     draw();
     last_frame_ms_ = ms_since(begin);
     scale_.add_frame(last_frame_ms_);
@@ -194,16 +215,28 @@ void Sandbox::frame() {
     if (frame_ms_.size() < most) frame_ms_.push_back(last_frame_ms_);
 }
 
-// In the middle, between the overlays.
-void Sandbox::look_at_all() {
+// Of what the overlays leave free in the middle.
+float Sandbox::free_aspect() const {
     const auto width = static_cast<float>(window_.size().width);
     const auto height = static_cast<float>(window_.size().height);
-    const float free = width - 2 * overlay_.covered_pixels(width);
-    frame_all(camera_, frame_.picture, free / std::max(height, 1.0F));
+    return (width - 2 * overlay_.covered_pixels(width)) / std::max(height, 1.0F);
+}
+
+void Sandbox::look_at_all() { frame_all(camera_, frame_.picture, free_aspect()); }
+
+void Sandbox::look_at_grabbed() {
+    std::vector<SphereShape> grabbed;
+    for (const SphereShape& sphere : frame_.picture.spheres) {
+        if (sphere.pick < frame_.grabbed_atoms) grabbed.push_back(sphere);
+    }
+    frame_shapes(camera_, grabbed, free_aspect());
+    zoom(camera_, surroundings);
 }
 
 void Sandbox::take_ticks() {
     for (ServoTick tick; session_.pop_tick(tick);) {
+        handle_m_ = tick.reading.position_m;
+        if (frame_.readout.paused) continue;
         statistics_.add(tick);
         overlay_.add_tick(tick);
     }
@@ -219,7 +252,7 @@ void Sandbox::take_input() {
             }
         }
     }
-    holding_ = options_.mouse_hand && input.is_held(Key::Space);
+    holding_ = has_mouse_hand() && input.is_held(Key::Space) && !graphics_->ui.wants_keys();
     if (holding_) {
         move_hand(input);
     } else if (!graphics_->ui.wants_mouse()) {
@@ -249,18 +282,24 @@ void Sandbox::move_hand(const Input& input) {
                           static_cast<float>(input.wheel * angstrom_per_notch) * backward(camera_);
     const double gain = frame_.readout.touch.displacement_gain;
     hand_m_ += Vec3(way.x, way.y, way.z) * units::metre_per_angstrom * gain;
-    options_.mouse_hand->post({hand_m_});
+    // Never further ahead than the hand pulls: so that coming back is felt at once.
+    const double ahead = (hand_m_ - handle_m_).norm();
+    if (ahead > options_.mouse_reach_m) {
+        hand_m_ = handle_m_ + (hand_m_ - handle_m_) * (options_.mouse_reach_m / ahead);
+    }
+    session_.move_hand(hand_m_);
 }
 
 void Sandbox::perform(Action action) {
+    if (action == Action::Reset && has_mouse_hand()) session_.move_hand(hand_m_ = handle_m_);
     std::vector<Command> commands;
-    if (overlay_.perform(action, frame_.readout, commands)) {
+    if (overlay_.perform(action, commands)) {
         for (const Command& command : commands) session_.send(command);
         return;
     }
     switch (action) {
         case Action::Focus:
-            focus(camera_, as_float(frame_.grabbed_angstrom), focus_distance);
+            look_at_grabbed();
             break;
         case Action::FrameAll:
             look_at_all();
@@ -280,13 +319,15 @@ void Sandbox::perform(Action action) {
 }
 
 void Sandbox::look_at_pixel(double x, double y) {
+    const VkExtent2D window = graphics_->swapchain.size();
+    if (drawn_size_.width == 0 || window.width == 0 || window.height == 0) return;
     graphics_->swapchain.wait();
-    const std::uint32_t pick =
-        graphics_->renderer.pick(static_cast<std::uint32_t>(std::max(x, 0.0) * scale_.value()),
-                                 static_cast<std::uint32_t>(std::max(y, 0.0) * scale_.value()));
+    const std::uint32_t pick = graphics_->renderer.pick(
+        static_cast<std::uint32_t>(std::max(x, 0.0) * drawn_size_.width / window.width),
+        static_cast<std::uint32_t>(std::max(y, 0.0) * drawn_size_.height / window.height));
     for (const SphereShape& sphere : frame_.picture.spheres) {
         if (sphere.pick != pick) continue;
-        focus(camera_, sphere.centre, std::min(camera_.distance, focus_distance));
+        camera_.target = sphere.centre;
         return;
     }
 }
@@ -307,10 +348,11 @@ void Sandbox::draw() {
     std::vector<Action> actions;
     if (has_frame_) {
         const bool is_news = Clock::now() < notice_until_;
-        overlay_.draw(frame_.readout,
-                      {session_.servo_health(), device_name_, g.device.name(), last_frame_ms_,
-                       scale_.value(), holding_, is_news ? notice_ : std::string()},
-                      commands, actions);
+        overlay_.draw(
+            frame_.readout,
+            {session_.servo_health(), device_name_, g.device.name(), last_frame_ms_, scale_.value(),
+             has_mouse_hand(), holding_, is_news ? notice_ : std::string()},
+            commands, actions);
     }
     g.ui.end();
     for (const Command& command : commands) session_.send(command);
@@ -325,6 +367,7 @@ void Sandbox::draw() {
             blit(buffer, g.renderer.colour_image(), size, image, g.swapchain.size());
         },
         [&](VkCommandBuffer buffer) { g.ui.draw(buffer); }, wants_shot_ ? &shot : nullptr);
+    drawn_size_ = size;
     must_rebuild_ = !shows;
     if (!shot.rgba.empty()) {
         wants_shot_ = false;
@@ -334,7 +377,7 @@ void Sandbox::draw() {
 }
 
 void Sandbox::save(const WindowShot& shot) {
-    if (is_over_) {  // what was asked for on the command line is an error if it fails
+    if (is_over_ && options_.last_shot) {  // asked for on the command line: an error if it fails
         write_png(*options_.last_shot, {shot.width, shot.height, shot.rgba, {}, {}});
         quitting_ = true;
         return;
@@ -351,10 +394,12 @@ void Sandbox::save(const WindowShot& shot) {
 void Sandbox::restart_graphics() {
     keep_validation_messages();
     graphics_.reset();
+    drawn_size_ = {};
     graphics_ = std::make_unique<Graphics>(window_, options_.validation);
 }
 
 void Sandbox::keep_validation_messages() {
+    if (!graphics_) return;
     for (const std::string& message : graphics_->device.validation_messages()) {
         validation_messages_.push_back(message);
     }

@@ -18,8 +18,10 @@ struct WindowOptions {
     std::filesystem::path screenshots{"."};            // folder
     std::optional<std::filesystem::path> last_shot{};  // taken after `last_shot_s`, then it quits
     double last_shot_s = 5;
-    HandTargets* mouse_hand = nullptr;  // where a mouse moves an emulated handle; null: nowhere
+    HandOrders* orders = nullptr;  // of an emulated device's hand
+    double mouse_reach_m = 0;      // how far ahead of the handle a mouse's hand goes; 0: no mouse
     double most_frames_per_s = 60;
+    std::uint64_t lose_device_at = 0;  // frame at which the graphics device is given up, for tests
     bool validation = false;  // of all that Vulkan is told; what it finds is thrown at the end
 };
 

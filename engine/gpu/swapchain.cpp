@@ -1,5 +1,6 @@
 #include "gpu/swapchain.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -150,6 +151,16 @@ void Swapchain::create_images(VkExtent2D wanted, VkSwapchainKHR old) {
         size_.height =
             std::clamp(wanted.height, can.minImageExtent.height, can.maxImageExtent.height);
     }
+    const std::uint32_t most = device_.limits().maxImageDimension2D;
+    if (size_.width == 0 || size_.height == 0) {  // folded away: nothing can be shown
+        vkDestroySwapchainKHR(handle, old, nullptr);
+        swapchain_ = VK_NULL_HANDLE;
+        return;
+    }
+    if (size_.width > most || size_.height > most) {
+        throw GpuError(fmt::format("a window of {}x{}; expected 1x1 to {}x{} on {}", size_.width,
+                                   size_.height, most, most, device_.name()));
+    }
     VkSwapchainCreateInfoKHR info{};
     info.sType = VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR;
     info.surface = device_.surface();
@@ -231,6 +242,7 @@ void Swapchain::wait() const {
 
 bool Swapchain::present(const std::function<void(VkCommandBuffer, VkImage)>& paint,
                         const std::function<void(VkCommandBuffer)>& overlay, WindowShot* shot) {
+    if (swapchain_ == VK_NULL_HANDLE) return false;
     wait();
     std::uint32_t image = 0;
     const VkResult acquired = vkAcquireNextImageKHR(device_.handle(), swapchain_, forever,

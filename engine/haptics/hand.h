@@ -4,6 +4,7 @@
 #include "math/vec.h"
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -61,11 +62,20 @@ struct HandScript {
     double kick_duration_s = 0.01;
 };
 
-// Where a person without a device wants the handle: a mouse's owner posts, the emulated device
-// reads.
-struct HandTarget {
-    Vec3 position_m = Vec3::Zero();
+// What a window asks of the hand on an emulated device: the window posts, the device reads.
+struct HandOrder {
+    Vec3 target_m = Vec3::Zero();  // where a live hand wants the handle
+    std::uint32_t restarts = 0;    // another number: a script begins anew, a live hand rests
+    bool frozen = false;           // time stands still for handle and hand
+    std::uint32_t grants = 0;      // another number: `granted_ticks` go by although it is frozen
+    int granted_ticks = 0;
 };
-using HandTargets = Mailbox<HandTarget>;
+using HandOrders = Mailbox<HandOrder>;
+
+// How a live hand goes after its target: never faster, and with no more pull on the handle, than
+// this. A mouse can be anywhere at once, a hand cannot; its pull stays below the clamp of the
+// forces that answer it, or it would go through every wall.
+inline constexpr double live_hand_m_per_s = 0.25;
+inline constexpr double live_hand_newton = 2.4;
 
 }  // namespace palpa

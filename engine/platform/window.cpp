@@ -92,7 +92,7 @@ void Window::listen(GLFWwindow* window) {
         if (button > GLFW_MOUSE_BUTTON_MIDDLE) return;
         const auto index = static_cast<std::size_t>(button);  // left, right, middle, as ours
         input.down[index] = action == GLFW_PRESS;
-        if (action == GLFW_PRESS) press(window_of(w), static_cast<MouseButton>(button));
+        if (action == GLFW_PRESS && button == GLFW_MOUSE_BUTTON_LEFT) press_left(window_of(w));
     });
     glfwSetScrollCallback(
         window, [](GLFWwindow* w, double /*x*/, double y) { window_of(w).input_.wheel += y; });
@@ -107,9 +107,7 @@ void Window::listen(GLFWwindow* window) {
     });
 }
 
-void Window::press(Window& window, MouseButton button) {
-    window.input_.clicked[static_cast<std::size_t>(button)] = true;
-    if (button != MouseButton::Left) return;
+void Window::press_left(Window& window) {
     double x = 0, y = 0;
     glfwGetCursorPos(window.window_, &x, &y);
     const double now = glfwGetTime();
@@ -124,7 +122,10 @@ void Window::press(Window& window, MouseButton button) {
 std::vector<const char*> Window::vulkan_extensions() const {
     std::uint32_t count = 0;
     const char* const* const names = glfwGetRequiredInstanceExtensions(&count);
-    if (!names) throw PlatformError("this display cannot show what Vulkan draws");
+    if (!names) {
+        throw PlatformError(
+            "Vulkan cannot draw into a window here; is a driver installed (mesa-vulkan-drivers)?");
+    }
     return {names, names + count};
 }
 
@@ -143,17 +144,12 @@ VkExtent2D Window::size() const {
     return {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
 }
 
-const Input& Window::poll(double wait_s) {
+const Input& Window::poll() {
     input_.pressed.clear();
-    input_.clicked.fill(false);
     input_.double_clicked = false;
     input_.wheel = 0;
     input_.resized = false;
-    if (wait_s > 0) {
-        glfwWaitEventsTimeout(wait_s);
-    } else {
-        glfwPollEvents();
-    }
+    glfwPollEvents();
     int width = 0, height = 0;
     glfwGetWindowSize(window_, &width, &height);
     const VkExtent2D pixels = size();
@@ -170,7 +166,5 @@ const Input& Window::poll(double wait_s) {
 }
 
 bool Window::should_close() const { return glfwWindowShouldClose(window_) == GLFW_TRUE; }
-
-void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
 
 }  // namespace palpa

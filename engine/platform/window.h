@@ -53,10 +53,9 @@ enum class Key {
 struct Input {
     double mouse_x = 0, mouse_y = 0;
     double mouse_dx = 0, mouse_dy = 0;
-    double wheel = 0;               // notches, + away from the user
-    std::array<bool, 3> down{};     // by MouseButton, at this moment
-    std::array<bool, 3> clicked{};  // went down since the last poll
-    bool double_clicked = false;    // the left one, twice at one place
+    double wheel = 0;             // notches, + away from the user
+    std::array<bool, 3> down{};   // by MouseButton, at this moment
+    bool double_clicked = false;  // the left one, twice at one place
     std::array<bool, static_cast<std::size_t>(Key::Count)> held{};
     std::vector<Key> pressed;  // since the last poll, in their order
     bool shift = false, control = false;
@@ -64,7 +63,6 @@ struct Input {
 
     bool is_held(Key key) const { return held[static_cast<std::size_t>(key)]; }
     bool is_down(MouseButton button) const { return down[static_cast<std::size_t>(button)]; }
-    bool was_clicked(MouseButton button) const { return clicked[static_cast<std::size_t>(button)]; }
 };
 
 // One at a time, on the main thread.
@@ -83,18 +81,17 @@ public:
     // Of the picture, in pixels; 0x0 while the window is folded away.
     VkExtent2D size() const;
 
-    // Takes in what happened. `wait_s`: for that long at most while nothing happens.
-    const Input& poll(double wait_s = 0);
+    // Takes in what happened.
+    const Input& poll();
 
     bool should_close() const;
-    void set_title(const std::string& title);
 
     // For the overlay library's own listening.
     GLFWwindow* handle() const noexcept { return window_; }
 
 private:
     static void listen(GLFWwindow* window);
-    static void press(Window& window, MouseButton button);
+    static void press_left(Window& window);
 
     GLFWwindow* window_ = nullptr;
     Input input_;

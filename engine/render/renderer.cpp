@@ -70,14 +70,6 @@ GpuShape build_shape(const glm::mat4& view, const ConeShape& cone) {
             {cone.colour_b, 0}};
 }
 
-void check_size(const GpuDevice& device, VkExtent2D size) {
-    const std::uint32_t most = device.limits().maxImageDimension2D;
-    if (size.width == 0 || size.height == 0 || size.width > most || size.height > most) {
-        throw GpuError(fmt::format("a picture of {}x{}; expected 1x1 to {}x{} on {}", size.width,
-                                   size.height, most, most, device.name()));
-    }
-}
-
 VkShaderModule create_module(VkDevice device, std::span<const std::uint32_t> code) {
     VkShaderModuleCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
@@ -418,8 +410,16 @@ bool Renderer::upload_shapes(VkCommandBuffer commands, const FrameScene& scene) 
     return moved;
 }
 
+void Renderer::check_size(VkExtent2D size) const {
+    const std::uint32_t most = device_.limits().maxImageDimension2D;
+    if (size.width == 0 || size.height == 0 || size.width > most || size.height > most) {
+        throw GpuError(fmt::format("a picture of {}x{}; expected 1x1 to {}x{} on {}", size.width,
+                                   size.height, most, most, device_.name()));
+    }
+}
+
 void Renderer::record(VkCommandBuffer commands, const FrameScene& scene, VkExtent2D size) {
-    check_size(device_, size);
+    check_size(size);
     const bool resized = size.width != targets_.size.width || size.height != targets_.size.height;
     if (resized) targets_ = create_targets(size);
     if (upload_shapes(commands, scene) || resized) write_descriptors();
@@ -470,7 +470,7 @@ void Renderer::record(VkCommandBuffer commands, const FrameScene& scene, VkExten
 Picture Renderer::draw(const FrameScene& scene, std::uint32_t width, std::uint32_t height,
                        PictureContent content) {
     const VkExtent2D size{width, height};
-    check_size(device_, size);
+    check_size(size);
     const Readback colours(device_, size, 4);
     std::optional<Readback> seen;
     if (content == PictureContent::All) seen.emplace(device_, size, sizeof(Seen));

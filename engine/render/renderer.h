@@ -23,6 +23,9 @@ public:
     Renderer& operator=(const Renderer&) = delete;
     ~Renderer();
 
+    // Throws GpuError if the size is 0 or beyond what the device can do.
+    void check_size(VkExtent2D size) const;
+
     // Draws, waits, and brings back what is wanted of the picture. Throws GpuError if the size is 0
     // or beyond what the device can do.
     Picture draw(const FrameScene& scene, std::uint32_t width, std::uint32_t height,

@@ -30,8 +30,7 @@ using Command = std::variant<LiveSettings, ViewSettings, Pause, StepOnce, Reset>
 struct Readout {
     TouchModel touch;
     std::uint64_t steps = 0;
-    std::uint64_t late_steps = 0;  // that took longer than the period
-    double step_ms = 0;            // wall time of the last step
+    double step_ms = 0;  // wall time of the last step
     bool paused = false;
     std::string problem;  // why the last Reset failed; else empty
 };

@@ -110,6 +110,15 @@ std::vector<std::string> list_warnings(const SceneDescription& scene, const Simu
     return warnings;
 }
 
+void warn_of_outcome(Summary& summary) {
+    if (summary.went_through) {
+        summary.warnings.emplace_back("the hand pushed the molecule through the other one");
+    }
+    if (summary.stopped) {
+        summary.warnings.emplace_back("a force was not finite: the device was stopped");
+    }
+}
+
 Summary run_headless(const SceneDescription& scene, Simulation& simulation, Device& device,
                      const std::vector<std::string>& warnings, Recording* recording,
                      const ProgressFunction& progress, const FrameClock& frames) {
@@ -145,12 +154,7 @@ Summary run_headless(const SceneDescription& scene, Simulation& simulation, Devi
     if (progress) progress(1);
     Summary summary = statistics.summary();
     summary.warnings = warnings;
-    if (summary.went_through) {
-        summary.warnings.emplace_back("the hand pushed the molecule through the other one");
-    }
-    if (summary.stopped) {
-        summary.warnings.emplace_back("a force was not finite: the device was stopped");
-    }
+    warn_of_outcome(summary);
     if (recording) recording->finish(summary);
     return summary;
 }

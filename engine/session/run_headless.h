@@ -40,6 +40,9 @@ FeltStiffness stiffest_place(const SceneDescription& scene, const Simulation& si
 std::vector<std::string> list_warnings(const SceneDescription& scene, const Simulation& simulation,
                                        const HandScript& script);
 
+// Adds to the summary's warnings what went wrong in it.
+void warn_of_outcome(Summary& summary);
+
 // `warnings` are put at the head of the summary's. `recording` and `progress` may be null or empty,
 // and there need not be frames. The simulation ends where the run leaves it.
 Summary run_headless(const SceneDescription& scene, Simulation& simulation, Device& device,

@@ -84,7 +84,15 @@ void Overlay::update_limit() {
 }
 
 void Overlay::add_tick(const ServoTick& tick) {
-    last_ = read_tick(tick);
+    const Reading reading = read_tick(tick);
+    if (has_tick_ && reading.time_s == last_.time_s) return;  // paused: no time passed
+    has_tick_ = true;
+    last_ = reading;
+    if (tick.touch.active_freedom == 1) {
+        const double side = tick.touch.molecule_angstrom.x();
+        if (side_ == 0) side_ = side;
+        went_through_ = side * side_ < 0;
+    }
     clamped_ = tick.clamped;
     stopped_ = tick.stopped;
     force_gain_ = tick.force_gain;
@@ -107,7 +115,7 @@ void Overlay::set_mode(CouplingMode mode, std::vector<Command>& commands) {
     change_settings(settings, commands);
 }
 
-bool Overlay::perform(Action action, const Readout& readout, std::vector<Command>& commands) {
+bool Overlay::perform(Action action, std::vector<Command>& commands) {
     const auto go_back = [&](std::vector<LiveSettings>& from, std::vector<LiveSettings>& to) {
         if (from.empty()) return;
         to.push_back(settings_);
@@ -117,9 +125,11 @@ bool Overlay::perform(Action action, const Readout& readout, std::vector<Command
     };
     switch (action) {
         case Action::PauseOrGo:
-            commands.emplace_back(Pause{!readout.paused});
+            wants_pause_ = !wants_pause_;
+            commands.emplace_back(Pause{wants_pause_});
             return true;
         case Action::StepOnce:
+            wants_pause_ = true;
             commands.emplace_back(StepOnce{});
             return true;
         case Action::Reset:
@@ -244,7 +254,7 @@ void Overlay::draw_readings(const Readout& readout, const OverlayStatus& status)
     const bool on_axis = touch.active_freedom == 1;
     reading("separation", fmt::format("{:.3f} Å", last_.distance_angstrom),
             "Distance of the reference atoms, Å");
-    reading("force, molecule", fmt::format("{:+.4f} nN", last_.molecular_nN),
+    reading("force, molecule", fmt::format("{:+.4g} nN", last_.molecular_nN),
             on_axis ? "F_m, nN, on the molecule in hand; + repels, - attracts"
                     : "|F_m|, nN, on the molecule in hand");
     reading("force, hand", fmt::format("{:+.3f} N", last_.hand_N),
@@ -358,6 +368,7 @@ void Overlay::draw_gain_sliders() {
         slide("F_0", c.F_0_nN, 0.0, 10, "%.2f nN", false,
               "F_0 of eq. 2, nN: between weak and strong forces");
         c.F_h2_N = std::max(c.F_h2_N, 1.05 * c.F_h1_N);
+        c.A_f_max = std::max(c.A_f_max, c.A_f_min);
     } else if (c.mode != CouplingMode::NoForce) {
         slide("A_f", c.A_f, 0.01e9, 50e9, "%.3g", true, "constant force gain F_h/F_m, N/N");
     }
@@ -476,12 +487,16 @@ void Overlay::draw_warnings(const Readout& readout, const OverlayStatus& status)
         return fmt::format("steps take longer than their period of {} ms: the force comes late",
                            settings_.period_ms);
     });
+    if (went_through_) {
+        warnings.emplace_back("the molecule was pushed through the other one: R brings it back");
+    }
     if (!readout.problem.empty()) warnings.push_back(readout.problem);
     if (readout.paused) warnings.emplace_back("paused: P goes on");
     if (!status.notice.empty()) warnings.push_back(status.notice);
-    warnings.emplace_back(status.holding
-                              ? "in hand: move the mouse; the wheel goes in and out"
-                              : "hold Space and move the mouse to pull the molecule; H: all keys");
+    warnings.emplace_back(!status.has_mouse_hand ? "the emulated hand plays its stroke; H: all keys"
+                          : status.holding ? "in hand: move the mouse; the wheel goes in and out"
+                                           : "hold Space and move the mouse to pull the molecule; "
+                                             "H: all keys");
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     const float column = column_of(screen.x);
     ImGui::SetNextWindowPos({screen.x / 2, edge}, ImGuiCond_Always, {0.5F, 0});

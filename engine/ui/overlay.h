@@ -18,8 +18,9 @@ struct OverlayStatus {
     std::string device_name, gpu_name;
     double frame_ms = 0;
     double render_scale = 1;
-    bool holding = false;  // the hand is on the molecule
-    std::string notice;    // of the last seconds, such as where a screenshot went
+    bool has_mouse_hand = true;  // the mouse can take the molecule
+    bool holding = false;        // and has it
+    std::string notice;          // of the last seconds, such as where a screenshot went
 };
 
 class Overlay {
@@ -34,7 +35,7 @@ public:
               std::vector<Action>& actions);
 
     // Does what an action means for settings and overlays; false where it is the window's business.
-    bool perform(Action action, const Readout& readout, std::vector<Command>& commands);
+    bool perform(Action action, std::vector<Command>& commands);
 
     // The hand feels a spring, at this moment, that it cannot keep calm at the present period.
     bool is_shaking(const Readout& readout) const;
@@ -43,7 +44,6 @@ public:
     float covered_pixels(float window_width) const noexcept;
 
     const LiveSettings& settings() const noexcept { return settings_; }
-    const ViewSettings& view() const noexcept { return view_; }
     const Lesson& lesson() const noexcept { return lesson_; }
 
 private:
@@ -78,7 +78,10 @@ private:
     Lesson lesson_;
     History history_;
     Reading last_;
-    bool clamped_ = false, stopped_ = false;
+    bool has_tick_ = false, clamped_ = false, stopped_ = false;
+    double side_ = 0;  // of the counterpart, on one axis, where the molecule began
+    bool went_through_ = false;
+    bool wants_pause_ = false;
     double force_gain_ = 0;
     float gains_bottom_ = 0;  // pixels, where the next panel of that column may begin
 

@@ -7,6 +7,7 @@
 #include "simulation/step.h"
 #include "tests/support/water_scene.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <functional>
@@ -20,12 +21,14 @@ namespace {
 // A live session of the water scene with a mouse's hand on the handle.
 struct Live {
     explicit Live(const std::vector<std::string>& settings = {})
-        : device(make_settings(&targets)), session(test::water_scene(settings), {}, device) {}
+        : device(make_settings(&orders)),
+          session(test::water_scene(settings), {}, device, &orders) {}
 
-    static EmulatedOmniSettings make_settings(HandTargets* targets) {
+    static EmulatedOmniSettings make_settings(HandOrders* orders) {
         EmulatedOmniSettings settings;
         settings.hand = hand_model(Grip::Medium);
-        settings.live = targets;
+        settings.orders = orders;
+        settings.live = true;
         settings.half_workspace_m = Vec3::Constant(0.5);
         return settings;
     }
@@ -46,7 +49,7 @@ struct Live {
     }
     double distance() const { return frame.readout.touch.molecule_angstrom.x(); }
 
-    HandTargets targets;
+    HandOrders orders;
     EmulatedOmni device;
     LiveSession session;
     LiveFrame frame;
@@ -61,36 +64,67 @@ TEST_CASE("the mouse's hand draws the molecule near, and the hand feels it", "[a
     CHECK(live.distance() == Approx(7).margin(0.01));
     CHECK(live.frame.picture.spheres.size() == 6);
 
-    live.targets.post({Vec3(-0.0925, 0, 0)});  // 3.7 Å at 2.5 cm/Å
+    live.session.move_hand(Vec3(-0.0925, 0, 0));  // 3.7 Å at 2.5 cm/Å
 
     CHECK(live.wait_until([&](const LiveFrame&) { return live.distance() < 3.5; }));
     CHECK(live.wait_until([&](const LiveFrame&) { return live.last.sent_newton.x() < -0.5; }));
     CHECK(live.frame.grabbed_angstrom.x() - live.distance() == Approx(0).margin(1e-9));
 }
 
-TEST_CASE("while paused nothing moves and nothing is felt and going on nothing jumps",
-          "[app][threads]") {
+TEST_CASE("while paused nothing moves and going on nothing jumps", "[app][threads]") {
     Live live({"start_angstrom=3.1"});
     REQUIRE(live.wait_until([&](const LiveFrame&) { return live.last.sent_newton.x() < -0.5; }));
     live.session.send(Pause{true});
     REQUIRE(live.wait_until([](const LiveFrame& f) { return f.readout.paused; }));
-    REQUIRE(live.wait_until([&](const LiveFrame&) { return live.last.sent_newton.isZero(); }));
-    const double there = live.distance();
+    REQUIRE(live.wait_until([&](const LiveFrame&) {  // the handle stands still as well
+        const double time_s = live.last.reading.time_s;
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        ServoTick tick;
+        while (live.session.pop_tick(tick)) live.last = tick;
+        return live.last.reading.time_s == time_s;
+    }));
+    const double there = live.distance(), handle = live.last.reading.position_m.x();
     const std::uint64_t steps = live.frame.readout.steps;
-    live.targets.post({Vec3(-0.2, 0, 0)});
-    REQUIRE(live.wait_until(
-        [&](const LiveFrame&) { return live.last.reading.position_m.x() < -0.19; }));
+    live.session.move_hand(Vec3(0.2, 0, 0));
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    REQUIRE(live.wait_until([](const LiveFrame&) { return true; }));
     CHECK(live.distance() == there);
     CHECK(live.frame.readout.steps == steps);
+    CHECK(live.last.reading.position_m.x() == handle);
 
     live.session.send(StepOnce{});
     REQUIRE(live.wait_until([&](const LiveFrame& f) { return f.readout.steps == steps + 1; }));
     CHECK(live.frame.readout.paused);
-    CHECK(live.distance() == Approx(there).margin(0.5));
+    CHECK(live.distance() == Approx(there).margin(0.02));
 
     live.session.send(Pause{false});
     REQUIRE(live.wait_for_steps(2));
-    CHECK(live.distance() == Approx(there).margin(0.5));  // not 8 Å further on
+    CHECK(live.distance() == Approx(there).margin(0.1));  // not 8 Å further on
+}
+
+TEST_CASE("a push on the wall stays outside of it, and a reset brings the start back",
+          "[app][threads]") {
+    Live live;
+    REQUIRE(live.wait_for_steps(2));
+    live.session.move_hand(Vec3(-1, 0, 0));  // far beyond
+    REQUIRE(live.wait_until([&](const LiveFrame&) { return live.distance() < 2.6; }));
+    double closest = live.distance(), strongest = 0;
+    const double begin = live.last.reading.time_s;
+    REQUIRE(live.wait_until([&](const LiveFrame& f) {
+        closest = std::min(closest, live.distance());
+        strongest = std::max(strongest, f.readout.touch.force_newton.norm());
+        return live.last.reading.time_s > begin + 2;
+    }));
+    CHECK(closest > 2.2);
+    CHECK(strongest < 20e-9);
+
+    live.session.move_hand(live.last.reading.position_m);
+    live.session.send(Reset{});
+    REQUIRE(live.wait_until([&](const LiveFrame&) { return live.distance() > 6; }));
+    const double reset = live.last.reading.time_s;
+    REQUIRE(
+        live.wait_until([&](const LiveFrame&) { return live.last.reading.time_s > reset + 1; }));
+    CHECK(live.distance() == Approx(7).margin(0.01));
 }
 
 TEST_CASE("settings, view and reset reach the running scene", "[app][threads]") {
@@ -105,7 +139,7 @@ TEST_CASE("settings, view and reset reach the running scene", "[app][threads]") 
                f.picture.cones.empty();
     }));
 
-    live.targets.post({Vec3(-0.2, 0, 0)});
+    live.session.move_hand(Vec3(-0.2, 0, 0));
     REQUIRE(live.wait_until([&](const LiveFrame&) { return live.distance() < 5.5; }));
     live.session.send(Reset{});
     CHECK(live.wait_until([&](const LiveFrame&) { return live.distance() > 6.5; }));

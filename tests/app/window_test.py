@@ -42,8 +42,16 @@ class Display:
                        env={**os.environ, "DISPLAY": self.name}, stdout=subprocess.DEVNULL)
 
     def find_window(self):
-        return subprocess.run(["xdotool", "search", "--name", "^Palpa - "], capture_output=True,
-                              text=True, env={**os.environ, "DISPLAY": self.name}).stdout.split()
+        return subprocess.run(["xdotool", "search", "--onlyvisible", "--name", "^Palpa - "],
+                              capture_output=True, text=True,
+                              env={**os.environ, "DISPLAY": self.name}).stdout.split()
+
+    def focus_window(self):
+        """Whether the window could be given the keys; it may not be there yet."""
+        found = self.find_window()
+        return found and subprocess.run(["xdotool", "windowfocus", "--sync", found[0]],
+                                        env={**os.environ, "DISPLAY": self.name},
+                                        stderr=subprocess.DEVNULL).returncode == 0
 
 
 class Session(unittest.TestCase):
@@ -70,8 +78,7 @@ class Session(unittest.TestCase):
              "--validation", *map(str, options)],
             env={**os.environ, "DISPLAY": display.name}, stdout=subprocess.PIPE,
             stderr=subprocess.PIPE, text=True)
-        self.wait_until(display.find_window, "the window")
-        display.do("windowfocus", "--sync", display.find_window()[0])
+        self.wait_until(display.focus_window, "the window")
         self.screenshots = 0
         self.screenshot(display)  # the first picture is there: it takes part from now on
 
@@ -91,8 +98,7 @@ class Session(unittest.TestCase):
     def test_a_session_with_mouse_and_keys(self):
         with Display() as display:
             self.start(display)
-            first = self.folder / "palpa-0001.png"
-            self.assertEqual(size_of_png(first), (1280, 800))
+            self.assertEqual(size_of_png(self.folder / "palpa-0001.png"), (1280, 800))
 
             # A plain drag turns the view and pushes no atoms.
             display.do("mousemove", 640, 330, "mousedown", 1)
@@ -107,15 +113,18 @@ class Session(unittest.TestCase):
                 time.sleep(0.02)
             time.sleep(0.5)
             display.do("keyup", "space")
-            second = self.screenshot(display)
-            self.assertNotEqual(first.read_bytes(), second.read_bytes())
+            self.screenshot(display)
 
             # The first slider of the gains, A_f max, to its far right.
-            display.do("mousemove", 1000, 302, "mousedown", 1)
-            time.sleep(0.2)
+            # A screenshot between two events makes sure that a frame has seen the first.
+            display.do("mousemove", 1000, 302)
+            self.screenshot(display)
+            display.do("mousedown", 1)
+            self.screenshot(display)
             display.do("mousemove", 1178, 302)
-            time.sleep(0.2)
+            self.screenshot(display)
             display.do("mouseup", 1)
+            self.screenshot(display)
             display.do("key", "3")
             display.do("key", "v")
             display.do("key", "F5")
@@ -126,6 +135,7 @@ class Session(unittest.TestCase):
             summary = self.quit(display)
 
         self.assertLess(summary["closest_angstrom"], 6.5)
+        self.assertEqual(summary["warnings"], [])
         self.assertEqual(summary["mode"], "3")
         self.assertGreater(summary["coupling"]["A_f_max"], 6e9)
         self.assertGreater(summary["steps"], 0)
@@ -140,6 +150,29 @@ class Session(unittest.TestCase):
             display.do("mouseup", 1)
             summary = self.quit(display)
         self.assertAlmostEqual(summary["closest_angstrom"], 7, delta=0.05)
+
+    def test_a_lost_device_comes_back(self):
+        with Display() as display:
+            self.start(display, "--lose-device-at", 5)
+            self.screenshot(display)
+            self.quit(display)
+
+    def test_what_a_window_cannot_be(self):
+        with Display() as display:
+            for options, environment, expected in (
+                    (["--size", "99999x99999"], {}, "a window of "),
+                    ([], {"VK_DRIVER_FILES": "/nowhere", "VK_ICD_FILENAMES": "/nowhere"},
+                     "is a driver installed"),
+                    (["--screenshots", "/nowhere"], {}, "/nowhere"),
+                    (["--after", "nan", "--shot", "x.png"], {}, "nan")):
+                with self.subTest(options=options):
+                    result = subprocess.run(
+                        [PROGRAM, "run", ROOT / "scenes" / "water", *options], text=True,
+                        env={**os.environ, "DISPLAY": display.name, **environment},
+                        capture_output=True, timeout=60)
+                    self.assertEqual(result.returncode, 2, result.stderr)
+                    self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
+                    self.assertIn(expected, result.stderr)
 
     def test_the_emulated_hand_can_play(self):
         with Display() as display:

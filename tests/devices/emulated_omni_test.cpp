@@ -153,16 +153,17 @@ TEST_CASE("stops hold the lightest and the heaviest handle that a scene may have
 
 TEST_CASE("a live hand takes the handle where the mouse is, in three dimensions",
           "[devices][omni]") {
-    HandTargets targets;
+    HandOrders orders;
     EmulatedOmniSettings settings = bare();
     settings.hand = hand_model(Grip::Medium);
-    settings.live = &targets;
+    settings.orders = &orders;
+    settings.live = true;
     settings.half_workspace_m = Vec3::Constant(0.5);
     EmulatedOmni omni(settings);
     const Vec3 target(0.2, -0.1, 0.15);
 
     CHECK(omni.read().position_m.isZero());
-    targets.post({target});
+    orders.post({target});
     play(omni, Vec3::Zero(), 1);
     CHECK(omni.true_position_m().norm() < 1e-3);  // goes there, does not jump
     play(omni, Vec3::Zero(), 4000);
@@ -173,9 +174,70 @@ TEST_CASE("a live hand takes the handle where the mouse is, in three dimensions"
     CHECK(omni.true_position_m().y() - target.y() ==
           Approx(1 / settings.hand->stiffness_N_per_m).epsilon(1e-3));
 
-    targets.post({Vec3(9, 0, 0)});
+    orders.post({Vec3(9, 0, 0)});
     play(omni, Vec3::Zero(), 4000);
     CHECK(omni.true_position_m().x() == Approx(0.5).epsilon(0.01));
+}
+
+TEST_CASE("however far the mouse is, a live hand pulls less than the clamp, and is no faster",
+          "[devices][omni]") {
+    HandOrders orders;
+    EmulatedOmniSettings settings = bare();
+    settings.hand = hand_model(Grip::Medium);
+    settings.orders = &orders;
+    settings.live = true;
+    settings.half_workspace_m = Vec3::Constant(0.5);
+    EmulatedOmni omni(settings);
+    orders.post({Vec3(1, 0, 0)});
+
+    double fastest = 0;
+    for (int tick = 0; tick < 1000; ++tick) {
+        const double before = omni.true_position_m().x();
+        play(omni, Vec3::Zero(), 1);
+        fastest = std::max(fastest, (omni.true_position_m().x() - before) / 1e-3);
+    }
+    CHECK(fastest < 1.6 * live_hand_m_per_s);  // it swings over a little on setting out
+    const double there = omni.true_position_m().x();
+    play(omni, Vec3(-1.1 * live_hand_newton, 0, 0), 1000);  // what a wall gives
+    CHECK(omni.true_position_m().x() < there);
+
+    // Back again it answers at once, from wherever the mouse had gone.
+    play(omni, Vec3(-0.9 * live_hand_newton, 0, 0), 1000);
+    const double held = omni.true_position_m().x();
+    orders.post({Vec3(held - 0.05, 0, 0)});
+    play(omni, Vec3(-0.9 * live_hand_newton, 0, 0), 100);
+    CHECK(omni.true_position_m().x() < held - 0.005);
+}
+
+TEST_CASE("a frozen hand stands still with its device, but for the ticks that are granted",
+          "[devices][omni]") {
+    HandOrders orders;
+    EmulatedOmniSettings settings = bare();
+    settings.hand = hand_model(Grip::Medium);
+    settings.script.path = {{0, 0.01}, {1, -0.02}};
+    settings.orders = &orders;
+    EmulatedOmni omni(settings);
+    play(omni, Vec3::Zero(), 500);
+    HandOrder order;
+    order.frozen = true;
+    orders.post(order);
+    const DeviceReading before = omni.read();
+    play(omni, Vec3(3, 0, 0), 1000);
+    CHECK(omni.read().position_m == before.position_m);
+    CHECK(omni.read().time_s == before.time_s);
+
+    order.grants = 1;
+    order.granted_ticks = 14;
+    orders.post(order);
+    play(omni, Vec3::Zero(), 100);
+    CHECK(omni.read().time_s == Approx(before.time_s + 0.014));
+
+    order.frozen = false;
+    ++order.restarts;  // the script from its beginning
+    orders.post(order);
+    play(omni, Vec3::Zero(), 2500);
+    CHECK(omni.true_position_m().x() == Approx(-0.02).margin(1e-4));
+    CHECK(omni.read().time_s == Approx(before.time_s + 0.014 + 2.5));
 }
 
 TEST_CASE("a hand that lets go wants no place any more, its mass and damping stay",

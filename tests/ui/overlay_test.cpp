@@ -83,35 +83,34 @@ TEST_CASE("a dragged slider changes a gain at once, and one undo takes the whole
     CHECK(after.coupling.mode == before.coupling.mode);
 
     screen.commands.clear();
-    CHECK(screen.overlay.perform(Action::Undo, screen.readout, screen.commands));
+    CHECK(screen.overlay.perform(Action::Undo, screen.commands));
     REQUIRE(screen.commands.size() == 1);
     CHECK(std::get<LiveSettings>(screen.commands[0]) == before);
-    screen.overlay.perform(Action::Redo, screen.readout, screen.commands);
+    screen.overlay.perform(Action::Redo, screen.commands);
     CHECK(screen.overlay.settings() == after);
-    screen.overlay.perform(Action::Undo, screen.readout, screen.commands);
-    screen.overlay.perform(Action::Undo, screen.readout, screen.commands);  // nothing is left
+    screen.overlay.perform(Action::Undo, screen.commands);
+    screen.overlay.perform(Action::Undo, screen.commands);  // nothing is left
     CHECK(screen.overlay.settings() == before);
 }
 
 TEST_CASE("keys switch modes, pause, step and reset", "[ui][overlay]") {
     Screen screen;
     std::vector<Command>& commands = screen.commands;
-    CHECK(screen.overlay.perform(Action::Mode4, screen.readout, commands));
+    CHECK(screen.overlay.perform(Action::Mode4, commands));
     CHECK(std::get<LiveSettings>(commands.at(0)).coupling.mode ==
           CouplingMode::ConstantForceConstantDisplacement);
-    screen.overlay.perform(Action::Mode4, screen.readout, commands);  // it is on already
+    screen.overlay.perform(Action::Mode4, commands);  // it is on already
     CHECK(commands.size() == 1);
-    screen.overlay.perform(Action::PauseOrGo, screen.readout, commands);
+    screen.overlay.perform(Action::PauseOrGo, commands);
     CHECK(std::get<Pause>(commands.at(1)).paused);
-    screen.readout.paused = true;
-    screen.overlay.perform(Action::PauseOrGo, screen.readout, commands);
+    screen.overlay.perform(Action::PauseOrGo, commands);
     CHECK_FALSE(std::get<Pause>(commands.at(2)).paused);
-    screen.overlay.perform(Action::StepOnce, screen.readout, commands);
+    screen.overlay.perform(Action::StepOnce, commands);
     CHECK(std::holds_alternative<StepOnce>(commands.at(3)));
-    screen.overlay.perform(Action::Reset, screen.readout, commands);
+    screen.overlay.perform(Action::Reset, commands);
     CHECK(std::holds_alternative<Reset>(commands.at(4)));
-    CHECK_FALSE(screen.overlay.perform(Action::Screenshot, screen.readout, commands));
-    CHECK_FALSE(screen.overlay.perform(Action::Quit, screen.readout, commands));
+    CHECK_FALSE(screen.overlay.perform(Action::Screenshot, commands));
+    CHECK_FALSE(screen.overlay.perform(Action::Quit, commands));
 }
 
 TEST_CASE("every mode and size of window can be drawn, whatever the values", "[ui][overlay]") {
@@ -120,8 +119,8 @@ TEST_CASE("every mode and size of window can be drawn, whatever the values", "[u
         GENERATE(Action::Mode1, Action::Mode2, Action::Mode3, Action::Mode4, Action::Mode5);
     const auto size = GENERATE(ImVec2(1280, 800), ImVec2(320, 240), ImVec2(3840, 2160));
     ImGui::GetIO().DisplaySize = size;
-    screen.overlay.perform(mode, screen.readout, screen.commands);
-    screen.overlay.perform(Action::ToggleHelp, screen.readout, screen.commands);
+    screen.overlay.perform(mode, screen.commands);
+    screen.overlay.perform(Action::ToggleHelp, screen.commands);
     ServoTick broken;
     broken.touch.force_newton.setConstant(std::numeric_limits<double>::quiet_NaN());
     broken.stopped = true;
@@ -130,9 +129,9 @@ TEST_CASE("every mode and size of window can be drawn, whatever the values", "[u
     for (int i = 0; i < 3; ++i) screen.frame();
 
     CHECK(screen.vertices() > 1000);
-    screen.overlay.perform(Action::ToggleHelp, screen.readout, screen.commands);
-    screen.overlay.perform(Action::ToggleLesson, screen.readout, screen.commands);
-    screen.overlay.perform(Action::ToggleOverlay, screen.readout, screen.commands);
+    screen.overlay.perform(Action::ToggleHelp, screen.commands);
+    screen.overlay.perform(Action::ToggleLesson, screen.commands);
+    screen.overlay.perform(Action::ToggleOverlay, screen.commands);
     const int many = screen.vertices();
     screen.frame();
     CHECK(screen.vertices() < many / 2);
