@@ -1,0 +1,35 @@
+// The whole force field of a topology: energy term by term, and the force on every atom.
+#pragma once
+#include "charmm/topology.h"
+#include "forces/nonbonded.h"
+#include "math/vec.h"
+
+#include <span>
+
+namespace palpa {
+
+// In kcal/mol.
+struct EnergyTerms {
+    double bond = 0;
+    double angle = 0;
+    double urey_bradley = 0;
+    double dihedral = 0;
+    double improper = 0;
+    double cmap = 0;
+    double lj = 0;         // plain pairs
+    double lj14 = 0;       // pairs three bonds apart
+    double coulomb = 0;    // plain pairs
+    double coulomb14 = 0;  // pairs three bonds apart
+
+    double total() const noexcept {
+        return bond + angle + urey_bradley + dihedral + improper + cmap + lj + lj14 + coulomb +
+               coulomb14;
+    }
+};
+
+// Adds all forces (kcal/mol/Å) to `forces`, one entry per atom, in a fixed order: a repeated call
+// gives the same bits. Finite wherever the atoms are; each term says in its header how.
+EnergyTerms add_forces(const Topology& topology, const NonbondedSettings& settings,
+                       std::span<const Vec3> positions, std::span<Vec3> forces) noexcept;
+
+}  // namespace palpa
