@@ -103,7 +103,7 @@ TEST_CASE("all pairs agree with the field between two groups", "[forces][nonbond
     const NonbondedEnergy energy = add_nonbonded_forces(topology, {}, positions, forces);
 
     const FieldSum field =
-        add_pair_forces(points(0, 4), points(4, 5), units::charmm_coulomb_constant,
+        add_pair_forces(points(0, 4), points(4, 5), {units::charmm_coulomb_constant},
                         std::span(expected).first(4), std::span(expected).last(5));
     CHECK(energy.van_der_waals == Approx(field.van_der_waals).epsilon(1e-13));
     CHECK(energy.electrostatic == Approx(field.electrostatic).epsilon(1e-13));
