@@ -1,6 +1,6 @@
 #include "charmm/assign.h"
 
-#include "core/text.h"
+#include "charmm/missing.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -17,37 +17,6 @@
 namespace palpa {
 namespace {
 
-// All that an atom lacks, in the order in which it was found; thrown as one error.
-class Missing {
-public:
-    void add(const TextPlace& place, std::string what) {
-        if (!seen_.insert(what).second) return;
-        if (problems_.empty()) {
-            place_ = place;
-        } else {
-            what = to_string(place) + ": " + what;
-        }
-        problems_.push_back(std::move(what));
-    }
-
-    void throw_if_any() const {
-        if (!problems_.empty())
-            throw LoadError(place_, fmt::format("{}", fmt::join(problems_, "; ")));
-    }
-
-private:
-    TextPlace place_;
-    std::vector<std::string> problems_;
-    std::set<std::string> seen_;
-};
-
-template <class Map>
-std::vector<std::string_view> keys(const Map& map) {
-    std::vector<std::string_view> names;
-    for (const auto& entry : map) names.emplace_back(entry.first);
-    return names;
-}
-
 const ResidueAtom* find_atom(const Residue& residue, std::string_view name) {
     const auto atom = std::find_if(residue.atoms.begin(), residue.atoms.end(),
                                    [&](const ResidueAtom& a) { return a.name == name; });
@@ -57,32 +26,14 @@ const ResidueAtom* find_atom(const Residue& residue, std::string_view name) {
 // The atom's template, or null with the reason noted.
 const ResidueAtom* find_template(const ForceField& force_field, const AtomName& name,
                                  const TextPlace& place, Missing& missing) {
-    const auto residue = force_field.residues.find(name.residue);
-    if (residue == force_field.residues.end()) {
-        missing.add(place, fmt::format("no residue '{}' in {}{}", name.residue,
-                                       fmt::join(force_field.files, ", "),
-                                       near_name_hint(name.residue, keys(force_field.residues))));
-        return nullptr;
-    }
-    if (const ResidueAtom* const atom = find_atom(residue->second, name.atom)) return atom;
+    const Residue* const residue = find_residue(force_field, name.residue, place, missing);
+    if (!residue) return nullptr;
+    if (const ResidueAtom* const atom = find_atom(*residue, name.atom)) return atom;
     std::vector<std::string_view> known;
-    for (const ResidueAtom& a : residue->second.atoms) known.emplace_back(a.name);
-    missing.add(place,
-                fmt::format("residue '{}' of {} has no atom '{}' (only {})", name.residue,
-                            to_string(residue->second.place), name.atom, fmt::join(known, ", ")));
+    for (const ResidueAtom& a : residue->atoms) known.emplace_back(a.name);
+    missing.add(place, fmt::format("residue '{}' of {} has no atom '{}' (only {})", name.residue,
+                                   to_string(residue->place), name.atom, fmt::join(known, ", ")));
     return nullptr;
-}
-
-// A template whose atoms do not add up to its own charge has a slip in one of them.
-void check_charge(const std::string& name, const Residue& residue, Missing& missing) {
-    double sum = 0;
-    for (const ResidueAtom& atom : residue.atoms) sum += atom.charge;
-    if (std::abs(sum - residue.charge) > 1e-3) {
-        missing.add(residue.place,
-                    fmt::format("residue '{}' is given {} e, but its atoms add up to "
-                                "{:.4f} e",
-                                name, residue.charge, sum));
-    }
 }
 
 // A residue that the structure holds only in part would be charged wrongly.
@@ -99,7 +50,6 @@ void check_complete(const ForceField& force_field, const Structure& structure,
     for (const auto& [residue, atoms] : present) {
         const auto found = force_field.residues.find(residue.second);
         if (found == force_field.residues.end()) continue;
-        check_charge(found->first, found->second, missing);
         for (const ResidueAtom& atom : found->second.atoms) {
             if (atoms.contains(atom.name)) continue;
             missing.add({structure.file, lines.at(residue), 0},
@@ -107,15 +57,6 @@ void check_complete(const ForceField& force_field, const Structure& structure,
                                     residue.first, atom.name));
         }
     }
-}
-
-// The atom's type by its name or by its number.
-auto find_type(const ForceField& force_field, const std::string& name) {
-    const auto found = force_field.types.find(name);
-    const std::optional<std::int64_t> number = find_integer(name);
-    if (found != force_field.types.end() || !number) return found;
-    return std::find_if(force_field.types.begin(), force_field.types.end(),
-                        [&](const auto& type) { return type.second.number == *number; });
 }
 
 std::uint32_t add_type(const std::string& name, AtomTable& table) {
@@ -136,19 +77,14 @@ struct NewAtom {
 // Adds an atom with the numbers of its type, or notes what it lacks. `place`: of its type's name.
 void add_atom(const ForceField& force_field, const NewAtom& atom, const TextPlace& place,
               AtomTable& table, Missing& missing) {
-    const auto type = find_type(force_field, atom.type);
-    const bool is_known = type != force_field.types.end();
-    if (!is_known) {
-        missing.add(place, fmt::format("unknown atom type '{}': no MASS line{}", atom.type,
-                                       near_name_hint(atom.type, keys(force_field.types))));
-    }
-    const std::string& name = is_known ? type->first : atom.type;
+    const auto* const type = find_type(force_field, atom.type, place, missing);
+    const std::string& name = type ? type->first : atom.type;
     const auto nonbonded = force_field.nonbonded.find(name);
     if (nonbonded == force_field.nonbonded.end()) {
         missing.add(place, fmt::format("atom type '{}' has no NONBONDED parameters in {}", name,
                                        fmt::join(force_field.files, ", ")));
     }
-    if (!is_known || nonbonded == force_field.nonbonded.end()) return;
+    if (!type || nonbonded == force_field.nonbonded.end()) return;
     table.names.push_back(atom.name);
     table.positions.push_back(atom.position);
     table.element.push_back(type->second.element);

@@ -133,7 +133,7 @@ TEST_CASE("a stream file of TIP3P is read, topology and parameters in one",
     const ForceField force_field = parsed(tip3p);
 
     check_is_tip3p(force_field);
-    // Nothing beside: no residue from the patch, no type from a dihedral or an option line.
+    // Nothing beside: no residue from the patch, no type from an option line.
     CHECK(force_field.residues.size() == 1);
     CHECK(force_field.types.size() == 2);
     CHECK(force_field.nonbonded.size() == 2);
@@ -144,6 +144,81 @@ TEST_CASE("a stream file of TIP3P is read, topology and parameters in one",
     CHECK(pair.epsilon == 0.05);
     CHECK(pair.rmin == 2.0);
     CHECK(force_field.files == std::vector<std::string>{"a.str"});
+}
+
+TEST_CASE("residues and patches are read with all that they hold", "[charmm][force_field]") {
+    const ForceField force_field = parsed(tip3p);
+
+    const Residue& water = force_field.residues.at("TIP3");
+    CHECK(water.bonds.size() == 3);
+    CHECK(water.angles == std::vector<std::array<std::string, 3>>{{"H1", "OH2", "H2"}});
+    CHECK(water.first_patch == "NONE");
+    CHECK_FALSE(water.has_generated_angles);
+    CHECK_FALSE(water.has_generated_dihedrals);
+    CHECK(force_field.generates_angles);
+    CHECK(force_field.generates_dihedrals);
+    const Residue& patch = force_field.patches.at("CUT");
+    CHECK(patch.charge == 0.1);
+    CHECK(patch.deleted_atoms == std::vector<std::string>{"H2"});
+    REQUIRE(patch.atoms.size() == 1);
+    CHECK(patch.atoms[0].charge == -0.734);
+    CHECK(patch.has_generated_angles);
+
+    const ForceField peptide = parsed(
+        "DEFA FIRS NTER LAST CTER\nRESI ALA 0.0\nGROUP\nATOM N NH1 -0.47\nGROUP\nATOM C C "
+        "0.47\nDOUBLE N C\nIMPR N -C CA HN  C CA +N O\nDIHE A B C D\n"
+        "CMAP -C N CA C N CA C +N\nIC -C CA *N HN 1.3551 126.49 180.0 115.42 0.9996\n"
+        "IC -C N CA C 1.0 2.0 3.0 4.0 5.0\nPATCHING LAST XTER\nDEFA FIRST NONE\nRESI X 0.0\n"
+        "LONEPAIR COLINEAR LP CL C DIST 1.6\nPRES P 0.0\nDELE IMPR A B C D\nDELE ACCE O\n");
+    const Residue& alanine = peptide.residues.at("ALA");
+    CHECK(alanine.atoms[0].group == 0);
+    CHECK(alanine.atoms[1].group == 1);
+    CHECK(alanine.bonds == std::vector<std::array<std::string, 2>>{{"N", "C"}});
+    REQUIRE(alanine.impropers.size() == 2);
+    CHECK(alanine.impropers[1] == std::array<std::string, 4>{"C", "CA", "+N", "O"});
+    CHECK(alanine.dihedrals.size() == 1);
+    REQUIRE(alanine.cmaps.size() == 1);
+    CHECK(alanine.cmaps[0][7] == "+N");
+    REQUIRE(alanine.internal_coordinates.size() == 2);
+    const InternalCoordinate& ic = alanine.internal_coordinates[0];
+    CHECK(ic.is_improper);
+    CHECK(ic.atoms == std::array<std::string, 4>{"-C", "CA", "N", "HN"});
+    CHECK(ic.first_bond == 1.3551);
+    CHECK(ic.first_angle_deg == 126.49);
+    CHECK(ic.dihedral_deg == 180);
+    CHECK(ic.last_angle_deg == 115.42);
+    CHECK(ic.last_bond == 0.9996);
+    CHECK_FALSE(alanine.internal_coordinates[1].is_improper);
+    CHECK(alanine.first_patch == "NTER");
+    CHECK(alanine.last_patch == "XTER");
+    CHECK(peptide.residues.at("X").first_patch == "NONE");
+    CHECK(peptide.residues.at("X").last_patch == "CTER");
+    CHECK(peptide.residues.at("X").lone_pair_line == 16);
+    CHECK(peptide.patches.at("P").deleted_impropers.size() == 1);
+}
+
+TEST_CASE("every section of a parameter file is read", "[charmm][force_field]") {
+    const ForceField force_field = parsed(
+        "ANGLES\nC B A 1.0 90.0 2.0 3.0\nDIHEDRALS\nD C B A 1.0 1 180.0\nA B C D 2.0 3 0.0\n"
+        "X C B X 0.5 2 180\nIMPROPER\nD X X A 4.0 0 1.0\nCMAP\n"
+        "A B C D B C D A 2\n0.0 1.0\n-2.0 3.0\nNONBONDED nbxmod 5 e14fac 1.0\n"
+        "A 0.0 -0.1 2.0 0.0 -0.2 1.9\nB 0.0 -0.1 2.0\nNBFIX\nB A -0.1 2.0 -0.2 1.9\n");
+
+    const AngleParameter& angle = force_field.angles.at({"A", "B", "C"});
+    CHECK(angle.urey_bradley_k == 2);
+    CHECK(angle.urey_bradley_s0 == 3);
+    const auto& terms = force_field.dihedrals.at({"A", "B", "C", "D"});
+    REQUIRE(terms.size() == 2);
+    CHECK(terms[0].phase_deg == 180);
+    CHECK(terms[1].multiplicity == 3);
+    CHECK(force_field.dihedrals.count({"X", "B", "C", "X"}) == 1);
+    CHECK(force_field.impropers.at({"A", "X", "X", "D"})[0].k == 4);
+    CHECK(force_field.cmaps.at({"A", "B", "C", "D", "B", "C", "D", "A"}).energies ==
+          std::vector<double>{0, 1, -2, 3});
+    CHECK(force_field.nonbonded.at("A").epsilon14 == 0.2);
+    CHECK(force_field.nonbonded.at("A").half_rmin14 == 1.9);
+    CHECK(force_field.nonbonded.at("B").half_rmin14 == 2.0);
+    CHECK(force_field.nbfix.at({"A", "B"}).rmin14 == 1.9);
 }
 
 TEST_CASE("every entry knows the line it came from", "[charmm][force_field]") {
@@ -294,11 +369,34 @@ TEST_CASE("a value that does not parse is told with its line", "[charmm][force_f
         {"BONDS\nHT OT 450.0 long\n", "2", "'LONG' is not a number"},
         {"ANGLES\nHT OT HT 55.0\n", "2", "no angle here"},
         {"ANGLES\nHT OT\n", "2", "no third atom type here"},
-        {"NONBONDED\nOT 0.0 -0.1\n", "2", "no half of Rmin here"},
+        {"NONBONDED\nOT 0.0 -0.1\n", "2", "no Rmin/2 here"},
         {"NONBONDED\nOT 0.0 -0.1 -\n1e999\n", "2", "'1E999' is not a number"},
         {"NONBONDED\nOT 0.0 0.1521 1.7682\n", "2", "CHARMM writes the depth as -epsilon"},
         {"NONBONDED\nOT 0.0 -0.1521 -1.7682\n", "2", "Rmin/2 as 0 or more"},
         {"NBFIX\nHT\n", "2", "no second atom type here"},
+        {"MASS -1 OT 15.9994 OX\n", "1", "unknown element 'OX'"},
+        {"RESI A 0.0 NOBOND\n", "1", "'NOBOND' is no option of a residue"},
+        {"RESI A 0.0\nATOM O OT 0.1 B\n", "2", "'B' is more than stands on such a line"},
+        {"RESI A 0.0\nIMPR A B C\n", "2", "3 names on a IMPR line; expected 4 for each"},
+        {"RESI A 0.0\nIC A B C D 1.0 2.0\n", "2", "no dihedral angle here"},
+        {"RESI A 0.0\nPATCH MIDDLE X\n", "2", "'MIDDLE' is no end of a chain"},
+        {"RESI A 0.0\nDELETE BOND A B\n", "2", "'BOND' cannot be deleted"},
+        {"AUTO BONDS\n", "1", "'BONDS' cannot be generated"},
+        {"ANGLES\nA B C 1.0 90.0 2.0\n", "2", "no distance of Urey-Bradley here"},
+        {"BONDS\nA B 1.0 1.5 2.0\n", "2", "'2.0' is more than stands on such a line"},
+        {"DIHEDRALS\nA B C D 1.0 1.5 0.0\n", "2", "'1.5' is not a whole number"},
+        {"DIHEDRALS\nA B C D 1.0 -1 0.0\n", "2", "a multiplicity of -1; expected 0 to 99"},
+        {"DIHEDRALS\nA X C D 1.0 1 0.0\n", "2", "expected X B C X"},
+        {"IMPROPER\nA X C D 1.0 1 0.0\n", "2", "A X X D, X B C D"},
+        {"DIHEDRALS\nA B C D 1.0 1 0.0\nA B C D 1.0 0 0.0\n", "3", "first in a.str:2"},
+        {"CMAP\nA B C D A B C D 2\n1 2\n1 2 3\n", "4", "more than the 4 numbers"},
+        {"CMAP\nA B C D A B C D 2\n1 2\n\nNONBONDED\n", "2", "2 numbers; expected 4"},
+        {"CMAP\nA B C D A B C D 2\n1 2\n", "2", "2 numbers; expected 4"},
+        {"CMAP\nA B C D A B C D 99999999\n1 2\n", "2", "expected 2 to 360"},
+        {"CMAP\nA B C D A B C D 2\n1 x\n", "3", "'X' is not a number"},
+        {"NONBONDED\nOT 0.0 -0.1 1.7 0.0 0.1 1.7\n", "2", "CHARMM writes the depth"},
+        {"NONBONDED nbxmod 5 e14fac 0.5\n", "1", "E14FAC 0.5 is not supported"},
+        {"NONBONDED geometric\n", "1", "'GEOMETRIC' is not supported"},
         {"NBFIX\nHT OT 0.1 2.0\n", "2", "CHARMM writes the depth as -epsilon"},
         {"NBFIX\nHT OT -0.1 -2.0\n", "2", "Rmin as 0 or more"},
         {"NBFIX\nHT OT -0.1 2.0\nOT HT -0.2 2.0\n", "3",
@@ -341,6 +439,10 @@ TEST_CASE("one name with two values is told with both places", "[charmm][force_f
         {"RESI A 0.0\nRESI A 0.0\n", "2"},
         {"RESI A 0.0\nATOM O OT 0.1\nATOM O OT 0.1\n", "3"},
         {"BONDS\nHT OT 450.0 1.0\nOT HT 450.0 1.1\n", "3"},
+        {"PRES A 0.0\nPRES A 0.0\n", "2"},
+        {"DIHEDRALS\nA B C D 1.0 1 0.0\nD C B A 2.0 1 0.0\n", "3"},
+        {"IMPROPER\nA X X D 1.0 0 0.0\nD X X A 2.0 0 0.0\n", "3"},
+        {"NONBONDED\nOT 0.0 -0.1 1.7\nOT 0.0 -0.1 1.7 0.0 -0.1 1.6\n", "3"},
         {"BONDS\nHT OT 450.0 1.0\nOT HT 451.0 1.0\n", "3"},
         {"ANGLES\nHT OT CT 55.0 100.0\nCT OT HT 55.0 101.0\n", "3"},
         {"NONBONDED\nOT 0.0 -0.1 1.7\nOT 0.0 -0.2 1.7\n", "3"},
@@ -351,6 +453,18 @@ TEST_CASE("one name with two values is told with both places", "[charmm][force_f
 
     CHECK_THAT(error_of(row.text), StartsWith(std::string("a.str:") + row.line + ": ") &&
                                        Contains("first in a.str:" + std::to_string(first)));
+}
+
+TEST_CASE("a further multiplicity in another file is told, the same terms are not",
+          "[charmm][force_field]") {
+    ForceField force_field = parsed("DIHEDRALS\nA B C D 1.0 1 0.0\nA B C D 1.0 2 0.0\n");
+
+    parse_force_field("DIHEDRALS\nA B C D 1.0 2 0.0\n", "b.prm", force_field);
+    CHECK(force_field.dihedrals.begin()->second.size() == 2);
+    CHECK_THAT(load_error_of([&] {
+                   parse_force_field("DIHEDRALS\nA B C D 1.0 3 0.0\n", "b.prm", force_field);
+               }),
+               StartsWith("b.prm:2: dihedral again with other values, first in a.str:2"));
 }
 
 TEST_CASE("the same once more is no mistake, in either order of its types",

@@ -1,0 +1,51 @@
+// From the atoms of a structure to what is bonded: residues, patches, and the terms that they make.
+#pragma once
+#include "charmm/force_field.h"
+#include "molecule/atoms.h"
+#include "molecule/connectivity.h"
+
+#include <string>
+#include <vector>
+
+namespace palpa {
+
+// A residue of a structure.
+struct ResidueId {
+    std::string segment;
+    std::string number;  // with its insertion code
+};
+
+// The patches at the ends of a segment. "NONE": none; empty: what the residue's template says.
+struct ChainEnds {
+    std::string segment;
+    std::string first, last;
+};
+
+// A patch by name, and the residues that its digits mean ("1SG", "2SG"), in this order.
+struct PatchUse {
+    std::string patch;
+    std::vector<ResidueId> residues;
+};
+
+struct GenerateSettings {
+    std::vector<ChainEnds> ends;  // of segments that do not go by their residues' templates
+    std::vector<PatchUse> patches;
+    // Two CYS without HG1 whose SG are closer than this are bonded (patch DISU), unless a patch
+    // above has one of them. A bond is 2.05 Å long. 0: never.
+    double disulphide_distance = 2.5;  // Å
+};
+
+// Does what GENERATE, PATCH and AUTOGENERATE do in CHARMM. Segments are chains: a residue is bonded
+// to the one before it by names with '+' and '-', so a chain with a gap is two segments. Residues
+// are what has one segment, number and name, in the order of their first atoms; atoms are found by
+// name. A term with an atom that a patch deletes, or that a neighbour lacks, is left out. Angles
+// and dihedrals are all that the bonds make once every patch is in, but for residues with NOANG or
+// NODIH, and those that a residue gives.
+//
+// Atoms of the result stand in the order of the structure. All of the atoms that the templates name
+// must be there, hydrogens too, and no others. Everything that is wrong (residues, patches, atoms,
+// types, charges) is gathered before a LoadError names it all.
+Connectivity build_connectivity(const ForceField& force_field, const Structure& structure,
+                                const GenerateSettings& settings = {});
+
+}  // namespace palpa

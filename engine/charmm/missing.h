@@ -1,0 +1,43 @@
+// Everything that an input lacks, gathered before it is told.
+#pragma once
+#include "charmm/force_field.h"
+#include "core/load_error.h"
+
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace palpa {
+
+// In the order in which it was found, each thing once; thrown as one LoadError.
+class Missing {
+public:
+    void add(const TextPlace& place, std::string what);
+    void throw_if_any() const;
+
+private:
+    TextPlace place_;
+    std::vector<std::string> problems_;
+    std::set<std::string> seen_;
+};
+
+// The names of a map, for near_name_hint.
+template <class Map>
+std::vector<std::string_view> keys(const Map& map) {
+    std::vector<std::string_view> names;
+    for (const auto& entry : map) names.emplace_back(entry.first);
+    return names;
+}
+
+// The residue of this name, or null with the reason noted: it is unknown, or has lone pairs, or its
+// atoms do not add up to its charge. `place`: of what asks for it.
+const Residue* find_residue(const ForceField& force_field, const std::string& name,
+                            const TextPlace& place, Missing& missing);
+
+// The same of an atom's type, by its name or its number.
+const std::pair<const std::string, AtomType>* find_type(const ForceField& force_field,
+                                                        const std::string& name,
+                                                        const TextPlace& place, Missing& missing);
+
+}  // namespace palpa

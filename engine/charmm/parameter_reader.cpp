@@ -1,0 +1,270 @@
+#include "charmm/parameter_reader.h"
+
+#include "charmm/residue_reader.h"
+#include "core/text.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace palpa {
+namespace {
+
+// Adds what was not there; the same again is no mistake, something else under its name is.
+template <class Map, class Value, class Same>
+void add_once(const Statements& statements, Map& map, const typename Map::key_type& key,
+              const Value& value, std::string_view what, const Same& same) {
+    const auto [old, is_new] = map.try_emplace(key, value);
+    if (is_new || same(old->second, value)) return;
+    statements.fail(
+        fmt::format("{} again with other values, first in {}", what, to_string(old->second.place)));
+}
+
+bool is_wildcard(const std::string& type) { return type == "X"; }
+
+// Which of the forms that CHARMM looks for four types have.
+bool has_valid_wildcards(const std::array<std::string, 4>& types, bool is_improper) {
+    std::string form;
+    for (const std::string& type : types) form += is_wildcard(type) ? 'X' : 'A';
+    if (form == "AAAA" || form == "XAAX") return true;
+    // The rest in either direction.
+    return is_improper &&
+           (form == "AXXA" || form == "XAAA" || form == "AAAX" || form == "XXAA" || form == "AAXX");
+}
+
+}  // namespace
+
+std::optional<ParameterReader::Section> ParameterReader::find_section(std::string_view keyword) {
+    if (keyword == "ATOM") return Section::Atoms;
+    if (keyword == "BOND") return Section::Bonds;
+    if (keyword == "ANGL" || keyword == "THET") return Section::Angles;
+    if (keyword == "DIHE" || keyword == "PHI") return Section::Dihedrals;
+    if (keyword == "IMPR" || keyword == "IMPH") return Section::Impropers;
+    if (keyword == "CMAP") return Section::Cmap;
+    if (keyword == "NONB") return Section::Nonbonded;
+    if (keyword == "NBFI") return Section::Nbfix;
+    if (keyword == "HBON") return Section::HydrogenBonds;
+    return std::nullopt;
+}
+
+void ParameterReader::read() {
+    // Only these headers carry options on their line; a type may be called like any other.
+    const std::optional<Section> section = find_section(statements_.keyword());
+    if (section && (statements_.words().size() == 1 || *section == Section::Nonbonded ||
+                    *section == Section::Nbfix || *section == Section::HydrogenBonds)) {
+        return start_section(*section);
+    }
+    switch (section_) {
+        case Section::Atoms:
+            if (statements_.keyword() == "MASS") return read_mass(statements_, into_);
+            break;
+        case Section::Bonds:
+            return read_bond();
+        case Section::Angles:
+            return read_angle();
+        case Section::Dihedrals:
+            return read_dihedral(false);
+        case Section::Impropers:
+            return read_dihedral(true);
+        case Section::Cmap:
+            return read_cmap();
+        case Section::Nonbonded:
+            return read_nonbonded();
+        case Section::Nbfix:
+            return read_nbfix();
+        case Section::HydrogenBonds:
+            return;
+        case Section::None:
+            break;
+    }
+    statements_.fail(
+        fmt::format("'{}' is not a section of a parameter file; expected BONDS, ANGLES, "
+                    "NONBONDED or the like",
+                    statements_.words()[0]));
+}
+
+void ParameterReader::start_section(Section section) {
+    end_cmap();
+    section_ = section;
+    if (section == Section::Nonbonded) check_nonbonded_options();
+}
+
+void ParameterReader::end_part() { start_section(Section::None); }
+
+// type type k length
+void ParameterReader::read_bond() {
+    const std::pair<std::string, std::string> types =
+        in_order(statements_.name(0, "atom type"), statements_.name(1, "second atom type"));
+    const HarmonicParameter bond{statements_.real(2, "force constant"),
+                                 statements_.real(3, "bond length"), statements_.place()};
+    statements_.expect_words(4);
+    add_once(statements_, into_.bonds, types, bond, "bond",
+             [](const HarmonicParameter& a, const HarmonicParameter& b) {
+                 return a.k == b.k && a.value == b.value;
+             });
+}
+
+// type type type k angle [k length of Urey-Bradley]
+void ParameterReader::read_angle() {
+    const std::array<std::string, 3> types = in_order(
+        std::array{statements_.name(0, "atom type"), statements_.name(1, "second atom type"),
+                   statements_.name(2, "third atom type")});
+    AngleParameter angle{.k = statements_.real(3, "force constant"),
+                         .value = statements_.real(4, "angle"),
+                         .place = statements_.place()};
+    if (statements_.words().size() > 5) {
+        angle.urey_bradley_k = statements_.real(5, "force constant of Urey-Bradley");
+        angle.urey_bradley_s0 = statements_.real(6, "distance of Urey-Bradley");
+    }
+    statements_.expect_words(7);
+    add_once(statements_, into_.angles, types, angle, "angle",
+             [](const AngleParameter& a, const AngleParameter& b) {
+                 return a.k == b.k && a.value == b.value && a.urey_bradley_k == b.urey_bradley_k &&
+                        a.urey_bradley_s0 == b.urey_bradley_s0;
+             });
+}
+
+// type type type type k multiplicity phase
+void ParameterReader::read_dihedral(bool is_improper) {
+    std::array<std::string, 4> types;
+    for (std::size_t i = 0; i < 4; ++i) types[i] = statements_.name(i, "atom type");
+    const DihedralTerm term{statements_.real(4, "force constant"),
+                            static_cast<int>(std::clamp<std::int64_t>(
+                                statements_.whole_number(5, "multiplicity"), -1, 100)),
+                            statements_.real(6, "phase"), statements_.place()};
+    statements_.expect_words(7);
+    if (term.multiplicity < 0 || term.multiplicity > 99) {
+        statements_.fail(
+            fmt::format("a multiplicity of {}; expected 0 to 99", statements_.words()[5]));
+    }
+    if (!has_valid_wildcards(types, is_improper)) {
+        statements_.fail(fmt::format(
+            "wildcards as in '{}' are never looked for; expected {}", fmt::join(types, " "),
+            is_improper ? "A X X D, X B C D, X B C X or X X C D" : "X B C X"));
+    }
+    std::vector<DihedralTerm>& terms =
+        (is_improper ? into_.impropers : into_.dihedrals)[in_order(std::move(types))];
+    const auto old = std::find_if(terms.begin(), terms.end(), [&](const DihedralTerm& other) {
+        return other.multiplicity == term.multiplicity;
+    });
+    if (old != terms.end() && old->k == term.k && old->phase_deg == term.phase_deg) return;
+    // A further multiplicity joins those of its own file; one with n = 0 stands alone.
+    const bool joins =
+        terms.empty() || (old == terms.end() && terms[0].place.file == term.place.file &&
+                          terms[0].multiplicity > 0 && term.multiplicity > 0);
+    if (!joins) {
+        statements_.fail(fmt::format("{} again with other values, first in {}",
+                                     is_improper ? "improper" : "dihedral",
+                                     to_string((old == terms.end() ? terms[0] : *old).place)));
+    }
+    terms.push_back(term);
+}
+
+// Eight types and the number of points along one angle, then as many numbers squared.
+void ParameterReader::read_cmap() {
+    const std::vector<std::string_view>& words = statements_.words();
+    if (find_real(words[0]) && open_map_) {
+        std::vector<double>& energies = open_map_->parameter.energies;
+        for (std::size_t i = 0; i < words.size(); ++i) {
+            if (energies.size() == open_map_->count) {
+                statements_.fail(fmt::format("more than the {} numbers of the map of {}",
+                                             open_map_->count,
+                                             to_string(open_map_->parameter.place)));
+            }
+            energies.push_back(statements_.real(i, "energy"));
+        }
+        return;
+    }
+    end_cmap();
+    OpenMap map;
+    for (std::size_t i = 0; i < 8; ++i) map.types[i] = statements_.name(i, "atom type");
+    const std::int64_t size = statements_.whole_number(8, "number of points");
+    statements_.expect_words(9);
+    if (size < 2 || size > 360) {
+        statements_.fail(fmt::format("a map of {} points along an angle; expected 2 to 360", size));
+    }
+    map.count = static_cast<std::size_t>(size * size);
+    map.parameter.place = statements_.place();
+    open_map_ = std::move(map);
+}
+
+void ParameterReader::end_cmap() {
+    if (!open_map_) return;
+    const OpenMap map = std::move(*open_map_);
+    open_map_.reset();
+    if (map.parameter.energies.size() != map.count) {
+        throw LoadError(map.parameter.place, fmt::format("a map with {} numbers; expected {}",
+                                                         map.parameter.energies.size(), map.count));
+    }
+    const auto [old, is_new] = into_.cmaps.try_emplace(map.types, map.parameter);
+    if (!is_new && old->second.energies != map.parameter.energies) {
+        throw LoadError(map.parameter.place, fmt::format("map again with other values, first in {}",
+                                                         to_string(old->second.place)));
+    }
+}
+
+std::array<double, 2> ParameterReader::read_well(std::size_t at, const char* distance) const {
+    const double depth = statements_.real(at, "well depth");
+    const double length = statements_.real(at + 1, distance);
+    if (depth > 0 || length < 0) {
+        statements_.fail(
+            fmt::format("well depth {} and {} {}; CHARMM writes the depth as -epsilon "
+                        "and {} as 0 or more",
+                        depth, distance, length, distance));
+    }
+    return {-depth, length};
+}
+
+// NONBONDED's options tell how to sum, which a scene does; but not what would change the numbers.
+void ParameterReader::check_nonbonded_options() const {
+    for (std::size_t i = 1; i < statements_.words().size(); ++i) {
+        const std::string_view option = statements_.words()[i];
+        if (option.starts_with("GEOM")) {
+            statements_.fail(
+                fmt::format("'{}' is not supported: radii are combined by their sum", option));
+        }
+        if (option.starts_with("E14F") && statements_.real(i + 1, "factor") != 1) {
+            statements_.fail(fmt::format("{} {} is not supported; expected 1", option,
+                                         statements_.words()[i + 1]));
+        }
+    }
+}
+
+// type ignored -epsilon Rmin/2 [ignored -epsilon Rmin/2 of 1-4 pairs]
+void ParameterReader::read_nonbonded() {
+    const std::string type = statements_.name(0, "atom type");
+    statements_.real(1, "unused first number");
+    const std::array<double, 2> plain = read_well(2, "Rmin/2");
+    std::array<double, 2> special = plain;
+    if (statements_.words().size() > 4) {
+        statements_.real(4, "unused fourth number");
+        special = read_well(5, "Rmin/2");
+    }
+    statements_.expect_words(7);
+    const NonbondedType entry{plain[0], plain[1], special[0], special[1], statements_.place()};
+    add_once(statements_, into_.nonbonded, type, entry, "non-bonded parameters",
+             [](const NonbondedType& a, const NonbondedType& b) {
+                 return a.epsilon == b.epsilon && a.half_rmin == b.half_rmin &&
+                        a.epsilon14 == b.epsilon14 && a.half_rmin14 == b.half_rmin14;
+             });
+}
+
+// type type -epsilon Rmin [-epsilon Rmin of 1-4 pairs]
+void ParameterReader::read_nbfix() {
+    const std::string a = statements_.name(0, "atom type");
+    const std::string b = statements_.name(1, "second atom type");
+    const std::array<double, 2> plain = read_well(2, "Rmin");
+    const std::array<double, 2> special =
+        statements_.words().size() > 4 ? read_well(4, "Rmin") : plain;
+    statements_.expect_words(6);
+    const NbfixPair entry{plain[0], plain[1], special[0], special[1], statements_.place()};
+    add_once(statements_, into_.nbfix, in_order(a, b), entry, "NBFIX pair",
+             [](const NbfixPair& x, const NbfixPair& y) {
+                 return x.epsilon == y.epsilon && x.rmin == y.rmin && x.epsilon14 == y.epsilon14 &&
+                        x.rmin14 == y.rmin14;
+             });
+}
+
+}  // namespace palpa

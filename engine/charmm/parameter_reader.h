@@ -1,0 +1,67 @@
+// The parameter part of CHARMM's files: sections from ATOMS to NBFIX.
+#pragma once
+#include "charmm/force_field.h"
+#include "charmm/statements.h"
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace palpa {
+
+class ParameterReader {
+public:
+    ParameterReader(const Statements& statements, ForceField& into)
+        : statements_(statements), into_(into) {}
+
+    // Whether a keyword begins a section.
+    static bool is_section(std::string_view keyword) { return find_section(keyword).has_value(); }
+
+    // Takes the present statement into the force field.
+    void read();
+
+    // Ends the section; a CMAP map must be whole then.
+    void end_part();
+
+private:
+    enum class Section {
+        None,
+        Atoms,
+        Bonds,
+        Angles,
+        Dihedrals,
+        Impropers,
+        Cmap,
+        Nonbonded,
+        Nbfix,
+        HydrogenBonds
+    };
+    static std::optional<Section> find_section(std::string_view keyword);
+
+    void start_section(Section section);
+    void read_bond();
+    void read_angle();
+    void read_dihedral(bool is_improper);
+    void read_cmap();
+    void end_cmap();
+    void read_nonbonded();
+    void read_nbfix();
+    void check_nonbonded_options() const;
+    // The depth of a well and the distance of its minimum, from word `at` on.
+    std::array<double, 2> read_well(std::size_t at, const char* distance) const;
+
+    const Statements& statements_;
+    ForceField& into_;
+    Section section_ = Section::None;
+    // The CMAP map whose numbers are being read, if any.
+    struct OpenMap {
+        std::array<std::string, 8> types;
+        std::size_t count = 0;  // of numbers, once it is whole
+        CmapParameter parameter;
+    };
+    std::optional<OpenMap> open_map_;
+};
+
+}  // namespace palpa

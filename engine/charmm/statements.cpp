@@ -1,0 +1,61 @@
+#include "charmm/statements.h"
+
+#include "core/text.h"
+
+#include <fmt/format.h>
+#include <optional>
+
+namespace palpa {
+
+Statements::Statements(std::string_view text, const std::string& file)
+    : lines_(split_lines(text)), file_(file) {}
+
+bool Statements::next() {
+    statement_.clear();
+    for (bool continued = true; continued && at_ < lines_.size();) {
+        const std::string_view raw = lines_[at_];
+        std::string_view line = trimmed(raw.substr(0, raw.find('!')));
+        ++at_;
+        const bool ends_open = line.ends_with('-');
+        if (ends_open) line = trimmed(line.substr(0, line.size() - 1));
+        if (statement_.empty() && (line.empty() || line.starts_with('*'))) continue;
+        if (statement_.empty()) line_ = at_;
+        continued = ends_open;
+        if (!statement_.empty()) statement_ += ' ';
+        statement_ += upper_case(line);
+    }
+    words_ = split_words(statement_);
+    return !words_.empty();
+}
+
+void Statements::fail(const std::string& what) const { throw LoadError(place(), what); }
+
+std::string Statements::name(std::size_t at, const char* what) const {
+    if (at >= words_.size()) fail(fmt::format("no {} here", what));
+    return std::string(words_[at]);
+}
+
+double Statements::real(std::size_t at, const char* what) const {
+    if (at >= words_.size()) fail(fmt::format("no {} here", what));
+    const std::optional<double> value = find_real(words_[at]);
+    if (!value) fail(fmt::format("'{}' is not a number; expected the {}", words_[at], what));
+    return *value;
+}
+
+std::int64_t Statements::whole_number(std::size_t at, const char* what) const {
+    if (at >= words_.size()) fail(fmt::format("no {} here", what));
+    const std::optional<std::int64_t> value = find_integer(words_[at]);
+    if (!value) fail(fmt::format("'{}' is not a whole number; expected the {}", words_[at], what));
+    return *value;
+}
+
+void Statements::expect_words(std::size_t count) const {
+    if (words_.size() > count) {
+        fail(
+            fmt::format("'{}' is more than stands on such a line; expected a comment to begin "
+                        "with '!'",
+                        words_[count]));
+    }
+}
+
+}  // namespace palpa
