@@ -43,9 +43,20 @@ const CmapParameter* find_parameter(const ForceField& force_field, const Types<8
     return find_in(force_field.cmaps, t);
 }
 
+bool is_linear(const ForceField& force_field, const Types<3>& t) {
+    const AngleParameter* const angle = find_parameter(force_field, t);
+    return angle && angle->value == 180;
+}
+
 const std::vector<DihedralTerm>* find_dihedral(const ForceField& force_field, const Types<4>& t) {
-    const auto* const exact = find_in(force_field.dihedrals, in_order(t));
-    return exact ? exact : find_in(force_field.dihedrals, in_order({"X", t[1], t[2], "X"}));
+    static const std::vector<DihedralTerm> nothing;
+    const std::array<Types<4>, 2> forms{{t, {"X", t[1], t[2], "X"}}};
+    for (const Types<4>& form : forms) {
+        if (const auto* const found = find_in(force_field.dihedrals, in_order(form))) return found;
+    }
+    const bool is_undefined =
+        is_linear(force_field, {t[0], t[1], t[2]}) || is_linear(force_field, {t[1], t[2], t[3]});
+    return is_undefined ? &nothing : nullptr;
 }
 
 const std::vector<DihedralTerm>* find_improper(const ForceField& force_field, const Types<4>& t) {

@@ -31,6 +31,7 @@ struct Instance {
     std::map<std::string, const ResidueAtom*, std::less<>> wanted;  // atoms it should have
     std::set<std::string, std::less<>> deleted;                     // by patches
     std::vector<std::string> patches;
+    bool has_generated_terms = true;
 
     std::string label() const {
         std::string text = fmt::format("{} {} {}", name.segment, name.residue, name.number);
@@ -55,7 +56,7 @@ public:
     Connectivity generate() {
         collect_residues();
         missing_.throw_if_any();  // without templates all else would follow from that
-        add_chain_ends();
+        set_up_segments();
         add_patches();
         add_disulphides();
         missing_.throw_if_any();
@@ -106,28 +107,28 @@ private:
         uses_.push_back({instances_.back().residue, {index}, false});
     }
 
-    void add_chain_ends() {
-        std::map<std::string, const ChainEnds*> given;
-        for (const ChainEnds& ends : settings_.ends) given[ends.segment] = &ends;
+    void set_up_segments() {
+        std::map<std::string, const SegmentSettings*> given;
+        for (const SegmentSettings& segment : settings_.segments) {
+            given[segment.segment] = &segment;
+        }
         std::set<std::string> segments;
         for (std::size_t i = 0; i < instances_.size(); ++i) {
             const Residue& residue = *instances_[i].residue;
             const std::string& segment = instances_[i].name.segment;
             segments.insert(segment);
-            const auto ends = given.find(segment);
+            const auto found = given.find(segment);
+            const SegmentSettings settings =
+                found == given.end() ? SegmentSettings{} : *found->second;
+            instances_[i].has_generated_terms = settings.has_generated_terms;
             const auto patch = [&](const std::string& named, const std::string& by_template) {
                 const std::string& name = named.empty() ? by_template : upper_case(named);
                 if (name != "NONE") apply_patch(name, {i}, instances_[i].place);
             };
-            const bool is_given = ends != given.end();
-            if (instances_[i].previous == none) {
-                patch(is_given ? ends->second->first : "", residue.first_patch);
-            }
-            if (instances_[i].next == none) {
-                patch(is_given ? ends->second->last : "", residue.last_patch);
-            }
+            if (instances_[i].previous == none) patch(settings.first, residue.first_patch);
+            if (instances_[i].next == none) patch(settings.last, residue.last_patch);
         }
-        for (const auto& [segment, ends] : given) {
+        for (const auto& [segment, settings] : given) {
             if (segments.contains(segment)) continue;
             missing_.add({structure_.file}, fmt::format("no segment '{}' (only {})", segment,
                                                         fmt::join(segments, ", ")));
@@ -367,15 +368,21 @@ private:
         for (std::vector<std::uint32_t>& atoms : bonded_) std::sort(atoms.begin(), atoms.end());
     }
 
-    const Residue& residue_of(std::uint32_t atom) const {
-        return *instances_[residue_of_[atom]].residue;
+    bool has_generated_angles(std::uint32_t atom) const {
+        const Instance& instance = instances_[residue_of_[atom]];
+        return instance.has_generated_terms && instance.residue->has_generated_angles;
+    }
+
+    bool has_generated_dihedrals(std::uint32_t atom) const {
+        const Instance& instance = instances_[residue_of_[atom]];
+        return instance.has_generated_terms && instance.residue->has_generated_dihedrals;
     }
 
     // All pairs of bonds of an atom.
     void generate_angles() {
         if (!force_field_.generates_angles) return;
         for (std::uint32_t b = 0; b < bonded_.size(); ++b) {
-            if (!residue_of(b).has_generated_angles) continue;
+            if (!has_generated_angles(b)) continue;
             for (std::size_t i = 0; i < bonded_[b].size(); ++i) {
                 for (std::size_t j = i + 1; j < bonded_[b].size(); ++j) {
                     const std::array angle{bonded_[b][i], b, bonded_[b][j]};
@@ -389,9 +396,9 @@ private:
     void generate_dihedrals() {
         if (!force_field_.generates_dihedrals) return;
         for (std::uint32_t b = 0; b < bonded_.size(); ++b) {
-            if (!residue_of(b).has_generated_dihedrals) continue;
+            if (!has_generated_dihedrals(b)) continue;
             for (const std::uint32_t c : bonded_[b]) {
-                if (c < b || !residue_of(c).has_generated_dihedrals) continue;
+                if (c < b || !has_generated_dihedrals(c)) continue;
                 for (const std::uint32_t a : bonded_[b]) {
                     for (const std::uint32_t d : bonded_[c]) {
                         if (a == c || d == b || a == d) continue;

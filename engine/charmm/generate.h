@@ -15,10 +15,12 @@ struct ResidueId {
     std::string number;  // with its insertion code
 };
 
-// The patches at the ends of a segment. "NONE": none; empty: what the residue's template says.
-struct ChainEnds {
+// How one segment is generated.
+struct SegmentSettings {
     std::string segment;
-    std::string first, last;
+    std::string first, last;          // patches at its ends. "NONE": none; empty: what the
+                                      // residue's template says
+    bool has_generated_terms = true;  // angles and dihedrals; false: NOANGLE NODIHEDRAL
 };
 
 // A patch by name, and the residues that its digits mean ("1SG", "2SG"), in this order.
@@ -28,7 +30,7 @@ struct PatchUse {
 };
 
 struct GenerateSettings {
-    std::vector<ChainEnds> ends;  // of segments that do not go by their residues' templates
+    std::vector<SegmentSettings> segments;  // those that do not go by their residues' templates
     std::vector<PatchUse> patches;
     // Two CYS without HG1 whose SG are closer than this are bonded (patch DISU), unless a patch
     // above has one of them. A bond is 2.05 Å long. 0: never.
@@ -40,7 +42,7 @@ struct GenerateSettings {
 // are what has one segment, number and name, in the order of their first atoms; atoms are found by
 // name. A term with an atom that a patch deletes, or that a neighbour lacks, is left out. Angles
 // and dihedrals are all that the bonds make once every patch is in, but for residues with NOANG or
-// NODIH, and those that a residue gives.
+// NODIH (older files of water do not say so: its segment has to), and those that a residue gives.
 //
 // Atoms of the result stand in the order of the structure. All of the atoms that the templates name
 // must be there, hydrogens too, and no others. Everything that is wrong (residues, patches, atoms,

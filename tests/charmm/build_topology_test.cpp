@@ -108,6 +108,17 @@ TEST_CASE("an improper takes CHARMM's forms in CHARMM's order", "[charmm][topolo
           "s.psf:1: no improper parameters for A B C D");
 }
 
+TEST_CASE("a dihedral over a straight angle needs no parameters", "[charmm][topology]") {
+    CHECK(constants("E E E E 1.0 1 0.0\nANGLES\nB C D 20.0 180.0\n", false).empty());
+    CHECK(constants("E E E E 1.0 1 0.0\nANGLES\nC B A 20.0 180.0\n", false).empty());
+    // What a file gives all the same counts.
+    CHECK(constants("A B C D 1.0 1 0.0\nANGLES\nB C D 20.0 180.0\n", false) ==
+          std::vector<double>{1});
+    CHECK(load_error_of([] {
+              constants("E E E E 1.0 1 0.0\nANGLES\nB C D 20.0 179.0\n", false);
+          }) == "s.psf:1: no dihedral parameters for A B C D");
+}
+
 TEST_CASE("n = 0 is harmonic and n > 0 a cosine, in either section", "[charmm][topology]") {
     Connectivity chain = chain_of({"A", "B", "C", "D"});
     chain.dihedrals = {{0, 1, 2, 3}};

@@ -142,15 +142,17 @@ TEST_CASE("the ends of a chain can be named", "[charmm][generate]") {
     std::vector<AtomName> names = chain;
     names[0].atom = "H";
 
-    const Connectivity chained = build_connectivity(
-        bead_force_field(), structure_of(names), {.ends = {{"P", "none", "top"}}, .patches = {}});
+    const Connectivity chained =
+        build_connectivity(bead_force_field(), structure_of(names),
+                           {.segments = {{"P", "none", "top", true}}, .patches = {}});
 
     CHECK(chained.charge[0] == 0.1);
     CHECK(chained.type[4] == "TB");  // TOP
     CHECK(chained.impropers.empty());
-    CHECK_THAT(error_of(names, {.ends = {{"P", "NONE", "CAPP"}}, .patches = {}}),
+    CHECK_THAT(error_of(names, {.segments = {{"P", "NONE", "CAPP", true}}, .patches = {}}),
                StartsWith("s.pdb:4: no patch 'CAPP' in a.rtf; did you mean 'CAP'?"));
-    CHECK_THAT(error_of(names, {.ends = {{"Q", "NONE", ""}, {"P", "NONE", ""}}, .patches = {}}),
+    CHECK_THAT(error_of(names, {.segments = {{"Q", "NONE", "", true}, {"P", "NONE", "", true}},
+                                .patches = {}}),
                StartsWith("s.pdb: no segment 'Q' (only P)"));
 }
 
@@ -173,7 +175,7 @@ TEST_CASE("two CYS without HG1 are bonded where their sulphurs are near, or as n
     }
     SECTION("named, as far apart as they may be") {
         structure.positions[1].x() = 9;
-        const GenerateSettings settings{.ends = {},
+        const GenerateSettings settings{.segments = {},
                                         .patches = {{"DISU", {{"P", "1"}, {"Q", "1"}}}}};
         CHECK(build_connectivity(bead_force_field(), structure, settings).bonds.size() == 1);
     }
@@ -183,9 +185,10 @@ TEST_CASE("two CYS without HG1 are bonded where their sulphurs are near, or as n
         CHECK_THAT(error_of(three), Contains("has two disulphide bonds within 2.5 Å"));
     }
     SECTION("residues that are not there") {
-        CHECK_THAT(error_of(names, {.ends = {}, .patches = {{"DISU", {{"P", "1"}, {"P", "7"}}}}}),
-                   StartsWith("s.pdb: no residue P 7 for patch DISU"));
-        CHECK_THAT(error_of(names, {.ends = {}, .patches = {{"DISU", {{"P", "1"}}}}}),
+        CHECK_THAT(
+            error_of(names, {.segments = {}, .patches = {{"DISU", {{"P", "1"}, {"P", "7"}}}}}),
+            StartsWith("s.pdb: no residue P 7 for patch DISU"));
+        CHECK_THAT(error_of(names, {.segments = {}, .patches = {{"DISU", {{"P", "1"}}}}}),
                    Contains("patch 'DISU' has an atom '2SG'; it is used on 1 residues"));
     }
 }
@@ -214,6 +217,21 @@ TEST_CASE("water has the angle that is given, and none from its third bond", "[c
     CHECK(water.bonds.size() == 6);
     CHECK(water.angles == std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}, {4, 3, 5}});
     CHECK(water.dihedrals.empty());
+}
+
+TEST_CASE("a segment without generated terms has those that its residues give",
+          "[charmm][generate]") {
+    std::vector<AtomName> names = chain;
+    names.push_back({"Q", "TRI", "1", "A"});
+    for (const char* const atom : {"B", "C", "H"}) names.push_back({"Q", "TRI", "1", atom});
+
+    const Connectivity connectivity = build_connectivity(
+        bead_force_field(), structure_of(names),
+        {.segments = {{"P", "", "", false}, {"Q", "", "", false}}, .patches = {}});
+
+    CHECK(connectivity.angles.empty());
+    CHECK(connectivity.dihedrals.size() == 1);
+    CHECK(connectivity.type[0] == "TH");  // the patch by its template
 }
 
 TEST_CASE("all that is wrong with a structure is told at once", "[charmm][generate]") {

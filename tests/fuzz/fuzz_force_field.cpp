@@ -142,7 +142,7 @@ void expect_generated(const ForceField& force_field) {
     }
     for (const bool is_patched : {false, true}) {
         GenerateSettings settings;
-        if (!is_patched) settings.ends.push_back({"A", "NONE", "NONE"});
+        if (!is_patched) settings.segments.push_back({"A", "NONE", "NONE", true});
         if (is_patched && !force_field.patches.empty() && !structure.names.empty()) {
             const AtomName& first = structure.names.front();
             const ResidueId residue{first.segment, first.number};

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <cstddef>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -47,6 +48,28 @@ struct TypedAtom {
     double charge;
 };
 
+// GROMACS's residues ACE and CT3 are patches of the residue between them.
+inline void rename_blocks(AtomName& name) {
+    static const std::map<std::string, std::map<std::string, std::string>> blocks{
+        {"ACE",
+         {{"CH3", "CAY"},
+          {"HH31", "HY1"},
+          {"HH32", "HY2"},
+          {"HH33", "HY3"},
+          {"C", "CY"},
+          {"O", "OY"}}},
+        {"CT3",
+         {{"N", "NT"},
+          {"HN", "HNT"},
+          {"CH3", "CAT"},
+          {"HH31", "HT1"},
+          {"HH32", "HT2"},
+          {"HH33", "HT3"}}}};
+    const auto block = blocks.find(name.residue);
+    if (block == blocks.end()) return;
+    name = {"S1", "ALA", "1", block->second.at(name.atom)};
+}
+
 // The atoms of CASE.ff.json as CHARMM calls them, at the origin, and what they should become. Files
 // from GROMACS number residues anew where a chain begins and call some atoms otherwise.
 struct ReferenceAtoms {
@@ -79,6 +102,7 @@ inline ReferenceAtoms read_reference_atoms(const std::filesystem::path& path) {
             if (name.atom == "H1" || name.atom == "H2" || name.atom == "H3")
                 name.atom = fmt::format("{}{}", name.residue == "PRO" ? "HN" : "HT", name.atom[1]);
         }
+        rename_blocks(name);
         structure.names.push_back(name);
         structure.positions.push_back(Vec3::Zero());
         structure.lines.push_back(structure.names.size());
