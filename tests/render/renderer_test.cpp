@@ -128,6 +128,32 @@ TEST_CASE("forced staging draws the same picture to the bit", "[render][gpu]") {
     test::check_silent(staged);
 }
 
+TEST_CASE("a crease is darker than an open surface, an outline darker than both", "[render][gpu]") {
+    GpuDevice device(test::validated());
+    Renderer renderer(device);
+    FrameScene scene;
+    scene.camera.eye = {0, 0, 14};
+    // Two spheres that touch, and one far behind them.
+    scene.spheres = {{{-1, 0, 0}, 1, {0.6F, 0.6F, 0.6F}, 1},
+                     {{1, 0, 0}, 1, {0.6F, 0.6F, 0.6F}, 2},
+                     {{0, 2.2F, -6}, 3, {0.6F, 0.6F, 0.6F}, 3}};
+    const auto brightness = [&](const Picture& picture, const glm::vec3& place) {
+        return picture.rgba[4 * pixel_of(scene.camera, place)];
+    };
+    const glm::vec3 crease(-0.12F, -0.1F, 0.45F);
+    const Picture both = renderer.draw(scene, width, height);
+    scene.spheres[1].centre.y = -50;  // out of the way
+    const Picture alone = renderer.draw(scene, width, height);
+
+    CHECK(brightness(both, crease) + 10 < brightness(alone, crease));
+    // Just outside of the near sphere, on the far one.
+    const glm::vec3 edge(-1, 1.04F, 0);
+    REQUIRE(alone.picks[pixel_of(scene.camera, edge)] == 3);
+    CHECK(brightness(alone, edge) < 60);
+    CHECK(brightness(alone, {0, 2.4F, -3}) > 100);
+    test::check_silent(device);
+}
+
 TEST_CASE("an empty scene is its background, a camera inside a sphere sees past it",
           "[render][gpu]") {
     GpuDevice device(test::validated());
