@@ -380,16 +380,16 @@ std::string format_pdb(const Structure& structure, std::string_view title) {
     const auto model_of = [&](std::size_t atom) {
         return structure.records.empty() ? 1 : structure.records[atom].model;
     };
-    const std::size_t count = structure.names.size();
-    const bool several = count > 0 && model_of(0) != model_of(count - 1);
+    const bool models = std::any_of(structure.records.begin(), structure.records.end(),
+                                    [](const AtomRecord& record) { return record.model != 1; });
     std::string text;
     for (const std::string_view line : split_lines(title)) {
         text += fmt::format("REMARK   1 {}\n", line);
     }
     std::size_t serial = 0;
     auto end = structure.chain_ends.begin();
-    for (std::size_t atom = 0; atom < count; ++atom) {
-        if (several && (atom == 0 || model_of(atom) != model_of(atom - 1))) {
+    for (std::size_t atom = 0; atom < structure.names.size(); ++atom) {
+        if (models && (atom == 0 || model_of(atom) != model_of(atom - 1))) {
             if (atom > 0) text += "ENDMDL\n";
             text += fmt::format("MODEL     {:4}\n", model_of(atom));
             serial = 0;
@@ -402,7 +402,7 @@ std::string format_pdb(const Structure& structure, std::string_view title) {
                     "\n";
         }
     }
-    return text + (several ? "ENDMDL\nEND\n" : "END\n");
+    return text + (models ? "ENDMDL\nEND\n" : "END\n");
 }
 
 }  // namespace palpa

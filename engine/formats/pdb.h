@@ -24,10 +24,10 @@ namespace palpa {
 Structure read_pdb(const std::filesystem::path& path);
 Structure parse_pdb(std::string_view text, const std::string& file);
 
-// With TER behind each chain, MODEL around each model where there are several, numbers beyond their
-// columns in hybrid-36. Without `records` (a structure from a CRD file) chain and element stay
-// blank. `title`: lines without REMARK. Throws LoadError where a name, a residue number or a
-// coordinate does not fit its columns.
+// With TER behind each chain, MODEL around each model unless there is only a model 1, numbers
+// beyond their columns in hybrid-36. Without `records` (a structure from a CRD file) chain and
+// element stay blank. `title`: lines without REMARK. Throws LoadError where a name, a residue
+// number or a coordinate does not fit its columns.
 std::string format_pdb(const Structure& structure, std::string_view title);
 
 }  // namespace palpa
