@@ -33,7 +33,7 @@ constexpr std::size_t shortest_atom = 18;
 
 class Reader {
 public:
-    Reader(std::string_view text, const std::string& file) : lines_(text), size_(text.size()) {
+    Reader(std::string_view text, const std::string& file) : lines_(text), text_(text) {
         connectivity_.file = file;
     }
 
@@ -140,7 +140,7 @@ private:
 
     // A count that the file has no room for is wrong, however large it is.
     std::size_t whole_count(std::size_t count) const {
-        if (count > size_) {
+        if (count > text_.size()) {
             fail(header_line_,
                  fmt::format("{} entries announced, more than the file holds", count));
         }
@@ -163,7 +163,7 @@ private:
 
     void read_atoms(std::size_t count) {
         if (count == 0) fail(header_line_, "no atoms; expected a count from 1");
-        reserve_atoms(std::min(count, size_ / shortest_atom));
+        reserve_atoms(std::min({count, text_.size() / shortest_atom, count_lines(text_, "")}));
         for (std::size_t atom = 0; atom < count; ++atom, lines_.advance()) {
             if (trimmed(lines_.line()).empty()) {
                 fail(lines_.number(), fmt::format("ends after {} of {} atoms", atom, count));
@@ -279,7 +279,7 @@ private:
     }
 
     LineReader lines_;  // at the line to be read next
-    std::size_t size_;  // of the text
+    std::string_view text_;
     std::size_t header_line_ = 0;
     bool has_cmap_ = false;
     std::map<std::string, std::size_t, std::less<>> sections_;
