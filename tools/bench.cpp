@@ -1,8 +1,10 @@
 #include "tools/bench.h"
 
+#include "charmm/force_field.h"
 #include "core/text.h"
 #include "core/version.h"
 #include "devices/emulated_omni.h"
+#include "formats/structure.h"
 #include "gpu/device.h"
 #include "render/renderer.h"
 #include "scene/read_scene.h"
@@ -129,6 +131,28 @@ Row bench_load(const std::string& scene_name, const std::filesystem::path& path,
     return row;
 }
 
+// `read` returns what stands beside the time: how much was read.
+template <class Read>
+Row bench_read(const std::string& name, const Read& read) {
+    Row row{"load/" + name, {}, "ms", {}, "", ""};
+    for (int run = 0; run < 21; ++run) {
+        row.samples.push_back(1e3 * seconds_of([&] { row.reference = read(); }));
+    }
+    return row;
+}
+
+void bench_files(const BenchOptions& options, std::vector<Row>& rows) {
+    for (const std::filesystem::path& path : options.structures) {
+        rows.push_back(bench_read(path.filename().string(), [&] {
+            return fmt::format("{} atoms", read_structure(path).names.size());
+        }));
+    }
+    if (options.toppar.empty()) return;
+    rows.push_back(bench_read("toppar", [&] {
+        return fmt::format("{} types", read_force_field(options.toppar).types.size());
+    }));
+}
+
 // Whole frames, recorded, submitted and waited for; and with the colours brought back.
 void bench_render(const std::string& scene_name, const Simulation& simulation,
                   std::vector<Row>& rows) {
@@ -177,6 +201,7 @@ nlohmann::ordered_json as_json(const Row& row) {
 
 int bench_command(const BenchOptions& options) {
     std::vector<Row> rows;
+    bench_files(options, rows);
     for (const std::filesystem::path& path : options.scenes) {
         const SceneDescription scene = read_scene(path, options.settings);
         const std::filesystem::path folder = std::filesystem::absolute(scene.file).parent_path();
@@ -202,8 +227,11 @@ int bench_command(const BenchOptions& options) {
     for (const Row& row : rows) {
         fmt::print("{:<44}{:>12.4g}{:>12.4g}{:>12.4g} {}", row.name, quantile(row.samples, 0.5),
                    quantile(row.samples, 0.1), quantile(row.samples, 0.9), row.unit);
-        if (row.error)
+        if (row.error) {
             fmt::print(", error {:.2g} {} against {}", *row.error, row.error_unit, row.reference);
+        } else if (!row.reference.empty()) {
+            fmt::print(", {}", row.reference);
+        }
         fmt::print("\n");
     }
     return 0;

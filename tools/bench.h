@@ -1,4 +1,4 @@
-// palpa bench: speed against error of scenes, on this machine.
+// palpa bench: speed against error of scenes, and of reading files, on this machine.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -8,6 +8,8 @@ namespace palpa {
 
 struct BenchOptions {
     std::vector<std::filesystem::path> scenes;
+    std::vector<std::filesystem::path> structures;  // to time the reading of, each
+    std::vector<std::filesystem::path> toppar;      // and of these CHARMM files, together
     std::vector<std::string> settings;
     bool render = false;  // pictures, instead of loading and steps
     bool json = false;

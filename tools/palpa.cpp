@@ -124,7 +124,16 @@ void add_run(CLI::App& program, palpa::RunOptions& options) {
 
 void add_bench(CLI::App& program, palpa::BenchOptions& options) {
     CLI::App& bench = *program.add_subcommand("bench", "Speed against error on this machine");
-    bench.add_option("scenes", options.scenes, "scene folders or files")->required();
+    bench.add_option("scenes", options.scenes, "scene folders or files");
+    bench.add_option("--load", options.structures,
+                     "structure files (.pdb, .cif, .crd): time the reading of each");
+    bench.add_option("--toppar", options.toppar,
+                     "CHARMM topology and parameter files: time the reading of all together");
+    bench.final_callback([&options] {
+        if (options.scenes.empty() && options.structures.empty() && options.toppar.empty()) {
+            throw CLI::RequiredError("a scene, --load or --toppar");
+        }
+    });
     bench.add_flag("--render", options.render, "time pictures instead of steps");
     bench.add_flag("--json", options.json, "print JSON");
     add_set_option(bench, options.settings);

@@ -3,8 +3,10 @@
 #include "core/files.h"
 #include "core/load_error.h"
 #include "core/text.h"
+#include "formats/lines.h"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <cstddef>
 #include <iterator>
 #include <map>
@@ -15,13 +17,10 @@
 namespace palpa {
 namespace {
 
-struct Columns {
-    std::size_t first, count;
-};
-
-// Where the fields of one atom stand, counted from 0.
+// Where the fields of one atom stand, and how long its line is at least.
 struct Layout {
     Columns residue, atom, x, y, z, segment, number;
+    std::size_t shortest = number.first + 1;
 };
 
 // (I5,I5,1X,A4,1X,A4,3F10.5,1X,A4,1X,A4,F10.5) and (2I10,2X,A8,2X,A8,3F20.10,2X,A8,2X,A8,F20.10)
@@ -32,51 +31,51 @@ constexpr Layout extended_layout{{22, 8},  {32, 8},  {40, 20}, {60, 20},
 class Reader {
 public:
     Reader(std::string_view text, std::string file)
-        : lines_(split_lines(text)), structure_{std::move(file), {}, {}, {}} {}
+        : lines_(text), size_(text.size()), structure_{std::move(file), {}, {}, {}} {}
 
     Structure read() {
-        while (at_ < lines_.size() && lines_[at_].starts_with('*')) ++at_;
+        while (lines_.line().starts_with('*')) lines_.advance();
         const std::size_t count = read_atom_count();
-        for (std::size_t atom = 0; atom < count; ++atom) {
-            if (at_ == lines_.size()) {
-                fail(lines_.size(), 0, fmt::format("ends after {} of {} atoms", atom, count));
-            }
-            read_atom(lines_[at_]);
-            ++at_;
+        // A count that the file has no room for gets no memory.
+        const std::size_t room = std::min(count, size_ / layout_.shortest);
+        structure_.names.reserve(room);
+        structure_.positions.reserve(room);
+        structure_.lines.reserve(room);
+        for (std::size_t atom = 0; atom < count; ++atom, lines_.advance()) {
+            if (lines_.at_end()) fail(0, fmt::format("ends after {} of {} atoms", atom, count));
+            read_atom(lines_.line());
         }
-        for (; at_ < lines_.size(); ++at_) {
-            if (!trimmed(lines_[at_]).empty()) {
-                fail(at_ + 1, 0, fmt::format("more lines than the {} atoms announced", count));
+        for (; !lines_.at_end(); lines_.advance()) {
+            if (!trimmed(lines_.line()).empty()) {
+                fail(0, fmt::format("more lines than the {} atoms announced", count));
             }
         }
         return std::move(structure_);
     }
 
 private:
-    [[noreturn]] void fail(std::size_t line, std::size_t column, const std::string& what) const {
-        throw LoadError({structure_.file, line, column}, what);
+    [[noreturn]] void fail(std::size_t column, const std::string& what) const {
+        throw LoadError({structure_.file, lines_.number(), column}, what);
     }
 
     std::size_t read_atom_count() {
-        if (at_ == lines_.size()) fail(lines_.size(), 0, "ends before the number of atoms");
-        const std::vector<std::string_view> words = split_words(lines_[at_]);
+        if (lines_.at_end()) fail(0, "ends before the number of atoms");
+        const std::vector<std::string_view> words = split_words(lines_.line());
         const auto count = words.empty() ? std::nullopt : find_integer(words[0]);
         const bool extended = words.size() == 2 && upper_case(words[1]) == "EXT";
         if (!count || *count < 1 || (words.size() > 1 && !extended)) {
-            fail(at_ + 1, 0,
-                 fmt::format("'{}' is not a number of atoms; expected a count from 1, with EXT "
-                             "behind it for the extended format",
-                             trimmed(lines_[at_])));
+            fail(0, fmt::format("'{}' is not a number of atoms; expected a count from 1, with EXT "
+                                "behind it for the extended format",
+                                trimmed(lines_.line())));
         }
         layout_ = extended ? extended_layout : normal_layout;
-        ++at_;
+        lines_.advance();
         return static_cast<std::size_t>(*count);
     }
 
     std::string word(std::string_view line, Columns columns, const char* what) const {
-        const std::string_view text =
-            line.size() > columns.first ? trimmed(line.substr(columns.first, columns.count)) : "";
-        if (text.empty()) fail(at_ + 1, columns.first + 1, fmt::format("no {} here", what));
+        const std::string_view text = find_field(line, columns);
+        if (text.empty()) fail(columns.first + 1, fmt::format("no {} here", what));
         return std::string(text);
     }
 
@@ -84,7 +83,7 @@ private:
         const std::string text = word(line, columns, "coordinate");
         const std::optional<double> value = find_real(text);
         if (!value) {
-            fail(at_ + 1, columns.first + 1,
+            fail(columns.first + 1,
                  fmt::format("'{}' is not a coordinate; expected a number in Å in columns {} to {}",
                              text, columns.first + 1, columns.first + columns.count));
         }
@@ -96,11 +95,10 @@ private:
                       word(line, layout_.residue, "residue name"),
                       word(line, layout_.number, "residue number"),
                       word(line, layout_.atom, "atom name")};
-        const auto [first, is_new] =
-            seen_.emplace(std::tuple(name.segment, name.residue, name.number, name.atom), at_ + 1);
+        const auto [first, is_new] = seen_.emplace(
+            std::tuple(name.segment, name.residue, name.number, name.atom), lines_.number());
         if (!is_new) {
-            fail(at_ + 1, 0,
-                 fmt::format("atom {} again, first on line {}", to_string(name), first->second));
+            fail(0, fmt::format("atom {} again, first on line {}", to_string(name), first->second));
         }
         // One by one: a call may evaluate its arguments in any order, and the first error counts.
         const double x = coordinate(line, layout_.x);
@@ -108,11 +106,11 @@ private:
         const double z = coordinate(line, layout_.z);
         structure_.positions.emplace_back(x, y, z);
         structure_.names.push_back(std::move(name));
-        structure_.lines.push_back(at_ + 1);
+        structure_.lines.push_back(lines_.number());
     }
 
-    std::vector<std::string_view> lines_;
-    std::size_t at_ = 0;  // the line to be read next
+    LineReader lines_;  // at the line to be read next
+    std::size_t size_;  // of the text
     Layout layout_ = normal_layout;
     Structure structure_;
     std::map<std::tuple<std::string, std::string, std::string, std::string>, std::size_t> seen_;

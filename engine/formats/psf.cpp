@@ -3,6 +3,7 @@
 #include "core/files.h"
 #include "core/load_error.h"
 #include "core/text.h"
+#include "formats/lines.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -27,10 +28,12 @@ constexpr std::array required_sections = std::to_array<std::string_view>(
 constexpr std::array known_flags =
     std::to_array<std::string_view>({"EXT", "CMAP", "CHEQ", "XPLOR", "NAMD"});
 
+// Of an atom's line: nine fields of one letter, and what is between them.
+constexpr std::size_t shortest_atom = 18;
+
 class Reader {
 public:
-    Reader(std::string_view text, const std::string& file)
-        : lines_(split_lines(text)), size_(text.size()) {
+    Reader(std::string_view text, const std::string& file) : lines_(text), text_(text) {
         connectivity_.file = file;
     }
 
@@ -49,19 +52,18 @@ private:
 
     void require(std::string_view section) const {
         if (!sections_.contains(section)) {
-            fail(lines_.size(), fmt::format("ends without a section !{}", section));
+            fail(lines_.number(), fmt::format("ends without a section !{}", section));
         }
     }
 
     // False at the end of the file.
     bool skip_blank_lines() {
-        while (at_ < lines_.size() && trimmed(lines_[at_]).empty()) ++at_;
-        return at_ < lines_.size();
+        while (!lines_.at_end() && trimmed(lines_.line()).empty()) lines_.advance();
+        return !lines_.at_end();
     }
 
     void read_flags() {
-        const std::vector<std::string_view> words =
-            lines_.empty() ? std::vector<std::string_view>{} : split_words(lines_[0]);
+        const std::vector<std::string_view> words = split_words(lines_.line());
         if (words.empty() || words[0] != "PSF") fail(1, "no PSF file; expected PSF on line 1");
         for (const std::string_view flag : std::span(words).subspan(1)) {
             if (std::find(known_flags.begin(), known_flags.end(), flag) == known_flags.end()) {
@@ -70,13 +72,13 @@ private:
             }
             has_cmap_ = has_cmap_ || flag == "CMAP";
         }
-        at_ = 1;
+        lines_.advance();
     }
 
     // "count ... !NAME: text", then what it holds.
     void read_section() {
-        header_line_ = at_ + 1;
-        const std::string_view line = lines_[at_];
+        header_line_ = lines_.number();
+        const std::string_view line = lines_.line();
         const std::size_t mark = line.find('!');
         if (mark == std::string_view::npos) {
             fail(header_line_, fmt::format("'{}' is no head of a section; expected a count and "
@@ -98,15 +100,17 @@ private:
         if (section != "NTITLE" && section != "NATOM" && !sections_.contains("NATOM")) {
             fail(header_line_, fmt::format("section !{} before the atoms", section));
         }
-        ++at_;
+        lines_.advance();
         read_content(section, counts);
     }
 
     void read_content(const std::string& section, const std::vector<std::size_t>& counts) {
         const std::size_t count = counts[0];
         if (section == "NTITLE") {
-            for (std::size_t i = 0; i < count; ++i, ++at_) {
-                if (at_ == lines_.size()) fail(at_, fmt::format("ends within {} titles", count));
+            for (std::size_t i = 0; i < count; ++i, lines_.advance()) {
+                if (lines_.at_end()) {
+                    fail(lines_.number(), fmt::format("ends within {} titles", count));
+                }
             }
         } else if (section == "NATOM") {
             read_atoms(count);
@@ -136,7 +140,7 @@ private:
 
     // A count that the file has no room for is wrong, however large it is.
     std::size_t whole_count(std::size_t count) const {
-        if (count > size_) {
+        if (count > text_.size()) {
             fail(header_line_,
                  fmt::format("{} entries announced, more than the file holds", count));
         }
@@ -153,63 +157,73 @@ private:
 
     double real(std::string_view word, const char* what) const {
         const std::optional<double> value = find_real(word);
-        if (!value) fail(at_ + 1, fmt::format("'{}' is not a {}", word, what));
+        if (!value) fail(lines_.number(), fmt::format("'{}' is not a {}", word, what));
         return *value;
     }
 
     void read_atoms(std::size_t count) {
         if (count == 0) fail(header_line_, "no atoms; expected a count from 1");
-        for (std::size_t atom = 0; atom < count; ++atom, ++at_) {
-            if (at_ == lines_.size() || trimmed(lines_[at_]).empty()) {
-                fail(at_ + 1, fmt::format("ends after {} of {} atoms", atom, count));
+        reserve_atoms(std::min({count, text_.size() / shortest_atom, count_lines(text_, "")}));
+        for (std::size_t atom = 0; atom < count; ++atom, lines_.advance()) {
+            if (trimmed(lines_.line()).empty()) {
+                fail(lines_.number(), fmt::format("ends after {} of {} atoms", atom, count));
             }
-            read_atom(atom, split_words(lines_[at_]));
+            read_atom(atom, split_words(lines_.line()));
         }
+    }
+
+    void reserve_atoms(std::size_t count) {
+        connectivity_.names.reserve(count);
+        connectivity_.type.reserve(count);
+        connectivity_.charge.reserve(count);
+        connectivity_.mass.reserve(count);
+        connectivity_.lines.reserve(count);
     }
 
     // number segment residue-number residue atom type charge mass imove [two numbers of CHEQ]
     void read_atom(std::size_t atom, std::span<const std::string_view> words) {
         if (words.size() != 9 && words.size() != 11) {
-            fail(at_ + 1,
+            fail(lines_.number(),
                  fmt::format("{} fields; expected the 9 of an atom (number, segment, residue "
                              "number, residue, atom, type, charge, mass, 0) or 11 with CHEQ",
                              words.size()));
         }
-        if (whole_number(words[0], at_ + 1, "number of an atom") != atom + 1) {
-            fail(at_ + 1, fmt::format("atom number {}; expected {}", words[0], atom + 1));
+        if (whole_number(words[0], lines_.number(), "number of an atom") != atom + 1) {
+            fail(lines_.number(), fmt::format("atom number {}; expected {}", words[0], atom + 1));
         }
         AtomName name{std::string(words[1]), std::string(words[3]), std::string(words[2]),
                       std::string(words[4])};
-        const auto [first, is_new] =
-            seen_.emplace(std::tuple(name.segment, name.residue, name.number, name.atom), at_ + 1);
+        const auto [first, is_new] = seen_.emplace(
+            std::tuple(name.segment, name.residue, name.number, name.atom), lines_.number());
         if (!is_new) {
-            fail(at_ + 1,
+            fail(lines_.number(),
                  fmt::format("atom {} again, first on line {}", to_string(name), first->second));
         }
         const double charge = real(words[6], "charge");
         const double mass = real(words[7], "mass");
-        if (mass < 0) fail(at_ + 1, fmt::format("a mass of {} amu; expected 0 or more", mass));
+        if (mass < 0)
+            fail(lines_.number(), fmt::format("a mass of {} amu; expected 0 or more", mass));
         for (const std::string_view word : words.subspan(8)) real(word, "number");
         connectivity_.names.push_back(std::move(name));
         connectivity_.type.push_back(upper_case(words[5]));
         connectivity_.charge.push_back(charge);
         connectivity_.mass.push_back(mass);
-        connectivity_.lines.push_back(at_ + 1);
+        connectivity_.lines.push_back(lines_.number());
     }
 
     // Calls use(number, line) for `count` numbers, however many stand on a line.
     template <class Use>
     void each_number(std::size_t count, const Use& use) {
-        for (std::size_t read = 0; read < count; ++at_) {
-            const bool ends = at_ == lines_.size() || lines_[at_].find('!') != std::string::npos;
-            if (ends || (trimmed(lines_[at_]).empty() && read > 0)) {
-                fail(at_ + 1, fmt::format("ends after {} of {} numbers", read, count));
+        for (std::size_t read = 0; read < count; lines_.advance()) {
+            const bool ends = lines_.at_end() || lines_.line().find('!') != std::string::npos;
+            if (ends || (trimmed(lines_.line()).empty() && read > 0)) {
+                fail(lines_.number(), fmt::format("ends after {} of {} numbers", read, count));
             }
-            const std::vector<std::string_view> words = split_words(lines_[at_]);
+            const std::vector<std::string_view> words = split_words(lines_.line());
             if (words.size() > count - read) {
-                fail(at_ + 1, fmt::format("more than the {} numbers announced", count));
+                fail(lines_.number(), fmt::format("more than the {} numbers announced", count));
             }
-            for (const std::string_view word : words) use(word, at_ + 1);
+            for (const std::string_view word : words) use(word, lines_.number());
             read += words.size();
         }
     }
@@ -259,14 +273,13 @@ private:
     // where there are none.
     void read_exclusions(std::size_t count) {
         read_numbers(whole_count(count));
-        if (skip_blank_lines() && lines_[at_].find('!') == std::string::npos) {
+        if (skip_blank_lines() && lines_.line().find('!') == std::string::npos) {
             read_numbers(connectivity_.names.size());
         }
     }
 
-    std::vector<std::string_view> lines_;
-    std::size_t size_;    // of the text
-    std::size_t at_ = 0;  // the line to be read next
+    LineReader lines_;  // at the line to be read next
+    std::string_view text_;
     std::size_t header_line_ = 0;
     bool has_cmap_ = false;
     std::map<std::string, std::size_t, std::less<>> sections_;

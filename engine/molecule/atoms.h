@@ -21,12 +21,34 @@ struct AtomName {
 // "WATA TIP3 1 OH2", for messages.
 std::string to_string(const AtomName& name);
 
-// Where the atoms of a structure file are, in the order of the file.
+// What PDB and mmCIF files tell of an atom beside its name and place.
+struct AtomRecord {
+    std::int64_t serial = 0;
+    std::int32_t model = 1;
+    std::int32_t residue_number = 0;
+    char insertion_code = ' ';
+    char alternate = ' ';            // location, "A"; blank where there is only one
+    bool hetero = false;             // HETATM
+    bool element_guessed = false;    // the file names none
+    std::int32_t formal_charge = 0;  // e
+    std::string chain;
+    std::string element;  // as files spell it: "MG"
+    double occupancy = 1;
+    double b_factor = 0;  // Å^2
+};
+
+// Where the atoms of a structure file are, in the order of the file. All of them: models, alternate
+// locations and ions as well, between which someone has yet to choose.
 struct Structure {
     std::string file;
     std::vector<AtomName> names;
     std::vector<Vec3> positions;     // Å
     std::vector<std::size_t> lines;  // the atom's line in the file, for messages
+
+    // Of PDB and mmCIF files; empty for all others.
+    std::vector<AtomRecord> records{};      // one an atom
+    std::vector<std::size_t> chain_ends{};  // each as the number of atoms before it
+    std::vector<std::string> notes{};       // what a user should know or decide, a sentence each
 };
 
 // A range of an atom table.

@@ -1,6 +1,8 @@
 #include "formats/crd.h"
 
 #include "tests/support/load_error_of.h"
+#include "tests/support/replaced.h"
+#include "tests/support/shared_data.h"
 #include "tests/support/temporary_folder.h"
 
 #include <catch2/catch.hpp>
@@ -14,6 +16,7 @@ using namespace palpa;
 using Catch::Contains;
 using Catch::StartsWith;
 using test::load_error_of;
+using test::replaced;
 
 namespace {
 
@@ -36,12 +39,6 @@ const std::string extended =
     "0.0000000000  WATERSEG  1               0.0000000000\n"
     "         2         1  TIP3      H1              1.9572000000       -2.5000000000        "
     "0.0000000000  WATERSEG  1               0.0000000000\n";
-
-std::string replaced(std::string text, const std::string& old, const std::string& by) {
-    const std::size_t at = text.find(old);
-    REQUIRE(at != std::string::npos);
-    return text.replace(at, old.size(), by);
-}
 
 std::string error_of(const std::string& text) {
     return load_error_of([&] { parse_crd(text, "w.crd"); });
@@ -228,4 +225,24 @@ TEST_CASE("a file on disk is named by its path", "[formats][crd]") {
 
     CHECK_THAT(load_error_of([&] { read_crd(path); }), StartsWith(path + ":2: "));
     CHECK(load_error_of([&] { read_crd(path + "x"); }) == path + "x: no such file");
+}
+
+TEST_CASE("CHARMM's own files are read", "[formats][crd]") {
+    const auto folder = test::find_shared_data("data/energies");
+    if (!folder) return;
+    const auto [name, count] =
+        GENERATE(table<std::string, std::size_t>({{"crambin_c36m.crd", 642},
+                                                  {"ala_ala_ala/ala_ala_ala.crd", 33},
+                                                  {"eef1sb/proteins/protein_g.crd", 862},
+                                                  {"eef1sb/proteins/ci2.crd", 1064},
+                                                  {"eef1sb/proteins/ff_domain.crd", 1158},
+                                                  {"eef1sb/proteins/top7.crd", 1862},
+                                                  {"eef1sb/proteins/hr4660b.crd", 2888}}));
+    INFO(name);
+
+    const Structure structure = read_crd(*folder / name);
+
+    CHECK(structure.names.size() == count);
+    const Structure back = parse_crd(format_crd(structure, name), "back.crd");
+    CHECK(back.positions == structure.positions);
 }

@@ -2,12 +2,12 @@
 
 #include "core/text.h"
 #include "tests/support/load_error_of.h"
+#include "tests/support/replaced.h"
+#include "tests/support/shared_data.h"
 
 #include <fmt/format.h>
 #include <catch2/catch.hpp>
 #include <cstddef>
-#include <cstdlib>
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -15,6 +15,7 @@ using namespace palpa;
 using Catch::Contains;
 using Catch::StartsWith;
 using test::load_error_of;
+using test::replaced;
 
 namespace {
 
@@ -123,12 +124,6 @@ const std::string namd = R"(PSF NAMD
        0       0 !NGRP
 )";
 
-std::string replaced(std::string text, const std::string& old, const std::string& by) {
-    const std::size_t at = text.find(old);
-    REQUIRE(at != std::string::npos);
-    return text.replace(at, old.size(), by);
-}
-
 std::string error_of(const std::string& text) {
     return load_error_of([&] { parse_psf(text, "w.psf"); });
 }
@@ -236,13 +231,9 @@ TEST_CASE("a PSF file that is cut off anywhere is refused", "[formats][psf]") {
 }
 
 TEST_CASE("CHARMM's trialanine is read", "[formats][psf]") {
-    const char* const data = std::getenv("PALPA_DATA");
-    if (!data) {
-        WARN("SKIPPED: PALPA_DATA names no folder with data/energies");
-        return;
-    }
-    const Connectivity connectivity =
-        read_psf(std::filesystem::path(data) / "data/energies/ala_ala_ala/ala_ala_ala.psf");
+    const auto file = test::find_shared_data("data/energies/ala_ala_ala/ala_ala_ala.psf");
+    if (!file) return;
+    const Connectivity connectivity = read_psf(*file);
 
     CHECK(connectivity.names.size() == 33);
     CHECK(connectivity.bonds.size() == 32);

@@ -50,7 +50,8 @@ class Cli(unittest.TestCase):
                 self.assertTrue(result.stdout.strip())
 
     def test_wrong_usage_is_bad_input(self):
-        for arguments in ([], ["fly"], ["run"], ["run", WATER, "--speed", "3"], ["bench"]):
+        for arguments in ([], ["fly"], ["run"], ["run", WATER, "--speed", "3"], ["bench"],
+                          ["bench", "--json"]):
             with self.subTest(arguments=arguments):
                 self.assert_bad_input(self.palpa(*arguments), "palpa: ")
 
@@ -128,6 +129,14 @@ class Cli(unittest.TestCase):
             self.assertLessEqual(row["p10"], row["median"])
             if row["name"] == "step/water":
                 self.assertLess(row["error"], 1e-5)
+
+    def test_bench_times_the_reading_of_files(self):
+        result = self.palpa("bench", "--load", WATER / "dimer.crd", "--toppar", WATER / "tip3p.str",
+                            "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        rows = json.loads(result.stdout)["rows"]
+        self.assertEqual([(row["name"], row["unit"], row["reference"]) for row in rows],
+                         [("load/dimer.crd", "ms", "6 atoms"), ("load/toppar", "ms", "2 types")])
 
     def test_check_tells_what_the_line_is_like(self):
         result = self.palpa("run", "--check", WATER)

@@ -1,0 +1,34 @@
+// The grammar of CIF files, gemmi's: what a text holds, told piece by piece.
+#pragma once
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace palpa {
+
+// A tag or a value as it is written, with its quotes; lines and columns from 1.
+struct CifToken {
+    std::string_view text;
+    std::size_t line = 0, column = 0;
+};
+
+// Called in the order of the file.
+class CifListener {
+public:
+    virtual void begin_loop() = 0;
+    virtual void add_loop_tag(const CifToken& tag) = 0;
+    virtual void add_loop_value(const CifToken& value) = 0;
+    virtual void end_loop() = 0;
+    // Outside of loops each tag is followed by its value.
+    virtual void add_tag(const CifToken& tag) = 0;
+    virtual void add_value(const CifToken& value) = 0;
+
+protected:
+    ~CifListener() = default;
+};
+
+// Throws LoadError with line and column where the text is no CIF; what the listener throws passes
+// through.
+void parse_cif(std::string_view text, const std::string& file, CifListener& listener);
+
+}  // namespace palpa

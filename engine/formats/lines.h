@@ -1,0 +1,39 @@
+// Steps through a text line by line without copying it, and cuts fields out of fixed columns.
+#pragma once
+#include <cstddef>
+#include <string_view>
+
+namespace palpa {
+
+// Lines as split_lines gives them, one at a time.
+class LineReader {
+public:
+    explicit LineReader(std::string_view text) noexcept;
+
+    // Behind the last line; line() is empty there, and number() still the last line's.
+    bool at_end() const noexcept { return at_end_; }
+    std::string_view line() const noexcept { return line_; }
+    std::size_t number() const noexcept { return number_; }  // from 1; 0 in an empty text
+    void advance() noexcept;
+
+private:
+    std::string_view rest_, line_;  // what comes behind the line, and the line
+    std::size_t number_ = 0;
+    bool at_end_ = false;
+};
+
+// How many lines begin with `beginning`.
+std::size_t count_lines(std::string_view text, std::string_view beginning) noexcept;
+
+// Columns count from 0, messages from 1.
+struct Columns {
+    std::size_t first, count;
+};
+
+// What stands in these columns, without the blanks around it; empty where the line ends before.
+std::string_view find_field(std::string_view line, Columns columns) noexcept;
+
+// Printable ASCII without blanks, and not empty: what a name in a structure file may be.
+bool is_name(std::string_view text) noexcept;
+
+}  // namespace palpa

@@ -1,0 +1,251 @@
+#include "formats/mmcif.h"
+
+#include "core/files.h"
+#include "core/load_error.h"
+#include "core/text.h"
+#include "formats/cif.h"
+#include "formats/lines.h"
+#include "formats/structure_builder.h"
+
+#include <fmt/format.h>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace palpa {
+namespace {
+
+// The columns that are read; `column_names` in the same order.
+enum Column : std::uint8_t {
+    Group,
+    Serial,
+    Element,
+    Alternate,
+    Insertion,
+    X,
+    Y,
+    Z,
+    Occupancy,
+    BFactor,
+    Charge,
+    Model,
+    AuthAtom,
+    AuthResidue,
+    AuthChain,
+    AuthNumber,
+    LabelAtom,
+    LabelResidue,
+    LabelChain,
+    LabelNumber,
+};
+constexpr std::array column_names = std::to_array<std::string_view>({"group_PDB",
+                                                                     "id",
+                                                                     "type_symbol",
+                                                                     "label_alt_id",
+                                                                     "pdbx_PDB_ins_code",
+                                                                     "Cartn_x",
+                                                                     "Cartn_y",
+                                                                     "Cartn_z",
+                                                                     "occupancy",
+                                                                     "B_iso_or_equiv",
+                                                                     "pdbx_formal_charge",
+                                                                     "pdbx_PDB_model_num",
+                                                                     "auth_atom_id",
+                                                                     "auth_comp_id",
+                                                                     "auth_asym_id",
+                                                                     "auth_seq_id",
+                                                                     "label_atom_id",
+                                                                     "label_comp_id",
+                                                                     "label_asym_id",
+                                                                     "label_seq_id"});
+static_assert(column_names.size() == LabelNumber + 1);
+
+constexpr std::string_view category = "_ATOM_SITE.";
+
+// What a value says: without its quotes, empty for '?' and '.'.
+std::string_view unquoted(std::string_view value) {
+    if (value.empty() || value == "?" || value == ".") return {};
+    const bool lines = value.find('\n') != std::string_view::npos;  // between semicolons
+    const bool quotes = value.front() == '\'' || value.front() == '"';
+    return lines || quotes ? trimmed(value.substr(1, value.size() - 2)) : value;
+}
+
+// Takes the atoms out of what the grammar tells.
+class AtomSites final : public CifListener {
+public:
+    AtomSites(const std::string& file, std::size_t atoms) : file_(file), builder_(file, atoms) {}
+
+    void begin_loop() override {
+        ++loop_;
+        columns_.clear();
+    }
+
+    void add_loop_tag(const CifToken& tag) override { columns_.push_back(find_column(tag, loop_)); }
+
+    void add_loop_value(const CifToken& value) override {
+        if (table_ != loop_) return;
+        if (const std::optional<Column> column = columns_[filled_]) row_[*column] = value;
+        last_ = value;
+        if (++filled_ < columns_.size()) return;
+        filled_ = 0;
+        add_atom();
+    }
+
+    void end_loop() override {
+        if (table_ != loop_ || filled_ == 0) return;
+        fail({{}, last_.line, 0}, fmt::format("a row of _atom_site ends after {} of {} values",
+                                              filled_, columns_.size()));
+    }
+
+    void add_tag(const CifToken& tag) override { column_ = find_column(tag, single_row); }
+
+    void add_value(const CifToken& value) override {
+        if (column_) row_[*column_] = value;
+    }
+
+    // `end`: of what the file says.
+    Structure build(const char* end, std::size_t last_line) {
+        if (table_ == single_row) add_atom();
+        if (last_.text.data() + last_.text.size() == end) {
+            builder_.add_note("ends with its last atom: the file may have been cut off");
+        }
+        builder_.end_chain();
+        return builder_.build(last_line);
+    }
+
+private:
+    [[noreturn]] void fail(const CifToken& token, const std::string& what) const {
+        throw LoadError({file_, token.line, token.column}, what);
+    }
+
+    // Of tags that stand outside of any loop, with a value each: a table of one row.
+    static constexpr std::size_t single_row = 0;
+
+    // Nothing for what is not read.
+    std::optional<Column> find_column(const CifToken& tag, std::size_t table) {
+        if (!upper_case(tag.text).starts_with(category)) return {};
+        if (table_ && *table_ != table) {
+            fail(tag, fmt::format("atoms again, first on line {}; expected one table _atom_site",
+                                  table_line_));
+        }
+        if (!table_) table_line_ = tag.line;
+        table_ = table;
+        const std::string name = upper_case(tag.text.substr(category.size()));
+        for (std::size_t i = 0; i < column_names.size(); ++i) {
+            if (upper_case(column_names[i]) != name) continue;
+            if (given_[i]) fail(tag, fmt::format("column {} again", tag.text));
+            given_[i] = true;
+            return static_cast<Column>(i);
+        }
+        return {};
+    }
+
+    [[noreturn]] void fail_value(Column column, const char* expected) const {
+        const CifToken& cell = row_[column];
+        if (!given_[column]) {
+            fail({{}, table_line_, 0}, fmt::format("atoms without a column _atom_site.{}; expected "
+                                                   "{}",
+                                                   column_names[column], expected));
+        }
+        fail(cell, fmt::format("'{}' in _atom_site.{} is not {}", cell.text, column_names[column],
+                               expected));
+    }
+
+    std::string_view text(Column column) const { return unquoted(row_[column].text); }
+
+    // What the author calls it, or else the archive.
+    Column either(Column author, Column label) const {
+        return text(author).empty() ? label : author;
+    }
+
+    std::string word(Column column, const char* what) const {
+        const std::string_view word = text(column);
+        if (!is_name(word)) fail_value(column, what);
+        return std::string(word);
+    }
+
+    double real(Column column, const char* what) const {
+        const std::optional<double> value = find_real(text(column));
+        if (!value) fail_value(column, what);
+        return *value;
+    }
+
+    std::int32_t integer(Column column, const char* what) const {
+        const std::optional<std::int64_t> value = find_integer(text(column));
+        using Limits = std::numeric_limits<std::int32_t>;
+        if (!value || *value < Limits::min() || *value > Limits::max()) fail_value(column, what);
+        return static_cast<std::int32_t>(*value);
+    }
+
+    char letter(Column column, const char* what) const {
+        const std::string_view letter = text(column);
+        if (letter.empty()) return ' ';
+        if (letter.size() > 1 || !is_name(letter)) fail_value(column, what);
+        return letter[0];
+    }
+
+    void add_atom() {
+        AtomRecord record;
+        AtomName name;
+        const std::string_view group = text(Group);
+        if (!group.empty() && group != "ATOM" && group != "HETATM") {
+            fail_value(Group, "ATOM or HETATM");
+        }
+        record.hetero = group == "HETATM";
+        if (!text(Serial).empty()) record.serial = integer(Serial, "a whole number");
+        record.element = upper_case(text(Element));
+        name.atom = word(either(AuthAtom, LabelAtom), "the name of an atom");
+        record.alternate = letter(Alternate, "one letter");
+        name.residue = word(either(AuthResidue, LabelResidue), "the name of a residue");
+        record.chain = word(either(AuthChain, LabelChain), "the name of a chain");
+        name.segment = record.chain;
+        record.residue_number =
+            integer(either(AuthNumber, LabelNumber), "a residue number, a whole number");
+        record.insertion_code = letter(Insertion, "one letter");
+        name.number = fmt::format("{}", record.residue_number);
+        if (record.insertion_code != ' ') name.number += record.insertion_code;
+        // One by one: the first error counts.
+        const double x = real(X, "a coordinate in Å");
+        const double y = real(Y, "a coordinate in Å");
+        const double z = real(Z, "a coordinate in Å");
+        if (!text(Occupancy).empty()) record.occupancy = real(Occupancy, "a number, often 1.00");
+        if (!text(BFactor).empty()) record.b_factor = real(BFactor, "a number in Å^2");
+        if (!text(Charge).empty()) record.formal_charge = integer(Charge, "a whole number");
+        if (!text(Model).empty()) record.model = integer(Model, "a whole number");
+        if (text(LabelChain) != last_label_chain_) builder_.end_chain();
+        last_label_chain_ = text(LabelChain);
+        builder_.add_atom(std::move(name), Vec3(x, y, z), std::move(record), row_[X].line);
+    }
+
+    const std::string& file_;
+    StructureBuilder builder_;
+    std::size_t loop_ = 0;                        // number of the loop, from 1
+    std::vector<std::optional<Column>> columns_;  // of this loop
+    std::size_t filled_ = 0;                      // values of the row so far
+    CifToken last_;                               // its last value
+    std::optional<Column> column_;                // of the last tag outside of a loop
+    std::optional<std::size_t> table_;            // the loop of _atom_site
+    std::size_t table_line_ = 0;
+    std::array<bool, column_names.size()> given_{};
+    std::array<CifToken, column_names.size()> row_{};
+    std::string_view last_label_chain_;
+};
+
+}  // namespace
+
+Structure parse_mmcif(std::string_view text, const std::string& file) {
+    AtomSites sites(file, count_lines(text, "ATOM") + count_lines(text, "HETATM"));
+    parse_cif(text, file, sites);
+    const std::size_t length = text.find_last_not_of(" \t\r\n") + 1;  // 0 without any
+    return sites.build(text.data() + length, count_lines(text, ""));
+}
+
+Structure read_mmcif(const std::filesystem::path& path) {
+    return parse_mmcif(read_text_file(path), path.string());
+}
+
+}  // namespace palpa

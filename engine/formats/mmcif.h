@@ -1,0 +1,22 @@
+// Macromolecular CIF files (.cif, .mmcif) of the Protein Data Bank: the atoms.
+#pragma once
+#include "molecule/atoms.h"
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace palpa {
+
+// Reads the table _atom_site of the one data block that has it, in any order of its columns and
+// lines. Names, chain and residue number are the author's (auth_*), as in a PDB file, or where the
+// file gives none the archive's (label_*); the segment is the chain. A chain ends where
+// label_asym_id changes. '?' and '.' count as not given: occupancy is then 1, B-factor 0, the
+// element guessed from the name; a position must be given.
+// Throws LoadError with the line of what is wrong: text that is no CIF, a value that does not
+// parse, a missing or repeated column, a row that is not complete, an unknown element, an atom that
+// comes twice, a file without atoms.
+Structure read_mmcif(const std::filesystem::path& path);
+Structure parse_mmcif(std::string_view text, const std::string& file);
+
+}  // namespace palpa

@@ -1,0 +1,13 @@
+// Structure files of every kind, told apart by their names.
+#pragma once
+#include "molecule/atoms.h"
+
+#include <filesystem>
+
+namespace palpa {
+
+// .pdb and .ent (read_pdb), .cif and .mmcif (read_mmcif), .crd and .cor (read_crd), in letters of
+// either case. Throws LoadError for any other name, and as these do.
+Structure read_structure(const std::filesystem::path& path);
+
+}  // namespace palpa

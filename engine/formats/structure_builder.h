@@ -1,0 +1,39 @@
+// What the readers of PDB and mmCIF share: atoms checked one by one, and notes on all of them.
+#pragma once
+#include "molecule/atoms.h"
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+
+namespace palpa {
+
+// Gathers the atoms of one file. Every call throws LoadError with file and line.
+class StructureBuilder {
+public:
+    // `atoms`: how many to have room for.
+    StructureBuilder(std::string file, std::size_t atoms);
+
+    // Guesses the element where the record has none. Refuses an atom that comes twice (the same
+    // model, chain, segment, residue number and insertion code, name, alternate location), and an
+    // element that is none.
+    void add_atom(AtomName name, const Vec3& position, AtomRecord record, std::size_t line);
+
+    // A chain ends behind the atoms so far.
+    void end_chain();
+
+    void add_note(std::string note);
+
+    std::size_t atom_count() const noexcept { return structure_.names.size(); }
+
+    // With notes on models, alternate locations, insertion codes, hetero atoms and guessed
+    // elements. Refuses a file without atoms; `line` is its last.
+    Structure build(std::size_t line);
+
+private:
+    Structure structure_;
+    std::unordered_map<std::string, std::size_t> lines_of_atoms_;
+};
+
+}  // namespace palpa

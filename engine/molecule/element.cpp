@@ -1,0 +1,65 @@
+#include "molecule/element.h"
+
+#include "core/text.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <utility>
+
+namespace palpa {
+namespace {
+
+constexpr std::array symbols = std::to_array<std::string_view>(
+    {"AC", "AG", "AL", "AM", "AR", "AS", "AT", "AU", "B",  "BA", "BE", "BH", "BI", "BK", "BR",
+     "C",  "CA", "CD", "CE", "CF", "CL", "CM", "CN", "CO", "CR", "CS", "CU", "D",  "DB", "DS",
+     "DY", "ER", "ES", "EU", "F",  "FE", "FL", "FM", "FR", "GA", "GD", "GE", "H",  "HE", "HF",
+     "HG", "HO", "HS", "I",  "IN", "IR", "K",  "KR", "LA", "LI", "LR", "LU", "LV", "MC", "MD",
+     "MG", "MN", "MO", "MT", "N",  "NA", "NB", "ND", "NE", "NH", "NI", "NO", "NP", "O",  "OG",
+     "OS", "P",  "PA", "PB", "PD", "PM", "PO", "PR", "PT", "PU", "RA", "RB", "RE", "RF", "RG",
+     "RH", "RN", "RU", "S",  "SB", "SC", "SE", "SG", "SI", "SM", "SN", "SR", "TA", "TB", "TC",
+     "TE", "TH", "TI", "TL", "TM", "TS", "U",  "V",  "W",  "XE", "Y",  "YB", "ZN", "ZR"});
+static_assert(std::is_sorted(symbols.begin(), symbols.end()));
+
+// CHARMM's names of ions (toppar_water_ions.str).
+constexpr std::array charmm_ions =
+    std::to_array<std::pair<std::string_view, std::string_view>>({{"BAR", "BA"},
+                                                                  {"CAD", "CD"},
+                                                                  {"CAL", "CA"},
+                                                                  {"CES", "CS"},
+                                                                  {"CLA", "CL"},
+                                                                  {"LIT", "LI"},
+                                                                  {"POT", "K"},
+                                                                  {"RUB", "RB"},
+                                                                  {"SOD", "NA"}});
+
+// Names of no other element's atoms, with digits or nothing behind.
+constexpr std::array plain_pairs =
+    std::to_array<std::string_view>({"BR", "CL", "CU", "FE", "MG", "MN", "SE", "ZN"});
+
+}  // namespace
+
+bool is_element(std::string_view symbol) noexcept {
+    return std::binary_search(symbols.begin(), symbols.end(), symbol);
+}
+
+std::string find_element_of_name(std::string_view atom, std::string_view residue) {
+    constexpr std::string_view not_letters = "0123456789+-*'\"";
+    const std::string name = upper_case(atom);
+    if (name == upper_case(residue)) {
+        for (const auto& [ion, element] : charmm_ions) {
+            if (name == ion) return std::string(element);
+        }
+        const std::string symbol = name.substr(0, name.find_first_of(not_letters));
+        if (is_element(symbol)) return symbol;
+    }
+    const std::size_t first = name.find_first_not_of(not_letters);
+    if (first == std::string::npos) return {};
+    const std::string letters = name.substr(first, name.find_first_of(not_letters, first) - first);
+    const bool plain =
+        std::find(plain_pairs.begin(), plain_pairs.end(), letters) != plain_pairs.end();
+    const std::string symbol = plain ? letters : letters.substr(0, 1);
+    return is_element(symbol) ? symbol : std::string();
+}
+
+}  // namespace palpa

@@ -1,0 +1,17 @@
+// The chemical elements by their symbols, in upper case as structure files spell them.
+#pragma once
+#include <string>
+#include <string_view>
+
+namespace palpa {
+
+// "C", "MG", also "D" for deuterium.
+bool is_element(std::string_view symbol) noexcept;
+
+// What an atom's name says of its element; empty if nothing. A residue that is called like its one
+// atom is an ion or a metal: "CA" in "CA" is calcium, "SOD" in "SOD" CHARMM's sodium. Otherwise the
+// first letter counts ("CA" in "ALA", "1HB", "HG11"), but for the few pairs of letters that hardly
+// mean anything else ("FE" in "HEM", "CL1", "SE").
+std::string find_element_of_name(std::string_view atom, std::string_view residue);
+
+}  // namespace palpa

@@ -1,0 +1,129 @@
+// Counts what readers allocate, by operators new and delete that remember sizes.
+#include "core/load_error.h"
+#include "formats/crd.h"
+#include "formats/mmcif.h"
+#include "formats/pdb.h"
+#include "formats/psf.h"
+#include "tests/support/replaced.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstddef>
+#include <cstdlib>
+#include <new>
+#include <string>
+
+namespace {
+
+std::size_t held = 0, peak = 0;
+
+// Before each block its size, in as many bytes as keep the block aligned.
+constexpr std::size_t head = alignof(std::max_align_t);
+
+}  // namespace
+
+void* operator new(std::size_t size) {
+    void* const block = std::malloc(head + size);
+    if (!block) throw std::bad_alloc();
+    *static_cast<std::size_t*>(block) = size;
+    held += size;
+    peak = std::max(peak, held);
+    return static_cast<std::byte*>(block) + head;
+}
+
+void operator delete(void* pointer) noexcept {
+    if (!pointer) return;
+    void* const block = static_cast<std::byte*>(pointer) - head;
+    held -= *static_cast<std::size_t*>(block);
+    std::free(block);
+}
+
+void operator delete(void* pointer, std::size_t /*size*/) noexcept { operator delete(pointer); }
+
+using namespace palpa;
+using test::replaced;
+
+namespace {
+
+constexpr int atom_count = 20'000;
+
+std::string pdb_text() {
+    std::string text;
+    for (int i = 0; i < atom_count; ++i) {
+        text += fmt::format("ATOM  {:5}  OH2 TIP3W{:4}    {:8.3f}{:8.3f}{:8.3f}\n", i, i % 10'000,
+                            i * 0.1, i * 0.2, -i * 0.01);
+    }
+    return text;
+}
+
+std::string mmcif_text() {
+    std::string text = "data_x\nloop_\n";
+    for (const char* const tag : {"group_PDB", "id", "type_symbol", "auth_atom_id", "auth_comp_id",
+                                  "auth_asym_id", "auth_seq_id", "Cartn_x", "Cartn_y", "Cartn_z"}) {
+        text += fmt::format("_atom_site.{}\n", tag);
+    }
+    for (int i = 0; i < atom_count; ++i) {
+        text += fmt::format("ATOM {} O OH2 TIP3 W {} {:.3f} {:.3f} {:.3f}\n", i, i, i * 0.1,
+                            i * 0.2, -i * 0.01);
+    }
+    return text;
+}
+
+std::string crd_text() {
+    std::string text = fmt::format("{}\n", atom_count);
+    for (int i = 0; i < atom_count; ++i) {
+        text += fmt::format("{:5}{:5} TIP3 OH2 {:10.5f}{:10.5f}{:10.5f} W    {:<4}\n", i, i,
+                            i * 0.1, i * 0.2, -i * 0.01, i % 10'000);
+    }
+    return text;
+}
+
+std::string psf_text() {
+    std::string text = fmt::format("PSF\n\n 1 !NTITLE\n X\n\n{:8} !NATOM\n", atom_count);
+    for (int i = 1; i <= atom_count; ++i) {
+        text += fmt::format("{:8} W    {:<4} TIP3 OH2  OT    -0.834000       15.9994           0\n",
+                            i, i);
+    }
+    return text +
+           "\n 0 !NBOND\n 0 !NTHETA\n 0 !NPHI\n 0 !NIMPHI\n 0 !NDON\n 0 !NACC\n 0 !NNB\n"
+           " 0 !NGRP\n";
+}
+
+// Of the file's size, beside the text itself; what is read is freed, an error is thrown and caught.
+template <class Read>
+double share_of_memory(const std::string& text, const Read& read) {
+    const std::size_t before = held;
+    peak = held;
+    try {
+        read(text, "x");
+    } catch (const LoadError&) {
+    }
+    CHECK(held == before);
+    return static_cast<double>(peak - before) / static_cast<double>(text.size());
+}
+
+template <class Read>
+void check_shares(const std::string& text, const Read& read) {
+    // With the text itself ten times.
+    CHECK(share_of_memory(text, read) < 9);
+    CHECK(share_of_memory(text.substr(0, text.size() * 2 / 3), read) < 9);
+    CHECK(share_of_memory(fmt::format("{}{:\n>{}}", text, "", 2 * text.size()), read) < 9);
+    CHECK(share_of_memory(std::string(text.size(), '\n'), read) < 9);
+    std::string mutated = text;
+    for (std::size_t i = 0; i < 9; ++i) mutated[text.size() / 2 + i * 7] = '9';
+    CHECK(share_of_memory(mutated, read) < 9);
+}
+
+}  // namespace
+
+TEST_CASE("no reader takes more than ten times the file's size", "[formats][memory]") {
+    SECTION("PDB") { check_shares(pdb_text(), parse_pdb); }
+    SECTION("mmCIF") { check_shares(mmcif_text(), parse_mmcif); }
+    SECTION("CRD") { check_shares(crd_text(), parse_crd); }
+    SECTION("PSF") { check_shares(psf_text(), parse_psf); }
+    SECTION("counts that promise too much") {
+        CHECK(share_of_memory(fmt::format("999999999\n{}", crd_text()), parse_crd) < 9);
+        CHECK(share_of_memory(replaced(psf_text(), "   20000 !", "999999999 !"), parse_psf) < 9);
+    }
+}

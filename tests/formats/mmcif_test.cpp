@@ -1,0 +1,246 @@
+#include "formats/mmcif.h"
+
+#include "formats/pdb.h"
+#include "tests/support/load_error_of.h"
+#include "tests/support/replaced.h"
+#include "tests/support/shared_data.h"
+
+#include <fmt/format.h>
+#include <catch2/catch.hpp>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+using namespace palpa;
+using Catch::StartsWith;
+using test::load_error_of;
+using test::replaced;
+
+namespace {
+
+// Typed by hand after the PDBx/mmCIF dictionary.
+const std::string text = R"(# typed by hand
+data_HAND
+_entry.id   HAND
+_struct.title
+;a text field; _atom_site.id and loop_ mean nothing here
+;
+loop_
+_entity.id
+_entity.details
+1 'with a blank' 2 "don't"
+loop_
+_atom_site.group_PDB
+_atom_site.id
+_atom_site.type_symbol
+_atom_site.label_atom_id
+_atom_site.label_alt_id
+_atom_site.label_comp_id
+_atom_site.label_asym_id
+_atom_site.label_entity_id
+_atom_site.label_seq_id
+_atom_site.pdbx_PDB_ins_code
+_atom_site.Cartn_x
+_atom_site.Cartn_y
+_atom_site.Cartn_z
+_atom_site.occupancy
+_atom_site.B_iso_or_equiv
+_atom_site.pdbx_formal_charge
+_atom_site.auth_seq_id
+_atom_site.auth_comp_id
+_atom_site.auth_asym_id
+_atom_site.auth_atom_id
+_atom_site.pdbx_PDB_model_num
+ATOM   1 N  N    . ALA A 1 1 ? 11.104 6.134 -6.504 1.00 10.50 ? 27 ALA H N  1
+ATOM   2 C  CA   A ALA A 1 1 ? 11.639 6.071 -5.147 0.60 11.00 ? 27 ALA H CA 1
+ATOM   3 C  CA   B ALA A 1 1 ? 11.700 6.200 -5.100 0.40 12.00 ? 27 ALA H CA 1
+ATOM   4 O  O    . ALA A 1 2 A -1000  6e1   .5     .    ?     ? 27 ALA H O  1
+HETATM 5 CA CA   . CA  B 2 . ? 1.000 2.000
+3.000 0.50 20.00 2 101 CA  H CA 1
+HETATM 6 ?  "O5'" . XYZ C 3 . ? 4.000 5.000 6.000 1.00 0.00 -1 201 ? XX ? 2
+#
+)";
+
+// As refinement programs write it: little, and in another order.
+const std::string small = R"(data_s
+loop_
+_atom_site.Cartn_z
+_atom_site.Cartn_y
+_atom_site.Cartn_x
+_atom_site.label_seq_id
+_atom_site.label_comp_id
+_atom_site.label_asym_id
+_atom_site.label_atom_id
+3 2 1 7 TIP3 W OH2
+6 5 4 7 TIP3 W H1
+)";
+
+// One atom, without a loop.
+const std::string single = R"(data_s
+_atom_site.Cartn_x 1
+_atom_site.Cartn_y 2
+_atom_site.Cartn_z 3
+_atom_site.auth_seq_id 7
+_atom_site.label_comp_id ZN
+_atom_site.label_asym_id W
+_atom_site.label_atom_id ZN
+)";
+
+std::string error_of(const std::string& cif) {
+    return load_error_of([&] { parse_mmcif(cif, "w.cif"); });
+}
+
+}  // namespace
+
+TEST_CASE("the atoms of an mmCIF file are read by the names of its columns", "[formats][mmcif]") {
+    const Structure structure = parse_mmcif(text, "w.cif");
+
+    REQUIRE(structure.names.size() == 6);
+    CHECK(structure.file == "w.cif");
+    CHECK(to_string(structure.names[1]) == "H ALA 27 CA");
+    CHECK(to_string(structure.names[3]) == "H ALA 27A O");
+    CHECK(to_string(structure.names[5]) == "XX XYZ 201 O5'");
+    CHECK(structure.positions[3] == Vec3(-1000, 60, 0.5));
+    CHECK(structure.positions[4] == Vec3(1, 2, 3));
+    // A row over two lines counts where its x stands.
+    CHECK(structure.lines == std::vector<std::size_t>{33, 34, 35, 36, 37, 39});
+    CHECK(structure.chain_ends == std::vector<std::size_t>{4, 5, 6});
+
+    const std::vector<AtomRecord>& records = structure.records;
+    CHECK((records[0].alternate == ' ' && records[1].alternate == 'A'));
+    CHECK((records[2].occupancy == 0.4 && records[2].b_factor == 12));
+    CHECK((records[3].occupancy == 1 && records[3].b_factor == 0));
+    CHECK((records[3].residue_number == 27 && records[3].insertion_code == 'A'));
+    CHECK((records[4].element == "CA" && records[4].hetero && records[4].formal_charge == 2));
+    CHECK((records[5].element == "O" && records[5].element_guessed && records[5].model == 2));
+    CHECK((records[5].chain == "XX" && records[5].formal_charge == -1 && records[5].serial == 6));
+    CHECK(structure.notes.size() == 6);
+    CHECK(structure.notes.front() == "2 models, numbers 1 to 2");
+}
+
+TEST_CASE("where the author names nothing, the archive's names count", "[formats][mmcif]") {
+    const Structure structure = parse_mmcif(small, "w.cif");
+
+    REQUIRE(structure.names.size() == 2);
+    CHECK(to_string(structure.names[0]) == "W TIP3 7 OH2");
+    CHECK(structure.positions[1] == Vec3(4, 5, 6));
+    CHECK(structure.records[0].element == "O");
+}
+
+TEST_CASE("one atom may stand outside of a loop", "[formats][mmcif]") {
+    const Structure structure = parse_mmcif(single, "w.cif");
+
+    REQUIRE(structure.names.size() == 1);
+    CHECK(to_string(structure.names[0]) == "W ZN 7 ZN");
+    CHECK(structure.positions[0] == Vec3(1, 2, 3));
+    CHECK(structure.records[0].element == "ZN");
+    CHECK_THAT(error_of(replaced(single, " ZN\n_atom_site.label_asym_id W", "\n")),
+               StartsWith("w.cif:"));
+}
+
+TEST_CASE("what is wrong in an mmCIF file is told with its line and column", "[formats][mmcif]") {
+    struct Row {
+        const char *old, *by, *error;
+    };
+    const auto row = GENERATE(values<Row>({
+        {"11.104", "11.1x4",
+         "w.cif:33:32: '11.1x4' in _atom_site.Cartn_x is not a coordinate in Å"},
+        {"11.104", "abcdef", "w.cif:33:32: 'abcdef' in _atom_site.Cartn_x is not"},
+        {"11.104", "?", "w.cif:33:32: '?' in _atom_site.Cartn_x is not"},
+        {"6.134", "'6 1'", "w.cif:33:39: ''6 1'' in _atom_site.Cartn_y is not"},
+        {"-6.504", "nan", "w.cif:33:45: 'nan' in _atom_site.Cartn_z is not"},
+        {"1.00 10.50", "l.00 10.50", "w.cif:33:52: 'l.00' in _atom_site.occupancy is not"},
+        {"1.00 10.50", "1.00 10,50", "w.cif:33:57: '10,50' in _atom_site.B_iso_or_equiv is not"},
+        {"3.000 0.50", "3.0x0 0.50", "w.cif:38:1: '3.0x0' in _atom_site.Cartn_z is not"},
+        {"20.00 2 ", "20.00 2+ ", "w.cif:38:18: '2+' in _atom_site.pdbx_formal_charge is not"},
+        {"? 27 ALA", "? 27x ALA", "w.cif:33:65: '27x' in _atom_site.auth_seq_id is not"},
+        {"? 27 ALA", "? 99999999999 ALA", "w.cif:33:65: '99999999999' in _atom_site.auth_seq_id"},
+        {"CA 1\nATOM   3", "CA x\nATOM   3",
+         "w.cif:34:77: 'x' in _atom_site.pdbx_PDB_model_num is not a whole number"},
+        {"CA   B ALA", "CA   A ALA",
+         "w.cif:35: atom chain H ALA 27 CA (location A) again, first on line 34"},
+        {"CA   B ALA", "CA  BC ALA", "w.cif:35:17: 'BC' in _atom_site.label_alt_id is not one"},
+        {"ATOM   1 N", "ATOM   1 Q", "w.cif:33: 'Q' is no element"},
+        {"ATOM   1", "ATQM   1", "w.cif:33:1: 'ATQM' in _atom_site.group_PDB is not ATOM or"},
+        {"_atom_site.Cartn_y\n", "_atom_site.Cartn_q\n",
+         "w.cif:12: atoms without a column _atom_site.Cartn_y; expected a coordinate in Å"},
+        {"_atom_site.Cartn_y\n", "_atom_site.Cartn_X\n",
+         "w.cif:23:1: column _atom_site.Cartn_X again"},
+        {" XX ? 2\n", " XX ?\n", "w.cif:39: a row of _atom_site ends after 20 of 21 values"},
+        {"data_HAND", "", "w.cif:3:1: no CIF: expected block header (data_)"},
+        {"\n;\n", "\n", "w.cif:40:1: no CIF: unterminated text field"},
+        {"\"don't\"", "\"don't", "w.cif:10:26: no CIF: unterminated \"string\""},
+        {"   HAND\n", "\n", "w.cif:4:1: no CIF: the tag before has no value"},
+        {"ATOM   3", "_ATOM   3", "w.cif:"},
+        {"ATOM   3", "loop_   3", "w.cif:"},
+        {"ATOM   3", "\x01TOM   3", "w.cif:35:1: no CIF"},
+    }));
+    INFO(row.old << " -> " << row.by);
+
+    CHECK_THAT(error_of(replaced(text, row.old, row.by)), StartsWith(row.error));
+}
+
+TEST_CASE("one table of atoms is expected, and one there must be", "[formats][mmcif]") {
+    CHECK_THAT(error_of(""), StartsWith("w.cif: ends without any atom"));
+    CHECK_THAT(error_of("data_x\n_entry.id x\n"), StartsWith("w.cif:2: ends without any atom"));
+    CHECK_THAT(error_of(small + small.substr(7)), StartsWith("w.cif:13:1: atoms again, first on "
+                                                             "line 3"));
+    CHECK_THAT(error_of(small + single), StartsWith("w.cif:13:1: atoms again, first on line 3"));
+    CHECK_THAT(error_of("data_x\nloop_\n_atom_site.id\n"), StartsWith("w.cif:"));
+}
+
+TEST_CASE("an mmCIF file cut off within its atoms is refused, or the cut is noted",
+          "[formats][mmcif]") {
+    for (std::size_t length = 0; length < text.find("\n#\n"); ++length) {
+        INFO(length);
+        const std::string cut = text.substr(0, length);
+        const std::string error = error_of(cut);
+        if (error == "no error") {
+            CHECK_THAT(parse_mmcif(cut, "w.cif").notes.front(), StartsWith("ends with its last"));
+        } else {
+            CHECK_THAT(error, StartsWith("w.cif:"));
+        }
+    }
+}
+
+TEST_CASE("a structure reads the same from PDB and from mmCIF", "[formats][mmcif]") {
+    const auto folder = test::find_shared_data("data");
+    if (!folder) return;
+    const std::string name = GENERATE("structures/1crn.pdb", "hiv/5vea_protein.pdb",
+                                      "hiv/1hvr_protein.pdb", "hiv/derived/standin_2az8_tl3.pdb");
+    INFO(name);
+    const Structure pdb = read_pdb(*folder / name);
+    std::string cif = "data_x\nloop_\n";
+    for (const char* const tag :
+         {"group_PDB", "id", "auth_atom_id", "label_alt_id", "auth_comp_id", "auth_asym_id",
+          "auth_seq_id", "pdbx_PDB_ins_code", "Cartn_x", "Cartn_y", "Cartn_z", "occupancy",
+          "B_iso_or_equiv", "type_symbol", "pdbx_formal_charge"}) {
+        cif += fmt::format("_atom_site.{}\n", tag);
+    }
+    for (std::size_t i = 0; i < pdb.names.size(); ++i) {
+        const AtomRecord& r = pdb.records[i];
+        const Vec3& p = pdb.positions[i];
+        cif += fmt::format("{} {} \"{}\" {} {} {} {} {} {:.3f} {:.3f} {:.3f} {:.2f} {:.2f} {} {}\n",
+                           r.hetero ? "HETATM" : "ATOM", r.serial, pdb.names[i].atom,
+                           r.alternate == ' ' ? '.' : r.alternate, pdb.names[i].residue, r.chain,
+                           r.residue_number, r.insertion_code == ' ' ? '?' : r.insertion_code,
+                           p.x(), p.y(), p.z(), r.occupancy, r.b_factor, r.element,
+                           r.formal_charge == 0 ? "?" : fmt::format("{}", r.formal_charge));
+    }
+
+    const Structure read = parse_mmcif(cif, "x.cif");
+
+    REQUIRE(read.names.size() == pdb.names.size());
+    CHECK(read.positions == pdb.positions);
+    for (std::size_t i = 0; i < pdb.names.size(); ++i) {
+        const AtomRecord &r = pdb.records[i], &s = read.records[i];
+        INFO(to_string(pdb.names[i]));
+        CHECK((r.serial == s.serial && r.chain == s.chain && r.hetero == s.hetero));
+        CHECK((pdb.names[i].number == read.names[i].number));
+        CHECK((pdb.names[i].atom == read.names[i].atom));
+        CHECK((pdb.names[i].residue == read.names[i].residue));
+        CHECK((r.alternate == s.alternate && r.element == s.element));
+        CHECK((r.occupancy == s.occupancy && r.b_factor == s.b_factor));
+        CHECK(r.formal_charge == s.formal_charge);
+    }
+}

@@ -1,0 +1,33 @@
+// What holds of every structure that a reader of PDB or mmCIF returns.
+#pragma once
+#include "molecule/atoms.h"
+#include "molecule/element.h"
+#include "tests/fuzz/expect.h"
+
+#include <cmath>
+#include <cstddef>
+
+namespace palpa::test {
+
+inline void expect_whole(const Structure& structure) {
+    const std::size_t count = structure.names.size();
+    PALPA_EXPECT(count > 0);
+    PALPA_EXPECT(structure.positions.size() == count && structure.lines.size() == count);
+    PALPA_EXPECT(structure.records.size() == count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const AtomName& name = structure.names[i];
+        const AtomRecord& record = structure.records[i];
+        PALPA_EXPECT(!name.residue.empty() && !name.number.empty() && !name.atom.empty());
+        PALPA_EXPECT(structure.positions[i].allFinite());
+        PALPA_EXPECT(std::isfinite(record.occupancy) && std::isfinite(record.b_factor));
+        PALPA_EXPECT(is_element(record.element));
+        PALPA_EXPECT(structure.lines[i] >= (i == 0 ? 1 : structure.lines[i - 1]));
+    }
+    std::size_t last = 0;
+    for (const std::size_t end : structure.chain_ends) {
+        PALPA_EXPECT(end > last && end <= count);
+        last = end;
+    }
+}
+
+}  // namespace palpa::test

@@ -1,0 +1,62 @@
+// Any text is a structure or a LoadError; what was read survives being written and read.
+#include "core/load_error.h"
+#include "formats/pdb.h"
+#include "tests/fuzz/expect.h"
+#include "tests/fuzz/expect_structure.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+using namespace palpa;
+
+namespace {
+
+std::optional<Structure> read_or_refuse(std::string_view text) {
+    try {
+        return parse_pdb(text, "fuzz.pdb");
+    } catch (const LoadError&) {
+        return std::nullopt;
+    }
+}
+
+// Numbers may be written with more digits than the writer's columns hold.
+std::optional<std::string> write_or_refuse(const Structure& structure) {
+    try {
+        return format_pdb(structure, "fuzz");
+    } catch (const LoadError&) {
+        return std::nullopt;
+    }
+}
+
+}  // namespace
+
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const std::string_view text(reinterpret_cast<const char*>(data), size);
+    const std::optional<Structure> structure = read_or_refuse(text);
+    if (!structure) return 0;
+
+    test::expect_whole(*structure);
+    const std::optional<std::string> written = write_or_refuse(*structure);
+    if (!written) return 0;
+    const std::optional<Structure> back = read_or_refuse(*written);
+    PALPA_EXPECT(back);
+    PALPA_EXPECT(back->names.size() == structure->names.size());
+    PALPA_EXPECT(back->chain_ends == structure->chain_ends);
+    for (std::size_t i = 0; i < back->names.size(); ++i) {
+        const AtomRecord &was = structure->records[i], &is = back->records[i];
+        PALPA_EXPECT(to_string(back->names[i]) == to_string(structure->names[i]));
+        PALPA_EXPECT(is.chain == was.chain && is.model == was.model);
+        PALPA_EXPECT(is.residue_number == was.residue_number);
+        PALPA_EXPECT(is.insertion_code == was.insertion_code && is.alternate == was.alternate);
+        PALPA_EXPECT(is.element == was.element && is.hetero == was.hetero);
+        PALPA_EXPECT(is.formal_charge == was.formal_charge);
+        // Half of the third decimal.
+        const Vec3 move = back->positions[i] - structure->positions[i];
+        PALPA_EXPECT(move.cwiseAbs().maxCoeff() < 0.5001e-3);
+    }
+    return 0;
+}

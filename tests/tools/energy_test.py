@@ -1,0 +1,118 @@
+"""palpa energy from outside, against what other programs print for the same structures."""
+import csv
+import json
+import os
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+PROGRAM = os.environ["PALPA_PROGRAM"]
+DATA = Path(os.environ["PALPA_ROOT"]) / "tests" / "data"
+SHARED = os.environ.get("PALPA_DATA")
+KJ_PER_KCAL = 4.184
+
+
+def first_row(path):
+    with open(path, newline="") as file:
+        return next(csv.DictReader(file))
+
+
+class Energy(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def palpa(self, *arguments):
+        return subprocess.run([PROGRAM, "energy", *map(str, arguments)], capture_output=True,
+                              text=True)
+
+    def energy(self, *arguments):
+        result = self.palpa(*arguments, "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return json.loads(result.stdout)
+
+    def aera(self):
+        """A CRD file of the tetrapeptide, and what OpenMM found for it."""
+        system = json.loads((DATA / "tetra_aera_c36m.ff.json").read_text())
+        frame = json.loads((DATA / "tetra_aera_c36m.frames.json").read_text())["frames"][0]
+        atoms = [dict(zip(system["atoms"]["columns"], row)) for row in system["atoms"]["rows"]]
+        lines = ["* AERA", "*", f"{len(atoms):10}  EXT"]
+        for i, (atom, place) in enumerate(zip(atoms, frame["x"]), 1):
+            x, y, z = (10 * value for value in place)
+            lines.append(f"{i:10}{atom['resid']:10}  {atom['resname']:<8}  {atom['name']:<8}"
+                         f"{x:20.10f}{y:20.10f}{z:20.10f}  {'PEP':<8}  {atom['resid']:<8}{0:20.10f}")
+        path = self.folder / "aera.crd"
+        path.write_text("\n".join(lines) + "\n")
+        return path, frame
+
+    def test_a_structure_is_typed_and_summed_as_by_another_program(self):
+        path, frame = self.aera()
+        forces = self.folder / "forces.csv"
+        energy = self.energy(path, "--toppar", DATA / "aera_c36m.rtf", DATA / "aera_c36m.prm",
+                             "--coulomb-constant", 332.06371, "--forces", forces)
+        theirs = frame["energy"]
+        for ours, name in (("bond", "bond"), ("angle", "angle"), ("urey_bradley", "urey"),
+                           ("dihedral", "proper"), ("improper", "improper"), ("cmap", "cmap"),
+                           ("lj14", "lj14")):
+            self.assertAlmostEqual(energy[ours] * KJ_PER_KCAL, theirs[name], delta=1e-6, msg=name)
+        self.assertEqual(list(energy), ["bond", "angle", "urey_bradley", "dihedral", "improper",
+                                        "cmap", "lj", "lj14", "coulomb", "coulomb14", "total"])
+        with open(forces, newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(len(rows), len(frame["f"]))
+        for row, theirs in zip(rows, frame["f"]):
+            for axis, value in zip("xyz", theirs):
+                mine = float(row[f"force_{axis}_kcal_per_mol_angstrom"]) * KJ_PER_KCAL * 10
+                self.assertAlmostEqual(mine, value, delta=2e-2)  # of hundreds; constant's digits
+
+    def test_bad_input_is_one_line(self):
+        path, _ = self.aera()
+        toppar = ["--toppar", DATA / "aera_c36m.rtf", DATA / "aera_c36m.prm"]
+        psf = self.folder / "some.psf"
+        psf.write_text("PSF\n")
+        for arguments, expected in (
+                ([psf, *toppar], "expected --coordinates"),
+                ([path, *toppar, "--method", "cutof"], "did you mean 'cutoff'?"),
+                ([path, *toppar, "--method", "cutoff", "--cutoff", 8], "--method cutoff"),
+                ([path, "--toppar", DATA / "aera_c36m.rtf"], "aera"),
+                ([self.folder / "none.crd", *toppar], "none.crd"),
+                ([path, *toppar, "--dielectric", "nan"], "nan")):
+            with self.subTest(arguments=arguments):
+                result = self.palpa(*arguments)
+                self.assertEqual(result.returncode, 2, result.stdout)
+                self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
+                self.assertIn(expected, result.stderr)
+
+    def test_charmm_s_own_numbers_from_native_files(self):
+        if not SHARED:
+            print("SKIPPED: PALPA_DATA is not set")
+            return
+        data = Path(SHARED) / "data"
+        folder = data / "energies"
+        energy = self.energy(folder / "crambin_c36m.crd", "--toppar",
+                             data / "charmm" / "top_all36_prot.rtf",
+                             data / "charmm" / "par_all36m_prot.prm", "--method", "cutoff",
+                             "--electrostatics", "fshift", "--van-der-waals", "fswitch",
+                             "--switch-from", 10, "--cutoff", 12)
+        charmm = first_row(folder / "crambin_energies.csv")
+        for name in ("bond", "angle", "urey_bradley", "dihedral", "improper", "cmap", "total"):
+            self.assertAlmostEqual(energy[name], float(charmm[name]), delta=1.01e-5, msg=name)
+        self.assertAlmostEqual(energy["lj"] + energy["lj14"], float(charmm["vdw_vfswitch_10_12"]),
+                               delta=1.01e-5)
+        self.assertAlmostEqual(energy["coulomb"] + energy["coulomb14"],
+                               float(charmm["elec_fshift_12"]), delta=1.01e-5)
+
+        ala = folder / "ala_ala_ala"
+        older = data / "charmm" / "older"
+        energy = self.energy(ala / "ala_ala_ala.psf", "--coordinates", ala / "ala_ala_ala.crd",
+                             "--toppar", older / "top_all22_prot.inp", older / "par_all22_prot.inp")
+        charmm = first_row(ala / "energies.csv")
+        for name in ("bond", "angle", "dihedral", "improper", "cmap"):
+            if name in charmm:
+                self.assertAlmostEqual(energy[name], float(charmm[name]), delta=2e-4, msg=name)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,121 @@
+#include "tools/energy.h"
+
+#include "charmm/build_topology.h"
+#include "charmm/force_field.h"
+#include "charmm/generate.h"
+#include "core/files.h"
+#include "core/load_error.h"
+#include "core/text.h"
+#include "forces/force_field.h"
+#include "formats/psf.h"
+#include "formats/structure.h"
+#include "molecule/match_atoms.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string_view>
+#include <utility>
+
+namespace palpa {
+namespace {
+
+// In the order of the enumerators after None.
+constexpr std::array<std::string_view, 4> electrostatic_names{"switch", "shift", "fshift",
+                                                              "fswitch"};
+constexpr std::array<std::string_view, 2> van_der_waals_names{"switch", "fswitch"};
+constexpr std::array<std::string_view, 2> method_names{"all-pairs", "cutoff"};
+
+std::size_t find_choice(const char* option, const std::string& value,
+                        std::span<const std::string_view> names) {
+    const auto found = std::find(names.begin(), names.end(), value);
+    if (found == names.end()) {
+        throw LoadError({fmt::format("{} {}", option, value)},
+                        fmt::format("expected one of {}{}", fmt::join(names, ", "),
+                                    near_name_hint(value, names)));
+    }
+    return static_cast<std::size_t>(found - names.begin());
+}
+
+NonbondedSettings build_settings(const EnergyOptions& options) {
+    NonbondedSettings settings = options.nonbonded;
+    if (find_choice("--method", options.method, method_names) == 1) {
+        settings.electrostatics = static_cast<ElectrostaticCutoff>(
+            1 + find_choice("--electrostatics", options.electrostatics, electrostatic_names));
+        settings.van_der_waals = static_cast<VanDerWaalsCutoff>(
+            1 + find_choice("--van-der-waals", options.van_der_waals, van_der_waals_names));
+    }
+    if (const auto problem = find_problem(settings)) {
+        throw LoadError({"--method " + options.method}, std::string(*problem));
+    }
+    return settings;
+}
+
+using NamedTerm = std::pair<const char*, double>;
+
+std::array<NamedTerm, 11> list_terms(const EnergyTerms& e) {
+    return {NamedTerm{"bond", e.bond},
+            {"angle", e.angle},
+            {"urey_bradley", e.urey_bradley},
+            {"dihedral", e.dihedral},
+            {"improper", e.improper},
+            {"cmap", e.cmap},
+            {"lj", e.lj},
+            {"lj14", e.lj14},
+            {"coulomb", e.coulomb},
+            {"coulomb14", e.coulomb14},
+            {"total", e.total()}};
+}
+
+void write_forces(const std::filesystem::path& path, const Connectivity& connectivity,
+                  std::span<const Vec3> forces) {
+    std::string text = "segment,residue,number,atom,force_x_kcal_per_mol_angstrom,"
+                       "force_y_kcal_per_mol_angstrom,force_z_kcal_per_mol_angstrom\n";
+    for (std::size_t i = 0; i < forces.size(); ++i) {
+        const AtomName& name = connectivity.names[i];
+        fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{}\n", name.segment,
+                       name.residue, name.number, name.atom, forces[i].x(), forces[i].y(),
+                       forces[i].z());
+    }
+    write_text_file(path, text);
+}
+
+}  // namespace
+
+int energy_command(const EnergyOptions& options) {
+    const NonbondedSettings settings = build_settings(options);
+    const bool is_psf = options.system.extension() == ".psf";
+    if (is_psf && !options.coordinates) {
+        throw LoadError({options.system.string()},
+                        "a PSF holds no coordinates; expected --coordinates FILE with it");
+    }
+    const ForceField force_field = read_force_field(options.toppar);
+    const Structure structure = read_structure(is_psf ? *options.coordinates : options.system);
+    const Connectivity connectivity = is_psf ? read_psf(options.system)
+                                             : build_connectivity(force_field, structure);
+    const std::vector<Vec3> positions = match_positions(
+        connectivity, options.coordinates ? read_structure(*options.coordinates) : structure);
+    const Topology topology = build_topology(connectivity, force_field);
+
+    std::vector<Vec3> forces(positions.size(), Vec3::Zero());
+    const EnergyTerms energy = add_forces(topology, settings, positions, forces);
+
+    if (options.forces) write_forces(*options.forces, connectivity, forces);
+    if (options.json) {
+        nlohmann::ordered_json json;
+        for (const auto& [name, value] : list_terms(energy)) json[name] = value;
+        fmt::print("{}\n", json.dump(2));
+        return 0;
+    }
+    fmt::print("{} atoms, kcal/mol\n", positions.size());
+    for (const auto& [name, value] : list_terms(energy)) {
+        fmt::print("  {:<14}{:>18.6f}\n", name, value);
+    }
+    return 0;
+}
+
+}  // namespace palpa

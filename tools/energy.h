@@ -1,0 +1,26 @@
+// palpa energy: energies term by term, and forces.
+#pragma once
+#include "forces/nonbonded.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace palpa {
+
+struct EnergyOptions {
+    std::filesystem::path system;                      // a PSF, or a structure with all its atoms
+    std::optional<std::filesystem::path> coordinates;  // of a PSF
+    std::vector<std::filesystem::path> toppar;
+    std::string method = "all-pairs";  // or "cutoff"
+    std::string electrostatics = "fshift", van_der_waals = "switch";
+    NonbondedSettings nonbonded;
+    std::optional<std::filesystem::path> forces;  // CSV to write
+    bool json = false;
+};
+
+// Throws LoadError on bad input. Returns the exit code.
+int energy_command(const EnergyOptions& options);
+
+}  // namespace palpa
