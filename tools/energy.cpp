@@ -73,8 +73,9 @@ std::array<NamedTerm, 11> list_terms(const EnergyTerms& e) {
 
 void write_forces(const std::filesystem::path& path, const Connectivity& connectivity,
                   std::span<const Vec3> forces) {
-    std::string text = "segment,residue,number,atom,force_x_kcal_per_mol_angstrom,"
-                       "force_y_kcal_per_mol_angstrom,force_z_kcal_per_mol_angstrom\n";
+    std::string text =
+        "segment,residue,number,atom,force_x_kcal_per_mol_angstrom,"
+        "force_y_kcal_per_mol_angstrom,force_z_kcal_per_mol_angstrom\n";
     for (std::size_t i = 0; i < forces.size(); ++i) {
         const AtomName& name = connectivity.names[i];
         fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{}\n", name.segment,
@@ -95,8 +96,8 @@ int energy_command(const EnergyOptions& options) {
     }
     const ForceField force_field = read_force_field(options.toppar);
     const Structure structure = read_structure(is_psf ? *options.coordinates : options.system);
-    const Connectivity connectivity = is_psf ? read_psf(options.system)
-                                             : build_connectivity(force_field, structure);
+    const Connectivity connectivity =
+        is_psf ? read_psf(options.system) : build_connectivity(force_field, structure);
     const std::vector<Vec3> positions = match_positions(
         connectivity, options.coordinates ? read_structure(*options.coordinates) : structure);
     const Topology topology = build_topology(connectivity, force_field);

@@ -5,6 +5,7 @@
 #include "gpu/device.h"
 #include "platform/window.h"
 #include "tools/bench.h"
+#include "tools/energy.h"
 #include "tools/render.h"
 #include "tools/run.h"
 
@@ -163,6 +164,37 @@ void add_render(CLI::App& program, palpa::RenderOptions& options) {
     add_set_option(render, options.settings);
 }
 
+void add_energy(CLI::App& program, palpa::EnergyOptions& options) {
+    CLI::App& energy = *program.add_subcommand("energy", "Energies term by term, and forces");
+    energy.add_option("system", options.system, "PSF, or a structure that has all its atoms")
+        ->required();
+    energy.add_option("--coordinates", options.coordinates, "of a PSF: .crd, .pdb or .cif");
+    energy
+        .add_option("--toppar", options.toppar,
+                    "CHARMM topology, parameter and stream files, in order")
+        ->required();
+    energy.add_option("--method", options.method, "all-pairs, or cutoff (all-pairs unless given)");
+    energy
+        .add_option("--coulomb-constant", options.nonbonded.coulomb_constant,
+                    "kcal Å/mol/e^2, CHARMM's 332.0716 unless given")
+        ->check(in_range(0.0, 1e6));
+    energy.add_option("--dielectric", options.nonbonded.dielectric, "1 unless given")
+        ->check(in_range(1e-6, 1e6));
+    energy.add_flag("--distance-dielectric", options.nonbonded.distance_dielectric,
+                    "a dielectric of that times the distance in Å");
+    energy.add_option("--cutoff", options.nonbonded.cutoff, "Å, 12 unless given")
+        ->check(in_range(0.0, 1e6));
+    energy.add_option("--switch-from", options.nonbonded.switch_from, "Å, 10 unless given")
+        ->check(in_range(0.0, 1e6));
+    energy.add_option("--electrostatics", options.electrostatics,
+                      "with cutoff: shift, switch, fshift or fswitch (fshift unless given)");
+    energy.add_option("--van-der-waals", options.van_der_waals,
+                      "with cutoff: switch or fswitch (switch unless given)");
+    energy.add_option("--forces", options.forces,
+                      "CSV file for the force on every atom, kcal/mol/Å");
+    energy.add_flag("--json", options.json, "print JSON");
+}
+
 int run_program(int argc, char** argv) {
     CLI::App program("Palpa: feel molecules", "palpa");
     program.require_subcommand(1);
@@ -171,6 +203,8 @@ int run_program(int argc, char** argv) {
     palpa::RunOptions run;
     palpa::BenchOptions bench;
     palpa::RenderOptions render;
+    palpa::EnergyOptions energy;
+    add_energy(program, energy);
     add_run(program, run);
     add_bench(program, bench);
     add_render(program, render);
@@ -190,6 +224,7 @@ int run_program(int argc, char** argv) {
         fmt::print(stderr, "palpa: {}; see palpa --help\n", error.what());
         return bad_input;
     }
+    if (program.got_subcommand("energy")) return palpa::energy_command(energy);
     if (program.got_subcommand("render")) return palpa::render_command(render);
     return program.got_subcommand("run") ? palpa::run_command(run) : palpa::bench_command(bench);
 }

@@ -118,14 +118,16 @@ int run_in_window(const SceneDescription& scene, const Simulation& simulation,
     }
     HandOrders orders;
     settings.orders = &orders;
-    if (!settings.hand) settings.hand = hand_model(Grip::Medium);  // a window needs somebody
+    // A window needs somebody.
+    const HandModel hand = settings.hand.value_or(hand_model(Grip::Medium).value());
+    settings.hand = hand;
     if (!options.play) {
         settings.live = true;
         settings.script = {};
         // A mouse has no workspace: half a metre either way stands for that.
         settings.half_workspace_m = Vec3::Constant(0.5);
     }
-    const double reach_m = live_hand_newton / settings.hand->stiffness_N_per_m;
+    const double reach_m = live_hand_newton / hand.stiffness_N_per_m;
     EmulatedOmni device(settings);
     const WindowReport report = run_window(scene, device,
                                            {.view = default_view(simulation),

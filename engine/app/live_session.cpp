@@ -128,11 +128,10 @@ void LiveSession::run_servo(ServoOrder order) {
 void LiveSession::run_simulation(State& state) {
     Clock::time_point next = Clock::now();
     while (!stopping_) {
-        if (Clock::now() < state.settled) {
-            hold(state);
-        } else if (!state.readout.paused || state.step_once) {
+        const bool settles = Clock::now() < state.settled;
+        if (!settles && (!state.readout.paused || state.step_once)) {
             step(state);
-        } else if (!orders_) {  // an emulated handle stands still by itself
+        } else if (settles || !orders_) {  // a paused emulated handle stands still by itself
             hold(state);
         }
         next += period_of(state.simulation);

@@ -9,6 +9,7 @@
 #include "shaders/sphere_vert.h"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -63,7 +64,7 @@ GpuShape build_shape(const glm::mat4& view, const SphereShape& sphere) {
 
 GpuShape build_shape(const glm::mat4& view, const ConeShape& cone) {
     const glm::vec3 a(view * glm::vec4(cone.a, 1)), b(view * glm::vec4(cone.b, 1));
-    const float height = glm::length(b - a);
+    const float height = std::max(glm::length(b - a), 1e-6F);  // both ends at one place: nothing
     return {{a, cone.radius_a},
             {(b - a) / height, height},
             {cone.colour_a, (cone.radius_b - cone.radius_a) / height},

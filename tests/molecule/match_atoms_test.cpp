@@ -48,7 +48,8 @@ TEST_CASE("segments may be called otherwise where an atom is the only one of its
     CHECK(test::load_error_of([&] {
               match_positions(one, structure_of({{"A", "ALA", "1", "N"}, {"B", "ALA", "1", "N"}}));
           }) == "b.crd: 1 of a.psf are not there: PROA ALA 1 N");
-    const Connectivity two = connectivity_of({{"PROA", "ALA", "1", "N"}, {"PROB", "ALA", "1", "N"}});
+    const Connectivity two =
+        connectivity_of({{"PROA", "ALA", "1", "N"}, {"PROB", "ALA", "1", "N"}});
     CHECK(test::load_error_of([&] {
               match_positions(two, structure_of({{"A", "ALA", "1", "N"}}));
           }) == "b.crd: 2 of a.psf are not there: PROA ALA 1 N, PROB ALA 1 N");

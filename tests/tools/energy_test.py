@@ -87,8 +87,7 @@ class Energy(unittest.TestCase):
 
     def test_charmm_s_own_numbers_from_native_files(self):
         if not SHARED:
-            print("SKIPPED: PALPA_DATA is not set")
-            return
+            self.skipTest("PALPA_DATA is not set")
         data = Path(SHARED) / "data"
         folder = data / "energies"
         energy = self.energy(folder / "crambin_c36m.crd", "--toppar",
