@@ -317,7 +317,7 @@ std::string format_psf(const Connectivity& connectivity, std::string_view title)
     for (std::size_t i = 0; i < connectivity.names.size(); ++i) {
         const AtomName& name = connectivity.names[i];
         fmt::format_to(std::back_inserter(text),
-                       "{:10} {:<8} {:<8} {:<8} {:<8} {:<6} {:14.6f}{:14.4f}{:8}\n", i + 1,
+                       "{:10} {:<8} {:<8} {:<8} {:<8} {:<6} {:14.6f} {:13.4f} {:7}\n", i + 1,
                        name.segment, name.number, name.residue, name.atom, connectivity.type[i],
                        connectivity.charge[i], connectivity.mass[i], 0);
     }

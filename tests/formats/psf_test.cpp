@@ -6,6 +6,7 @@
 #include "tests/support/shared_data.h"
 
 #include <fmt/format.h>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cstddef>
 #include <string>
@@ -160,7 +161,11 @@ TEST_CASE("the extended form and NAMD's are read", "[formats][psf]") {
 }
 
 TEST_CASE("what is written reads the same", "[formats][psf]") {
-    Connectivity connectivity = parse_psf(GENERATE_COPY(charmm, extended, namd), "w.psf");
+    // The last one's numbers outgrow their columns.
+    const std::array texts{charmm, extended, namd,
+                           replaced(namd, "-1.0 35.45", "-123456789.5 3566666666666.5")};
+    const std::size_t which = GENERATE(0U, 1U, 2U, 3U);
+    const Connectivity connectivity = parse_psf(texts.at(which), "w.psf");
 
     const Connectivity back = parse_psf(format_psf(connectivity, "one\ntwo"), "back.psf");
 
