@@ -44,10 +44,19 @@ std::size_t find_choice(const char* option, const std::string& value,
 NonbondedSettings build_settings(const EnergyOptions& options) {
     NonbondedSettings settings = options.nonbonded;
     if (find_choice("--method", options.method, method_names) == 1) {
+        settings.cutoff = options.cutoff.value_or(settings.cutoff);
+        settings.switch_from = options.switch_from.value_or(settings.switch_from);
         settings.electrostatics = static_cast<ElectrostaticCutoff>(
-            1 + find_choice("--electrostatics", options.electrostatics, electrostatic_names));
+            1 + find_choice("--electrostatics", options.electrostatics.value_or("fshift"),
+                            electrostatic_names));
         settings.van_der_waals = static_cast<VanDerWaalsCutoff>(
-            1 + find_choice("--van-der-waals", options.van_der_waals, van_der_waals_names));
+            1 + find_choice("--van-der-waals", options.van_der_waals.value_or("switch"),
+                            van_der_waals_names));
+    } else if (options.cutoff || options.switch_from || options.electrostatics ||
+               options.van_der_waals) {
+        throw LoadError({"--method " + options.method},
+                        "--cutoff, --switch-from, --electrostatics and --van-der-waals are of a "
+                        "cutoff; expected --method cutoff with them");
     }
     if (const auto problem = find_problem(settings)) {
         throw LoadError({"--method " + options.method}, std::string(*problem));

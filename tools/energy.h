@@ -13,10 +13,11 @@ struct EnergyOptions {
     std::filesystem::path system;                      // a PSF, or a structure with all its atoms
     std::optional<std::filesystem::path> coordinates;  // of a PSF
     std::vector<std::filesystem::path> toppar;
-    std::string method = "all-pairs";  // or "cutoff"
-    std::string electrostatics = "fshift", van_der_waals = "switch";
-    NonbondedSettings nonbonded;
-    std::optional<std::filesystem::path> forces;  // CSV to write
+    std::string method = "all-pairs";                          // or "cutoff"
+    NonbondedSettings nonbonded;                               // but for what the cutoff is like:
+    std::optional<double> cutoff, switch_from;                 // Å; 12 and 10 unless given
+    std::optional<std::string> electrostatics, van_der_waals;  // "fshift" and "switch" unless given
+    std::optional<std::filesystem::path> forces;               // CSV to write
     bool json = false;
 };
 

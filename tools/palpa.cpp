@@ -182,9 +182,8 @@ void add_energy(CLI::App& program, palpa::EnergyOptions& options) {
         ->check(in_range(1e-6, 1e6));
     energy.add_flag("--distance-dielectric", options.nonbonded.distance_dielectric,
                     "a dielectric of that times the distance in Å");
-    energy.add_option("--cutoff", options.nonbonded.cutoff, "Å, 12 unless given")
-        ->check(in_range(0.0, 1e6));
-    energy.add_option("--switch-from", options.nonbonded.switch_from, "Å, 10 unless given")
+    energy.add_option("--cutoff", options.cutoff, "Å, 12 unless given")->check(in_range(0.0, 1e6));
+    energy.add_option("--switch-from", options.switch_from, "Å, 10 unless given")
         ->check(in_range(0.0, 1e6));
     energy.add_option("--electrostatics", options.electrostatics,
                       "with cutoff: shift, switch, fshift or fswitch (fshift unless given)");

@@ -33,7 +33,12 @@ std::string read_text_file(const std::filesystem::path& path) {
 }
 
 void write_text_file(const std::filesystem::path& path, std::string_view text) {
-    const std::filesystem::path draft = path.string() + ".draft";
+    std::error_code error;
+    // A device or a pipe is written into; a draft moved there would take its place.
+    const bool is_special =
+        std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error);
+    std::filesystem::path draft = path;
+    if (!is_special) draft += ".draft";
     errno = 0;
     std::ofstream file(draft, std::ios::binary | std::ios::trunc);
     file.write(text.data(), static_cast<std::streamsize>(text.size()));
@@ -41,10 +46,10 @@ void write_text_file(const std::filesystem::path& path, std::string_view text) {
     if (!file) {
         const std::string reason = last_reason();
         std::error_code ignored;
-        std::filesystem::remove(draft, ignored);
+        if (!is_special) std::filesystem::remove(draft, ignored);
         throw LoadError({path.string()}, "cannot be written: " + reason);
     }
-    std::error_code error;
+    if (is_special) return;
     std::filesystem::rename(draft, path, error);
     if (error) {
         std::error_code ignored;

@@ -40,6 +40,12 @@ std::vector<Vec3> match_positions(const Connectivity& connectivity, const Struct
     std::vector<std::string> missing;
     for (const AtomName& name : connectivity.names) {
         auto found = exact.find(to_string(name));
+        if (found != exact.end() && found->second == several) {
+            throw LoadError({structure.file},
+                            fmt::format("atom {} is there more than once, in alternate locations "
+                                        "or models; expected one",
+                                        to_string(name)));
+        }
         if (found == exact.end() && wanted.at(without_segment(name)) != several) {
             found = loose.find(without_segment(name));
             if (found == loose.end() || found->second == several) found = exact.end();

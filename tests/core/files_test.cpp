@@ -75,3 +75,10 @@ TEST_CASE("a failed write tells why, harms nothing and leaves nothing behind", "
         CHECK(files_in(folder.path()) == 1);
     }
 }
+
+TEST_CASE("a device is written into, and stays a device", "[core][files]") {
+    palpa::write_text_file("/dev/null", "text");
+    CHECK(std::filesystem::is_character_file("/dev/null"));
+    CHECK_THROWS_AS(palpa::write_text_file("/dev/full", "text"), palpa::LoadError);
+    CHECK(std::filesystem::is_character_file("/dev/full"));
+}

@@ -63,3 +63,12 @@ TEST_CASE("all atoms without a place are counted, the first few named", "[molecu
     CHECK_THAT(message, Catch::StartsWith("b.crd: 19 of a.psf are not there: A ALA 1 N"));
     CHECK_THAT(message, Catch::EndsWith("and 11 more"));
 }
+
+TEST_CASE("an atom in two places is nobody's to choose", "[molecule]") {
+    const Connectivity one = connectivity_of({{"A", "ALA", "1", "N"}});
+    CHECK_THAT(test::load_error_of([&] {
+                   match_positions(one,
+                                   structure_of({{"A", "ALA", "1", "N"}, {"A", "ALA", "1", "N"}}));
+               }),
+               Catch::Contains("A ALA 1 N is there more than once"));
+}

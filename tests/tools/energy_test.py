@@ -78,6 +78,8 @@ class Energy(unittest.TestCase):
                 ([path, *toppar, "--method", "cutoff", "--cutoff", 8], "--method cutoff"),
                 ([path, "--toppar", DATA / "aera_c36m.rtf"], "aera"),
                 ([self.folder / "none.crd", *toppar], "none.crd"),
+                ([path, *toppar, "--cutoff", 12], "expected --method cutoff"),
+                ([path, *toppar, "--forces", "/dev/full"], "cannot be written"),
                 ([path, *toppar, "--dielectric", "nan"], "nan")):
             with self.subTest(arguments=arguments):
                 result = self.palpa(*arguments)
