@@ -17,6 +17,7 @@
 
 #include <fmt/format.h>
 #include <unistd.h>
+#include <algorithm>
 #include <cstddef>
 #include <cstdio>
 #include <memory>
@@ -119,15 +120,15 @@ int run_in_window(const SceneDescription& scene, const Simulation& simulation,
     HandOrders orders;
     settings.orders = &orders;
     // A window needs somebody.
-    const HandModel hand = settings.hand.value_or(hand_model(Grip::Medium).value());
-    settings.hand = hand;
+    if (!settings.hand) settings.hand = hand_model(Grip::Medium);
+    const double stiffness = settings.hand ? settings.hand->stiffness_N_per_m : 0;
     if (!options.play) {
         settings.live = true;
         settings.script = {};
         // A mouse has no workspace: half a metre either way stands for that.
         settings.half_workspace_m = Vec3::Constant(0.5);
     }
-    const double reach_m = live_hand_newton / hand.stiffness_N_per_m;
+    const double reach_m = live_hand_newton / std::max(stiffness, 1.0);
     EmulatedOmni device(settings);
     const WindowReport report = run_window(scene, device,
                                            {.view = default_view(simulation),
