@@ -17,6 +17,7 @@
 
 #include <fmt/format.h>
 #include <unistd.h>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cstddef>
 #include <cstdio>
@@ -48,9 +49,13 @@ void print_line(const SceneDescription& scene, const Simulation& simulation) {
             "{:.2f}°, {:.3f} pN left\n",
             r.energy_before, r.energy_after, r.evaluations, r.displacement,
             r.angle * 180 / std::numbers::pi, r.force * nN * 1e3);
-        fmt::print("  start       {:.3f} kcal/mol, {:.3f} nN, {:.1f} N/m\n",
-                   start.potential_kcal_per_mol, start.force_newton.norm() * 1e9,
-                   start.stiffness_N_per_m);
+        const Vec3 springs = units::newton_per_metre_per_kcal_per_mol_angstrom2 *
+                             Eigen::SelfAdjointEigenSolver<Mat3>(
+                                 field_on_grabbed(simulation).stiffness, Eigen::EigenvaluesOnly)
+                                 .eigenvalues();
+        fmt::print("  start       {:.3f} kcal/mol, {:.3f} nN; {:.1f}, {:.1f} and {:.1f} N/m\n",
+                   start.potential_kcal_per_mol, start.force_newton.norm() * 1e9, springs.x(),
+                   springs.y(), springs.z());
     } else if (const std::optional<double> rest = equilibrium_distance(simulation)) {
         const LineForce line = force_along_line_at(simulation, *rest);
         fmt::print("  rest        {:.3f} kcal/mol at {:.3f} Å, {:.1f} N/m\n", line.energy, *rest,
@@ -73,8 +78,10 @@ void print_line(const SceneDescription& scene, const Simulation& simulation) {
                    hand_force(simulation.laws.force, scene.hand.peak_nN * 1e-9));
     }
     const FeltStiffness stiffest = stiffest_place(scene, simulation);
-    fmt::print("  stiffest    {:.3g} N/m felt at {:.3f} Å\n", stiffest.newton_per_metre,
-               stiffest.angstrom);
+    const double calm =
+        calm_stiffness(scene, hand_model(static_cast<Grip>(scene.hand.grip)), simulation.period_s);
+    fmt::print("  stiffest    {:.3g} N/m felt at {:.3f} Å, this hand keeps {:.3g} N/m calm\n",
+               stiffest.newton_per_metre, stiffest.angstrom, calm);
 }
 
 void print_summary(const SceneDescription& scene, const Summary& s) {

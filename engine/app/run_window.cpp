@@ -76,10 +76,6 @@ void blit(VkCommandBuffer commands, VkImage from, VkExtent2D from_size, VkImage 
                    same ? VK_FILTER_NEAREST : VK_FILTER_LINEAR);
 }
 
-glm::vec3 as_float(const Vec3& v) {
-    return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
-}
-
 std::filesystem::path next_screenshot(const std::filesystem::path& folder) {
     for (int number = 1;; ++number) {
         std::filesystem::path path = folder / fmt::format("palpa-{:04}.png", number);

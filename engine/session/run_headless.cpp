@@ -74,17 +74,19 @@ FeltStiffness stiffest_place(const SceneDescription& scene, const Simulation& si
     return stiffest;
 }
 
+double calm_stiffness(const SceneDescription& scene, const std::optional<HandModel>& hand,
+                      double period_s) {
+    const DeviceDynamics device{scene.device.inertia_kg, scene.device.viscosity_N_s_per_m};
+    return critical_stiffness(build_plant(device, hand), period_s,
+                              static_cast<double>(scene.device.servo_delay_ticks) * tick_s);
+}
+
 std::vector<std::string> list_warnings(const SceneDescription& scene, const Simulation& simulation,
                                        const HandScript& script) {
     std::vector<std::string> warnings;
     const FeltStiffness stiffest = stiffest_place(scene, simulation);
     const std::optional<HandModel> hand = hand_model(static_cast<Grip>(scene.hand.grip));
-    const auto limit_of = [&](const std::optional<HandModel>& held) {
-        return critical_stiffness(
-            build_plant({scene.device.inertia_kg, scene.device.viscosity_N_s_per_m}, held),
-            simulation.period_s, static_cast<double>(scene.device.servo_delay_ticks) * tick_s);
-    };
-    const double limit = limit_of(hand);
+    const double limit = calm_stiffness(scene, hand, simulation.period_s);
     if (stiffest.newton_per_metre > limit) {
         warnings.push_back(
             fmt::format("this setting vibrates unless friction holds it: at {:.2f} Å the hand "
@@ -93,7 +95,7 @@ std::vector<std::string> list_warnings(const SceneDescription& scene, const Simu
                         stiffest.angstrom, stiffest.newton_per_metre, limit, scene.period_ms));
     }
     if (script.release_s) {
-        const double relaxed_limit = limit_of(relaxed(hand));
+        const double relaxed_limit = calm_stiffness(scene, relaxed(hand), simulation.period_s);
         if (stiffest.newton_per_metre > relaxed_limit && stiffest.newton_per_metre <= limit) {
             warnings.push_back(fmt::format(
                 "once the hand lets go this setting vibrates unless friction holds it: the relaxed "

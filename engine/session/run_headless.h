@@ -9,6 +9,7 @@
 #include "simulation/simulation.h"
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,11 @@ struct FeltStiffness {
     double angstrom = 0;
 };
 FeltStiffness stiffest_place(const SceneDescription& scene, const Simulation& simulation);
+
+// The stiffest spring (N/m) that this hand on the scene's device keeps calm at that period and the
+// scene's servo delay (haptics/plant.h).
+double calm_stiffness(const SceneDescription& scene, const std::optional<HandModel>& hand,
+                      double period_s);
 
 // In words, what about the scene's settings makes trouble: a spring stiffer than this hand, device,
 // period and servo delay keep calm (haptics/plant.h), a stroke longer than the run.

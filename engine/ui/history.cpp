@@ -23,6 +23,4 @@ std::span<const Reading> History::samples() const noexcept {
     return std::span(samples_).last(std::min(samples_.size(), most));
 }
 
-void History::clear() { samples_.clear(); }
-
 }  // namespace palpa

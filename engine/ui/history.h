@@ -15,7 +15,6 @@ public:
 
     // Every tick in its order; one of ten is kept.
     void add(const Reading& reading);
-    void clear();
 
     // Those of the last seconds, in the order of time.
     std::span<const Reading> samples() const noexcept;

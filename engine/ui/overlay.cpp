@@ -1,6 +1,8 @@
 #include "ui/overlay.h"
 
 #include "haptics/gains.h"
+#include "haptics/hand.h"
+#include "session/run_headless.h"
 #include "simulation/simulation.h"
 #include "ui/plot.h"
 
@@ -71,16 +73,13 @@ Overlay::Overlay(const SceneDescription& scene, const ViewSettings& view)
       settings_{scene.coupling, scene.period_ms},
       before_edit_(settings_),
       view_(view),
-      plant_(build_plant({scene.device.inertia_kg, scene.device.viscosity_N_s_per_m},
-                         hand_model(static_cast<Grip>(scene.hand.grip)))),
       lesson_(scene.lesson) {
     update_limit();
 }
 
 void Overlay::update_limit() {
-    stiffness_limit_ =
-        critical_stiffness(plant_, settings_.period_ms * 1e-3,
-                           static_cast<double>(scene_.device.servo_delay_ticks) / servo_rate_hz);
+    stiffness_limit_ = calm_stiffness(scene_, hand_model(static_cast<Grip>(scene_.hand.grip)),
+                                      settings_.period_ms * 1e-3);
 }
 
 void Overlay::add_tick(const ServoTick& tick) {

@@ -1,6 +1,5 @@
 // The overlays of a running scene: what is felt and why, and everything that can be changed.
 #pragma once
-#include "haptics/plant.h"
 #include "scene/description.h"
 #include "session/commands.h"
 #include "session/lesson.h"
@@ -70,7 +69,6 @@ private:
     LiveSettings settings_, before_edit_;
     std::vector<LiveSettings> undo_, redo_;
     ViewSettings view_;
-    Plant plant_;
     double stiffness_limit_ = 0;  // N/m that this hand keeps calm at the present period
     // How long each warning stays.
     double shaking_for_s_ = 0, clamped_for_s_ = 0, late_for_s_ = 0;

@@ -49,10 +49,6 @@ const ElementLook& look_of(std::string_view element) {
     return found == looks.end() ? other : *found;
 }
 
-glm::vec3 as_float(const Vec3& v) {
-    return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
-}
-
 // As the force field names it, or by the atom's first letter.
 std::string_view element_of(const AtomTable& atoms, std::size_t i) {
     if (!atoms.element[i].empty()) return atoms.element[i];
@@ -139,6 +135,10 @@ void add_force_arrow(const Simulation& simulation, const TouchModel& touch, Fram
 }
 
 }  // namespace
+
+glm::vec3 as_float(const Vec3& v) {
+    return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+}
 
 FrameScene build_frame(const Simulation& simulation, const TouchModel& touch,
                        const ViewSettings& settings) {

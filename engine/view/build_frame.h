@@ -36,6 +36,9 @@ FrameScene build_frame(const Simulation& simulation, const TouchModel& touch,
 // The same with the force as it is now, for which the pairs are summed again.
 FrameScene build_frame(const Simulation& simulation, const ViewSettings& settings);
 
+// A place as pictures have it.
+glm::vec3 as_float(const Vec3& v);
+
 // What shows a scene best: balls and sticks, but `in-hand` where others would hide the molecule.
 ViewSettings default_view(const Simulation& simulation);
 

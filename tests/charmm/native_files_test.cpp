@@ -3,8 +3,11 @@
 #include "charmm/build_topology.h"
 #include "charmm/force_field.h"
 #include "charmm/generate.h"
+#include "core/files.h"
+#include "core/text.h"
 #include "forces/force_field.h"
 #include "formats/crd.h"
+#include "formats/pdb.h"
 #include "formats/psf.h"
 #include "tests/support/native_case.h"
 #include "tests/support/reference_case.h"
@@ -292,7 +295,7 @@ TEST_CASE("76 tetrapeptides and five proteins have the energies that CHARMM prin
     const auto peptides = read_table(folder / "tetra_energies.csv");
     CHECK(peptides.size() == 76);
     for (const auto& [name, row] : peptides) {
-        check(test::read_plain_pdb(folder / "tetra" / (name + ".pdb")), row);
+        check(read_pdb(folder / "tetra" / (name + ".pdb")), row);
     }
     const auto proteins = read_table(folder / "protein_energies.csv");
     CHECK(proteins.size() == 5);

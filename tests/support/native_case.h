@@ -2,8 +2,6 @@
 // them.
 #pragma once
 #include "charmm/force_field.h"
-#include "core/files.h"
-#include "core/text.h"
 #include "molecule/atoms.h"
 #include "tests/support/reference_case.h"
 
@@ -12,7 +10,6 @@
 #include <filesystem>
 #include <map>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace palpa::test {
@@ -22,25 +19,6 @@ inline ForceField read_charmm(const std::filesystem::path& folder,
     std::vector<std::filesystem::path> files;
     for (const std::string& name : names) files.push_back(folder / name);
     return read_force_field(files);
-}
-
-// ATOM records in fixed columns, all in one segment "A"; for files that are known to be sound.
-inline Structure read_plain_pdb(const std::filesystem::path& path) {
-    const std::string text = read_text_file(path);
-    Structure structure{.file = path.string(), .names = {}, .positions = {}, .lines = {}};
-    const std::vector<std::string_view> lines = split_lines(text);
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-        if (!lines[i].starts_with("ATOM")) continue;
-        const auto column = [&](std::size_t first, std::size_t count) {
-            return std::string(trimmed(lines[i].substr(first, count)));
-        };
-        structure.names.push_back({"A", column(17, 4), column(22, 5), column(12, 4)});
-        structure.positions.emplace_back(find_real(column(30, 8)).value(),
-                                         find_real(column(38, 8)).value(),
-                                         find_real(column(46, 8)).value());
-        structure.lines.push_back(i + 1);
-    }
-    return structure;
 }
 
 struct TypedAtom {
