@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <span>
 #include <string>
@@ -59,6 +60,8 @@ struct Residue {
     bool has_generated_angles = true;     // false: NOANG
     bool has_generated_dihedrals = true;  // false: NODIH
     std::size_t lone_pair_line = 0;       // of its first lone pair; 0: it has none
+    // Every atom that bonds and other terms name, and the line where they first do.
+    std::map<std::string, std::size_t, std::less<>> named_on;
     TextPlace place;
 };
 

@@ -154,7 +154,10 @@ void ResidueReader::read_tuples(Tuples& tuples, std::size_t from) const {
     }
     for (std::size_t i = from; i < words.size(); i += Size) {
         auto& tuple = tuples.emplace_back();
-        for (std::size_t j = 0; j < Size; ++j) tuple[j] = words[i + j];
+        for (std::size_t j = 0; j < Size; ++j) {
+            tuple[j] = words[i + j];
+            residue_->named_on.try_emplace(tuple[j], statements_.place().line);
+        }
     }
 }
 

@@ -246,14 +246,17 @@ TEST_CASE("all that is wrong with a structure is told at once", "[charmm][genera
           "lacks atom 'C'; s.pdb:4: residue P BEA 2 has no atom 'K'; s.pdb:4: residue P BEA 2 "
           "lacks atom 'H'");
     CHECK(error_of({{"P", "BAD", "1", "A"}}) ==
-          "a.rtf:42: unknown atom type 'TX': no MASS line; did you mean 'TA'?");
+          "a.rtf:42: unknown atom type 'TX': no MASS line; did you mean 'TA'?; a.rtf:43: atom 'Z' "
+          "in a term of residue 'BAD', which has no such ATOM line");
 }
 
-TEST_CASE("a template that names an atom it has not is told", "[charmm][generate]") {
+TEST_CASE("a template that names an atom it has not is told once, where it does",
+          "[charmm][generate]") {
     ForceField force_field = bead_force_field();
     force_field.residues.at("BAD").atoms[0].type = "TA";
 
     CHECK(load_error_of([&] {
-              build_connectivity(force_field, structure_of({{"P", "BAD", "1", "A"}}));
-          }) == "a.rtf:41: a term names atom 'Z', which residue P BAD 1 has not");
+              build_connectivity(force_field,
+                                 structure_of({{"P", "BAD", "1", "A"}, {"P", "BAD", "2", "A"}}));
+          }) == "a.rtf:43: atom 'Z' in a term of residue 'BAD', which has no such ATOM line");
 }
