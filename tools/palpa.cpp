@@ -6,6 +6,7 @@
 #include "platform/window.h"
 #include "tools/bench.h"
 #include "tools/energy.h"
+#include "tools/prepare.h"
 #include "tools/render.h"
 #include "tools/run.h"
 
@@ -194,6 +195,46 @@ void add_energy(CLI::App& program, palpa::EnergyOptions& options) {
     energy.add_flag("--json", options.json, "print JSON");
 }
 
+void add_prepare(CLI::App& program, palpa::PrepareOptions& options) {
+    palpa::PrepareSettings& settings = options.settings;
+    CLI::App& prepare = *program.add_subcommand(
+        "prepare", "Complete and type a structure: hydrogens, patches, topology, a report");
+    prepare.add_option("structure", options.structure, ".pdb, .ent, .cif or .crd")->required();
+    prepare
+        .add_option("--toppar", options.toppar,
+                    "CHARMM topology, parameter and stream files, in order")
+        ->required();
+    prepare
+        .add_option("-o,--output", options.folder,
+                    "folder for system.psf, .pdb, .crd, .prm and report.txt")
+        ->required();
+    prepare.add_option("--without", settings.without,
+                       "residue names (MK1), chains (chain:B) or residues (A:101) to leave out");
+    prepare.add_option("--as", options.as, "NAME=NAME: take a residue as another, CSO=CYS");
+    prepare.add_option("--protonation", options.protonation,
+                       "CHAIN:NUMBER=STATE: a residue (HSE) or a patch (ASPP)");
+    prepare.add_option("--first", options.first, "CHAIN=PATCH at its first residue, or NONE");
+    prepare.add_option("--last", options.last, "CHAIN=PATCH at its last residue, or NONE");
+    prepare.add_option("--disulphide", options.disulphides,
+                       "CHAIN:NUMBER-CHAIN:NUMBER: a bond beside those found");
+    prepare.add_flag("!--no-disulphides", settings.finds_disulphides, "look for none");
+    prepare.add_flag("--keep-waters", settings.keeps_waters, "waters are left out otherwise");
+    prepare.add_flag("!--no-ions", settings.keeps_ions, "ions are kept otherwise");
+    prepare.add_option("--model", settings.model, "the first unless given");
+    prepare.add_option("--altloc", options.alternates,
+                       "CHAIN:NUMBER=LETTER: the location to take, not the most occupied");
+    prepare.add_flag("!--no-flips", settings.flips, "amides and imidazoles stay as they are");
+    prepare.add_flag("!--no-relax", settings.relaxes, "atoms stay where they are or were built");
+    CLI::Option* const x_along = prepare.add_option(
+        "--x-along", options.x_along, "segment whose long axis becomes x, its middle the origin");
+    prepare
+        .add_option("--y-towards", options.y_towards,
+                    "CHAIN:NUMBER-CHAIN:NUMBER: y from one residue to another")
+        ->needs(x_along);
+    prepare.add_flag("--overwrite", options.overwrites, "replace files of an earlier run");
+    prepare.add_flag("--json", options.json, "print counts and warnings as JSON");
+}
+
 int run_program(int argc, char** argv) {
     CLI::App program("Palpa: feel molecules", "palpa");
     program.require_subcommand(1);
@@ -203,7 +244,9 @@ int run_program(int argc, char** argv) {
     palpa::BenchOptions bench;
     palpa::RenderOptions render;
     palpa::EnergyOptions energy;
+    palpa::PrepareOptions prepare;
     add_energy(program, energy);
+    add_prepare(program, prepare);
     add_run(program, run);
     add_bench(program, bench);
     add_render(program, render);
@@ -224,6 +267,7 @@ int run_program(int argc, char** argv) {
         return bad_input;
     }
     if (program.got_subcommand("energy")) return palpa::energy_command(energy);
+    if (program.got_subcommand("prepare")) return palpa::prepare_command(prepare);
     if (program.got_subcommand("render")) return palpa::render_command(render);
     return program.got_subcommand("run") ? palpa::run_command(run) : palpa::bench_command(bench);
 }

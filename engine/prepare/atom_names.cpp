@@ -1,0 +1,435 @@
+#include "prepare/atom_names.h"
+
+#include "charmm/missing.h"
+#include "core/text.h"
+#include "forces/torsion.h"
+#include "molecule/element.h"
+#include "prepare/residues.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace palpa {
+namespace {
+
+constexpr std::string_view heading = "Atom names";
+constexpr double pi = 3.14159265358979323846;
+
+// What a residue is to consist of, once its patches are in.
+struct Wanted {
+    std::map<std::string, std::string, std::less<>> elements;  // of each atom
+    std::vector<std::array<std::string, 2>> bonds;             // within the residue
+    std::vector<std::array<std::string, 4>> dihedral_atoms;    // of the IC table
+    std::vector<double> dihedrals;                             // rad
+
+    bool has(std::string_view name) const { return elements.contains(name); }
+};
+
+class Templates {
+public:
+    Templates(const ForceField& force_field, const GenerateSettings& settings)
+        : force_field_(force_field) {
+        for (const SegmentSettings& segment : settings.segments) {
+            segments_[segment.segment] = &segment;
+        }
+        for (const PatchUse& use : settings.patches) {
+            for (std::size_t i = 0; i < use.residues.size(); ++i) {
+                const ResidueId& id = use.residues[i];
+                uses_[{id.segment, id.number}].emplace_back(use.patch, i);
+            }
+        }
+    }
+
+    Wanted find(const AtomName& name, bool is_first, bool is_last) const {
+        const Residue& residue = force_field_.residues.at(name.residue);
+        Wanted wanted;
+        add(residue, std::nullopt, wanted);
+        const auto segment = segments_.find(name.segment);
+        const auto end_patch = [&](const std::string& asked, const std::string& by_template) {
+            apply(asked.empty() ? by_template : asked, 0, wanted);
+        };
+        static const SegmentSettings by_template;
+        const SegmentSettings& ends = segment == segments_.end() ? by_template : *segment->second;
+        if (is_first) end_patch(ends.first, residue.first_patch);
+        if (is_last) end_patch(ends.last, residue.last_patch);
+        if (const auto found = uses_.find({name.segment, name.number}); found != uses_.end()) {
+            for (const auto& [patch, place] : found->second) apply(patch, place, wanted);
+        }
+        return wanted;
+    }
+
+private:
+    std::string element(const ResidueAtom& atom, std::string_view name) const {
+        const auto type = find_type(force_field_, atom.type);
+        const bool is_told = type != force_field_.types.end() && !type->second.element.empty();
+        return is_told ? type->second.element : find_element_of_name(name, "");
+    }
+
+    void apply(const std::string& patch, std::size_t place, Wanted& wanted) const {
+        const auto found = force_field_.patches.find(patch);
+        if (found == force_field_.patches.end()) return;  // completing the atoms tells
+        for (const std::string& deleted : found->second.deleted_atoms) {
+            if (const auto name = own_name(deleted, place)) wanted.elements.erase(*name);
+        }
+        add(found->second, place, wanted);
+    }
+
+    // An atom's name without the digit that means this residue; none for one of another residue.
+    static std::optional<std::string> own_name(const std::string& name,
+                                               std::optional<std::size_t> place) {
+        if (name.empty() || name[0] == '+' || name[0] == '-') return std::nullopt;
+        if (!place || name.size() < 2 || name[0] < '1' || name[0] > '9') return name;
+        if (static_cast<std::size_t>(name[0] - '1') != *place) return std::nullopt;
+        return name.substr(1);
+    }
+
+    void add(const Residue& residue, std::optional<std::size_t> place, Wanted& wanted) const {
+        for (const ResidueAtom& atom : residue.atoms) {
+            if (const auto name = own_name(atom.name, place)) {
+                wanted.elements[*name] = element(atom, *name);
+            }
+        }
+        for (const auto& [a, b] : residue.bonds) {
+            const auto first = own_name(a, place);
+            const auto second = own_name(b, place);
+            if (first && second) wanted.bonds.push_back({*first, *second});
+        }
+        for (const InternalCoordinate& line : residue.internal_coordinates) {
+            std::array<std::string, 4> names;
+            bool is_whole = true;
+            for (std::size_t i = 0; i < 4; ++i) {
+                const auto name = own_name(line.atoms[i], place);
+                is_whole = is_whole && name.has_value();
+                names[i] = name.value_or("");
+            }
+            if (!is_whole) continue;
+            wanted.dihedral_atoms.push_back(names);
+            wanted.dihedrals.push_back(line.dihedral_deg * pi / 180);
+        }
+    }
+
+    const ForceField& force_field_;
+    std::map<std::string, const SegmentSettings*> segments_;
+    std::map<std::pair<std::string, std::string>, std::vector<std::pair<std::string, std::size_t>>>
+        uses_;
+};
+
+// Heavy atoms that the PDB and other programs call otherwise; taken where the template has the
+// second name and not the first.
+constexpr auto aliases =
+    std::to_array<std::pair<std::string_view, std::string_view>>({{"O", "OT1"},
+                                                                  {"OXT", "OT2"},
+                                                                  {"O1", "OT1"},
+                                                                  {"O2", "OT2"},
+                                                                  {"OT", "OT2"},
+                                                                  {"CD1", "CD"},
+                                                                  {"O", "OH2"},
+                                                                  {"OW", "OH2"},
+                                                                  {"OP1", "O1P"},
+                                                                  {"OP2", "O2P"},
+                                                                  {"CH3", "CAT"},
+                                                                  {"CH3", "CAY"},
+                                                                  {"C5M", "C7"}});
+
+class AtomNamer {
+public:
+    AtomNamer(const ForceField& force_field, const Structure& structure,
+              const GenerateSettings& settings, Report& report)
+        : structure_(structure),
+          report_(report),
+          templates_(force_field, settings),
+          residues_(find_residues(structure)),
+          kept_(structure.names.size(), true) {}
+
+    Structure name() {
+        for (std::size_t i = 0; i < residues_.size(); ++i) name_residue(i);
+        if (backbones_ > 0 && incomplete_backbones_ == backbones_) {
+            throw LoadError(
+                {structure_.file},
+                "no residue has N, CA and C: this looks like alpha-carbons only, from "
+                "which no system can be built; expected a structure of all heavy atoms");
+        }
+        refuse_fragments();
+        missing_.throw_if_any();
+        tell();
+        return keep_atoms(structure_, kept_);
+    }
+
+private:
+    const std::string& segment(std::size_t index) const {
+        return structure_.names[residues_[index].first].segment;
+    }
+
+    void name_residue(std::size_t index) {
+        const ResidueRange& residue = residues_[index];
+        const AtomName& name = structure_.names[residue.first];
+        const bool is_first = index == 0 || segment(index - 1) != segment(index);
+        const bool is_last = index + 1 == residues_.size() || segment(index + 1) != segment(index);
+        const Wanted wanted = templates_.find(name, is_first, is_last);
+        correct_elements(residue, wanted);
+        name_heavy_atoms(residue, wanted);
+        check_heavy_atoms(residue, wanted);
+        name_hydrogens(residue, wanted);
+    }
+
+    void correct_elements(const ResidueRange& residue, const Wanted& wanted) {
+        if (structure_.records.empty()) return;
+        for (std::size_t i = residue.first; i < residue.end(); ++i) {
+            const auto found = wanted.elements.find(structure_.names[i].atom);
+            std::string& element = structure_.records[i].element;
+            if (found == wanted.elements.end() || found->second.empty()) continue;
+            const std::string told = element == "D" ? "H" : element;
+            if (!told.empty() && told != found->second) ++corrected_elements_;
+            element = found->second;
+        }
+    }
+
+    void name_heavy_atoms(const ResidueRange& residue, const Wanted& wanted) {
+        std::set<std::string> seen;
+        for (std::size_t i = residue.first; i < residue.end(); ++i) {
+            if (element_of(structure_, i) == "H") continue;
+            std::string& name = structure_.names[i].atom;
+            if (!wanted.has(name)) rename_heavy_atom(residue, i, wanted);
+            if (!seen.insert(name).second) {
+                missing_.add(place(i), fmt::format("{} has two atoms '{}'",
+                                                   residue_label(structure_, residue), name));
+            }
+        }
+    }
+
+    TextPlace place(std::size_t atom) const { return {structure_.file, structure_.lines[atom], 0}; }
+
+    void rename_heavy_atom(const ResidueRange& residue, std::size_t atom, const Wanted& wanted) {
+        std::string& name = structure_.names[atom].atom;
+        if (residue.count == 1 && wanted.elements.size() == 1) {
+            name = wanted.elements.begin()->first;
+            return;
+        }
+        for (const auto& [from, to] : aliases) {
+            if (from != name || !wanted.has(to) || find_atom(structure_, residue, to)) continue;
+            ++renamed_[fmt::format("{} {} is CHARMM's {}", structure_.names[atom].residue, from,
+                                   to)];
+            name = to;
+            return;
+        }
+        std::vector<std::string_view> names;
+        for (const auto& entry : wanted.elements) names.emplace_back(entry.first);
+        missing_.add(
+            place(atom),
+            fmt::format("{} has an atom '{}' that its topology does not know{}",
+                        residue_label(structure_, residue), name, near_name_hint(name, names)));
+    }
+
+    // Side chains can be built; the backbone, and molecules that are no chain, cannot.
+    void check_heavy_atoms(const ResidueRange& residue, const Wanted& wanted) {
+        std::vector<std::string> lacking;
+        std::size_t heavy = 0;
+        for (const auto& [name, element] : wanted.elements) {
+            if (element == "H") continue;
+            ++heavy;
+            if (!find_atom(structure_, residue, name)) lacking.push_back(name);
+        }
+        const bool is_amino_acid = wanted.has("N") && wanted.has("CA") && wanted.has("C");
+        if (is_amino_acid) ++backbones_;
+        if (lacking.empty()) return;
+        const std::string label = residue_label(structure_, residue);
+        if (!is_amino_acid) {
+            const AtomName& name = structure_.names[residue.first];
+            Fragment& fragment =
+                fragments_[fmt::format("{} of its {} heavy atoms ({} lack)", heavy - lacking.size(),
+                                       heavy, join_some(lacking))];
+            fragment.place = place(residue.first);
+            fragment.residue = name.residue;
+            fragment.where.push_back(
+                fmt::format("{}:{}", chain_of(structure_, residue.first), name.number));
+            return;
+        }
+        const auto lacks = [&](std::string_view name) {
+            return std::find(lacking.begin(), lacking.end(), name) != lacking.end();
+        };
+        if (lacks("N") || lacks("CA") || lacks("C")) {
+            ++incomplete_backbones_;
+            missing_.add(place(residue.first),
+                         fmt::format("{} lacks {} of its backbone; expected N, CA and C, or "
+                                     "--without {}:{}",
+                                     label, join_some(lacking), chain_of(structure_, residue.first),
+                                     structure_.names[residue.first].number));
+            return;
+        }
+        report_.add("Heavy atoms built", fmt::format("{}: {}", label, fmt::join(lacking, " ")));
+    }
+
+    void refuse_fragments() {
+        for (const auto& [what, fragment] : fragments_) {
+            const bool are_several = fragment.where.size() > 1;
+            missing_.add(fragment.place,
+                         fmt::format("{} {} {} {}; a molecule that is no chain must be whole{}; "
+                                     "expected whole coordinates, or --without {}",
+                                     fragment.residue, fmt::join(fragment.where, " and "),
+                                     are_several ? "have each" : "has", what,
+                                     are_several ? ", and halves on an axis of symmetry cannot be "
+                                                   "joined"
+                                                 : "",
+                                     fragment.residue));
+        }
+    }
+
+    static std::string join_some(const std::vector<std::string>& names) {
+        const std::size_t shown = std::min<std::size_t>(names.size(), 5);
+        std::string text = fmt::format(
+            "{}",
+            fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), " "));
+        if (names.size() > shown) text += fmt::format(" and {} more", names.size() - shown);
+        return text;
+    }
+
+    void name_hydrogens(const ResidueRange& residue, const Wanted& wanted) {
+        std::set<std::size_t> placed;
+        for (std::size_t heavy = residue.first; heavy < residue.end(); ++heavy) {
+            if (element_of(structure_, heavy) == "H") continue;
+            const std::vector<std::size_t> given = hydrogens_on(structure_, residue, heavy);
+            placed.insert(given.begin(), given.end());
+            if (!given.empty()) name_group(residue, heavy, given, wanted);
+        }
+        for (std::size_t i = residue.first; i < residue.end(); ++i) {
+            if (element_of(structure_, i) != "H" || placed.contains(i)) continue;
+            kept_[i] = false;
+            report_.warn(
+                fmt::format("{} {} is not within 1.5 Å of any atom of its residue: it is "
+                            "built anew",
+                            residue_label(structure_, residue), structure_.names[i].atom));
+        }
+    }
+
+    // The hydrogens on one atom.
+    void name_group(const ResidueRange& residue, std::size_t heavy,
+                    const std::vector<std::size_t>& given, const Wanted& wanted) {
+        std::vector<std::string> names;
+        const std::string& parent = structure_.names[heavy].atom;
+        for (const auto& [a, b] : wanted.bonds) {
+            const std::string& other = a == parent ? b : a;
+            if (a != parent && b != parent) continue;
+            const auto found = wanted.elements.find(other);
+            if (found != wanted.elements.end() && found->second == "H") names.push_back(other);
+        }
+        std::sort(names.begin(), names.end());
+        names.erase(std::unique(names.begin(), names.end()), names.end());
+        const bool is_exact = std::all_of(given.begin(), given.end(), [&](std::size_t atom) {
+            return std::binary_search(names.begin(), names.end(), structure_.names[atom].atom);
+        });
+        if (is_exact) return;
+        std::vector<std::size_t> order = given;
+        for (std::size_t i = names.size(); i < order.size(); ++i) {
+            kept_[order[i]] = false;
+            dropped_.push_back(fmt::format("{} {}", residue_label(structure_, residue),
+                                           structure_.names[order[i]].atom));
+        }
+        order.resize(std::min(order.size(), names.size()));
+        find_best_order(residue, wanted, names, order);
+        renamed_hydrogens_ += order.size();
+    }
+
+    // Of all orders of the hydrogens, the one whose dihedral angles are the template's.
+    void find_best_order(const ResidueRange& residue, const Wanted& wanted,
+                         const std::vector<std::string>& names, std::vector<std::size_t> order) {
+        std::sort(order.begin(), order.end());
+        std::vector<std::size_t> best = order;
+        double least = std::numeric_limits<double>::infinity();
+        do {
+            for (std::size_t i = 0; i < order.size(); ++i) {
+                structure_.names[order[i]].atom = names[i];
+            }
+            const double deviation = find_deviation(residue, wanted, names);
+            if (deviation < least - 1e-9) {
+                least = deviation;
+                best = order;
+            }
+        } while (std::next_permutation(order.begin(), order.end()));
+        for (std::size_t i = 0; i < best.size(); ++i) structure_.names[best[i]].atom = names[i];
+    }
+
+    // From the IC lines that name one of these hydrogens and are wholly there: the sum of the
+    // squared differences, rad^2.
+    double find_deviation(const ResidueRange& residue, const Wanted& wanted,
+                          const std::vector<std::string>& names) const {
+        double sum = 0;
+        for (std::size_t i = 0; i < wanted.dihedrals.size(); ++i) {
+            const auto& atoms = wanted.dihedral_atoms[i];
+            const bool concerns = std::any_of(atoms.begin(), atoms.end(), [&](const auto& atom) {
+                return std::binary_search(names.begin(), names.end(), atom);
+            });
+            if (!concerns) continue;
+            std::array<std::size_t, 4> at{};
+            bool is_there = true;
+            for (std::size_t j = 0; j < 4; ++j) {
+                const auto found = find_atom(structure_, residue, atoms[j]);
+                is_there = is_there && found.has_value();
+                at[j] = found.value_or(0);
+            }
+            if (!is_there) continue;
+            const auto& x = structure_.positions;
+            const double angle = evaluate_torsion(x[at[0]], x[at[1]], x[at[2]], x[at[3]]).angle;
+            const double difference = std::remainder(angle - wanted.dihedrals[i], 2 * pi);
+            sum += difference * difference;
+        }
+        return sum;
+    }
+
+    void tell() {
+        for (const auto& [what, count] : renamed_) {
+            report_.add(heading, fmt::format("{} ({} atom{})", what, count, count == 1 ? "" : "s"));
+        }
+        if (renamed_hydrogens_ > 0) {
+            report_.add(heading, fmt::format("{} hydrogens named by the atom that they are on",
+                                             renamed_hydrogens_));
+        }
+        if (!dropped_.empty()) {
+            report_.warn(fmt::format("left out hydrogens that the chosen residues do not have: {}",
+                                     join_some(dropped_)));
+        }
+        if (corrected_elements_ > 0) {
+            report_.warn(
+                fmt::format("{} atoms have an element that their name contradicts; the "
+                            "name counts: are the element columns right?",
+                            corrected_elements_));
+        }
+    }
+
+    Structure structure_;
+    Report& report_;
+    const Templates templates_;
+    const std::vector<ResidueRange> residues_;
+    std::vector<bool> kept_;
+    Missing missing_;
+    // Molecules that are no chain and not whole, by what they lack.
+    struct Fragment {
+        TextPlace place;
+        std::string residue;
+        std::vector<std::string> where;
+    };
+    std::map<std::string, Fragment> fragments_;
+    std::map<std::string, std::size_t> renamed_;
+    std::vector<std::string> dropped_;
+    std::size_t renamed_hydrogens_ = 0, corrected_elements_ = 0;
+    std::size_t backbones_ = 0, incomplete_backbones_ = 0;
+};
+
+}  // namespace
+
+Structure name_atoms(const ForceField& force_field, const Structure& structure,
+                     const GenerateSettings& settings, Report& report) {
+    return AtomNamer(force_field, structure, settings, report).name();
+}
+
+}  // namespace palpa

@@ -1,0 +1,19 @@
+// What of a structure file becomes part of the system: one model, one location of every atom, and
+// the residues that a user wants.
+#pragma once
+#include "molecule/atoms.h"
+#include "prepare/report.h"
+#include "prepare/settings.h"
+
+#include <string_view>
+
+namespace palpa {
+
+bool is_water(std::string_view residue_name) noexcept;
+
+// Takes one model, leaves out what the settings say, and takes of each residue with alternate
+// locations the one with the highest mean occupancy, the first in the alphabet where they are
+// equal. Throws LoadError for choices that mean nothing here, and where no atom is left.
+Structure choose_atoms(const Structure& structure, const PrepareSettings& settings, Report& report);
+
+}  // namespace palpa

@@ -1,0 +1,37 @@
+// From a structure as it was downloaded to a system with every atom, typed, patched and relaxed.
+#pragma once
+#include "charmm/force_field.h"
+#include "charmm/topology.h"
+#include "molecule/atoms.h"
+#include "molecule/connectivity.h"
+#include "prepare/report.h"
+#include "prepare/settings.h"
+
+#include <filesystem>
+#include <functional>
+#include <string_view>
+
+namespace palpa {
+
+struct PreparedSystem {
+    Structure structure;  // every atom, in the order of the file, built ones behind their residue's
+    Connectivity connectivity;  // of the same atoms in the same order
+    Topology topology;          // likewise
+    ForceField parameters;      // what of the force field is used
+    Report report;
+};
+
+// What is being done, and how far it is, 0 to 1.
+using PrepareProgress = std::function<void(std::string_view stage, double share)>;
+
+// The stages are listed in engine/README.md. Throws LoadError with everything that is missing:
+// residues, atoms, patches and parameters.
+PreparedSystem prepare_system(const ForceField& force_field, const Structure& structure,
+                              const PrepareSettings& settings, const PrepareProgress& progress);
+
+// system.psf, system.pdb, system.crd, system.prm and report.txt, all of them or none. `title`: what
+// the files say of themselves.
+void write_prepared(const PreparedSystem& system, const std::filesystem::path& folder,
+                    std::string_view title);
+
+}  // namespace palpa

@@ -1,0 +1,335 @@
+#include "prepare/segments.h"
+
+#include "charmm/missing.h"
+#include "core/text.h"
+#include "prepare/choose.h"
+#include "prepare/residues.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <utility>
+
+namespace palpa {
+namespace {
+
+constexpr std::string_view heading = "Chains and their ends";
+constexpr std::string_view disulphide_heading = "Disulphides";
+constexpr double longest_link = 2.5;  // Å, between atoms taken as bonded
+
+// The atoms by which a residue is bonded to the next one: C and N of a peptide.
+std::optional<std::pair<std::string, std::string>> find_link(const Residue& residue) {
+    for (const auto& [a, b] : residue.bonds) {
+        if (b.size() > 1 && b[0] == '+') return std::pair(a, b.substr(1));
+        if (a.size() > 1 && a[0] == '+') return std::pair(b, a.substr(1));
+    }
+    return std::nullopt;
+}
+
+class Segmenter {
+public:
+    Segmenter(const ForceField& force_field, Structure& structure, const PrepareSettings& settings,
+              Report& report)
+        : force_field_(force_field),
+          structure_(structure),
+          settings_(settings),
+          report_(report),
+          residues_(find_residues(structure)) {}
+
+    GenerateSettings split(const std::vector<ResiduePatch>& protonation) {
+        result_.disulphide_distance = 0;  // found here, to be reported
+        for (std::size_t i = 0; i < residues_.size();) {
+            const std::size_t end = find_end(i);
+            if (end > i) {
+                add_chain(i, end);
+            } else {
+                add_single(i);
+            }
+            i = std::max(end, i + 1);
+        }
+        check_end_choices();
+        check_numbers();
+        for (const ResiduePatch& patch : protonation) {
+            result_.patches.push_back({patch.patch, {identity(patch.atom)}});
+        }
+        add_disulphides();
+        missing_.throw_if_any();
+        return std::move(result_);
+    }
+
+private:
+    const Residue& residue_of(std::size_t index) const {
+        return force_field_.residues.at(structure_.names[residues_[index].first].residue);
+    }
+
+    ResidueId identity(std::size_t atom) const {
+        return {structure_.names[atom].segment, structure_.names[atom].number};
+    }
+
+    const std::string& chain(std::size_t index) const {
+        return chain_of(structure_, residues_[index].first);
+    }
+
+    // One past the last residue of the chain that begins at `first`; `first` if that is no chain.
+    std::size_t find_end(std::size_t first) const {
+        if (!find_link(residue_of(first))) return first;
+        std::size_t last = first;
+        while (last + 1 < residues_.size() && is_linked(last)) ++last;
+        return last + 1;
+    }
+
+    bool ends_by_record(std::size_t index) const {
+        return std::binary_search(structure_.chain_ends.begin(), structure_.chain_ends.end(),
+                                  residues_[index].end());
+    }
+
+    bool is_linked(std::size_t index) const {
+        const auto link = find_link(residue_of(index));
+        const auto next_link = find_link(residue_of(index + 1));
+        if (!link || !next_link || chain(index) != chain(index + 1)) return false;
+        if (ends_by_record(index)) return false;
+        const auto a = find_atom(structure_, residues_[index], link->first);
+        const auto b = find_atom(structure_, residues_[index + 1], link->second);
+        if (a && b) {
+            return (structure_.positions[*a] - structure_.positions[*b]).norm() < longest_link;
+        }
+        if (structure_.records.empty()) return true;
+        return structure_.records[residues_[index + 1].first].residue_number ==
+               structure_.records[residues_[index].first].residue_number + 1;
+    }
+
+    std::string unique_segment(const std::string& wanted) {
+        for (int count = 1;; ++count) {
+            const std::string name = count == 1 ? wanted : fmt::format("{}{}", wanted, count);
+            if (segments_.insert(name).second) return name;
+        }
+    }
+
+    void set_segment(std::size_t index, const std::string& segment) {
+        for (std::size_t i = residues_[index].first; i < residues_[index].end(); ++i) {
+            structure_.names[i].segment = segment;
+        }
+    }
+
+    bool has_atom(std::size_t index, std::string_view name) const {
+        return find_atom(structure_, residues_[index], name).has_value();
+    }
+
+    void add_chain(std::size_t first, std::size_t end) {
+        const std::size_t last = end - 1;
+        const std::string chain_name = chain(first).empty() ? "P" : chain(first);
+        const auto before = last_of_chain_.find(chain_name);
+        const bool is_behind_gap =
+            before != last_of_chain_.end() && !ends_by_record(before->second);
+        const std::string segment = unique_segment(chain_name);
+        SegmentSettings settings;
+        settings.segment = segment;
+        settings.first = choose_first(first, last, is_behind_gap);
+        settings.last = choose_last(last, goes_on_behind(last));
+        if (is_behind_gap) {
+            report_.warn(
+                fmt::format("chain {} has a gap between {} and {}: neutral caps close it "
+                            "(--last, --first take other patches)",
+                            chain_name, residue_label(structure_, residues_[before->second]),
+                            residue_label(structure_, residues_[first])));
+        }
+        last_of_chain_[chain_name] = last;
+        choose_as_asked(settings_.first, chain_name, segment, settings.first, used_first_);
+        choose_as_asked(settings_.last, chain_name, segment, settings.last, used_last_);
+        report_.add(heading, fmt::format("segment {}: {} to {}, {} residues; first {}, last {}",
+                                         segment, residue_label(structure_, residues_[first]),
+                                         residue_label(structure_, residues_[last]), end - first,
+                                         shown(settings.first, residue_of(first).first_patch),
+                                         shown(settings.last, residue_of(last).last_patch)));
+        for (std::size_t i = first; i < end; ++i) set_segment(i, segment);
+        result_.segments.push_back(std::move(settings));
+    }
+
+    static const std::string& shown(const std::string& patch, const std::string& by_template) {
+        return patch.empty() ? by_template : patch;
+    }
+
+    // Whether the same chain has more residues of chains behind this one, before TER.
+    bool goes_on_behind(std::size_t last) const {
+        if (ends_by_record(last)) return false;
+        for (std::size_t i = last + 1; i < residues_.size(); ++i) {
+            if (chain(i) != chain(last)) return false;
+            if (find_link(residue_of(i))) return true;
+        }
+        return false;
+    }
+
+    std::string choose_first(std::size_t first, std::size_t last, bool is_gap) const {
+        const bool is_proline = structure_.names[residues_[first].first].residue == "PRO";
+        if (!has_atom(first, "CAY") && !is_gap) return "";
+        const bool is_single = first == last;
+        if (is_proline) return is_single ? "ACPD" : "ACP";
+        return is_single ? "ACED" : "ACE";
+    }
+
+    std::string choose_last(std::size_t last, bool is_gap) const {
+        if (has_atom(last, "CAT")) return "CT3";
+        if (has_atom(last, "NT")) return "CT2";
+        const bool has_end = has_atom(last, "OXT") || has_atom(last, "OT2");
+        return is_gap && !has_end ? "CT3" : "";
+    }
+
+    void choose_as_asked(const std::vector<std::pair<std::string, std::string>>& choices,
+                         const std::string& chain_name, const std::string& segment,
+                         std::string& patch, std::set<std::string>& used) {
+        for (const auto& [where, name] : choices) {
+            if (where != segment && where != chain_name) continue;
+            used.insert(where);
+            if (name != "NONE" && !force_field_.patches.contains(name)) {
+                missing_.add({structure_.file},
+                             fmt::format("no patch '{}' for the ends of {}{}", name, where,
+                                         near_name_hint(name, keys(force_field_.patches))));
+                continue;
+            }
+            patch = name;
+        }
+    }
+
+    void check_end_choices() {
+        const auto check = [&](const auto& choices, const std::set<std::string>& used,
+                               std::string_view option) {
+            for (const auto& [where, name] : choices) {
+                if (used.contains(where)) continue;
+                missing_.add({structure_.file},
+                             fmt::format("{} {}={}: no chain or segment '{}' (only {})", option,
+                                         where, name, where, fmt::join(segments_, ", ")));
+            }
+        };
+        check(settings_.first, used_first_, "--first");
+        check(settings_.last, used_last_, "--last");
+    }
+
+    void add_single(std::size_t index) {
+        const AtomName& name = structure_.names[residues_[index].first];
+        const bool is_water_here = is_water(name.residue);
+        if (is_water_here || residue_of(index).atoms.size() == 1) {
+            const std::string key = (is_water_here ? "W" : "I") + chain(index);
+            auto [found, is_new] = gathered_.try_emplace(key);
+            if (is_new) {
+                found->second = unique_segment(key);
+                report_.add(heading, fmt::format("segment {}: {}", found->second,
+                                                 is_water_here ? "waters" : "ions"));
+                result_.segments.push_back({found->second, "NONE", "NONE", !is_water_here});
+            }
+            set_segment(index, found->second);
+            return;
+        }
+        const std::string segment = unique_segment(name.residue.substr(0, 4));
+        report_.add(heading, fmt::format("segment {}: {}", segment,
+                                         residue_label(structure_, residues_[index])));
+        result_.segments.push_back({segment, {}, {}});
+        set_segment(index, segment);
+    }
+
+    void check_numbers() {
+        std::map<std::pair<std::string, std::string>, std::size_t> seen;
+        for (const ResidueRange& residue : residues_) {
+            const AtomName& name = structure_.names[residue.first];
+            const auto [before, is_new] =
+                seen.try_emplace({name.segment, name.number}, residue.first);
+            if (is_new) continue;
+            const std::size_t line = structure_.lines[before->second];
+            missing_.add({structure_.file, structure_.lines[residue.first], 0},
+                         fmt::format("{} has the number of {} (line {}); expected a number, or an "
+                                     "insertion code, of its own, or --without one of them",
+                                     residue_label(structure_, residue),
+                                     structure_.names[before->second].residue, line));
+        }
+    }
+
+    std::optional<std::size_t> find_residue_of(const ResidueChoice& choice) {
+        for (std::size_t i = 0; i < residues_.size(); ++i) {
+            if (chain(i) == choice.chain &&
+                structure_.names[residues_[i].first].number == choice.number) {
+                return i;
+            }
+        }
+        missing_.add({structure_.file}, fmt::format("--disulphide: no residue {}:{} here",
+                                                    choice.chain, choice.number));
+        return std::nullopt;
+    }
+
+    void add_disulphide(std::size_t a, std::size_t b, std::string_view why) {
+        result_.patches.push_back(
+            {"DISU", {identity(residues_[a].first), identity(residues_[b].first)}});
+        report_.add(disulphide_heading,
+                    fmt::format("{} and {}: {}", residue_label(structure_, residues_[a]),
+                                residue_label(structure_, residues_[b]), why));
+    }
+
+    void add_disulphides() {
+        std::set<std::size_t> taken;
+        for (const auto& [one, other] : settings_.disulphides) {
+            const auto a = find_residue_of(one);
+            const auto b = find_residue_of(other);
+            if (!a || !b) continue;
+            add_disulphide(*a, *b, "as asked");
+            taken.insert(*a);
+            taken.insert(*b);
+        }
+        if (!settings_.finds_disulphides) return;
+        for (const auto& [distance, a, b] : find_sulphur_pairs()) {
+            if (taken.contains(a) || taken.contains(b)) continue;
+            taken.insert(a);
+            taken.insert(b);
+            add_disulphide(a, b, fmt::format("SG {:.2f} Å apart", distance));
+        }
+    }
+
+    std::vector<std::tuple<double, std::size_t, std::size_t>> find_sulphur_pairs() const {
+        std::vector<std::pair<std::size_t, std::size_t>> sulphurs;  // residue, its SG
+        for (std::size_t i = 0; i < residues_.size(); ++i) {
+            if (structure_.names[residues_[i].first].residue != "CYS") continue;
+            if (const auto atom = find_atom(structure_, residues_[i], "SG")) {
+                sulphurs.emplace_back(i, *atom);
+            }
+        }
+        std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;
+        for (std::size_t i = 0; i < sulphurs.size(); ++i) {
+            for (std::size_t j = i + 1; j < sulphurs.size(); ++j) {
+                const double distance = (structure_.positions[sulphurs[i].second] -
+                                         structure_.positions[sulphurs[j].second])
+                                            .norm();
+                if (distance < longest_link) {
+                    pairs.emplace_back(distance, sulphurs[i].first, sulphurs[j].first);
+                }
+            }
+        }
+        std::sort(pairs.begin(), pairs.end());
+        return pairs;
+    }
+
+    const ForceField& force_field_;
+    Structure& structure_;
+    const PrepareSettings& settings_;
+    Report& report_;
+    const std::vector<ResidueRange> residues_;
+    Missing missing_;
+    GenerateSettings result_;
+    std::set<std::string> segments_;
+    std::map<std::string, std::size_t> last_of_chain_;  // residue that its last segment ends with
+    std::set<std::string> used_first_, used_last_;
+    std::map<std::string, std::string> gathered_;  // waters and ions of a chain: their segment
+};
+
+}  // namespace
+
+GenerateSettings split_segments(const ForceField& force_field, Structure& structure,
+                                const std::vector<ResiduePatch>& protonation,
+                                const PrepareSettings& settings, Report& report) {
+    return Segmenter(force_field, structure, settings, report).split(protonation);
+}
+
+}  // namespace palpa

@@ -1,0 +1,42 @@
+// What a user may decide when a structure is prepared; everything has a default.
+#pragma once
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace palpa {
+
+// A residue as users write it, "A:25": chain (or segment) and number with its insertion code.
+struct ResidueChoice {
+    std::string chain;
+    std::string number;
+};
+
+// How the finished system is turned.
+struct AlignSettings {
+    std::string segment;  // whose long axis becomes x and whose middle becomes the origin
+    std::optional<std::pair<ResidueChoice, ResidueChoice>> up;  // y: from the one to the other
+};
+
+struct PrepareSettings {
+    std::optional<int> model;  // none: the first
+    int assembly = 0;          // biological assembly to build from symmetry records; 0: none
+    std::vector<std::pair<ResidueChoice, char>> alternates;  // location to take; else by occupancy
+    bool keeps_waters = false;
+    bool keeps_ions = true;
+    // Residue names ("MK1"), chains ("chain:B") or residues ("A:101") that are left out.
+    std::vector<std::string> without;
+
+    std::vector<std::pair<std::string, std::string>> residue_names;    // "CSO" -> "CYS"
+    std::vector<std::pair<ResidueChoice, std::string>> protonation;    // "HSE" or a patch, "ASPP"
+    std::vector<std::pair<std::string, std::string>> first, last;      // patches at chains' ends
+    std::vector<std::pair<ResidueChoice, ResidueChoice>> disulphides;  // beside those found
+    bool finds_disulphides = true;
+
+    bool flips = true;  // amides and imidazoles may be turned over
+    bool relaxes = true;
+    std::optional<AlignSettings> align;
+};
+
+}  // namespace palpa

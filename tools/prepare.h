@@ -1,0 +1,26 @@
+// palpa prepare: from a downloaded structure to a system that can be felt.
+#pragma once
+#include "prepare/settings.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace palpa {
+
+struct PrepareOptions {
+    std::filesystem::path structure;
+    std::vector<std::filesystem::path> toppar;
+    std::filesystem::path folder;
+    PrepareSettings settings;
+    // As written: "CSO=CYS", "A:25=ASPP", "A:53=B", "A=NTER", "A:3-A:40".
+    std::vector<std::string> as, protonation, alternates, first, last, disulphides;
+    std::string x_along, y_towards;  // "3TL", "A:25-A:50"
+    bool overwrites = false;
+    bool json = false;
+};
+
+// Throws LoadError on bad input. Returns the exit code.
+int prepare_command(const PrepareOptions& options);
+
+}  // namespace palpa
