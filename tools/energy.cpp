@@ -108,7 +108,7 @@ Connectivity type_structure(const ForceField& force_field, const Structure& stru
 
 void warn_of_coincident_atoms(const Connectivity& connectivity, std::span<const Vec3> positions) {
     const auto describe = [&](std::size_t atom) {
-        return fmt::format("{} ({})", to_string(connectivity.names[atom]),
+        return fmt::format("{} ({})", printable(to_string(connectivity.names[atom])),
                            to_string(TextPlace{connectivity.file, connectivity.lines[atom], 0}));
     };
     const auto pairs = find_coincident_atoms(positions, coincident_distance);

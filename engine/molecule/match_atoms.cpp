@@ -23,6 +23,7 @@ namespace {
 constexpr std::size_t none = static_cast<std::size_t>(-1);
 constexpr std::size_t most_named = 8;   // of anything that a message lists
 constexpr std::size_t most_tried = 50;  // shifts of residue numbers
+constexpr std::int64_t largest_number = 1'000'000'000;
 
 std::string without_segment(const AtomName& name) {
     return name.residue + " " + name.number + " " + name.atom;
@@ -152,7 +153,8 @@ private:
         Residues residues;
         for (const std::size_t atom : atoms) {
             const std::optional<std::int64_t> number = find_integer(names[atom].number);
-            if (!number) continue;  // with an insertion code
+            // With an insertion code, or so large that differences would overflow.
+            if (!number || *number < -largest_number || *number > largest_number) continue;
             if (residues.empty() || residues.back().first != *number ||
                 residues.back().second != names[atom].residue) {
                 residues.emplace_back(*number, names[atom].residue);

@@ -142,6 +142,9 @@ TEST_CASE("residues that are numbered or called otherwise are told", "[molecule]
                         "numbers"));
     CHECK_THAT(error_of(wanted, chain_of("P", {{"ALA", "0"}, {"HSD", "1"}, {"ALA", "2"}})),
                Catch::Contains("numbers 1 lower in P"));
+    CHECK_THAT(error_of(chain_of("P", {{"ALA", "-9223372036854775808"}}),
+                        chain_of("A", {{"ALA", "9223372036854775807"}})),
+               Catch::EndsWith("segments or chains there: A"));
     CHECK_THAT(
         error_of(wanted, chain_of("P", {{"ALA", "1"}, {"HIS", "2"}, {"ALA", "3"}})),
         Catch::StartsWith("a.psf:10: 2 of its 6 atoms are not in b.crd: P HSD 2 N, P HSD 2 C") &&
