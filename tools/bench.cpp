@@ -4,6 +4,7 @@
 #include "core/text.h"
 #include "core/version.h"
 #include "devices/emulated_omni.h"
+#include "formats/psf.h"
 #include "formats/structure.h"
 #include "gpu/device.h"
 #include "render/renderer.h"
@@ -144,7 +145,9 @@ Row bench_read(const std::string& name, const Read& read) {
 void bench_files(const BenchOptions& options, std::vector<Row>& rows) {
     for (const std::filesystem::path& path : options.structures) {
         rows.push_back(bench_read(path.filename().string(), [&] {
-            return fmt::format("{} atoms", read_structure(path).names.size());
+            const bool is_psf = upper_case(path.extension().string()) == ".PSF";
+            return fmt::format("{} atoms", is_psf ? read_psf(path).names.size()
+                                                  : read_structure(path).names.size());
         }));
     }
     if (options.toppar.empty()) return;

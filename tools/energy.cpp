@@ -9,11 +9,15 @@
 #include "forces/force_field.h"
 #include "formats/psf.h"
 #include "formats/structure.h"
+#include "molecule/alternatives.h"
+#include "molecule/coincident_atoms.h"
+#include "molecule/element.h"
 #include "molecule/match_atoms.h"
 
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -29,6 +33,10 @@ constexpr std::array<std::string_view, 4> electrostatic_names{"switch", "shift",
                                                               "fswitch"};
 constexpr std::array<std::string_view, 2> van_der_waals_names{"switch", "fswitch"};
 constexpr std::array<std::string_view, 2> method_names{"all-pairs", "cutoff"};
+
+// Å. No two nuclei are that close; the shortest bonds, to hydrogen, are ten times as long.
+constexpr double coincident_distance = 0.1;
+constexpr std::size_t most_warnings = 8;
 
 std::size_t find_choice(const char* option, const std::string& value,
                         std::span<const std::string_view> names) {
@@ -62,6 +70,62 @@ NonbondedSettings build_settings(const EnergyOptions& options) {
         throw LoadError({"--method " + options.method}, std::string(*problem));
     }
     return settings;
+}
+
+bool is_hydrogen(std::string_view atom, std::string_view residue) {
+    const std::string element = find_element_of_name(atom, residue);
+    return element == "H" || element == "D";
+}
+
+// One line instead of all the atoms that a structure without hydrogens would lack.
+void refuse_without_hydrogens(const ForceField& force_field, const Structure& structure) {
+    const auto& names = structure.names;
+    if (std::any_of(names.begin(), names.end(),
+                    [](const AtomName& name) { return is_hydrogen(name.atom, name.residue); })) {
+        return;
+    }
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        const auto residue = force_field.residues.find(names[i].residue);
+        if (residue == force_field.residues.end()) continue;
+        const auto& atoms = residue->second.atoms;
+        if (std::none_of(atoms.begin(), atoms.end(), [&](const ResidueAtom& atom) {
+                return is_hydrogen(atom.name, names[i].residue);
+            })) {
+            continue;
+        }
+        throw LoadError({structure.file, structure.lines[i], 0},
+                        fmt::format("the structure holds no hydrogens, but {} has some in {}; "
+                                    "expected all atoms, as palpa prepare builds them",
+                                    names[i].residue, residue->second.place.file));
+    }
+}
+
+Connectivity type_structure(const ForceField& force_field, const Structure& structure) {
+    refuse_alternatives(structure);
+    refuse_without_hydrogens(force_field, structure);
+    return build_connectivity(force_field, structure);
+}
+
+void warn_of_coincident_atoms(const Connectivity& connectivity, std::span<const Vec3> positions) {
+    const auto describe = [&](std::size_t atom) {
+        return fmt::format("{} ({})", printable(to_string(connectivity.names[atom])),
+                           to_string(TextPlace{connectivity.file, connectivity.lines[atom], 0}));
+    };
+    const auto pairs = find_coincident_atoms(positions, coincident_distance);
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        if (i == most_warnings) {
+            fmt::print(stderr, "warning: and {} more\n", pairs.size() - i);
+            break;
+        }
+        const auto [a, b] = pairs[i];
+        fmt::print(stderr, "warning: atoms {} and {} are {:.3f} Å apart\n", describe(a),
+                   describe(b), (positions[a] - positions[b]).norm());
+    }
+}
+
+// Six decimals, as CHARMM compares; of a number that has no room for them, six digits.
+std::string format_energy(double value) {
+    return std::abs(value) < 1e10 ? fmt::format("{:18.6f}", value) : fmt::format("{:18.6e}", value);
 }
 
 using NamedTerm = std::pair<const char*, double>;
@@ -106,9 +170,10 @@ int energy_command(const EnergyOptions& options) {
     const ForceField force_field = read_force_field(options.toppar);
     const Structure structure = read_structure(is_psf ? *options.coordinates : options.system);
     const Connectivity connectivity =
-        is_psf ? read_psf(options.system) : build_connectivity(force_field, structure);
+        is_psf ? read_psf(options.system) : type_structure(force_field, structure);
     const std::vector<Vec3> positions = match_positions(
         connectivity, options.coordinates ? read_structure(*options.coordinates) : structure);
+    warn_of_coincident_atoms(connectivity, positions);
     const Topology topology = build_topology(connectivity, force_field);
 
     std::vector<Vec3> forces(positions.size(), Vec3::Zero());
@@ -123,7 +188,7 @@ int energy_command(const EnergyOptions& options) {
     }
     fmt::print("{} atoms, kcal/mol\n", positions.size());
     for (const auto& [name, value] : list_terms(energy)) {
-        fmt::print("  {:<14}{:>18.6f}\n", name, value);
+        fmt::print("  {:<14}{}\n", name, format_energy(value));
     }
     return 0;
 }

@@ -128,7 +128,7 @@ void add_bench(CLI::App& program, palpa::BenchOptions& options) {
     CLI::App& bench = *program.add_subcommand("bench", "Speed against error on this machine");
     bench.add_option("scenes", options.scenes, "scene folders or files");
     bench.add_option("--load", options.structures,
-                     "structure files (.pdb, .cif, .crd): time the reading of each");
+                     "structure files (.pdb, .cif, .crd, .psf): time the reading of each");
     bench.add_option("--toppar", options.toppar,
                      "CHARMM topology and parameter files: time the reading of all together");
     bench.final_callback([&options] {

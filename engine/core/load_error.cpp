@@ -1,5 +1,7 @@
 #include "core/load_error.h"
 
+#include "core/text.h"
+
 #include <fmt/format.h>
 
 namespace palpa {
@@ -11,6 +13,6 @@ std::string to_string(const TextPlace& place) {
 }
 
 LoadError::LoadError(const TextPlace& place, const std::string& message)
-    : std::runtime_error(to_string(place) + ": " + message) {}
+    : std::runtime_error(printable(to_string(place) + ": " + message)) {}
 
 }  // namespace palpa

@@ -16,7 +16,8 @@ struct TextPlace {
 // "file:line:column", leaving out what is 0.
 std::string to_string(const TextPlace& place);
 
-// The message is one sentence in lower case without a full stop; what() puts the place before it.
+// The message is one sentence in lower case without a full stop; what() puts the place before it,
+// and shows bytes that cannot be printed as "\x1b".
 class LoadError : public std::runtime_error {
 public:
     LoadError(const TextPlace& place, const std::string& message);

@@ -15,6 +15,27 @@ char upper(char letter) noexcept {
     return letter >= 'a' && letter <= 'z' ? static_cast<char>(letter - 'a' + 'A') : letter;
 }
 
+// How many bytes of UTF-8 the first letter has; 0 if it is a control character or none at all (RFC
+// 3629, section 4).
+std::size_t letter_size(std::string_view text) noexcept {
+    const auto byte = [&](std::size_t i) {
+        return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
+    };
+    const auto follows = [&](std::size_t i) { return (byte(i) & 0xc0U) == 0x80; };
+    const unsigned first = byte(0), second = byte(1);
+    if (first < 0x80) return first >= ' ' && first != 0x7f ? 1 : 0;
+    if (!follows(1)) return 0;
+    if (first == 0xc2 && second < 0xa0) return 0;  // control characters beyond ASCII
+    if (first >= 0xc2 && first < 0xe0) return 2;
+    if (!follows(2)) return 0;
+    const bool overlong = first == 0xe0 && second < 0xa0;
+    const bool surrogate = first == 0xed && second >= 0xa0;
+    if (first >= 0xe0 && first < 0xf0) return overlong || surrogate ? 0 : 3;
+    if (!follows(3)) return 0;
+    const unsigned head = first << 8U | second;
+    return head >= 0xf090 && head < 0xf490 ? 4 : 0;
+}
+
 // Levenshtein distance, case ignored.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
     std::vector<std::size_t> row(b.size() + 1);
@@ -71,6 +92,21 @@ std::vector<std::string_view> split_lines(std::string_view text) {
 std::string upper_case(std::string_view text) {
     std::string result(text);
     std::transform(result.begin(), result.end(), result.begin(), upper);
+    return result;
+}
+
+std::string printable(std::string_view text) {
+    std::string result;
+    result.reserve(text.size());
+    while (!text.empty()) {
+        const std::size_t size = letter_size(text);
+        if (size > 0) {
+            result += text.substr(0, size);
+        } else {
+            result += fmt::format("\\x{:02x}", static_cast<unsigned char>(text[0]));
+        }
+        text.remove_prefix(std::max<std::size_t>(size, 1));
+    }
     return result;
 }
 

@@ -20,6 +20,10 @@ std::vector<std::string_view> split_lines(std::string_view text);
 
 std::string upper_case(std::string_view text);
 
+// For messages, on one line of any terminal: letters of UTF-8 stay, control characters and bytes
+// that are no UTF-8 become "\\x1b".
+std::string printable(std::string_view text);
+
 // A finite number that fills `text` wholly (blanks at the ends allowed), or nothing. A leading '+'
 // and Fortran's exponent letter D are accepted.
 std::optional<double> find_real(std::string_view text);

@@ -35,19 +35,20 @@ public:
 
     Structure read() {
         while (lines_.line().starts_with('*')) lines_.advance();
-        const std::size_t count = read_atom_count();
+        read_atom_count();
         // A count that the file has no room for gets no memory.
-        const std::size_t room = std::min(count, size_ / layout_.shortest);
+        const std::size_t room = std::min(count_, size_ / layout_.shortest);
         structure_.names.reserve(room);
         structure_.positions.reserve(room);
         structure_.lines.reserve(room);
-        for (std::size_t atom = 0; atom < count; ++atom, lines_.advance()) {
-            if (lines_.at_end()) fail(0, fmt::format("ends after {} of {} atoms", atom, count));
+        for (; structure_.names.size() < count_; lines_.advance()) {
+            if (lines_.at_end()) fail(0, "ends" + describe_progress());
             read_atom(lines_.line());
         }
         for (; !lines_.at_end(); lines_.advance()) {
             if (!trimmed(lines_.line()).empty()) {
-                fail(0, fmt::format("more lines than the {} atoms announced", count));
+                fail(0, fmt::format("more lines than the {} atoms announced on line {}", count_,
+                                    count_line_));
             }
         }
         return std::move(structure_);
@@ -58,7 +59,18 @@ private:
         throw LoadError({structure_.file, lines_.number(), column}, what);
     }
 
-    std::size_t read_atom_count() {
+    std::string describe_progress() const {
+        return fmt::format(" after {} of the {} atoms announced on line {}",
+                           structure_.names.size(), count_, count_line_);
+    }
+
+    // A file that was cut short ends within a line.
+    std::string cut_hint() const {
+        if (!lines_.at_last_line() || structure_.names.size() + 1 == count_) return {};
+        return "; the file ends here" + describe_progress();
+    }
+
+    void read_atom_count() {
         if (lines_.at_end()) fail(0, "ends before the number of atoms");
         const std::vector<std::string_view> words = split_words(lines_.line());
         const auto count = words.empty() ? std::nullopt : find_integer(words[0]);
@@ -66,26 +78,31 @@ private:
         if (!count || *count < 1 || (words.size() > 1 && !extended)) {
             fail(0, fmt::format("'{}' is not a number of atoms; expected a count from 1, with EXT "
                                 "behind it for the extended format",
-                                trimmed(lines_.line())));
+                                shortened(trimmed(lines_.line()))));
         }
         layout_ = extended ? extended_layout : normal_layout;
+        count_ = static_cast<std::size_t>(*count);
+        count_line_ = lines_.number();
         lines_.advance();
-        return static_cast<std::size_t>(*count);
     }
 
     std::string word(std::string_view line, Columns columns, const char* what) const {
         const std::string_view text = find_field(line, columns);
-        if (text.empty()) fail(columns.first + 1, fmt::format("no {} here", what));
+        if (text.empty()) {
+            fail(columns.first + 1, fmt::format("no {} here{}", what, cut_hint()));
+        }
         return std::string(text);
     }
 
     double coordinate(std::string_view line, Columns columns) const {
         const std::string text = word(line, columns, "coordinate");
-        const std::optional<double> value = find_real(text);
+        const std::optional<double> value = find_coordinate(text);
         if (!value) {
             fail(columns.first + 1,
-                 fmt::format("'{}' is not a coordinate; expected a number in Å in columns {} to {}",
-                             text, columns.first + 1, columns.first + columns.count));
+                 fmt::format("'{}' is not a coordinate; expected a number within ±{} Å in columns "
+                             "{} to {}{}",
+                             text, farthest_coordinate, columns.first + 1,
+                             columns.first + columns.count, cut_hint()));
         }
         return *value;
     }
@@ -109,8 +126,9 @@ private:
         structure_.lines.push_back(lines_.number());
     }
 
-    LineReader lines_;  // at the line to be read next
-    std::size_t size_;  // of the text
+    LineReader lines_;                        // at the line to be read next
+    std::size_t size_;                        // of the text
+    std::size_t count_ = 0, count_line_ = 0;  // of atoms, and the line that announces them
     Layout layout_ = normal_layout;
     Structure structure_;
     std::map<std::tuple<std::string, std::string, std::string, std::string>, std::size_t> seen_;

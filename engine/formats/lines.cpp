@@ -3,6 +3,7 @@
 #include "core/text.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace palpa {
 
@@ -35,6 +36,14 @@ std::string_view find_field(std::string_view line, Columns columns) noexcept {
 bool is_name(std::string_view text) noexcept {
     return !text.empty() &&
            std::all_of(text.begin(), text.end(), [](char c) { return c > ' ' && c <= '~'; });
+}
+
+std::string_view shortened(std::string_view text) noexcept { return text.substr(0, 80); }
+
+std::optional<double> find_coordinate(std::string_view text) {
+    const std::optional<double> value = find_real(text);
+    if (!value || std::abs(*value) > farthest_coordinate) return std::nullopt;
+    return value;
 }
 
 }  // namespace palpa

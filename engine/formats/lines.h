@@ -1,6 +1,7 @@
 // Steps through a text line by line without copying it, and cuts fields out of fixed columns.
 #pragma once
 #include <cstddef>
+#include <optional>
 #include <string_view>
 
 namespace palpa {
@@ -12,6 +13,7 @@ public:
 
     // Behind the last line; line() is empty there, and number() still the last line's.
     bool at_end() const noexcept { return at_end_; }
+    bool at_last_line() const noexcept { return !at_end_ && rest_.empty(); }
     std::string_view line() const noexcept { return line_; }
     std::size_t number() const noexcept { return number_; }  // from 1; 0 in an empty text
     void advance() noexcept;
@@ -35,5 +37,13 @@ std::string_view find_field(std::string_view line, Columns columns) noexcept;
 
 // Printable ASCII without blanks, and not empty: what a name in a structure file may be.
 bool is_name(std::string_view text) noexcept;
+
+// What a message quotes of a word that may be as long as its file.
+std::string_view shortened(std::string_view text) noexcept;
+
+// A number within `farthest_coordinate`, Å, or nothing. What lies farther out is a slip
+// in the file: no structure is that large.
+inline constexpr double farthest_coordinate = 1e5;
+std::optional<double> find_coordinate(std::string_view text);
 
 }  // namespace palpa

@@ -65,6 +65,7 @@ constexpr std::array column_names = std::to_array<std::string_view>({"group_PDB"
 static_assert(column_names.size() == LabelNumber + 1);
 
 constexpr std::string_view category = "_ATOM_SITE.";
+constexpr std::string_view dictionary_category = "_CHEM_COMP_ATOM.";
 
 // What a value says: without its quotes, empty for '?' and '.'.
 std::string_view unquoted(std::string_view value) {
@@ -113,6 +114,11 @@ public:
         if (last_.text.data() + last_.text.size() == end) {
             builder_.add_note("ends with its last atom: the file may have been cut off");
         }
+        if (builder_.atom_count() == 0 && dictionary_line_ != 0) {
+            fail({{}, dictionary_line_, 0},
+                 "no structure but a dictionary: _chem_comp_atom tells a residue's ideal geometry; "
+                 "expected atoms in _atom_site");
+        }
         builder_.end_chain();
         return builder_.build(last_line);
     }
@@ -127,14 +133,18 @@ private:
 
     // Nothing for what is not read.
     std::optional<Column> find_column(const CifToken& tag, std::size_t table) {
-        if (!upper_case(tag.text).starts_with(category)) return {};
+        const std::string full_name = upper_case(tag.text);
+        if (dictionary_line_ == 0 && full_name.starts_with(dictionary_category)) {
+            dictionary_line_ = tag.line;
+        }
+        if (!full_name.starts_with(category)) return {};
         if (table_ && *table_ != table) {
             fail(tag, fmt::format("atoms again, first on line {}; expected one table _atom_site",
                                   table_line_));
         }
         if (!table_) table_line_ = tag.line;
         table_ = table;
-        const std::string name = upper_case(tag.text.substr(category.size()));
+        const std::string_view name = std::string_view(full_name).substr(category.size());
         for (std::size_t i = 0; i < column_names.size(); ++i) {
             if (upper_case(column_names[i]) != name) continue;
             if (given_[i]) fail(tag, fmt::format("column {} again", tag.text));
@@ -144,15 +154,15 @@ private:
         return {};
     }
 
-    [[noreturn]] void fail_value(Column column, const char* expected) const {
+    [[noreturn]] void fail_value(Column column, std::string_view expected) const {
         const CifToken& cell = row_[column];
         if (!given_[column]) {
             fail({{}, table_line_, 0}, fmt::format("atoms without a column _atom_site.{}; expected "
                                                    "{}",
                                                    column_names[column], expected));
         }
-        fail(cell, fmt::format("'{}' in _atom_site.{} is not {}", cell.text, column_names[column],
-                               expected));
+        fail(cell, fmt::format("'{}' in _atom_site.{} is not {}", shortened(cell.text),
+                               column_names[column], expected));
     }
 
     std::string_view text(Column column) const { return unquoted(row_[column].text); }
@@ -171,6 +181,14 @@ private:
     double real(Column column, const char* what) const {
         const std::optional<double> value = find_real(text(column));
         if (!value) fail_value(column, what);
+        return *value;
+    }
+
+    double coordinate(Column column) const {
+        const std::optional<double> value = find_coordinate(text(column));
+        if (!value) {
+            fail_value(column, fmt::format("a coordinate within ±{} Å", farthest_coordinate));
+        }
         return *value;
     }
 
@@ -209,9 +227,9 @@ private:
         name.number = fmt::format("{}", record.residue_number);
         if (record.insertion_code != ' ') name.number += record.insertion_code;
         // One by one: the first error counts.
-        const double x = real(X, "a coordinate in Å");
-        const double y = real(Y, "a coordinate in Å");
-        const double z = real(Z, "a coordinate in Å");
+        const double x = coordinate(X);
+        const double y = coordinate(Y);
+        const double z = coordinate(Z);
         if (!text(Occupancy).empty()) record.occupancy = real(Occupancy, "a number, often 1.00");
         if (!text(BFactor).empty()) record.b_factor = real(BFactor, "a number in Å^2");
         if (!text(Charge).empty()) record.formal_charge = integer(Charge, "a whole number");
@@ -230,6 +248,7 @@ private:
     std::optional<Column> column_;                // of the last tag outside of a loop
     std::optional<std::size_t> table_;            // the loop of _atom_site
     std::size_t table_line_ = 0;
+    std::size_t dictionary_line_ = 0;  // of the first _chem_comp_atom
     std::array<bool, column_names.size()> given_{};
     std::array<CifToken, column_names.size()> row_{};
     std::string_view last_label_chain_;

@@ -216,8 +216,7 @@ private:
         read_residue_number(record, name);
         Vec3 position;
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            position[static_cast<Eigen::Index>(axis)] =
-                real(position_columns[axis], "coordinate; expected a number in Å");
+            position[static_cast<Eigen::Index>(axis)] = coordinate(position_columns[axis]);
         }
         if (!field(occupancy_columns).empty()) {
             record.occupancy = real(occupancy_columns, "occupancy; expected a number, often 1.00");
@@ -288,6 +287,15 @@ private:
     double real(Columns columns, const char* what) const {
         const std::optional<double> value = find_real(field(columns));
         if (!value) fail(columns, fmt::format("no {}", what));
+        return *value;
+    }
+
+    double coordinate(Columns columns) const {
+        const std::optional<double> value = find_coordinate(field(columns));
+        if (!value) {
+            fail(columns,
+                 fmt::format("no coordinate; expected a number within ±{} Å", farthest_coordinate));
+        }
         return *value;
     }
 

@@ -68,7 +68,7 @@ private:
         for (const std::string_view flag : std::span(words).subspan(1)) {
             if (std::find(known_flags.begin(), known_flags.end(), flag) == known_flags.end()) {
                 fail(1, fmt::format("'{}' is no kind of PSF file that can be read; expected {}",
-                                    flag, fmt::join(known_flags, ", ")));
+                                    shortened(flag), fmt::join(known_flags, ", ")));
             }
             has_cmap_ = has_cmap_ || flag == "CMAP";
         }
@@ -83,7 +83,7 @@ private:
         if (mark == std::string_view::npos) {
             fail(header_line_, fmt::format("'{}' is no head of a section; expected a count and "
                                            "!NAME",
-                                           trimmed(line).substr(0, 40)));
+                                           shortened(trimmed(line))));
         }
         std::vector<std::size_t> counts;
         for (const std::string_view word : split_words(line.substr(0, mark))) {
@@ -94,11 +94,11 @@ private:
         const std::string section(name[0].substr(0, name[0].find(':')));
         const auto [first, is_new] = sections_.emplace(section, header_line_);
         if (!is_new) {
-            fail(header_line_,
-                 fmt::format("section !{} again, first on line {}", section, first->second));
+            fail(header_line_, fmt::format("section !{} again, first on line {}",
+                                           shortened(section), first->second));
         }
         if (section != "NTITLE" && section != "NATOM" && !sections_.contains("NATOM")) {
-            fail(header_line_, fmt::format("section !{} before the atoms", section));
+            fail(header_line_, fmt::format("section !{} before the atoms", shortened(section)));
         }
         lines_.advance();
         read_content(section, counts);
@@ -134,7 +134,8 @@ private:
         } else if (section == "MOLNT") {
             read_numbers(connectivity_.names.size());
         } else if (std::any_of(counts.begin(), counts.end(), [](std::size_t n) { return n > 0; })) {
-            fail(header_line_, fmt::format("section !{} is not empty, and not supported", section));
+            fail(header_line_,
+                 fmt::format("section !{} is not empty, and not supported", shortened(section)));
         }
     }
 
@@ -150,14 +151,22 @@ private:
     std::size_t whole_number(std::string_view word, std::size_t line, const char* what) const {
         const std::optional<std::int64_t> value = find_integer(word);
         if (!value || *value < 0) {
-            fail(line, fmt::format("'{}' is not a {}; expected a whole number from 0", word, what));
+            fail(line, fmt::format("'{}' is not a {}; expected a whole number from 0",
+                                   shortened(word), what));
         }
         return static_cast<std::size_t>(*value);
     }
 
+    // `word` is one of this line's.
+    [[noreturn]] void fail_word(std::string_view word, const std::string& what) const {
+        const auto column = static_cast<std::size_t>(word.data() - lines_.line().data()) + 1;
+        throw LoadError({connectivity_.file, lines_.number(), column}, what);
+    }
+
+    // `what`: "mass; expected a number, in amu"
     double real(std::string_view word, const char* what) const {
         const std::optional<double> value = find_real(word);
-        if (!value) fail(lines_.number(), fmt::format("'{}' is not a {}", word, what));
+        if (!value) fail_word(word, fmt::format("'{}' is not a {}", shortened(word), what));
         return *value;
     }
 
@@ -199,11 +208,13 @@ private:
             fail(lines_.number(),
                  fmt::format("atom {} again, first on line {}", to_string(name), first->second));
         }
-        const double charge = real(words[6], "charge");
-        const double mass = real(words[7], "mass");
+        const double charge = real(words[6], "charge; expected a number, in e");
+        const double mass = real(words[7], "mass; expected a number, in amu");
         if (mass < 0)
-            fail(lines_.number(), fmt::format("a mass of {} amu; expected 0 or more", mass));
-        for (const std::string_view word : words.subspan(8)) real(word, "number");
+            fail_word(words[7], fmt::format("a mass of {} amu; expected 0 or more", mass));
+        for (const std::string_view word : words.subspan(8)) {
+            real(word, "number; expected 0, or what CHEQ writes");
+        }
         connectivity_.names.push_back(std::move(name));
         connectivity_.type.push_back(upper_case(words[5]));
         connectivity_.charge.push_back(charge);
@@ -230,7 +241,8 @@ private:
 
     void read_numbers(std::size_t count) {
         each_number(count, [this](std::string_view word, std::size_t line) {
-            if (!find_integer(word)) fail(line, fmt::format("'{}' is not a whole number", word));
+            if (!find_integer(word))
+                fail(line, fmt::format("'{}' is not a whole number", shortened(word)));
         });
     }
 

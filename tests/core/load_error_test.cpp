@@ -21,4 +21,6 @@ TEST_CASE("a load error tells its place before its message", "[core][load_error]
     const std::runtime_error& as_any_handler_sees_it = error;
 
     CHECK(std::string(as_any_handler_sees_it.what()) == "water.str:3: no {} here");
+    CHECK(std::string(LoadError({"a\n.pdb", 1, 0}, "'\x01' is no name").what()) ==
+          "a\\x0a.pdb:1: '\\x01' is no name");
 }

@@ -41,6 +41,23 @@ TEST_CASE("upper case changes the letters a to z and nothing else", "[core][text
     CHECK(upper_case("tip3 Å'az{`@Z") == "TIP3 Å'AZ{`@Z");
 }
 
+TEST_CASE("what cannot be printed is written in hexadecimal digits", "[core][text]") {
+    CHECK(printable("plain 'text' \\ ~") == "plain 'text' \\ ~");
+    CHECK(printable("Å, 水, \U0001f4a7") == "Å, 水, \U0001f4a7");
+    CHECK(printable(std::string("a\0\t\n\x1b[31m\x7f", 10)) == "a\\x00\\x09\\x0a\\x1b[31m\\x7f");
+    // After RFC 3629: a letter cut off, a lone follower, overlong forms, a surrogate, beyond the
+    // last.
+    CHECK(printable("\xc3") == "\\xc3");
+    CHECK(printable("\x85x") == "\\x85x");
+    CHECK(printable("\xc0\x80") == "\\xc0\\x80");
+    CHECK(printable("\xe0\x9f\xbf") == "\\xe0\\x9f\\xbf");
+    CHECK(printable("\xed\xa0\x80") == "\\xed\\xa0\\x80");
+    CHECK(printable("\xf0\x8f\xbf\xbf") == "\\xf0\\x8f\\xbf\\xbf");
+    CHECK(printable("\xf4\x90\x80\x80") == "\\xf4\\x90\\x80\\x80");
+    // Controls beyond ASCII: a terminal may take 0x9b for the start of a command.
+    CHECK(printable("\xc2\x9b") == "\\xc2\\x9b");
+}
+
 TEST_CASE("real numbers are read as people and Fortran write them", "[core][text]") {
     struct Row {
         const char* text;

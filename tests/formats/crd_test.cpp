@@ -154,8 +154,9 @@ TEST_CASE("residues are numbered in their order, over all segments", "[formats][
 }
 
 TEST_CASE("a number that does not parse is told with line and column", "[formats][crd]") {
-    const std::string bad = GENERATE("     x.234", "       nan", "       inf", "      -inf",
-                                     "**********", "   1.0 2.0", "     1e999");
+    const std::string bad =
+        GENERATE("     x.234", "       nan", "       inf", "      -inf", "**********", "   1.0 2.0",
+                 "     1e999", "100000.001", "-1.0001e05");
     INFO(bad);
 
     CHECK_THAT(error_of(replaced(normal, "   1.95720", bad)),
@@ -184,7 +185,11 @@ TEST_CASE("a field that is blank or cut off is told with line and column", "[for
 }
 
 TEST_CASE("missing and surplus atoms are told", "[formats][crd]") {
-    CHECK(error_of(replaced(normal, "    4\n", "    5\n")) == "w.crd:7: ends after 4 of 5 atoms");
+    CHECK(error_of(replaced(normal, "    4\n", "    5\n")) ==
+          "w.crd:7: ends after 4 of the 5 atoms announced on line 3");
+    CHECK_THAT(error_of(normal.substr(0, normal.find("-1.57337"))),
+               StartsWith("w.crd:6:52: no segment name here; the file ends here after 2 of the 4 "
+                          "atoms announced on line 3"));
     CHECK_THAT(error_of(replaced(normal, "    4\n", "    3\n")),
                StartsWith("w.crd:7: ") && Contains("3 atoms"));
     CHECK_THAT(error_of(normal + "\nmore\n"), StartsWith("w.crd:9: "));
@@ -214,9 +219,9 @@ TEST_CASE("a huge count of atoms costs no memory, only an error", "[formats][crd
 
     // Room for so many atoms ahead of time would be a bad_alloc or length_error.
     CHECK(error_of(replaced(normal, "    4\n", count + "\n")) ==
-          "w.crd:7: ends after 4 of " + count + " atoms");
+          "w.crd:7: ends after 4 of the " + count + " atoms announced on line 3");
     CHECK(error_of(replaced(extended, "2  EXT", count + " EXT")) ==
-          "w.crd:5: ends after 2 of " + count + " atoms");
+          "w.crd:5: ends after 2 of the " + count + " atoms announced on line 3");
 }
 
 TEST_CASE("a file on disk is named by its path", "[formats][crd]") {

@@ -144,10 +144,11 @@ TEST_CASE("what is wrong in an mmCIF file is told with its line and column", "[f
     };
     const auto row = GENERATE(values<Row>({
         {"11.104", "11.1x4",
-         "w.cif:33:32: '11.1x4' in _atom_site.Cartn_x is not a coordinate in Å"},
+         "w.cif:33:32: '11.1x4' in _atom_site.Cartn_x is not a coordinate within ±100000 Å"},
         {"11.104", "abcdef", "w.cif:33:32: 'abcdef' in _atom_site.Cartn_x is not"},
         {"11.104", "?", "w.cif:33:32: '?' in _atom_site.Cartn_x is not"},
         {"6.134", "'6 1'", "w.cif:33:39: ''6 1'' in _atom_site.Cartn_y is not"},
+        {"-6.504", "-100000.1", "w.cif:33:45: '-100000.1' in _atom_site.Cartn_z is not"},
         {"-6.504", "nan", "w.cif:33:45: 'nan' in _atom_site.Cartn_z is not"},
         {"1.00 10.50", "l.00 10.50", "w.cif:33:52: 'l.00' in _atom_site.occupancy is not"},
         {"1.00 10.50", "1.00 10,50", "w.cif:33:57: '10,50' in _atom_site.B_iso_or_equiv is not"},
@@ -163,7 +164,8 @@ TEST_CASE("what is wrong in an mmCIF file is told with its line and column", "[f
         {"ATOM   1 N", "ATOM   1 Q", "w.cif:33: 'Q' is no element"},
         {"ATOM   1", "ATQM   1", "w.cif:33:1: 'ATQM' in _atom_site.group_PDB is not ATOM or"},
         {"_atom_site.Cartn_y\n", "_atom_site.Cartn_q\n",
-         "w.cif:12: atoms without a column _atom_site.Cartn_y; expected a coordinate in Å"},
+         "w.cif:12: atoms without a column _atom_site.Cartn_y; expected a coordinate "
+         "within ±100000 Å"},
         {"_atom_site.Cartn_y\n", "_atom_site.Cartn_X\n",
          "w.cif:23:1: column _atom_site.Cartn_X again"},
         {" XX ? 2\n", " XX ?\n", "w.cif:39: a row of _atom_site ends after 20 of 21 values"},
@@ -187,6 +189,9 @@ TEST_CASE("one table of atoms is expected, and one there must be", "[formats][mm
                                                              "line 3"));
     CHECK_THAT(error_of(small + single), StartsWith("w.cif:13:1: atoms again, first on line 3"));
     CHECK_THAT(error_of("data_x\nloop_\n_atom_site.id\n"), StartsWith("w.cif:"));
+    // A dictionary's residue has coordinates as well.
+    CHECK_THAT(error_of("data_comp_X\nloop_\n_chem_comp_atom.atom_id\n_chem_comp_atom.x\nC1 0.5\n"),
+               StartsWith("w.cif:3: no structure but a dictionary"));
 }
 
 TEST_CASE("an mmCIF file cut off within its atoms is refused, or the cut is noted",

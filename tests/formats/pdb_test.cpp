@@ -181,12 +181,15 @@ TEST_CASE("what is wrong in a PDB file is told with line, columns and what would
     };
     const auto row = GENERATE(values<Row>({
         {"  11.104", "  11.1x4",
-         "w.pdb:3:31: '11.1x4' in columns 31 to 38 is no coordinate; expected a number in Å"},
+         "w.pdb:3:31: '11.1x4' in columns 31 to 38 is no coordinate; expected a number within "
+         "±100000 Å"},
         {"  11.104", "  abcdef", "w.pdb:3:31: 'abcdef' in columns 31 to 38 is no coordinate"},
         {"  11.104", "  11. 04", "w.pdb:3:31: '11. 04' in columns 31 to 38 is no coordinate"},
         {"  11.104", "        ", "w.pdb:3:31: '' in columns 31 to 38 is no coordinate"},
         {"  11.104", "     nan", "w.pdb:3:31: 'nan' in columns 31 to 38"},
         {"  11.104", "   11.104", "w.pdb:3:39: '4   6.13' in columns 39 to 46 is no coordinate"},
+        {"  11.104", "  1.1e05", "w.pdb:3:31: '1.1e05' in columns 31 to 38 is no coordinate"},
+        {"  -6.504", "-1000000", "w.pdb:3:47: '-1000000' in columns 47 to 54 is no coordinate"},
         {"   6.134", "     inf", "w.pdb:3:39: 'inf' in columns 39 to 46"},
         {"  -6.504", "  -6,504", "w.pdb:3:47: '-6,504' in columns 47 to 54"},
         {"  1.00 10.50", "  l.00 10.50", "w.pdb:3:55: 'l.00' in columns 55 to 60 is no occupancy"},
@@ -195,6 +198,7 @@ TEST_CASE("what is wrong in a PDB file is told with line, columns and what would
          "w.pdb:3: 'Q' is no element; expected a symbol such as C or MG"},
         {"CA2+", "CA++", "w.pdb:10:79: '++' in columns 79 to 80 is no charge"},
         {"      1  N ", "      x  N ", "w.pdb:3:7: 'x' in columns 7 to 11 is no serial"},
+        {"  N   ALA", "  \x1bN  ALA", "w.pdb:3:13: '\\x1bN' in columns 13 to 16 is no atom name"},
         {"  N   ALA", "      ALA", "w.pdb:3:13: '' in columns 13 to 16 is no atom name"},
         {"  N   ALA", "  N A ALA", "w.pdb:3:13: 'N A' in columns 13 to 16 is no atom name"},
         {"  N   ALA", "  N      ", "w.pdb:3:18: '' in columns 18 to 21 is no residue name"},

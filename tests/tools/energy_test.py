@@ -87,6 +87,56 @@ class Energy(unittest.TestCase):
                 self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
                 self.assertIn(expected, result.stderr)
 
+    def aera_as_pdb(self, edit):
+        """The tetrapeptide as a PDB file, of whose lines `edit` makes others."""
+        path, _ = self.aera()
+        lines = []
+        for number, line in enumerate(path.read_text().splitlines()[3:], 1):
+            residue, atom = line[22:30].strip(), line[32:40].strip()
+            x, y, z = (float(line[at:at + 20]) for at in (40, 60, 80))
+            lines.append(f"ATOM  {number:5} {atom if len(atom) > 3 else ' ' + atom:<4} {residue:<4}P"
+                         f"{line[112:120].strip():>4}    {x:8.3f}{y:8.3f}{z:8.3f}")
+        structure = self.folder / "aera.pdb"
+        structure.write_text("\n".join([*edit(lines), "END", ""]))
+        return structure
+
+    def test_what_is_to_be_prepared_first_is_one_line(self):
+        toppar = ["--toppar", DATA / "aera_c36m.rtf", DATA / "aera_c36m.prm"]
+        def without_hydrogens(lines):
+            return [line for line in lines if not line[12:16].strip().startswith("H")]
+        def in_two_places(lines):
+            return [lines[0][:16] + "A" + lines[0][17:], lines[0][:16] + "B" + lines[0][17:],
+                    *lines[1:]]
+        def in_two_models(lines):
+            return ["MODEL        1", *lines, "ENDMDL", "MODEL        2", *lines, "ENDMDL"]
+        for edit, expected in ((without_hydrogens, ".pdb:1: the structure holds no hydrogens"),
+                               (in_two_places, " again in location B, first in location A on line 1"),
+                               (in_two_models, " again in model 2, first in model 1 on line 2 (")):
+            with self.subTest(edit=edit.__name__):
+                result = self.palpa(self.aera_as_pdb(edit), *toppar)
+                self.assertEqual(result.returncode, 2, result.stdout)
+                self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
+                self.assertIn(expected, result.stderr)
+                self.assertIn("palpa prepare", result.stderr)
+
+    def test_atoms_in_one_place_are_named(self):
+        toppar = ["--toppar", DATA / "aera_c36m.rtf", DATA / "aera_c36m.prm"]
+        def unchanged(lines):
+            return lines
+        def last_at_first(lines):
+            return [*lines[:-1], lines[-1][:30] + lines[0][30:54]]
+
+        self.assertEqual(self.palpa(self.aera_as_pdb(unchanged), *toppar).stderr, "")
+        structure = self.aera_as_pdb(last_at_first)
+        result = self.palpa(structure, *toppar)
+
+        self.assertEqual(result.returncode, 0, result.stderr)
+        last = len(structure.read_text().splitlines()) - 1
+        self.assertRegex(result.stderr,
+                         rf"^warning: atoms .*aera\.pdb:1\) and .*aera\.pdb:{last}\) are 0\.000 Å apart")
+        # Forty orders of magnitude too much, in as many letters as ever.
+        self.assertLess(max(map(len, result.stdout.splitlines())), 40)
+
     def test_charmm_s_own_numbers_from_native_files(self):
         if not SHARED:
             self.skipTest("PALPA_DATA is not set")
