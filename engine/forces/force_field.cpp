@@ -4,10 +4,17 @@
 #include "forces/bonded.h"
 #include "forces/cmap.h"
 
+#include <algorithm>
+#include <thread>
+#include <vector>
+
 namespace palpa {
 
-EnergyTerms add_forces(const Topology& topology, const NonbondedSettings& settings,
-                       std::span<const Vec3> positions, std::span<Vec3> forces) noexcept {
+namespace {
+
+// All terms but the plain pairs.
+EnergyTerms add_bonded_forces(const Topology& topology, const NonbondedSettings& settings,
+                              std::span<const Vec3> positions, std::span<Vec3> forces) noexcept {
     PALPA_ASSERT(positions.size() == topology.size() && forces.size() == topology.size());
     EnergyTerms energy;
     energy.bond = add_bond_forces(topology.bonds, positions, forces);
@@ -16,12 +23,57 @@ EnergyTerms add_forces(const Topology& topology, const NonbondedSettings& settin
     energy.dihedral = add_dihedral_forces(topology.dihedrals, positions, forces);
     energy.improper = add_improper_forces(topology.impropers, positions, forces);
     energy.cmap = add_cmap_forces(topology.cmap_terms, topology.cmap_maps, positions, forces);
-    const NonbondedEnergy pairs = add_nonbonded_forces(topology, settings, positions, forces);
-    energy.lj = pairs.van_der_waals;
-    energy.coulomb = pairs.electrostatic;
     const NonbondedEnergy pairs14 = add_nonbonded14_forces(topology, settings, positions, forces);
     energy.lj14 = pairs14.van_der_waals;
     energy.coulomb14 = pairs14.electrostatic;
+    return energy;
+}
+
+void add_pairs(const NonbondedEnergy& pairs, EnergyTerms& energy) noexcept {
+    energy.lj += pairs.van_der_waals;
+    energy.coulomb += pairs.electrostatic;
+}
+
+}  // namespace
+
+EnergyTerms add_forces(const Topology& topology, const NonbondedSettings& settings,
+                       std::span<const Vec3> positions, std::span<Vec3> forces) noexcept {
+    EnergyTerms energy = add_bonded_forces(topology, settings, positions, forces);
+    add_pairs(add_nonbonded_forces(topology, settings, positions, forces), energy);
+    return energy;
+}
+
+EnergyTerms add_forces(const Topology& topology, const NonbondedSettings& settings,
+                       const PairList& list, std::span<const Vec3> positions,
+                       std::span<Vec3> forces, std::size_t threads) {
+    PALPA_ASSERT(threads > 0);
+    // Bonded terms take about a fifth of the time of a protein's pairs; this thread has them too.
+    const auto count = static_cast<double>(threads);
+    const double own = std::max(0.0, (1.2 - 0.2 * count) / count);
+    const double each = threads > 1 ? (1.0 - own) / (count - 1.0) : 0.0;
+    struct Helper {
+        std::vector<Vec3> forces;
+        NonbondedEnergy energy;
+        std::jthread thread;
+    };
+    std::vector<Helper> helpers(threads - 1);
+    for (std::size_t i = 0; i < helpers.size(); ++i) {
+        const double from = own + each * static_cast<double>(i);
+        const PairRows rows = find_rows(list, from, i + 1 == helpers.size() ? 1.0 : from + each);
+        helpers[i].forces.assign(forces.size(), Vec3::Zero());
+        helpers[i].thread = std::jthread([&, rows, &helper = helpers[i]] {
+            helper.energy =
+                add_nonbonded_forces(topology, settings, list, rows, positions, helper.forces);
+        });
+    }
+    const PairRows rows = find_rows(list, 0, helpers.empty() ? 1.0 : own);
+    EnergyTerms energy = add_bonded_forces(topology, settings, positions, forces);
+    add_pairs(add_nonbonded_forces(topology, settings, list, rows, positions, forces), energy);
+    for (Helper& helper : helpers) {
+        helper.thread.join();
+        add_pairs(helper.energy, energy);
+        for (std::size_t i = 0; i < forces.size(); ++i) forces[i] += helper.forces[i];
+    }
     return energy;
 }
 

@@ -2,8 +2,10 @@
 #pragma once
 #include "charmm/topology.h"
 #include "forces/nonbonded.h"
+#include "forces/pair_list.h"
 #include "math/vec.h"
 
+#include <cstddef>
 #include <span>
 
 namespace palpa {
@@ -31,5 +33,12 @@ struct EnergyTerms {
 // gives the same bits. Finite wherever the atoms are; each term says in its header how.
 EnergyTerms add_forces(const Topology& topology, const NonbondedSettings& settings,
                        std::span<const Vec3> positions, std::span<Vec3> forces) noexcept;
+
+// The same with the pairs of a list (forces/nonbonded.h says which). Shared among `threads`, at
+// least 1: a call repeats to the bit with the same list and the same number of threads. More than
+// one take memory of their own and start anew at each call; std::system_error where there are none.
+EnergyTerms add_forces(const Topology& topology, const NonbondedSettings& settings,
+                       const PairList& list, std::span<const Vec3> positions,
+                       std::span<Vec3> forces, std::size_t threads = 1);
 
 }  // namespace palpa

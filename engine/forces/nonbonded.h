@@ -1,8 +1,9 @@
-// Lennard-Jones and Coulomb of a topology, all pairs, in double: the reference that faster ways of
-// summing are held against. With a cutoff, every pair is still looked at.
+// Lennard-Jones and Coulomb of a topology in double: over all pairs, the reference that faster ways
+// of summing are held against, and over a list of neighbours, for large systems with a cutoff.
 #pragma once
 #include "charmm/topology.h"
 #include "core/units.h"
+#include "forces/pair_list.h"
 #include "math/vec.h"
 
 #include <optional>
@@ -47,18 +48,33 @@ struct NonbondedSettings {
 // What makes settings unusable, as a sentence for a message; none where they are sound.
 std::optional<std::string_view> find_problem(const NonbondedSettings& settings) noexcept;
 
+// Whether no pair acts from the cutoff on: what a list of neighbours needs.
+bool has_end(const NonbondedSettings& settings) noexcept;
+
 struct NonbondedEnergy {
     double van_der_waals = 0;  // kcal/mol
     double electrostatic = 0;  // kcal/mol
 };
 
-// Both add forces (kcal/mol/Å) to `forces`, one entry per atom, and return the energy; the settings
+// All add forces (kcal/mol/Å) to `forces`, one entry per atom, and return the energy; the settings
 // must be sound. Sums run over the pairs in rising order, first per first atom. Pairs closer than
 // `pair_core_radius` (field/pair_field.h) are continued as a parabola from there, so that atoms at
 // one place give a finite energy and no force.
 
-// Every pair that the topology does not exclude.
+// Every pair that the topology does not exclude; with a cutoff, every one is still looked at.
 NonbondedEnergy add_nonbonded_forces(const Topology& topology, const NonbondedSettings& settings,
+                                     std::span<const Vec3> positions,
+                                     std::span<Vec3> forces) noexcept;
+
+// The pairs of a list that is not outdated and whose cutoff is at least that of the settings, which
+// must have an end: the same numbers of each pair as above, in the order of the list, four
+// neighbours beside each other. Of all rows, or of some (of several threads, each with forces of
+// its own).
+NonbondedEnergy add_nonbonded_forces(const Topology& topology, const NonbondedSettings& settings,
+                                     const PairList& list, std::span<const Vec3> positions,
+                                     std::span<Vec3> forces) noexcept;
+NonbondedEnergy add_nonbonded_forces(const Topology& topology, const NonbondedSettings& settings,
+                                     const PairList& list, PairRows rows,
                                      std::span<const Vec3> positions,
                                      std::span<Vec3> forces) noexcept;
 

@@ -1,0 +1,250 @@
+#include "forces/minimise.h"
+
+#include "core/assertion.h"
+#include "forces/pair_list.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <utility>
+
+namespace palpa {
+namespace {
+
+using Vector = Eigen::VectorXd;
+
+// Coordinates of all atoms, one after the other.
+Eigen::Map<const Vector> flat(const std::vector<Vec3>& vectors) {
+    static_assert(sizeof(Vec3) == 3 * sizeof(double));
+    return {vectors.empty() ? nullptr : vectors.front().data(),
+            3 * static_cast<Eigen::Index>(vectors.size())};
+}
+
+Vec3 of_atom(const Vector& vector, std::size_t atom) {
+    return vector.segment<3>(3 * static_cast<Eigen::Index>(atom));
+}
+
+// A place, and what belongs to it.
+struct Point {
+    std::vector<Vec3> positions;
+    std::vector<Vec3> forces;  // 0 on fixed atoms
+    EnergyTerms terms;
+    double restraint = 0;
+
+    double energy() const noexcept { return terms.total() + restraint; }
+};
+
+// The energy that is lowered.
+class Landscape {
+public:
+    Landscape(const Topology& topology, const MinimiseSettings& settings,
+              const Restraints& restraints)
+        : topology_(topology), settings_(settings), restraints_(restraints) {}
+
+    void evaluate(Point& point) {
+        ++evaluations;
+        point.forces.assign(point.positions.size(), Vec3::Zero());
+        if (has_end(settings_.nonbonded)) {
+            update_list(point.positions);
+            point.terms = add_forces(topology_, settings_.nonbonded, list_, point.positions,
+                                     point.forces, settings_.threads);
+        } else {
+            point.terms = add_forces(topology_, settings_.nonbonded, point.positions, point.forces);
+        }
+        point.restraint = 0;
+        for (std::size_t i = 0; i < restraints_.k.size(); ++i) {
+            const Vec3 away = point.positions[i] - restraints_.references[i];
+            point.restraint += restraints_.k[i] * away.squaredNorm();
+            point.forces[i] -= 2.0 * restraints_.k[i] * away;
+        }
+        for (std::size_t i = 0; i < restraints_.is_fixed.size(); ++i) {
+            if (restraints_.is_fixed[i]) point.forces[i].setZero();
+        }
+    }
+
+    std::size_t evaluations = 0, lists = 0;
+
+private:
+    void update_list(const std::vector<Vec3>& positions) {
+        if (lists > 0 && !is_outdated(list_, positions)) return;
+        ++lists;
+        list_ = build_pair_list(topology_.exclusions, settings_.nonbonded.cutoff, settings_.skin,
+                                positions, restraints_.is_fixed, std::move(list_));
+    }
+
+    const Topology& topology_;
+    const MinimiseSettings& settings_;
+    const Restraints& restraints_;
+    PairList list_;
+};
+
+// About how much an atom can yield to a force (Å^2 mol/kcal), coordinate by coordinate: bonds are
+// as stiff as they are, and repulsion as r^-12 is the stiffer the stronger it pushes. So all
+// clashes part at once, however different they are.
+Vector find_compliance(const std::vector<Vec3>& forces, double largest_step) {
+    constexpr double bonds = 1000;  // kcal/mol/Å^2
+    Vector compliance(3 * static_cast<Eigen::Index>(forces.size()));
+    for (std::size_t i = 0; i < forces.size(); ++i) {
+        compliance.segment<3>(3 * static_cast<Eigen::Index>(i))
+            .setConstant(1.0 / (bonds + forces[i].norm() / largest_step));
+    }
+    return compliance;
+}
+
+// What the last steps say about the curvature.
+class Memory {
+public:
+    bool is_empty() const noexcept { return steps_.empty(); }
+
+    void clear() noexcept {
+        steps_.clear();
+        boldness_ = 1;
+    }
+
+    // A step s that lowered the forces by y. Steps along which the energy bends down say nothing
+    // about a minimum, but that the next may be longer.
+    void add(Vector s, Vector y) {
+        constexpr double least = 1e-8;
+        const double bend = s.dot(y);
+        if (!(bend > least * s.norm() * y.norm())) {
+            boldness_ *= 2;
+            return;
+        }
+        boldness_ = 1;
+        if (steps_.size() == most) steps_.pop_front();
+        steps_.push_back({std::move(s), std::move(y), 1.0 / bend});
+    }
+
+    // The two loops of algorithm 7.4: forces times the inverse of the estimated curvature.
+    Vector find_direction(const std::vector<Vec3>& forces, const Vector& compliance) const {
+        Vector d = flat(forces);
+        std::vector<double> along(steps_.size());
+        for (std::size_t i = steps_.size(); i-- > 0;) {
+            along[i] = steps_[i].inverse_bend * steps_[i].s.dot(d);
+            d -= along[i] * steps_[i].y;
+        }
+        d.array() *= compliance.array();
+        if (steps_.empty()) {
+            d *= boldness_;
+        } else {
+            const Vector& y = steps_.back().y;
+            d /= steps_.back().inverse_bend * (y.array().square() * compliance.array()).sum();
+        }
+        for (std::size_t i = 0; i < steps_.size(); ++i) {
+            d += (along[i] - steps_[i].inverse_bend * steps_[i].y.dot(d)) * steps_[i].s;
+        }
+        return d;
+    }
+
+private:
+    static constexpr std::size_t most = 8;
+
+    struct Step {
+        Vector s, y;          // Å, kcal/mol/Å
+        double inverse_bend;  // 1/(s·y)
+    };
+    std::deque<Step> steps_;
+    double boldness_ = 1;  // of steps without a memory
+};
+
+double largest_norm(const Vector& vector) {
+    double largest2 = 0;
+    for (Eigen::Index i = 0; i < vector.size(); i += 3)
+        largest2 = std::max(largest2, vector.segment<3>(i).squaredNorm());
+    return std::sqrt(largest2);
+}
+
+void place_along(const Point& from, const Vector& direction, double length,
+                 std::span<const std::uint8_t> is_fixed, Point& to) {
+    for (std::size_t i = 0; i < from.positions.size(); ++i) {
+        const bool stays = !is_fixed.empty() && is_fixed[i];
+        to.positions[i] = from.positions[i];
+        if (!stays) to.positions[i] += length * of_atom(direction, i);
+    }
+}
+
+// Looks for a lower place along a direction, in shorter and shorter steps, until the energy falls
+// as far as the slope lets one hope (Armijo's condition). Whether there is one; it is in `to`,
+// then.
+bool find_lower(Landscape& landscape, const Point& from, const Vector& direction,
+                const MinimiseSettings& settings, const Restraints& restraints, Point& to) {
+    constexpr int tries = 30;
+    constexpr double share = 1e-4;
+    const double slope = flat(from.forces).dot(direction);  // by which the energy falls
+    if (!(slope > 0)) return false;
+    double length = std::min(1.0, settings.largest_step / largest_norm(direction));
+    for (int i = 0; i < tries; ++i) {
+        place_along(from, direction, length, restraints.is_fixed, to);
+        landscape.evaluate(to);
+        if (to.energy() < from.energy() && to.energy() <= from.energy() - share * length * slope)
+            return true;
+        // To the minimum of the parabola through both energies and the slope, within bounds.
+        const double above = to.energy() - (from.energy() - length * slope);
+        const double best = 0.5 * length * length * slope / above;
+        length = std::isfinite(best) ? std::clamp(best, 0.1 * length, 0.5 * length) : 0.1 * length;
+    }
+    return false;
+}
+
+void measure_forces(const Point& point, const Restraints& restraints, MinimiseReport& report) {
+    double sum2 = 0, largest2 = 0;
+    for (const Vec3& force : point.forces) {
+        sum2 += force.squaredNorm();
+        largest2 = std::max(largest2, force.squaredNorm());
+    }
+    const auto fixed = std::count_if(restraints.is_fixed.begin(), restraints.is_fixed.end(),
+                                     [](std::uint8_t is_fixed) { return is_fixed != 0; });
+    const double free = static_cast<double>(point.forces.size()) - static_cast<double>(fixed);
+    report.rms_force = free > 0 ? std::sqrt(sum2 / (3.0 * free)) : 0;
+    report.largest_force = std::sqrt(largest2);
+}
+
+}  // namespace
+
+MinimiseReport minimise(const Topology& topology, const MinimiseSettings& settings,
+                        const Restraints& restraints, std::vector<Vec3>& positions,
+                        const std::function<void(std::size_t step, double energy)>& on_step) {
+    PALPA_ASSERT(positions.size() == topology.size());
+    PALPA_ASSERT(restraints.references.size() == restraints.k.size());
+    PALPA_ASSERT(restraints.k.empty() || restraints.k.size() == positions.size());
+    PALPA_ASSERT(restraints.is_fixed.empty() || restraints.is_fixed.size() == positions.size());
+    PALPA_ASSERT(settings.largest_step > 0);
+    Landscape landscape(topology, settings, restraints);
+    Point here{positions, {}, {}, 0}, next = here;
+    landscape.evaluate(here);
+    MinimiseReport report;
+    report.before = here.terms;
+    report.restraint_before = here.restraint;
+    if (on_step) on_step(0, here.energy());
+
+    Memory memory;
+    measure_forces(here, restraints, report);
+    while (report.rms_force > settings.force_tolerance && report.steps < settings.steps) {
+        const Vector compliance = find_compliance(here.forces, settings.largest_step);
+        const Vector direction = memory.find_direction(here.forces, compliance);
+        if (!find_lower(landscape, here, direction, settings, restraints, next)) {
+            if (memory.is_empty()) {
+                report.end = MinimiseEnd::Stuck;
+                break;
+            }
+            memory.clear();
+            continue;
+        }
+        memory.add(flat(next.positions) - flat(here.positions),
+                   flat(here.forces) - flat(next.forces));
+        std::swap(here, next);
+        ++report.steps;
+        measure_forces(here, restraints, report);
+        if (on_step) on_step(report.steps, here.energy());
+    }
+    if (report.rms_force <= settings.force_tolerance) report.end = MinimiseEnd::Converged;
+    report.after = here.terms;
+    report.restraint_after = here.restraint;
+    report.evaluations = landscape.evaluations;
+    report.lists = landscape.lists;
+    positions = std::move(here.positions);
+    return report;
+}
+
+}  // namespace palpa
