@@ -1,0 +1,650 @@
+#include "prepare/orient.h"
+
+#include "core/assertion.h"
+#include "field/pair_field.h"
+#include "forces/torsion.h"
+#include "prepare/bond_graph.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+namespace palpa {
+namespace {
+
+using std::numbers::pi;
+using Quaternion = Eigen::Quaterniond;
+using Kind = OrientedGroup::Kind;
+
+constexpr double least_gain = 1e-6;    // kcal/mol; below it nothing has changed
+constexpr double least_turn = 0.02;    // Å; below it others need not look again
+constexpr double influence = 6;        // Å; within it others look again
+constexpr double grid_step = pi / 18;  // rad
+constexpr double fine_step = pi / 720;
+
+// What turns as one body.
+struct Group {
+    Kind kind;
+    std::uint32_t centre;               // stays where it is
+    std::optional<std::uint32_t> axis;  // the other atom of the axis; none: any rotation
+    std::vector<std::uint32_t> moved;
+    double period = 2 * pi;  // rad, after how much of a turn it is the same
+    double reach = 0;        // Å, of the moved atoms from the centre
+    std::vector<std::uint32_t> dihedrals, impropers;  // that change as it turns
+};
+
+// Atoms by where the group that they belong to has its centre, which never moves.
+class Grid {
+public:
+    Grid(std::vector<Vec3> anchors) : anchors_(std::move(anchors)) {
+        low_ = Vec3::Zero();
+        Vec3 high = Vec3::Zero();
+        if (!anchors_.empty()) low_ = high = anchors_[0];
+        for (const Vec3& anchor : anchors_) {
+            low_ = low_.cwiseMin(anchor);
+            high = high.cwiseMax(anchor);
+        }
+        // Far apart atoms must not make more cells than there are atoms.
+        const double room = ((high - low_).array() + 1.0).prod();
+        edge_ = std::max(5.0, std::cbrt(8 * room / (static_cast<double>(anchors_.size()) + 1)));
+        for (int k = 0; k < 3; ++k) cells_[k] = static_cast<int>((high - low_)[k] / edge_) + 1;
+        std::vector<std::array<std::uint32_t, 2>> entries;
+        for (std::uint32_t atom = 0; atom < anchors_.size(); ++atom) {
+            std::array<int, 3> cell{};
+            for (int k = 0; k < 3; ++k)
+                cell[k] = static_cast<int>((anchors_[atom] - low_)[k] / edge_);
+            entries.push_back({index(cell), atom});
+        }
+        atoms_ = Lists(entries, static_cast<std::size_t>(cells_[0]) * cells_[1] * cells_[2]);
+    }
+
+    // Calls `visit` for every atom whose anchor is within the radius.
+    template <class Visit>
+    void visit_near(const Vec3& place, double radius, const Visit& visit) const {
+        std::array<int, 3> first{}, last{};
+        for (int k = 0; k < 3; ++k) {
+            const double from = std::floor((place[k] - radius - low_[k]) / edge_);
+            const double to = std::floor((place[k] + radius - low_[k]) / edge_);
+            first[k] = static_cast<int>(std::clamp(from, 0.0, cells_[k] - 1.0));
+            last[k] = static_cast<int>(std::clamp(to, 0.0, cells_[k] - 1.0));
+        }
+        for (int x = first[0]; x <= last[0]; ++x) {
+            for (int y = first[1]; y <= last[1]; ++y) {
+                for (int z = first[2]; z <= last[2]; ++z) {
+                    for (const std::uint32_t atom : atoms_.of(index({x, y, z}))) {
+                        if ((anchors_[atom] - place).squaredNorm() < radius * radius) visit(atom);
+                    }
+                }
+            }
+        }
+    }
+
+private:
+    std::uint32_t index(const std::array<int, 3>& cell) const noexcept {
+        return static_cast<std::uint32_t>((cell[0] * cells_[1] + cell[1]) * cells_[2] + cell[2]);
+    }
+
+    std::vector<Vec3> anchors_;
+    Vec3 low_;
+    double edge_ = 5;  // Å
+    std::array<int, 3> cells_{1, 1, 1};
+    Lists atoms_;
+};
+
+// Finds the groups by their bonds.
+class GroupFinder {
+public:
+    GroupFinder(const BondGraph& graph, std::span<const std::uint32_t> built, std::size_t atoms,
+                const OrientSettings& settings)
+        : graph_(graph), settings_(settings), is_built_(atoms, false) {
+        for (const std::uint32_t atom : built) is_built_[atom] = true;
+    }
+
+    std::vector<Group> find() const {
+        std::vector<Group> groups;
+        for (std::uint32_t atom = 0; atom < is_built_.size(); ++atom) {
+            if (auto group = find_turning(atom)) groups.push_back(std::move(*group));
+        }
+        std::stable_sort(groups.begin(), groups.end(),
+                         [](const Group& a, const Group& b) { return a.kind < b.kind; });
+        if (!settings_.may_flip) return groups;
+        for (const auto finder : {&GroupFinder::find_amide, &GroupFinder::find_imidazole}) {
+            for (std::uint32_t atom = 0; atom < is_built_.size(); ++atom) {
+                if (auto group = (this->*finder)(atom)) groups.push_back(std::move(*group));
+            }
+        }
+        return groups;
+    }
+
+private:
+    struct Around {
+        std::vector<std::uint32_t> heavy, hydrogens;
+        bool all_built = true;  // of the hydrogens
+    };
+    Around look_around(std::uint32_t atom) const {
+        Around around;
+        for (const std::uint32_t other : graph_.neighbours(atom)) {
+            const bool is_hydrogen = graph_.is_hydrogen(other);
+            (is_hydrogen ? around.hydrogens : around.heavy).push_back(other);
+            if (is_hydrogen && !is_built_[other]) around.all_built = false;
+        }
+        return around;
+    }
+
+    bool is_carbon(std::uint32_t atom) const noexcept { return graph_.has_mass(atom, 12); }
+    bool is_nitrogen(std::uint32_t atom) const noexcept { return graph_.has_mass(atom, 14); }
+
+    std::optional<Group> find_turning(std::uint32_t atom) const {
+        if (graph_.is_hydrogen(atom) || graph_.is_planar(atom)) return std::nullopt;
+        Around around = look_around(atom);
+        if (around.hydrogens.empty() || !around.all_built) return std::nullopt;
+        Group group{.kind = Kind::Rotor,
+                    .centre = atom,
+                    .axis = {},
+                    .moved = around.hydrogens,
+                    .dihedrals = {},
+                    .impropers = {}};
+        if (around.heavy.empty() && around.hydrogens.size() > 1) {
+            group.kind = Kind::Water;
+            return group;
+        }
+        if (around.heavy.size() != 1 || (is_carbon(atom) && !settings_.has_methyls))
+            return std::nullopt;
+        group.axis = around.heavy[0];
+        if (around.hydrogens.size() == 3) group.period = 2 * pi / 3;
+        return group;
+    }
+
+    // By its carbon: a neighbour, O with no other, NH2.
+    std::optional<Group> find_amide(std::uint32_t carbon) const {
+        if (!is_carbon(carbon) || graph_.neighbours(carbon).size() != 3) return std::nullopt;
+        std::optional<std::uint32_t> axis, o, n;
+        Around of_n;
+        for (const std::uint32_t other : graph_.neighbours(carbon)) {
+            if (graph_.has_mass(other, 16) && graph_.neighbours(other).size() == 1) {
+                o = other;
+            } else if (is_nitrogen(other) && graph_.neighbours(other).size() == 3 &&
+                       look_around(other).hydrogens.size() == 2) {
+                n = other;
+                of_n = look_around(other);
+            } else if (!graph_.is_hydrogen(other)) {
+                axis = other;
+            }
+        }
+        if (!axis || !o || !n || !of_n.all_built) return std::nullopt;
+        return Group{.kind = Kind::Amide,
+                     .centre = carbon,
+                     .axis = axis,
+                     .moved = {*o, *n, of_n.hydrogens[0], of_n.hydrogens[1]},
+                     .dihedrals = {},
+                     .impropers = {}};
+    }
+
+    // By the carbon with the substituent: N C N C follow in the ring.
+    std::optional<Group> find_imidazole(std::uint32_t carbon) const {
+        if (!is_carbon(carbon) || graph_.neighbours(carbon).size() != 3) return std::nullopt;
+        for (const std::uint32_t first_n : graph_.neighbours(carbon)) {
+            if (!is_nitrogen(first_n)) continue;
+            for (const std::uint32_t middle : graph_.neighbours(first_n)) {
+                if (middle == carbon || !is_carbon(middle)) continue;
+                for (const std::uint32_t second_n : graph_.neighbours(middle)) {
+                    if (second_n == first_n || !is_nitrogen(second_n)) continue;
+                    for (const std::uint32_t last : graph_.neighbours(second_n)) {
+                        if (last == middle || !is_carbon(last)) continue;
+                        if (auto group = make_imidazole({carbon, first_n, middle, second_n, last}))
+                            return group;
+                    }
+                }
+            }
+        }
+        return std::nullopt;
+    }
+
+    std::optional<Group> make_imidazole(const std::array<std::uint32_t, 5>& ring) const {
+        const auto in_ring = [&](std::uint32_t atom) {
+            return std::find(ring.begin(), ring.end(), atom) != ring.end();
+        };
+        if (std::ranges::count(graph_.neighbours(ring[0]), ring[4]) == 0) return std::nullopt;
+        Group group{.kind = Kind::Imidazole,
+                    .centre = ring[0],
+                    .axis = {},
+                    .moved = {},
+                    .dihedrals = {},
+                    .impropers = {}};
+        for (const std::uint32_t other : graph_.neighbours(ring[0])) {
+            if (!in_ring(other) && !graph_.is_hydrogen(other)) group.axis = other;
+        }
+        if (!group.axis) return std::nullopt;
+        for (std::size_t i = 1; i < ring.size(); ++i) {
+            const Around around = look_around(ring[i]);
+            const bool is_closed = std::all_of(around.heavy.begin(), around.heavy.end(), in_ring);
+            if (!is_closed || !around.all_built) return std::nullopt;
+            group.moved.push_back(ring[i]);
+        }
+        for (std::size_t i = 0; i < 4; ++i) {
+            for (const std::uint32_t h : look_around(group.moved[i]).hydrogens) {
+                group.moved.push_back(h);
+            }
+        }
+        return group;
+    }
+
+    const BondGraph& graph_;
+    const OrientSettings& settings_;
+    std::vector<bool> is_built_;
+};
+
+// All rotations, about 30 degree apart: directions on a spiral over the sphere, each with a turn
+// about itself.
+std::vector<Quaternion> make_rotations() {
+    constexpr int directions = 32, turns = 10;
+    std::vector<Quaternion> rotations;
+    for (int i = 0; i < directions; ++i) {
+        const double z = 1 - (2.0 * i + 1) / directions, around = i * pi * (3 - std::sqrt(5.0));
+        const double radius = std::sqrt(1 - z * z);
+        const Vec3 direction(radius * std::cos(around), radius * std::sin(around), z);
+        const Quaternion to_direction = Quaternion::FromTwoVectors(Vec3::UnitZ(), direction);
+        for (int j = 0; j < turns; ++j) {
+            rotations.push_back(to_direction *
+                                Eigen::AngleAxisd(2 * pi * j / turns, Vec3::UnitZ()));
+        }
+    }
+    return rotations;
+}
+
+class Orienter {
+public:
+    Orienter(const Connectivity& connectivity, const Topology& topology,
+             std::span<const std::uint32_t> built, const OrientSettings& settings,
+             std::span<Vec3> positions)
+        : topology_(topology),
+          settings_(settings),
+          positions_(positions),
+          graph_(connectivity, topology),
+          groups_(GroupFinder(graph_, built, positions.size(), settings).find()),
+          rotations_(make_rotations()),
+          excluded_(find_excluded(topology)),
+          pairs14_(find_pairs14(topology)),
+          grid_(find_anchors()),
+          of_centre_(find_groups_of_centres()),
+          nonbonded_(nonbonded_settings(settings)),
+          is_waiting_(groups_.size(), true) {
+        add_terms();
+    }
+
+    OrientReport run() {
+        OrientReport report;
+        for (const Group& group : groups_) {
+            OrientedGroup& entry = report.groups.emplace_back();
+            entry.kind = group.kind;
+            entry.atom = group.centre;
+            entry.moved = group.moved;
+            entry.dihedral_before = dihedral(group);
+            entry.energy_before = energy_now(group);
+        }
+        settle(report);
+        for (std::size_t i = 0; i < groups_.size(); ++i) {
+            if (is_flip(groups_[i])) try_flip(i, report);
+        }
+        settle(report);
+        for (std::size_t i = 0; i < groups_.size(); ++i) {
+            report.groups[i].dihedral_after = dihedral(groups_[i]);
+            report.groups[i].energy_after = energy_now(groups_[i]);
+        }
+        report.energy_change = change_;
+        return report;
+    }
+
+private:
+    // An atom that a moved one interacts with, and by which numbers.
+    struct Partner {
+        Vec3 place;
+        double charges;  // C q q', kcal Å/mol
+        double epsilon, rmin2;
+    };
+
+    static bool is_flip(const Group& group) noexcept {
+        return group.kind == Kind::Amide || group.kind == Kind::Imidazole;
+    }
+
+    // Both ways round, beside what `Exclusions` holds.
+    static Lists find_excluded(const Topology& topology) {
+        std::vector<std::array<std::uint32_t, 2>> entries;
+        for (std::uint32_t i = 0; i < topology.size(); ++i) {
+            for (const std::uint32_t j : topology.exclusions.of(i)) {
+                entries.push_back({i, j});
+                entries.push_back({j, i});
+            }
+        }
+        return {entries, topology.size()};
+    }
+    static Lists find_pairs14(const Topology& topology) {
+        std::vector<std::array<std::uint32_t, 2>> entries;
+        for (const auto& [i, j] : topology.exclusions.pairs14) {
+            entries.push_back({i, j});
+            entries.push_back({j, i});
+        }
+        return {entries, topology.size()};
+    }
+
+    std::vector<Vec3> find_anchors() {
+        std::vector<Vec3> anchors(positions_.begin(), positions_.end());
+        for (Group& group : groups_) {
+            for (const std::uint32_t atom : group.moved) {
+                anchors[atom] = positions_[group.centre];
+                const double reach = (positions_[atom] - positions_[group.centre]).norm();
+                group.reach = std::max(group.reach, reach);
+            }
+            largest_reach_ = std::max(largest_reach_, group.reach);
+        }
+        return anchors;
+    }
+
+    Lists find_groups_of_centres() const {
+        std::vector<std::array<std::uint32_t, 2>> entries;
+        for (std::uint32_t i = 0; i < groups_.size(); ++i) {
+            entries.push_back({groups_[i].centre, i});
+        }
+        return {entries, positions_.size()};
+    }
+
+    void add_terms() {
+        std::vector<std::array<std::uint32_t, 2>> entries;
+        for (std::uint32_t i = 0; i < groups_.size(); ++i) {
+            for (const std::uint32_t atom : groups_[i].moved) entries.push_back({atom, i});
+        }
+        const Lists groups_of(entries, positions_.size());
+        const auto add = [&](const auto& terms, std::vector<std::uint32_t> Group::* into) {
+            for (std::uint32_t i = 0; i < terms.size(); ++i) {
+                for (const std::uint32_t atom : {terms[i].a, terms[i].b, terms[i].c, terms[i].d}) {
+                    for (const std::uint32_t number : groups_of.of(atom)) {
+                        std::vector<std::uint32_t>& list = groups_[number].*into;
+                        if (list.empty() || list.back() != i) list.push_back(i);
+                    }
+                }
+            }
+        };
+        add(topology_.dihedrals, &Group::dihedrals);
+        add(topology_.impropers, &Group::impropers);
+    }
+
+    // Of the first moved atom about the axis.
+    double dihedral(const Group& group) const noexcept {
+        if (!group.axis) return 0;
+        for (const std::uint32_t other : graph_.neighbours(*group.axis)) {
+            if (other == group.centre || graph_.is_hydrogen(other)) continue;
+            return evaluate_torsion(positions_[other], positions_[*group.axis],
+                                    positions_[group.centre], positions_[group.moved[0]])
+                .angle;
+        }
+        return 0;
+    }
+
+    // Lists for each moved atom of the group what it interacts with beside the group itself, as
+    // things stand. Those out of reach of the cutoff whatever the group does are left out.
+    void gather(const Group& group) {
+        if (partners_.size() < group.moved.size()) partners_.resize(group.moved.size());
+        for (std::vector<Partner>& list : partners_) list.clear();
+        const auto is_moved = [&](std::uint32_t atom) {
+            return std::find(group.moved.begin(), group.moved.end(), atom) != group.moved.end();
+        };
+        const auto add = [&](std::size_t slot, std::uint32_t atom, const LennardJonesTable& table) {
+            const std::uint32_t own = group.moved[slot];
+            const LennardJonesPair& pair = table.row(topology_.type[own])[topology_.type[atom]];
+            partners_[slot].push_back(
+                {positions_[atom],
+                 nonbonded_.coulomb_constant * topology_.charge[own] * topology_.charge[atom],
+                 pair.epsilon, pair.rmin * pair.rmin});
+        };
+        const Vec3 centre = positions_[group.centre];
+        const double range = settings_.cutoff + group.reach;
+        near_.clear();
+        grid_.visit_near(centre, range + largest_reach_, [&](std::uint32_t atom) {
+            if ((positions_[atom] - centre).squaredNorm() < range * range && !is_moved(atom))
+                near_.push_back(atom);
+        });
+        for (std::size_t slot = 0; slot < group.moved.size(); ++slot) {
+            const auto excluded = excluded_.of(group.moved[slot]);
+            for (const std::uint32_t atom : near_) {
+                if (std::find(excluded.begin(), excluded.end(), atom) == excluded.end())
+                    add(slot, atom, topology_.lennard_jones);
+            }
+            for (const std::uint32_t atom : pairs14_.of(group.moved[slot])) {
+                if (!is_moved(atom)) add(slot, atom, topology_.lennard_jones14);
+            }
+        }
+    }
+
+    // As forces/nonbonded.h has FSHIFT and VSWITCH. Inside the core the energy stays what it is at
+    // its edge.
+    double pair_energy(const Vec3& place, const Partner& partner) const noexcept {
+        const double c2 = settings_.cutoff * settings_.cutoff;
+        const double m2 = settings_.switch_from * settings_.switch_from;
+        const double r2 =
+            std::max((place - partner.place).squaredNorm(), pair_core_radius * pair_core_radius);
+        if (r2 >= c2) return 0;
+        const double r = std::sqrt(r2), left = 1 - r / settings_.cutoff, s2 = partner.rmin2 / r2;
+        const double s6 = s2 * s2 * s2;
+        double lennard_jones = partner.epsilon * (s6 * s6 - 2 * s6);
+        if (r2 > m2) {
+            const double width = c2 - m2;
+            lennard_jones *=
+                (c2 - r2) * (c2 - r2) * (c2 + 2 * r2 - 3 * m2) / (width * width * width);
+        }
+        return lennard_jones + partner.charges / r * left * left;
+    }
+
+    // Of what was gathered, at the group's present positions.
+    double energy(const Group& group) const noexcept {
+        double sum = 0;
+        for (std::size_t slot = 0; slot < group.moved.size(); ++slot) {
+            const Vec3 place = positions_[group.moved[slot]];
+            for (const Partner& partner : partners_[slot]) sum += pair_energy(place, partner);
+        }
+        const auto angle = [&](const auto& term) {
+            return evaluate_torsion(positions_[term.a], positions_[term.b], positions_[term.c],
+                                    positions_[term.d])
+                .angle;
+        };
+        for (const std::uint32_t number : group.dihedrals) {
+            const Dihedral& term = topology_.dihedrals[number];
+            sum += term.k * (1 + std::cos(term.multiplicity * angle(term) - term.phase));
+        }
+        for (const std::uint32_t number : group.impropers) {
+            const Improper& term = topology_.impropers[number];
+            const double off = std::remainder(angle(term) - term.psi0, 2 * pi);
+            sum += term.k * off * off;
+        }
+        return sum;
+    }
+
+    double energy_now(const Group& group) {
+        gather(group);
+        return energy(group);
+    }
+
+    void put(const Group& group, std::span<const Vec3> start, const Quaternion& rotation) noexcept {
+        const Mat3 matrix = rotation.toRotationMatrix();
+        const Vec3 centre = positions_[group.centre];
+        for (std::size_t i = 0; i < group.moved.size(); ++i) {
+            positions_[group.moved[i]] = centre + matrix * (start[i] - centre);
+        }
+    }
+
+    std::vector<Vec3> places(const Group& group) const {
+        std::vector<Vec3> result;
+        for (const std::uint32_t atom : group.moved) result.push_back(positions_[atom]);
+        return result;
+    }
+
+    // Turns the group to where its energy is lowest; returns the change, 0 if it stayed.
+    double turn(std::size_t number) {
+        const Group& group = groups_[number];
+        gather(group);
+        const std::vector<Vec3> start = places(group);
+        const double before = energy(group);
+        double best = before;
+        Quaternion best_rotation = Quaternion::Identity();
+        const auto attempt = [&](const Quaternion& rotation) {
+            put(group, start, rotation);
+            const double here = energy(group);
+            if (!(here < best)) return false;
+            best = here;
+            best_rotation = rotation;
+            return true;
+        };
+        std::vector<Vec3> axes{Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
+        double step = pi / 12;
+        if (group.axis) {
+            const Vec3 axis = positions_[group.centre] - positions_[*group.axis];
+            axes = {axis.norm() > 0 ? Vec3(axis.normalized()) : Vec3::UnitX()};
+            step = grid_step / 2;
+            for (int i = 1; i * grid_step < group.period - 1e-9; ++i) {
+                attempt(Quaternion(Eigen::AngleAxisd(i * grid_step, axes[0])));
+            }
+        } else {
+            for (const Quaternion& rotation : rotations_) attempt(rotation);
+        }
+        for (int tries = 0; step > fine_step && tries < 64; ++tries) {
+            bool is_better = false;
+            for (const Vec3& axis : axes) {
+                for (const double angle : {step, -step}) {
+                    const Quaternion rotation =
+                        (Quaternion(Eigen::AngleAxisd(angle, axis)) * best_rotation).normalized();
+                    is_better = attempt(rotation) || is_better;
+                }
+            }
+            if (!is_better) step /= 2;
+        }
+        if (best > before - least_gain) {
+            put_back(group, start);
+            return 0;
+        }
+        put(group, start, best_rotation);
+        double moved = 0;
+        for (std::size_t i = 0; i < start.size(); ++i) {
+            moved = std::max(moved, (positions_[group.moved[i]] - start[i]).norm());
+        }
+        if (moved > least_turn) wake_around(group.centre, number);
+        return best - before;
+    }
+
+    void put_back(const Group& group, std::span<const Vec3> start) noexcept {
+        for (std::size_t i = 0; i < start.size(); ++i) positions_[group.moved[i]] = start[i];
+    }
+
+    // Groups that turn freely, near an atom.
+    std::vector<std::uint32_t> find_turning_near(std::uint32_t atom) const {
+        std::vector<std::uint32_t> found;
+        grid_.visit_near(positions_[atom], influence, [&](std::uint32_t other) {
+            for (const std::uint32_t number : of_centre_.of(other)) {
+                if (!is_flip(groups_[number])) found.push_back(number);
+            }
+        });
+        std::sort(found.begin(), found.end());
+        return found;
+    }
+
+    void wake_around(std::uint32_t atom, std::size_t but) {
+        for (const std::uint32_t number : find_turning_near(atom)) {
+            if (number != but) is_waiting_[number] = true;
+        }
+    }
+
+    // Turns group after group until none has a reason to.
+    void settle(OrientReport& report) {
+        const auto waits = [&](std::size_t i) { return is_waiting_[i] && !is_flip(groups_[i]); };
+        report.is_settled = false;
+        for (int sweep = 0; sweep < settings_.sweep_limit; ++sweep) {
+            bool is_still = true;
+            for (std::size_t i = 0; i < groups_.size(); ++i) {
+                if (!waits(i)) continue;
+                is_waiting_[i] = false;
+                is_still = false;
+                change_ += turn(i);
+            }
+            if (is_still) {
+                report.is_settled = true;
+                return;
+            }
+            ++report.sweeps;
+        }
+    }
+
+    // Half a turn, and what is near turned to fit: kept if that gains enough.
+    void try_flip(std::size_t number, OrientReport& report) {
+        const Group& group = groups_[number];
+        std::vector<std::uint32_t> near;
+        for (const std::uint32_t atom : group.moved) {
+            if (graph_.is_hydrogen(atom)) continue;
+            const auto some = find_turning_near(atom);
+            near.insert(near.end(), some.begin(), some.end());
+        }
+        std::sort(near.begin(), near.end());
+        near.erase(std::unique(near.begin(), near.end()), near.end());
+        const std::vector<Vec3> start = places(group);
+        std::vector<std::vector<Vec3>> near_start;
+        for (const std::uint32_t other : near) near_start.push_back(places(groups_[other]));
+        const std::vector<bool> waiting = is_waiting_;
+
+        const double before = energy_now(group);
+        const Vec3 axis = positions_[group.centre] - positions_[*group.axis];
+        if (!(axis.norm() > 0)) return;
+        put(group, start, Quaternion(Eigen::AngleAxisd(pi, axis.normalized())));
+        double change = energy(group) - before;
+        for (int pass = 0; pass < 2; ++pass) {
+            for (const std::uint32_t other : near) change += turn(other);
+        }
+        report.groups[number].flip_gain = -change;
+        if (-change > settings_.flip_gain) {
+            report.groups[number].is_flipped = true;
+            change_ += change;
+            return;
+        }
+        put_back(group, start);
+        for (std::size_t i = 0; i < near.size(); ++i) put_back(groups_[near[i]], near_start[i]);
+        is_waiting_ = waiting;
+    }
+
+    const Topology& topology_;
+    const OrientSettings& settings_;
+    std::span<Vec3> positions_;
+    BondGraph graph_;
+    std::vector<Group> groups_;
+    std::vector<Quaternion> rotations_;
+    Lists excluded_, pairs14_;
+    double largest_reach_ = 0;  // Å
+    Grid grid_;
+    Lists of_centre_;  // groups by their centre
+    NonbondedSettings nonbonded_;
+
+    std::vector<bool> is_waiting_;  // groups whose surroundings changed
+    double change_ = 0;             // kcal/mol, so far
+    // Of the group at hand, for `energy`.
+    std::vector<std::vector<Partner>> partners_;  // by moved atom
+    std::vector<std::uint32_t> near_;
+};
+
+}  // namespace
+
+NonbondedSettings nonbonded_settings(const OrientSettings& settings) noexcept {
+    return {.electrostatics = ElectrostaticCutoff::ForceShift,
+            .van_der_waals = VanDerWaalsCutoff::Switch,
+            .switch_from = settings.switch_from,
+            .cutoff = settings.cutoff};
+}
+
+OrientReport orient_groups(const Connectivity& connectivity, const Topology& topology,
+                           std::span<const std::uint32_t> built, const OrientSettings& settings,
+                           std::span<Vec3> positions) {
+    PALPA_ASSERT(connectivity.names.size() == positions.size() &&
+                 topology.size() == positions.size());
+    return Orienter(connectivity, topology, built, settings, positions).run();
+}
+
+}  // namespace palpa
