@@ -1,5 +1,6 @@
 #include "charmm/build_topology.h"
 
+#include "charmm/find_parameters.h"
 #include "charmm/missing.h"
 #include "core/text.h"
 
@@ -21,58 +22,6 @@ namespace palpa {
 namespace {
 
 constexpr double radian_per_degree = std::numbers::pi / 180;
-
-template <std::size_t Size>
-using Types = std::array<std::string, Size>;
-
-template <class Map>
-const typename Map::mapped_type* find_in(const Map& map, const typename Map::key_type& key) {
-    const auto found = map.find(key);
-    return found == map.end() ? nullptr : &found->second;
-}
-
-const HarmonicParameter* find_parameter(const ForceField& force_field, const Types<2>& t) {
-    return find_in(force_field.bonds, in_order(t[0], t[1]));
-}
-
-const AngleParameter* find_parameter(const ForceField& force_field, const Types<3>& t) {
-    return find_in(force_field.angles, in_order(t));
-}
-
-const CmapParameter* find_parameter(const ForceField& force_field, const Types<8>& t) {
-    return find_in(force_field.cmaps, t);
-}
-
-bool is_linear(const ForceField& force_field, const Types<3>& t) {
-    const AngleParameter* const angle = find_parameter(force_field, t);
-    return angle && angle->value == 180;
-}
-
-const std::vector<DihedralTerm>* find_dihedral(const ForceField& force_field, const Types<4>& t) {
-    static const std::vector<DihedralTerm> nothing;
-    const std::array<Types<4>, 2> forms{{t, {"X", t[1], t[2], "X"}}};
-    for (const Types<4>& form : forms) {
-        if (const auto* const found = find_in(force_field.dihedrals, in_order(form))) return found;
-    }
-    const bool is_undefined =
-        is_linear(force_field, {t[0], t[1], t[2]}) || is_linear(force_field, {t[1], t[2], t[3]});
-    return is_undefined ? &nothing : nullptr;
-}
-
-const std::vector<DihedralTerm>* find_improper(const ForceField& force_field, const Types<4>& t) {
-    // CHARMM's forms, in its order; those that are no palindrome may match from either end.
-    const std::array<Types<4>, 7> forms{{t,
-                                         {t[0], "X", "X", t[3]},
-                                         {"X", t[1], t[2], t[3]},
-                                         {t[0], t[1], t[2], "X"},
-                                         {"X", t[1], t[2], "X"},
-                                         {"X", "X", t[2], t[3]},
-                                         {t[0], t[1], "X", "X"}}};
-    for (const Types<4>& form : forms) {
-        if (const auto* const found = find_in(force_field.impropers, in_order(form))) return found;
-    }
-    return nullptr;
-}
 
 // What stands as types in the key of a parameter.
 Types<2> types_of(const std::pair<std::string, std::string>& key) {
@@ -171,8 +120,7 @@ private:
         std::map<std::array<std::uint32_t, 2>, const HarmonicParameter*> known;
         for (const auto& atoms : connectivity_.bonds) {
             const auto* const bond =
-                find_once(atoms, known, "bond", force_field_.bonds,
-                          [](const auto& f, const Types<2>& t) { return find_parameter(f, t); });
+                find_once(atoms, known, "bond", force_field_.bonds, find_bond);
             if (bond) topology_.bonds.push_back({atoms[0], atoms[1], bond->k, bond->value});
         }
     }
@@ -181,8 +129,7 @@ private:
         std::map<std::array<std::uint32_t, 3>, const AngleParameter*> known;
         for (const auto& atoms : connectivity_.angles) {
             const auto* const angle =
-                find_once(atoms, known, "angle", force_field_.angles,
-                          [](const auto& f, const Types<3>& t) { return find_parameter(f, t); });
+                find_once(atoms, known, "angle", force_field_.angles, find_angle);
             if (!angle) continue;
             topology_.angles.push_back(
                 {atoms[0], atoms[1], atoms[2], angle->k, angle->value * radian_per_degree});
@@ -234,8 +181,7 @@ private:
         std::map<const CmapParameter*, std::uint32_t> index_of;
         for (const auto& atoms : connectivity_.cmaps) {
             const auto* const cmap =
-                find_once(atoms, known, "CMAP", force_field_.cmaps,
-                          [](const auto& f, const Types<8>& t) { return find_parameter(f, t); });
+                find_once(atoms, known, "CMAP", force_field_.cmaps, find_cmap);
             if (!cmap) continue;
             const auto [map, is_new] =
                 index_of.try_emplace(cmap, static_cast<std::uint32_t>(topology_.cmap_maps.size()));

@@ -3,22 +3,34 @@
 #include "charmm/build_topology.h"
 #include "charmm/complete.h"
 #include "charmm/generate.h"
+#include "charmm/missing.h"
+#include "charmm/used_parameters.h"
 #include "charmm/write_parameters.h"
 #include "core/files.h"
 #include "core/load_error.h"
 #include "formats/crd.h"
 #include "formats/pdb.h"
 #include "formats/psf.h"
+#include "prepare/align.h"
 #include "prepare/atom_names.h"
+#include "prepare/build_positions.h"
 #include "prepare/choose.h"
+#include "prepare/orient.h"
+#include "prepare/relax.h"
 #include "prepare/residue_names.h"
+#include "prepare/residues.h"
 #include "prepare/segments.h"
 
 #include <fmt/format.h>
 #include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 namespace palpa {
 namespace {
@@ -42,6 +54,126 @@ TypedSystem type_system(const ForceField& force_field, const NamedResidues& name
         build_connectivity(force_field, system.completed.structure, system.settings);
     system.topology = build_topology(system.connectivity, force_field);
     return system;
+}
+
+void check_size(const PreparedSystem& system) {
+    constexpr std::size_t most_atoms = 400'000;
+    const std::size_t atoms = system.structure.names.size();
+    if (atoms <= most_atoms) return;
+    throw LoadError({system.structure.file},
+                    fmt::format("{} atoms with those to be built; expected at most {}: leave out "
+                                "what is not needed with --without, waters first",
+                                atoms, most_atoms));
+}
+
+void report_charge(PreparedSystem& system) {
+    double charge = 0;
+    for (const double q : system.topology.charge) charge += q;
+    system.report.add("System", fmt::format("{} atoms, charge {:+.2f} e, {} bonds, {} angles, "
+                                            "{} dihedrals, {} impropers, {} CMAP terms",
+                                            system.structure.names.size(), charge,
+                                            system.connectivity.bonds.size(),
+                                            system.connectivity.angles.size(),
+                                            system.connectivity.dihedrals.size(),
+                                            system.connectivity.impropers.size(),
+                                            system.connectivity.cmaps.size()));
+}
+
+std::string atom_label(const PreparedSystem& system, std::uint32_t atom) {
+    return to_string(system.structure.names[atom]);
+}
+
+void build_missing(PreparedSystem& system, const std::vector<AtomCoordinate>& coordinates) {
+    const BuiltPositions built = build_positions(system.connectivity, system.topology, coordinates,
+                                                 system.structure.positions);
+    std::size_t guesses = 0, hydrogens = 0;
+    std::string guessed;
+    for (const PlacedAtom& placed : built.placed) {
+        const bool is_hydrogen = element_of(system.structure, placed.atom) == "H";
+        if (is_hydrogen) ++hydrogens;
+        if (is_hydrogen || placed.by != PlacedBy::Guess) continue;
+        if (++guesses <= 5) guessed += fmt::format(" {},", atom_label(system, placed.atom));
+    }
+    system.report.add("Atoms built", fmt::format("{} hydrogens, {} heavy atoms", hydrogens,
+                                                 built.placed.size() - hydrogens));
+    if (guesses > 0) {
+        guessed.pop_back();
+        system.report.warn(fmt::format("{} heavy atoms were built without a dihedral from an IC "
+                                       "table:{}",
+                                       guesses, guessed));
+    }
+    if (built.unplaced.empty()) return;
+    Missing missing;
+    for (const std::uint32_t atom : built.unplaced) {
+        missing.add({system.structure.file, system.structure.lines[atom], 0},
+                    fmt::format("no place for {}: nothing that it is bonded to has one",
+                                atom_label(system, atom)));
+    }
+    missing.throw_if_any();
+}
+
+void orient(PreparedSystem& system, std::span<const std::uint32_t> added,
+            const PrepareSettings& settings) {
+    OrientSettings orient_settings;
+    orient_settings.may_flip = settings.flips;
+    const OrientReport oriented =
+        orient_groups(system.connectivity, system.topology, added, orient_settings,
+                      system.structure.positions);
+    constexpr std::string_view heading = "Hydrogen bonds";
+    system.report.add(heading, fmt::format("{} groups turned to their lowest energy, {:.1f} "
+                                           "kcal/mol gained in {} sweeps",
+                                           oriented.groups.size(), -oriented.energy_change,
+                                           oriented.sweeps));
+    for (const OrientedGroup& group : oriented.groups) {
+        const bool is_amide = group.kind == OrientedGroup::Kind::Amide;
+        if (group.kind != OrientedGroup::Kind::Imidazole && !is_amide) continue;
+        const AtomName& name = system.structure.names[group.atom];
+        if (!group.is_flipped && group.flip_gain < 0.5) continue;
+        system.report.add(
+            heading, fmt::format("{} {} {}: {} {}, {:.1f} kcal/mol", name.residue, name.segment,
+                                 name.number, is_amide ? "amide" : "imidazole",
+                                 group.is_flipped ? "turned over" : "left, turning it over gains",
+                                 group.flip_gain));
+    }
+    if (!oriented.is_settled) {
+        system.report.warn("the search for hydrogen bonds stopped before it had settled");
+    }
+}
+
+std::string contact_label(const PreparedSystem& system, const Contact& contact) {
+    return fmt::format("{:.2f} Å, {} and {}", contact.distance, atom_label(system, contact.a),
+                       atom_label(system, contact.b));
+}
+
+void relax_system(PreparedSystem& system, std::span<const std::uint32_t> added,
+                  const PrepareProgress& progress) {
+    const std::size_t count = system.structure.names.size();
+    std::vector<std::uint8_t> is_built(count, 0), is_hydrogen(count, 0);
+    for (const std::uint32_t atom : added) is_built[atom] = 1;
+    for (std::size_t i = 0; i < count; ++i) {
+        is_hydrogen[i] = element_of(system.structure, i) == "H" ? 1 : 0;
+    }
+    const RelaxReport relaxed =
+        relax(system.topology, is_built, is_hydrogen, system.structure.positions,
+              [&](double share) { progress("relaxing clashes", share); });
+    constexpr std::string_view heading = "Relaxation";
+    system.report.add(heading,
+                      fmt::format("{:.2f} to {:.2f} kcal/mol in {} steps (cutoff 9 Å, the file's "
+                                  "heavy atoms held by 5 kcal/mol/Å^2), rms force {:.2f} "
+                                  "kcal/mol/Å left",
+                                  relaxed.before.total(), relaxed.after.total(), relaxed.steps,
+                                  relaxed.rms_force));
+    system.report.add(heading, fmt::format("closest contact before: {}",
+                                           contact_label(system, relaxed.closest_before)));
+    system.report.add(heading, fmt::format("closest contact after: {}",
+                                           contact_label(system, relaxed.closest_after)));
+    system.report.add(heading, fmt::format("largest move of an atom of the file: {:.2f} Å, {}",
+                                           relaxed.largest_move.distance,
+                                           atom_label(system, relaxed.largest_move.a)));
+    if (relaxed.closest_after.distance > 0 && relaxed.closest_after.distance < 1.5) {
+        system.report.warn(fmt::format("a clash is left: {}",
+                                       contact_label(system, relaxed.closest_after)));
+    }
 }
 
 void create_folder(const std::filesystem::path& folder) {
@@ -72,6 +204,18 @@ PreparedSystem prepare_system(const ForceField& force_field, const Structure& st
     result.structure = std::move(system.completed.structure);
     result.connectivity = std::move(system.connectivity);
     result.topology = std::move(system.topology);
+    result.parameters = keep_used_parameters(force_field, result.connectivity);
+    check_size(result);
+    report_charge(result);
+
+    progress("building missing atoms", 0);
+    const std::vector<AtomCoordinate> coordinates =
+        find_internal_coordinates(force_field, result.structure, system.settings);
+    build_missing(result, coordinates);
+    progress("orienting hydrogens", 0);
+    orient(result, system.completed.added, settings);
+    if (settings.relaxes) relax_system(result, system.completed.added, progress);
+    if (settings.align) align(result.structure, *settings.align, result.structure.positions);
     return result;
 }
 

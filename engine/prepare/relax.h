@@ -1,0 +1,40 @@
+// Takes clashes out of a system whose missing atoms have just been built.
+#pragma once
+#include "charmm/topology.h"
+#include "forces/force_field.h"
+#include "math/vec.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace palpa {
+
+// Two atoms that are more than three bonds apart, or in different molecules.
+struct Contact {
+    std::uint32_t a = 0, b = 0;
+    double distance = 0;  // Å
+};
+
+struct RelaxReport {
+    EnergyTerms before, after;  // kcal/mol, force-shifted and force-switched at 9 Å
+    std::size_t steps = 0;
+    double rms_force = 0;  // at the end, kcal/mol/Å
+    Contact closest_before, closest_after;
+    Contact largest_move;  // of a given heavy atom, a; b unused
+};
+
+// First the built atoms alone, then all of them, the given heavy atoms held by 5 kcal/mol/Å^2 to
+// where the file has them. Energies fall from step to step (forces/minimise.h). `is_built`: an entry
+// per atom. Steps are limited by size: up to 300 each for systems below 27,000 atoms, 50 at least.
+RelaxReport relax(const Topology& topology, std::span<const std::uint8_t> is_built,
+                  std::span<const std::uint8_t> is_hydrogen, std::vector<Vec3>& positions,
+                  const std::function<void(double share)>& progress);
+
+// The closest of all pairs that interact, but for those three bonds apart; 0 Å apart and atom 0
+// twice if no pair is nearer than 4 Å.
+Contact find_closest_contact(const Topology& topology, std::span<const Vec3> positions);
+
+}  // namespace palpa
