@@ -634,7 +634,7 @@ private:
         const std::vector<bool> waiting = is_waiting_;
 
         const double before = energy_now(group);
-        const Vec3 axis = positions_[group.centre] - positions_[*group.axis];
+        const Vec3 axis = positions_[group.centre] - positions_[group.axis.value_or(group.centre)];
         if (!(axis.norm() > 0)) return false;
         put(group, start, Quaternion(Eigen::AngleAxisd(pi, axis.normalized())));
         double change = energy(group, Extent::All) - before;
