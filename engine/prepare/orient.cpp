@@ -21,9 +21,11 @@ using std::numbers::pi;
 using Quaternion = Eigen::Quaterniond;
 using Kind = OrientedGroup::Kind;
 
-constexpr double least_gain = 1e-6;    // kcal/mol; below it nothing has changed
-constexpr double least_turn = 0.02;    // Å; below it others need not look again
-constexpr double influence = 6;        // Å; within it others look again
+constexpr double least_gain = 1e-3;  // kcal/mol; below it nothing has changed
+constexpr double least_turn = 0.05;  // Å; below it others need not look again
+constexpr double influence = 6;      // Å; within it others look again
+constexpr double near_range = 6;     // Å; all that a first look at a water's rotations counts
+constexpr int looks = 2;             // how often a water looks at all rotations, not at small ones
 constexpr double grid_step = pi / 18;  // rad
 constexpr double fine_step = pi / 720;
 
@@ -273,7 +275,8 @@ public:
           grid_(find_anchors()),
           of_centre_(find_groups_of_centres()),
           nonbonded_(nonbonded_settings(settings)),
-          is_waiting_(groups_.size(), true) {
+          is_waiting_(groups_.size(), true),
+          looks_(groups_.size(), 0) {
         add_terms();
     }
 
@@ -288,10 +291,11 @@ public:
             entry.energy_before = energy_now(group);
         }
         settle(report);
+        bool has_flipped = false;
         for (std::size_t i = 0; i < groups_.size(); ++i) {
-            if (is_flip(groups_[i])) try_flip(i, report);
+            if (is_flip(groups_[i])) has_flipped = try_flip(i, report) || has_flipped;
         }
-        settle(report);
+        if (has_flipped) settle(report);
         for (std::size_t i = 0; i < groups_.size(); ++i) {
             report.groups[i].dihedral_after = dihedral(groups_[i]);
             report.groups[i].energy_after = energy_now(groups_[i]);
@@ -307,6 +311,12 @@ private:
         double charges;  // C q q', kcal Å/mol
         double epsilon, rmin2;
     };
+
+    struct Partners {
+        std::vector<Partner> all;
+        std::size_t near = 0;  // how many, the first ones, are within near_range of the centre
+    };
+    enum class Extent { Near, All };
 
     static bool is_flip(const Group& group) noexcept {
         return group.kind == Kind::Amide || group.kind == Kind::Imidazole;
@@ -389,14 +399,14 @@ private:
     // things stand. Those out of reach of the cutoff whatever the group does are left out.
     void gather(const Group& group) {
         if (partners_.size() < group.moved.size()) partners_.resize(group.moved.size());
-        for (std::vector<Partner>& list : partners_) list.clear();
+        for (Partners& list : partners_) list.all.clear();
         const auto is_moved = [&](std::uint32_t atom) {
             return std::find(group.moved.begin(), group.moved.end(), atom) != group.moved.end();
         };
         const auto add = [&](std::size_t slot, std::uint32_t atom, const LennardJonesTable& table) {
             const std::uint32_t own = group.moved[slot];
             const LennardJonesPair& pair = table.row(topology_.type[own])[topology_.type[atom]];
-            partners_[slot].push_back(
+            partners_[slot].all.push_back(
                 {positions_[atom],
                  nonbonded_.coulomb_constant * topology_.charge[own] * topology_.charge[atom],
                  pair.epsilon, pair.rmin * pair.rmin});
@@ -417,6 +427,11 @@ private:
             for (const std::uint32_t atom : pairs14_.of(group.moved[slot])) {
                 if (!is_moved(atom)) add(slot, atom, topology_.lennard_jones14);
             }
+            std::vector<Partner>& all = partners_[slot].all;
+            const auto near_end = std::partition(all.begin(), all.end(), [&](const Partner& other) {
+                return (other.place - centre).squaredNorm() < near_range * near_range;
+            });
+            partners_[slot].near = static_cast<std::size_t>(near_end - all.begin());
         }
     }
 
@@ -440,11 +455,15 @@ private:
     }
 
     // Of what was gathered, at the group's present positions.
-    double energy(const Group& group) const noexcept {
+    double energy(const Group& group, Extent extent) const noexcept {
         double sum = 0;
         for (std::size_t slot = 0; slot < group.moved.size(); ++slot) {
             const Vec3 place = positions_[group.moved[slot]];
-            for (const Partner& partner : partners_[slot]) sum += pair_energy(place, partner);
+            const std::span<const Partner> all = partners_[slot].all;
+            for (const Partner& partner :
+                 extent == Extent::All ? all : all.first(partners_[slot].near)) {
+                sum += pair_energy(place, partner);
+            }
         }
         const auto angle = [&](const auto& term) {
             return evaluate_torsion(positions_[term.a], positions_[term.b], positions_[term.c],
@@ -465,7 +484,7 @@ private:
 
     double energy_now(const Group& group) {
         gather(group);
-        return energy(group);
+        return energy(group, Extent::All);
     }
 
     void put(const Group& group, std::span<const Vec3> start, const Quaternion& rotation) noexcept {
@@ -482,56 +501,78 @@ private:
         return result;
     }
 
-    // Turns the group to where its energy is lowest; returns the change, 0 if it stayed.
-    double turn(std::size_t number) {
-        const Group& group = groups_[number];
-        gather(group);
-        const std::vector<Vec3> start = places(group);
-        const double before = energy(group);
-        double best = before;
-        Quaternion best_rotation = Quaternion::Identity();
-        const auto attempt = [&](const Quaternion& rotation) {
-            put(group, start, rotation);
-            const double here = energy(group);
-            if (!(here < best)) return false;
-            best = here;
-            best_rotation = rotation;
-            return true;
-        };
-        std::vector<Vec3> axes{Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
-        double step = pi / 12;
-        if (group.axis) {
-            const Vec3 axis = positions_[group.centre] - positions_[*group.axis];
-            axes = {axis.norm() > 0 ? Vec3(axis.normalized()) : Vec3::UnitX()};
-            step = grid_step / 2;
-            for (int i = 1; i * grid_step < group.period - 1e-9; ++i) {
-                attempt(Quaternion(Eigen::AngleAxisd(i * grid_step, axes[0])));
-            }
-        } else {
-            for (const Quaternion& rotation : rotations_) attempt(rotation);
+    // The best rotation of a group so far, from where it started.
+    struct Search {
+        std::vector<Vec3> start;
+        double energy;
+        Quaternion rotation = Quaternion::Identity();
+    };
+
+    bool attempt(const Group& group, const Quaternion& rotation, Extent extent, Search& search) {
+        put(group, search.start, rotation);
+        const double here = energy(group, extent);
+        if (!(here < search.energy)) return false;
+        search.energy = here;
+        search.rotation = rotation;
+        return true;
+    }
+
+    void look_around_axis(const Group& group, const Vec3& axis, Search& search) {
+        for (int i = 1; i * grid_step < group.period - 1e-9; ++i) {
+            attempt(group, Quaternion(Eigen::AngleAxisd(i * grid_step, axis)), Extent::All, search);
         }
+    }
+
+    void look_at_rotations(const Group& group, Search& search) {
+        Search near{search.start, energy(group, Extent::Near)};
+        for (const Quaternion& rotation : rotations_) {
+            attempt(group, rotation, Extent::Near, near);
+        }
+        attempt(group, near.rotation, Extent::All, search);
+    }
+
+    void refine(const Group& group, std::span<const Vec3> axes, double step, Search& search) {
         for (int tries = 0; step > fine_step && tries < 64; ++tries) {
             bool is_better = false;
             for (const Vec3& axis : axes) {
                 for (const double angle : {step, -step}) {
                     const Quaternion rotation =
-                        (Quaternion(Eigen::AngleAxisd(angle, axis)) * best_rotation).normalized();
-                    is_better = attempt(rotation) || is_better;
+                        (Quaternion(Eigen::AngleAxisd(angle, axis)) * search.rotation).normalized();
+                    is_better = attempt(group, rotation, Extent::All, search) || is_better;
                 }
             }
             if (!is_better) step /= 2;
         }
-        if (best > before - least_gain) {
+    }
+
+    // Turns the group to where its energy is lowest; returns the change, 0 if it stayed.
+    double turn(std::size_t number) {
+        const Group& group = groups_[number];
+        gather(group);
+        Search search{places(group), energy(group, Extent::All)};
+        const std::vector<Vec3> start = search.start;
+        const double before = search.energy;
+        if (group.axis) {
+            const Vec3 bond = positions_[group.centre] - positions_[*group.axis];
+            const Vec3 axis = bond.norm() > 0 ? Vec3(bond.normalized()) : Vec3::UnitX();
+            look_around_axis(group, axis, search);
+            refine(group, std::array{axis}, grid_step / 2, search);
+        } else {
+            if (looks_[number]++ < looks) look_at_rotations(group, search);
+            refine(group, std::array<Vec3, 3>{Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}, pi / 12,
+                   search);
+        }
+        if (search.energy > before - least_gain) {
             put_back(group, start);
             return 0;
         }
-        put(group, start, best_rotation);
+        put(group, start, search.rotation);
         double moved = 0;
         for (std::size_t i = 0; i < start.size(); ++i) {
             moved = std::max(moved, (positions_[group.moved[i]] - start[i]).norm());
         }
         if (moved > least_turn) wake_around(group.centre, number);
-        return best - before;
+        return search.energy - before;
     }
 
     void put_back(const Group& group, std::span<const Vec3> start) noexcept {
@@ -577,7 +618,7 @@ private:
     }
 
     // Half a turn, and what is near turned to fit: kept if that gains enough.
-    void try_flip(std::size_t number, OrientReport& report) {
+    bool try_flip(std::size_t number, OrientReport& report) {
         const Group& group = groups_[number];
         std::vector<std::uint32_t> near;
         for (const std::uint32_t atom : group.moved) {
@@ -593,10 +634,10 @@ private:
         const std::vector<bool> waiting = is_waiting_;
 
         const double before = energy_now(group);
-        const Vec3 axis = positions_[group.centre] - positions_[*group.axis];
-        if (!(axis.norm() > 0)) return;
+        const Vec3 axis = positions_[group.centre] - positions_[group.axis.value_or(group.centre)];
+        if (!(axis.norm() > 0)) return false;
         put(group, start, Quaternion(Eigen::AngleAxisd(pi, axis.normalized())));
-        double change = energy(group) - before;
+        double change = energy(group, Extent::All) - before;
         for (int pass = 0; pass < 2; ++pass) {
             for (const std::uint32_t other : near) change += turn(other);
         }
@@ -604,11 +645,12 @@ private:
         if (-change > settings_.flip_gain) {
             report.groups[number].is_flipped = true;
             change_ += change;
-            return;
+            return true;
         }
         put_back(group, start);
         for (std::size_t i = 0; i < near.size(); ++i) put_back(groups_[near[i]], near_start[i]);
         is_waiting_ = waiting;
+        return false;
     }
 
     const Topology& topology_;
@@ -624,9 +666,10 @@ private:
     NonbondedSettings nonbonded_;
 
     std::vector<bool> is_waiting_;  // groups whose surroundings changed
+    std::vector<int> looks_;        // by group, see `looks`
     double change_ = 0;             // kcal/mol, so far
     // Of the group at hand, for `energy`.
-    std::vector<std::vector<Partner>> partners_;  // by moved atom
+    std::vector<Partners> partners_;  // by moved atom
     std::vector<std::uint32_t> near_;
 };
 
