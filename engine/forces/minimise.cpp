@@ -148,11 +148,21 @@ private:
     double boldness_ = 1;  // of steps without a memory
 };
 
-double largest_norm(const Vector& vector) {
-    double largest2 = 0;
-    for (Eigen::Index i = 0; i < vector.size(); i += 3)
-        largest2 = std::max(largest2, vector.segment<3>(i).squaredNorm());
-    return std::sqrt(largest2);
+// A direction along which no atom moves farther than the largest step. Each atom's part is cut on
+// its own, so that one with far to go does not hold back the others; all are scaled alike where
+// that points farther down.
+Vector bound_direction(const Vector& direction, const std::vector<Vec3>& forces,
+                       double largest_step) {
+    Vector cut = direction;
+    double scale = 1;
+    for (Eigen::Index i = 0; i < cut.size(); i += 3) {
+        const double length = cut.segment<3>(i).norm();
+        if (!(length > largest_step)) continue;
+        cut.segment<3>(i) *= largest_step / length;
+        scale = std::min(scale, largest_step / length);
+    }
+    const double slope = scale * flat(forces).dot(direction);
+    return flat(forces).dot(cut) >= slope ? cut : Vector(scale * direction);
 }
 
 void place_along(const Point& from, const Vector& direction, double length,
@@ -168,12 +178,12 @@ void place_along(const Point& from, const Vector& direction, double length,
 // as far as the slope lets one hope (Armijo's condition). Whether there is one; it is in `to`,
 // then.
 bool find_lower(Landscape& landscape, const Point& from, const Vector& direction,
-                const MinimiseSettings& settings, const Restraints& restraints, Point& to) {
+                const Restraints& restraints, Point& to) {
     constexpr int tries = 30;
     constexpr double share = 1e-4;
     const double slope = flat(from.forces).dot(direction);  // by which the energy falls
     if (!(slope > 0)) return false;
-    double length = std::min(1.0, settings.largest_step / largest_norm(direction));
+    double length = 1;
     for (int i = 0; i < tries; ++i) {
         place_along(from, direction, length, restraints.is_fixed, to);
         landscape.evaluate(to);
@@ -222,8 +232,9 @@ MinimiseReport minimise(const Topology& topology, const MinimiseSettings& settin
     measure_forces(here, restraints, report);
     while (report.rms_force > settings.force_tolerance && report.steps < settings.steps) {
         const Vector compliance = find_compliance(here.forces, settings.largest_step);
-        const Vector direction = memory.find_direction(here.forces, compliance);
-        if (!find_lower(landscape, here, direction, settings, restraints, next)) {
+        const Vector direction = bound_direction(memory.find_direction(here.forces, compliance),
+                                                 here.forces, settings.largest_step);
+        if (!find_lower(landscape, here, direction, restraints, next)) {
             if (memory.is_empty()) {
                 report.end = MinimiseEnd::Stuck;
                 break;

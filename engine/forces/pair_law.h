@@ -30,13 +30,13 @@ inline Radial lennard_jones(double inverse_r2, const LennardJonesPair& pair) noe
 
 // The functions of `ElectrostaticCutoff` and `VanDerWaalsCutoff`. What has a form of its own from m
 // on is taken at t = max(r, m), where the forms meet.
-template <ElectrostaticCutoff electrostatic_end, VanDerWaalsCutoff van_der_waals_end,
-          bool distance_dielectric>
+template <ElectrostaticCutoff ElectrostaticEnd, VanDerWaalsCutoff VanDerWaalsEnd,
+          bool DistanceDielectric>
 class PairLaw {
 public:
     // Whether pairs have nothing from the cutoff on.
-    static constexpr bool ends = electrostatic_end != ElectrostaticCutoff::None &&
-                                 van_der_waals_end != VanDerWaalsCutoff::None;
+    static constexpr bool ends =
+        ElectrostaticEnd != ElectrostaticCutoff::None && VanDerWaalsEnd != VanDerWaalsCutoff::None;
 
     explicit PairLaw(const NonbondedSettings& settings) noexcept
         : reach2(ends ? settings.cutoff * settings.cutoff
@@ -62,7 +62,7 @@ private:
     // Of unit charges, without a cutoff.
     static Radial bare(double inverse_r) noexcept {
         const double inverse_r2 = inverse_r * inverse_r;
-        if constexpr (distance_dielectric) return {inverse_r2, 2.0 * inverse_r2 * inverse_r2};
+        if constexpr (DistanceDielectric) return {inverse_r2, 2.0 * inverse_r2 * inverse_r2};
         return {inverse_r, inverse_r * inverse_r2};
     }
 
@@ -80,17 +80,17 @@ private:
 
     Radial electrostatic(double r2, double inverse_r) const noexcept {
         const Radial unit = bare(inverse_r);
-        if constexpr (electrostatic_end == ElectrostaticCutoff::None) return unit;
+        if constexpr (ElectrostaticEnd == ElectrostaticCutoff::None) return unit;
         if constexpr (!ends) {
             if (r2 >= c2_) return {0, 0};
         }
-        if constexpr (electrostatic_end == ElectrostaticCutoff::Switch) {
+        if constexpr (ElectrostaticEnd == ElectrostaticCutoff::Switch) {
             return switched(r2, unit);
-        } else if constexpr (electrostatic_end == ElectrostaticCutoff::Shift) {
+        } else if constexpr (ElectrostaticEnd == ElectrostaticCutoff::Shift) {
             const double left = 1.0 - r2 * inverse_c2_;
             return {unit.energy * left * left,
                     unit.gradient * left * left + 4.0 * inverse_c2_ * unit.energy * left};
-        } else if constexpr (electrostatic_end == ElectrostaticCutoff::ForceShift) {
+        } else if constexpr (ElectrostaticEnd == ElectrostaticCutoff::ForceShift) {
             const double left = 1.0 - r2 * inverse_r / c_;
             return {unit.energy * left * left, unit.gradient - unit.energy * inverse_c2_};
         } else {
@@ -106,7 +106,7 @@ private:
         const double s2 = 6.0 * c2_ * m2_ * inverse_width_;
         const double s4 = -3.0 * (c2_ + m2_) * inverse_width_;
         const double s6 = 2.0 * inverse_width_;
-        if constexpr (distance_dielectric) {  // force 2/r^3
+        if constexpr (DistanceDielectric) {  // force 2/r^3
             return s0 * (inverse_r * inverse_r - inverse_c2_) + s2 * std::log(c2_ / r2) +
                    s4 * (c2_ - r2) + s6 / 2.0 * (c2_ * c2_ - r2 * r2);
         }
@@ -117,11 +117,11 @@ private:
 
     Radial van_der_waals(double r2, double inverse_r, const LennardJonesPair& pair) const noexcept {
         const Radial whole = lennard_jones(inverse_r * inverse_r, pair);
-        if constexpr (van_der_waals_end == VanDerWaalsCutoff::None) return whole;
+        if constexpr (VanDerWaalsEnd == VanDerWaalsCutoff::None) return whole;
         if constexpr (!ends) {
             if (r2 >= c2_) return {0, 0};
         }
-        if constexpr (van_der_waals_end == VanDerWaalsCutoff::Switch) {
+        if constexpr (VanDerWaalsEnd == VanDerWaalsCutoff::Switch) {
             return switched(r2, whole);
         } else {
             const double inverse_t = std::min(inverse_r, 1.0 / m_);
@@ -152,25 +152,25 @@ private:
 };
 
 // `sum` called with the law that the settings ask for.
-template <ElectrostaticCutoff electrostatic_end, VanDerWaalsCutoff van_der_waals_end, class Sum>
+template <ElectrostaticCutoff ElectrostaticEnd, VanDerWaalsCutoff VanDerWaalsEnd, class Sum>
 auto with_dielectric(const NonbondedSettings& settings, const Sum& sum) noexcept {
     if (settings.distance_dielectric)
-        return sum(PairLaw<electrostatic_end, van_der_waals_end, true>(settings));
-    return sum(PairLaw<electrostatic_end, van_der_waals_end, false>(settings));
+        return sum(PairLaw<ElectrostaticEnd, VanDerWaalsEnd, true>(settings));
+    return sum(PairLaw<ElectrostaticEnd, VanDerWaalsEnd, false>(settings));
 }
 
-template <ElectrostaticCutoff electrostatic_end, class Sum>
+template <ElectrostaticCutoff ElectrostaticEnd, class Sum>
 auto with_van_der_waals(const NonbondedSettings& settings, const Sum& sum) noexcept {
     using enum VanDerWaalsCutoff;
     switch (settings.van_der_waals) {
         case Switch:
-            return with_dielectric<electrostatic_end, Switch>(settings, sum);
+            return with_dielectric<ElectrostaticEnd, Switch>(settings, sum);
         case ForceSwitch:
-            return with_dielectric<electrostatic_end, ForceSwitch>(settings, sum);
+            return with_dielectric<ElectrostaticEnd, ForceSwitch>(settings, sum);
         case None:
             break;
     }
-    return with_dielectric<electrostatic_end, None>(settings, sum);
+    return with_dielectric<ElectrostaticEnd, None>(settings, sum);
 }
 
 template <class Sum>
