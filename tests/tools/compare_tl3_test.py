@@ -1,4 +1,4 @@
-"""TL-3 as shipped: neutral groups, names and bonds of one half as of the other; what is compared."""
+"""TL-3 as shipped: neutral groups, its formula and bonds; and what tools/compare_tl3 prints."""
 import os
 import re
 import subprocess
