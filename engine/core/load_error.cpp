@@ -1,6 +1,7 @@
 #include "core/load_error.h"
 
 #include <fmt/format.h>
+#include <utility>
 
 namespace palpa {
 
@@ -11,6 +12,11 @@ std::string to_string(const TextPlace& place) {
 }
 
 LoadError::LoadError(const TextPlace& place, const std::string& message)
-    : std::runtime_error(to_string(place) + ": " + message) {}
+    : LoadError(place, message, {}) {}
+
+LoadError::LoadError(const TextPlace& place, const std::string& message,
+                     std::vector<std::string> further)
+    : std::runtime_error(to_string(place) + ": " + message),
+      further_(std::make_shared<const std::vector<std::string>>(std::move(further))) {}
 
 }  // namespace palpa

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 using namespace palpa;
 
@@ -21,4 +22,13 @@ TEST_CASE("a load error tells its place before its message", "[core][load_error]
     const std::runtime_error& as_any_handler_sees_it = error;
 
     CHECK(std::string(as_any_handler_sees_it.what()) == "water.str:3: no {} here");
+}
+
+TEST_CASE("a load error keeps the problems that its message only counts", "[core][load_error]") {
+    const LoadError error({"a.pdb", 3, 0}, "this; and 2 more", {"that", "the other"});
+    const LoadError copy = error;
+
+    CHECK(std::string(copy.what()) == "a.pdb:3: this; and 2 more");
+    CHECK(copy.further() == std::vector<std::string>{"that", "the other"});
+    CHECK(LoadError({"a.pdb"}, "this").further().empty());
 }
