@@ -176,7 +176,7 @@ TEST_CASE("two CYS without HG1 are bonded where their sulphurs are near, or as n
               "'HG1'; `palpa prepare` adds atoms");
     }
     SECTION("named, as far apart as they may be") {
-        structure.positions[1].x() = 3.9;
+        structure.positions[1].x() = 2.9;
         const GenerateSettings settings{.segments = {},
                                         .patches = {{"DISU", {{"P", "1"}, {"Q", "1"}}}}};
         CHECK(build_connectivity(bead_force_field(), structure, settings).bonds.size() == 1);
@@ -341,19 +341,19 @@ TEST_CASE("a bond over a gap is told with both atoms", "[charmm][generate]") {
 
     SECTION("of a chain") {
         CHECK(error() ==
-              "s.pdb:2: a bond of 5.2 Å from P BEA 1 B to P BEA 2 A of line 5; expected at most 4 "
+              "s.pdb:2: a bond of 5.2 Å from P BEA 1 B to P BEA 2 A of line 5; expected at most 3 "
               "Å: where a chain has a gap there are two segments, or a TER line between them");
     }
     SECTION("of a residue") {
         structure.positions[5].x() = 0;
-        CHECK_THAT(error(), Contains("from P BEA 2 A to P BEA 2 B of line 6; expected at most 4 Å: "
+        CHECK_THAT(error(), Contains("from P BEA 2 A to P BEA 2 B of line 6; expected at most 3 Å: "
                                      "the atoms of a residue stand together"));
     }
     SECTION("of a patch") {
         structure = structure_of({{"P", "CYS", "1", "SG"}, {"Q", "CYS", "1", "SG"}});
-        structure.positions[1].x() = 4.1;
+        structure.positions[1].x() = 3.1;
         CHECK_THAT(error({.segments = {}, .patches = {{"DISU", {{"P", "1"}, {"Q", "1"}}}}}),
-                   StartsWith("s.pdb:1: a bond of 4.1 Å from P CYS 1 SG to Q CYS 1 SG of line 2") &&
+                   StartsWith("s.pdb:1: a bond of 3.1 Å from P CYS 1 SG to Q CYS 1 SG of line 2") &&
                        Contains("a patch is for residues that touch"));
     }
     SECTION("not where a position is unknown") {
