@@ -291,6 +291,7 @@ int main(int argc, char** argv) {
         return bad_input;
     } catch (const palpa::LoadError& error) {
         fmt::print(stderr, "{}\n", error.what());
+        for (const std::string& problem : error.further()) fmt::print(stderr, "{}\n", problem);
         return bad_input;
     } catch (const std::exception& error) {
         fmt::print(stderr, "palpa: internal error: {}\n", error.what());

@@ -33,6 +33,7 @@ const ResidueAtom* find_template(const ForceField& force_field, const AtomName& 
     for (const ResidueAtom& a : residue->atoms) known.emplace_back(a.name);
     missing.add(place, fmt::format("residue '{}' of {} has no atom '{}' (only {})", name.residue,
                                    to_string(residue->place), name.atom, fmt::join(known, ", ")));
+    missing.advise(rename_advice);
     return nullptr;
 }
 
@@ -79,19 +80,15 @@ void add_atom(const ForceField& force_field, const NewAtom& atom, const TextPlac
               AtomTable& table, Missing& missing) {
     const auto* const type = find_type(force_field, atom.type, place, missing);
     const std::string& name = type ? type->first : atom.type;
-    const auto nonbonded = force_field.nonbonded.find(name);
-    if (nonbonded == force_field.nonbonded.end()) {
-        missing.add(place, fmt::format("atom type '{}' has no NONBONDED parameters in {}", name,
-                                       fmt::join(force_field.files, ", ")));
-    }
-    if (!type || nonbonded == force_field.nonbonded.end()) return;
+    const NonbondedType* const nonbonded = find_nonbonded(force_field, name, place, missing);
+    if (!type || !nonbonded) return;
     table.names.push_back(atom.name);
     table.positions.push_back(atom.position);
     table.element.push_back(type->second.element);
     table.mass.push_back(atom.mass.value_or(type->second.mass));
     table.charge.push_back(atom.charge);
-    table.sqrt_epsilon.push_back(std::sqrt(nonbonded->second.epsilon));
-    table.half_rmin.push_back(nonbonded->second.half_rmin);
+    table.sqrt_epsilon.push_back(std::sqrt(nonbonded->epsilon));
+    table.half_rmin.push_back(nonbonded->half_rmin);
     table.type.push_back(add_type(name, table));
 }
 

@@ -56,7 +56,7 @@ public:
 
     Topology build() {
         add_types();
-        missing_.throw_if_any();
+        check_parameters();
         topology_.charge = connectivity_.charge;
         add_bonds();
         add_angles();
@@ -85,14 +85,19 @@ private:
     std::uint32_t add_type(const std::string& called, const TextPlace& place) {
         const auto* const type = find_type(force_field_, called, place, missing_);
         const std::string& name = type ? type->first : called;
-        if (type && !force_field_.nonbonded.contains(name)) {
-            missing_.add(place, fmt::format("atom type '{}' has no NONBONDED parameters in {}",
-                                            name, fmt::join(force_field_.files, ", ")));
-        }
+        if (type) find_nonbonded(force_field_, name, place, missing_);
         const auto found = std::find(type_names_.begin(), type_names_.end(), name);
         const auto index = static_cast<std::uint32_t>(found - type_names_.begin());
-        if (found == type_names_.end()) type_names_.push_back(name);
+        if (found == type_names_.end()) {
+            type_names_.push_back(name);
+            type_is_known_.push_back(type != nullptr);
+        }
         return index;
+    }
+
+    // Without any parameters every term would lack its own.
+    void check_parameters() const {
+        if (force_field_.bonds.empty() && force_field_.nonbonded.empty()) missing_.throw_if_any();
     }
 
     // The parameter of some atoms, looked up once for each tuple of types; null, noted as missing
@@ -105,6 +110,11 @@ private:
         for (std::size_t i = 0; i < Size; ++i) indices[i] = topology_.type[atoms[i]];
         const auto [entry, is_new] = known.try_emplace(indices, nullptr);
         if (!is_new) return entry->second;
+        // An unknown type has been told.
+        if (!std::all_of(indices.begin(), indices.end(),
+                         [&](std::uint32_t type) { return type_is_known_[type]; })) {
+            return nullptr;
+        }
         Types<Size> types;
         for (std::size_t i = 0; i < Size; ++i) types[i] = type_names_[indices[i]];
         entry->second = find(force_field_, types);
@@ -217,6 +227,7 @@ private:
     const ForceField& force_field_;
     Missing missing_;
     std::vector<std::string> type_names_;  // of the types that occur, by index
+    std::vector<bool> type_is_known_;      // likewise
     Topology topology_;
 };
 

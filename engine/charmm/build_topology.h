@@ -13,8 +13,8 @@ namespace palpa {
 // has no value, and needs no parameters. Terms that are nothing whatever the coordinates,
 // dihedrals with k = 0 and the like, are left out; bonds stay, they exclude pairs.
 //
-// Every parameter that is missing is gathered, with one of near types, before a LoadError names
-// them all.
+// Every parameter that is missing is gathered, bonded and not, with one of near types, before a
+// LoadError names them all.
 Topology build_topology(const Connectivity& connectivity, const ForceField& force_field);
 
 }  // namespace palpa

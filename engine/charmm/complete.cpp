@@ -1,6 +1,7 @@
 #include "charmm/complete.h"
 
 #include "charmm/missing.h"
+#include "charmm/residue_checks.h"
 #include "charmm/residue_instances.h"
 
 #include <algorithm>
@@ -41,9 +42,13 @@ std::map<std::uint32_t, std::vector<LackingAtom>> find_lacking(const ForceField&
     // Templates, then patches: the order in which they are used.
     for (const TemplateUse& use : residues.uses) {
         for (const ResidueAtom& atom : use.residue->atoms) {
-            const AtomReference meant = find_reference(residues, use, atom.name);
-            const auto wanted = residues.instances[meant.residue].wanted.find(meant.atom);
-            if (wanted == residues.instances[meant.residue].wanted.end()) continue;
+            // Only a patch's names can mean another residue.
+            const AtomReference meant = use.patch.empty()
+                                            ? AtomReference{use.instances[0], atom.name}
+                                            : find_reference(residues, use, atom.name);
+            const ResidueInstance& instance = residues.instances[meant.residue];
+            const auto wanted = instance.wanted.find(meant.atom);
+            if (wanted == instance.wanted.end()) continue;
             Residue& residue = all[meant.residue];
             if (!residue.known.insert(wanted->first).second) continue;
             const auto type = find_type(force_field, wanted->second->type);
@@ -74,7 +79,7 @@ ResidueInstances build_residues(const ForceField& force_field, const Structure& 
                                 const GenerateSettings& settings, bool may_lack) {
     Missing missing;
     ResidueInstances residues = build_residue_instances(force_field, structure, settings, missing);
-    check_residue_atoms(force_field, structure, residues, may_lack, missing);
+    check_residues(force_field, structure, residues, may_lack, missing);
     missing.throw_if_any();
     return residues;
 }

@@ -8,7 +8,11 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
+#include <cstddef>
+#include <filesystem>
 #include <optional>
+#include <system_error>
 
 namespace palpa {
 namespace {
@@ -43,7 +47,43 @@ Part part_of(const Statements& statements) {
 
 // "36 1", CHARMM's version of a topology file
 bool is_version(const Statements& statements) {
-    return find_integer(statements.words()[0]).has_value();
+    const std::vector<std::string_view>& words = statements.words();
+    return words.size() <= 2 && std::all_of(words.begin(), words.end(), [](std::string_view word) {
+               return find_integer(word).has_value();
+           });
+}
+
+// Another kind of file that someone may have given, by the first line that says anything; empty if
+// it looks like none.
+std::string_view find_other_kind(const Statements& statements) {
+    const std::string_view first = statements.words()[0], keyword = statements.keyword();
+    constexpr std::array pdb = std::to_array<std::string_view>(
+        {"HEAD", "TITL", "REMA", "CRYS", "HETA", "MODE", "COMP", "SEQR"});
+    if (std::find(pdb.begin(), pdb.end(), keyword) != pdb.end() ||
+        (keyword == "ATOM" && statements.words().size() > 5)) {
+        return "coordinates (a PDB file)";
+    }
+    if (first.starts_with("DATA_") || first == "LOOP_") return "coordinates (an mmCIF file)";
+    if (first == "PSF") return "a PSF";
+    return find_integer(first) && !is_version(statements) ? "coordinates (a CRD file)" : "";
+}
+
+void check_kind(const Statements& statements) {
+    const std::string_view other = find_other_kind(statements);
+    if (other.empty()) return;
+    statements.fail(fmt::format(
+        "this looks like {}; expected a topology, parameter or stream file of CHARMM", other));
+}
+
+void check_different(std::span<const std::filesystem::path> files) {
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+            std::error_code none_such;  // told when the file is read
+            if (std::filesystem::equivalent(files[i], files[j], none_such)) {
+                throw LoadError({files[i].string()}, "given twice; expected each file once");
+            }
+        }
+    }
 }
 
 }  // namespace
@@ -76,15 +116,27 @@ void parse_force_field(std::string_view text, const std::string& file, ForceFiel
         if (part == Part::Parameters) {
             parameters.read();
         } else if (!is_version(statements)) {
+            if (!residues.open_residue()) check_kind(statements);
             residues.read();
         }
     }
+    const Residue* const residue = residues.open_residue();
+    const std::string open = residue ? fmt::format("the residue of line {}", residue->place.line)
+                             : parameters.is_open() ? "a section of parameters"
+                                                    : "";
     end_part();
+    if (!open.empty()) {
+        throw LoadError(
+            {file, statements.line_count(), 0},
+            fmt::format("the file ends inside {}, as if it were cut; expected END behind it",
+                        open));
+    }
     into.files.push_back(file);
 }
 
 ForceField read_force_field(std::span<const std::filesystem::path> files) {
     ForceField force_field;
+    check_different(files);
     for (const std::filesystem::path& file : files) {
         parse_force_field(read_text_file(file), file.string(), force_field);
     }

@@ -140,8 +140,9 @@ struct ForceField {
 // Reads the files in order, later ones adding to earlier ones. In a stream file the script lines
 // that toppar files carry (set, if, read) are understood; donors, acceptors and hydrogen bonds are
 // passed over knowingly. Anything else is a LoadError with its line, as is a value that does not
-// parse or a name given twice with different values. Residues with lone pairs are read; using one
-// is refused.
+// parse, a name given twice with different values, and a file given twice. Residues with lone pairs
+// are read; using one is refused. A residue or section that the file ends in without END is refused
+// too: who knows what has been cut off.
 ForceField read_force_field(std::span<const std::filesystem::path> files);
 
 // Adds the content of one file. Whether a line is topology or parameters follows from its keyword

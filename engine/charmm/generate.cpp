@@ -1,6 +1,7 @@
 #include "charmm/generate.h"
 
 #include "charmm/missing.h"
+#include "charmm/residue_checks.h"
 #include "charmm/residue_instances.h"
 
 #include <algorithm>
@@ -22,7 +23,7 @@ public:
     Connectivity generate() {
         Missing missing;
         residues_ = build_residue_instances(force_field_, structure_, settings_, missing);
-        check_residue_atoms(force_field_, structure_, residues_, false, missing);
+        check_residues(force_field_, structure_, residues_, false, missing);
         missing.throw_if_any();
         add_atoms();
         add_terms();

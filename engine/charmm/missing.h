@@ -3,6 +3,7 @@
 #include "charmm/force_field.h"
 #include "core/load_error.h"
 
+#include <cstddef>
 #include <set>
 #include <string>
 #include <string_view>
@@ -10,17 +11,26 @@
 
 namespace palpa {
 
-// In the order in which it was found, each thing once; thrown as one LoadError.
+// In the order in which it was found, each thing once; thrown as one LoadError. Its message names
+// the first ones, and `LoadError::further` the others.
 class Missing {
 public:
+    static constexpr std::size_t most_named = 8;
+
     void add(const TextPlace& place, std::string what);
+    void advise(std::string what);  // what stands once at the end of the message
     void throw_if_any() const;
 
 private:
     TextPlace place_;
     std::vector<std::string> problems_;
+    std::vector<std::string> advice_;
     std::set<std::string> seen_;
 };
+
+// What helps where a structure is as it was downloaded.
+inline constexpr const char* rename_advice = "`palpa prepare` gives atoms CHARMM's names";
+inline constexpr const char* add_advice = "`palpa prepare` adds atoms";
 
 // The names of a map, for near_name_hint.
 template <class Map>
@@ -30,8 +40,8 @@ std::vector<std::string_view> keys(const Map& map) {
     return names;
 }
 
-// The residue of this name, or null with the reason noted: it is unknown, or has lone pairs, or its
-// atoms do not add up to its charge. `place`: of what asks for it.
+// The residue of this name, or null with the reason noted: it is unknown, or has lone pairs. Noted
+// as well if its atoms do not add up to its charge. `place`: of what asks for it.
 const Residue* find_residue(const ForceField& force_field, const std::string& name,
                             const TextPlace& place, Missing& missing);
 
@@ -39,5 +49,9 @@ const Residue* find_residue(const ForceField& force_field, const std::string& na
 const std::pair<const std::string, AtomType>* find_type(const ForceField& force_field,
                                                         const std::string& name,
                                                         const TextPlace& place, Missing& missing);
+
+// And its Lennard-Jones parameters, by the type's name.
+const NonbondedType* find_nonbonded(const ForceField& force_field, const std::string& type,
+                                    const TextPlace& place, Missing& missing);
 
 }  // namespace palpa

@@ -22,7 +22,18 @@ void add_once(const Statements& statements, Map& map, const typename Map::key_ty
         fmt::format("{} again with other values, first in {}", what, to_string(old->second.place)));
 }
 
+constexpr std::array section_names =
+    std::to_array<std::string_view>({"ATOMS", "BONDS", "ANGLES", "THETAS", "DIHEDRALS", "PHI",
+                                     "IMPROPERS", "IMPHI", "CMAP", "NONBONDED", "NBFIX", "HBOND"});
+
 bool is_wildcard(const std::string& type) { return type == "X"; }
+
+// Of bonds and angles; impropers of CHARMM's own files have some below 0.
+void check_stiffness(const Statements& statements, double k) {
+    if (k < 0) {
+        statements.fail(fmt::format("a force constant of {}; expected 0 or more", k));
+    }
+}
 
 // Which of the forms that CHARMM looks for four types have.
 bool has_valid_wildcards(const std::array<std::string, 4>& types, bool is_improper) {
@@ -56,6 +67,11 @@ void ParameterReader::read() {
                     *section == Section::Nbfix || *section == Section::HydrogenBonds)) {
         return start_section(*section);
     }
+    // No line of a section is a single word, but for numbers of a map.
+    if (statements_.words().size() == 1 && !is_inside_map() &&
+        !find_near_name(statements_.words()[0], section_names).empty()) {
+        fail_section();
+    }
     switch (section_) {
         case Section::Atoms:
             if (statements_.keyword() == "MASS") return read_mass(statements_, into_);
@@ -79,10 +95,14 @@ void ParameterReader::read() {
         case Section::None:
             break;
     }
+    fail_section();
+}
+
+void ParameterReader::fail_section() const {
     statements_.fail(
         fmt::format("'{}' is not a section of a parameter file; expected BONDS, ANGLES, "
-                    "NONBONDED or the like",
-                    statements_.words()[0]));
+                    "NONBONDED or the like{}",
+                    statements_.words()[0], near_name_hint(statements_.words()[0], section_names)));
 }
 
 void ParameterReader::start_section(Section section) {
@@ -93,21 +113,21 @@ void ParameterReader::start_section(Section section) {
 
 void ParameterReader::end_part() { start_section(Section::None); }
 
-// type type k length
 void ParameterReader::read_bond() {
+    statements_.expect_form("type1 type2 k r0");
     const std::pair<std::string, std::string> types =
         in_order(statements_.name(0, "atom type"), statements_.name(1, "second atom type"));
     const HarmonicParameter bond{statements_.real(2, "force constant"),
                                  statements_.real(3, "bond length"), statements_.place()};
-    statements_.expect_words(4);
+    check_stiffness(statements_, bond.k);
     add_once(statements_, into_.bonds, types, bond, "bond",
              [](const HarmonicParameter& a, const HarmonicParameter& b) {
                  return a.k == b.k && a.value == b.value;
              });
 }
 
-// type type type k angle [k length of Urey-Bradley]
 void ParameterReader::read_angle() {
+    statements_.expect_form("type1 type2 type3 k angle [k_UB S0]");
     const std::array<std::string, 3> types = in_order(
         std::array{statements_.name(0, "atom type"), statements_.name(1, "second atom type"),
                    statements_.name(2, "third atom type")});
@@ -118,7 +138,7 @@ void ParameterReader::read_angle() {
         angle.urey_bradley_k = statements_.real(5, "force constant of Urey-Bradley");
         angle.urey_bradley_s0 = statements_.real(6, "distance of Urey-Bradley");
     }
-    statements_.expect_words(7);
+    check_stiffness(statements_, std::min(angle.k, angle.urey_bradley_k));
     add_once(statements_, into_.angles, types, angle, "angle",
              [](const AngleParameter& a, const AngleParameter& b) {
                  return a.k == b.k && a.value == b.value && a.urey_bradley_k == b.urey_bradley_k &&
@@ -126,18 +146,17 @@ void ParameterReader::read_angle() {
              });
 }
 
-// type type type type k multiplicity phase
 void ParameterReader::read_dihedral(bool is_improper) {
+    statements_.expect_form("type1 type2 type3 type4 k n phase");
     std::array<std::string, 4> types;
     for (std::size_t i = 0; i < 4; ++i) types[i] = statements_.name(i, "atom type");
     const DihedralTerm term{statements_.real(4, "force constant"),
                             static_cast<int>(std::clamp<std::int64_t>(
                                 statements_.whole_number(5, "multiplicity"), -1, 100)),
                             statements_.real(6, "phase"), statements_.place()};
-    statements_.expect_words(7);
-    if (term.multiplicity < 0 || term.multiplicity > 99) {
+    if (term.multiplicity < 0 || term.multiplicity > 6) {  // CHARMM knows no others
         statements_.fail(
-            fmt::format("a multiplicity of {}; expected 0 to 99", statements_.words()[5]));
+            fmt::format("a multiplicity of {}; expected 0 to 6", statements_.words()[5]));
     }
     if (!has_valid_wildcards(types, is_improper)) {
         statements_.fail(fmt::format(
@@ -162,26 +181,42 @@ void ParameterReader::read_dihedral(bool is_improper) {
     terms.push_back(term);
 }
 
+bool ParameterReader::is_inside_map() const {
+    return open_map_ && open_map_->parameter.energies.size() < open_map_->count;
+}
+
+// Numbers of the open map, as many on a line as there are.
+void ParameterReader::read_cmap_energies() {
+    std::vector<double>& energies = open_map_->parameter.energies;
+    const std::string place = to_string(open_map_->parameter.place);
+    for (const std::string_view word : statements_.words()) {
+        if (energies.size() == open_map_->count) {
+            statements_.fail(fmt::format("'{}' is more than the {} numbers of the map of {}", word,
+                                         open_map_->count, place));
+        }
+        const std::optional<double> energy = find_real(word);
+        if (!energy) {
+            statements_.fail(
+                fmt::format("'{}' is not a number; expected energy {} of {} of the map "
+                            "of {}",
+                            word, energies.size() + 1, open_map_->count, place));
+        }
+        energies.push_back(*energy);
+    }
+}
+
 // Eight types and the number of points along one angle, then as many numbers squared.
 void ParameterReader::read_cmap() {
     const std::vector<std::string_view>& words = statements_.words();
-    if (find_real(words[0]) && open_map_) {
-        std::vector<double>& energies = open_map_->parameter.energies;
-        for (std::size_t i = 0; i < words.size(); ++i) {
-            if (energies.size() == open_map_->count) {
-                statements_.fail(fmt::format("more than the {} numbers of the map of {}",
-                                             open_map_->count,
-                                             to_string(open_map_->parameter.place)));
-            }
-            energies.push_back(statements_.real(i, "energy"));
-        }
-        return;
+    const bool is_header = words.size() == 9 && !find_real(words[0]) && find_integer(words[8]);
+    if (open_map_ && !is_header && (is_inside_map() || find_real(words[0]))) {
+        return read_cmap_energies();
     }
     end_cmap();
+    statements_.expect_form("type1 type2 type3 type4 type5 type6 type7 type8 points");
     OpenMap map;
     for (std::size_t i = 0; i < 8; ++i) map.types[i] = statements_.name(i, "atom type");
     const std::int64_t size = statements_.whole_number(8, "number of points");
-    statements_.expect_words(9);
     if (size < 2 || size > 360) {
         statements_.fail(fmt::format("a map of {} points along an angle; expected 2 to 360", size));
     }
@@ -232,8 +267,8 @@ void ParameterReader::check_nonbonded_options() const {
     }
 }
 
-// type ignored -epsilon Rmin/2 [ignored -epsilon Rmin/2 of 1-4 pairs]
 void ParameterReader::read_nonbonded() {
+    statements_.expect_form("type unused -epsilon Rmin/2 [unused -epsilon14 Rmin14/2]");
     const std::string type = statements_.name(0, "atom type");
     statements_.real(1, "unused first number");
     const std::array<double, 2> plain = read_well(2, "Rmin/2");
@@ -242,7 +277,6 @@ void ParameterReader::read_nonbonded() {
         statements_.real(4, "unused fourth number");
         special = read_well(5, "Rmin/2");
     }
-    statements_.expect_words(7);
     const NonbondedType entry{plain[0], plain[1], special[0], special[1], statements_.place()};
     add_once(statements_, into_.nonbonded, type, entry, "non-bonded parameters",
              [](const NonbondedType& a, const NonbondedType& b) {
@@ -251,14 +285,13 @@ void ParameterReader::read_nonbonded() {
              });
 }
 
-// type type -epsilon Rmin [-epsilon Rmin of 1-4 pairs]
 void ParameterReader::read_nbfix() {
+    statements_.expect_form("type1 type2 -epsilon Rmin [-epsilon14 Rmin14]");
     const std::string a = statements_.name(0, "atom type");
     const std::string b = statements_.name(1, "second atom type");
     const std::array<double, 2> plain = read_well(2, "Rmin");
     const std::array<double, 2> special =
         statements_.words().size() > 4 ? read_well(4, "Rmin") : plain;
-    statements_.expect_words(6);
     const NbfixPair entry{plain[0], plain[1], special[0], special[1], statements_.place()};
     add_once(statements_, into_.nbfix, in_order(a, b), entry, "NBFIX pair",
              [](const NbfixPair& x, const NbfixPair& y) {

@@ -22,6 +22,9 @@ public:
     // Takes the present statement into the force field.
     void read();
 
+    // Whether a section has begun and not ended.
+    bool is_open() const noexcept { return section_ != Section::None; }
+
     // Ends the section; a CMAP map must be whole then.
     void end_part();
 
@@ -41,10 +44,13 @@ private:
     static std::optional<Section> find_section(std::string_view keyword);
 
     void start_section(Section section);
+    [[noreturn]] void fail_section() const;
     void read_bond();
     void read_angle();
     void read_dihedral(bool is_improper);
     void read_cmap();
+    void read_cmap_energies();
+    bool is_inside_map() const;  // numbers of it are still to come
     void end_cmap();
     void read_nonbonded();
     void read_nbfix();

@@ -32,7 +32,11 @@ private:
     void collect_residues() {
         std::map<std::tuple<std::string, std::string, std::string>, std::size_t> index_of;
         std::map<std::string, std::size_t> last_of_segment;
+        auto end = structure_.chain_ends.begin();
         for (std::uint32_t atom = 0; atom < structure_.names.size(); ++atom) {
+            for (; end != structure_.chain_ends.end() && *end <= atom; ++end) {
+                if (*end > 0) last_of_segment.erase(structure_.names[*end - 1].segment);
+            }
             const AtomName& name = structure_.names[atom];
             const TextPlace place{structure_.file, structure_.lines[atom], 0};
             const auto [index, is_new] =
@@ -168,6 +172,7 @@ private:
 
     void apply_patch(const std::string& name, const std::vector<std::size_t>& residues,
                      const TextPlace& place) {
+        if (force_field_.residues.empty()) return;  // which is noted, and none is settled
         const auto found = force_field_.patches.find(name);
         if (found == force_field_.patches.end()) {
             missing_.add(place, fmt::format("no patch '{}' in {}{}", name,
@@ -239,47 +244,6 @@ private:
     std::set<std::size_t> patched_;  // instances with a patch given by name, or DISU
 };
 
-void check_atoms_of(const ForceField& force_field, const Structure& structure,
-                    const ResidueInstance& instance, bool may_lack, Missing& missing) {
-    for (const auto& [name, atom] : instance.present) {
-        if (instance.wanted.contains(name)) continue;
-        missing.add({structure.file, structure.lines[atom], 0},
-                    fmt::format("residue {} has no atom '{}'", instance.label(), name));
-    }
-    for (const auto& [name, numbers] : instance.wanted) {
-        if (!may_lack && !instance.present.contains(name)) {
-            missing.add(instance.place,
-                        fmt::format("residue {} lacks atom '{}'", instance.label(), name));
-            continue;
-        }
-        find_type(force_field, numbers->type, numbers->place, missing);
-    }
-}
-
-// What a template's terms name and neither it nor a patch has, once for each template.
-void check_names(const ResidueInstances& residues, const TemplateUse& use, Missing& missing) {
-    for (const auto& [name, line] : use.residue->named_on) {
-        const AtomReference reference = find_reference(residues, use, name);
-        if (reference.is_neighbour || reference.residue == none) continue;
-        const ResidueInstance& instance = residues.instances[reference.residue];
-        if (!instance.is_settled || instance.wanted.contains(reference.atom) ||
-            instance.deleted.contains(reference.atom)) {
-            continue;
-        }
-        const TextPlace place{use.residue->place.file, line, 0};
-        if (use.patch.empty()) {
-            missing.add(place, fmt::format("atom '{}' in a term of residue '{}', which has no such "
-                                           "ATOM line{}",
-                                           name, instance.name.residue,
-                                           near_name_hint(name, keys(instance.wanted))));
-        } else {
-            missing.add(place, fmt::format("atom '{}' in a term of patch '{}', which residue '{}' "
-                                           "has not",
-                                           name, use.patch, instance.name.residue));
-        }
-    }
-}
-
 }  // namespace
 
 std::string ResidueInstance::label() const {
@@ -291,16 +255,6 @@ std::string ResidueInstance::label() const {
 ResidueInstances build_residue_instances(const ForceField& force_field, const Structure& structure,
                                          const GenerateSettings& settings, Missing& missing) {
     return Builder(force_field, structure, settings, missing).build();
-}
-
-void check_residue_atoms(const ForceField& force_field, const Structure& structure,
-                         const ResidueInstances& residues, bool may_lack, Missing& missing) {
-    for (const ResidueInstance& instance : residues.instances) {
-        if (instance.is_settled) {
-            check_atoms_of(force_field, structure, instance, may_lack, missing);
-        }
-    }
-    for (const TemplateUse& use : residues.uses) check_names(residues, use, missing);
 }
 
 AtomReference find_reference(const ResidueInstances& residues, const TemplateUse& use,

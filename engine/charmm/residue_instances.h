@@ -52,12 +52,6 @@ struct ResidueInstances {
 ResidueInstances build_residue_instances(const ForceField& force_field, const Structure& structure,
                                          const GenerateSettings& settings, Missing& missing);
 
-// Notes what is wrong with the atoms of settled residues: some that no template knows, some that
-// are lacking (unless they may), types that there are not, templates that name what there is not,
-// bonds over a gap.
-void check_residue_atoms(const ForceField& force_field, const Structure& structure,
-                         const ResidueInstances& residues, bool may_lack, Missing& missing);
-
 // An atom as a template names it: whose it is, and its own name.
 struct AtomReference {
     std::size_t residue = ResidueInstance::none;

@@ -1,5 +1,7 @@
 #include "charmm/residue_reader.h"
 
+#include "core/text.h"
+
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
@@ -17,6 +19,14 @@ constexpr std::array passed_over = std::to_array<std::string_view>({"DONO", "ACC
 constexpr std::array residue_lines = std::to_array<std::string_view>(
     {"ATOM", "GROU", "BOND", "DOUB", "TRIP", "AROM", "ANGL", "THET", "DIHE", "PHI", "IMPR", "IMPH",
      "CMAP", "IC", "BILD", "PATC", "DELE", "LONE"});
+
+// The same and all else that begins a line, in full, for a hint.
+constexpr std::array line_names = std::to_array<std::string_view>(
+    {"MASS",     "RESI",     "PRES",   "DEFAULT", "AUTOGENERATE", "DECLARE",   "ATOM",
+     "GROUP",    "BOND",     "DOUBLE", "TRIPLE",  "AROMATIC",     "ANGLE",     "THETA",
+     "DIHEDRAL", "IMPROPER", "CMAP",   "IC",      "PATCHING",     "DELETE",    "LONEPAIR",
+     "DONOR",    "ACCEPTOR", "BONDS",  "ANGLES",  "DIHEDRALS",    "IMPROPERS", "NONBONDED",
+     "NBFIX",    "HBOND",    "READ",   "END"});
 
 // "X" is what CHARMM calls a lone pair's.
 constexpr std::array elements = std::to_array<std::string_view>(
@@ -36,6 +46,7 @@ bool contains(const Names& names, std::string_view name) {
 }  // namespace
 
 void read_mass(const Statements& statements, ForceField& into) {
+    statements.expect_form("MASS number type mass [element]");
     const double number = statements.real(1, "atom type's number");
     const std::string type = statements.name(2, "atom type");
     const AtomType entry{number >= 1 && number < 1e9 ? static_cast<std::int64_t>(number) : -1,
@@ -70,10 +81,10 @@ void ResidueReader::read() {
     if (keyword == "AUTO") return read_autogenerate();
     if (contains(passed_over, keyword)) return;
     if (!contains(residue_lines, keyword)) {
-        statements_.fail(
-            fmt::format("'{}' is not a line of a topology file; expected MASS, RESI, ATOM or "
-                        "the like",
-                        statements_.words()[0]));
+        statements_.fail(fmt::format(
+            "'{}' is not a line of a topology file; expected MASS, RESI, ATOM or "
+            "the like{}",
+            statements_.words()[0], near_name_hint(statements_.words()[0], line_names)));
     }
     if (!residue_) {
         statements_.fail(fmt::format(
@@ -100,8 +111,9 @@ void ResidueReader::read() {
     read_tuples<2>(residue_->bonds);  // BOND, DOUBLE, TRIPLE, AROMATIC
 }
 
-// RESI name charge [NOANG] [NODIH]
 void ResidueReader::start_residue(bool is_patch) {
+    statements_.expect_form(is_patch ? "PRES name charge [NOANG] [NODIH]"
+                                     : "RESI name charge [NOANG] [NODIH]");
     const char* const kind = is_patch ? "patch" : "residue";
     const std::string name = statements_.name(1, is_patch ? "patch name" : "residue name");
     Residue residue;
@@ -131,11 +143,10 @@ void ResidueReader::start_residue(bool is_patch) {
     group_ = 0;
 }
 
-// ATOM name type charge
 void ResidueReader::read_atom() {
+    statements_.expect_form("ATOM name type charge");
     ResidueAtom atom{statements_.name(1, "atom name"), statements_.name(2, "atom type"),
                      statements_.real(3, "charge"), group_, statements_.place()};
-    statements_.expect_words(4);
     const auto [first, is_new] = at_line_.emplace(atom.name, atom.place.line);
     if (!is_new) {
         statements_.fail(fmt::format("atom '{}' again, first in {}", atom.name,
@@ -177,8 +188,9 @@ void ResidueReader::read_delete() {
     }
 }
 
-// IC a b [*]c d bond angle dihedral angle bond
+// A star before the third atom: an improper.
 void ResidueReader::read_internal_coordinate() {
+    statements_.expect_form("IC a b c d first-bond first-angle dihedral last-angle last-bond");
     InternalCoordinate ic;
     for (std::size_t i = 0; i < 4; ++i) ic.atoms[i] = statements_.name(i + 1, "atom name");
     if (ic.atoms[2].size() > 1 && ic.atoms[2].front() == '*') {
@@ -190,7 +202,6 @@ void ResidueReader::read_internal_coordinate() {
     ic.dihedral_deg = statements_.real(7, "dihedral angle");
     ic.last_angle_deg = statements_.real(8, "last angle");
     ic.last_bond = statements_.real(9, "last bond length");
-    statements_.expect_words(10);
     residue_->internal_coordinates.push_back(std::move(ic));
 }
 

@@ -17,6 +17,9 @@ public:
     // Takes the present statement into the force field.
     void read();
 
+    // The residue or patch that has begun and not ended, or null.
+    const Residue* open_residue() const noexcept { return residue_; }
+
     // Ends the residue and forgets the defaults of chain ends.
     void end_part();
 

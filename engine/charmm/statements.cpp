@@ -49,12 +49,18 @@ std::int64_t Statements::whole_number(std::size_t at, const char* what) const {
     return *value;
 }
 
-void Statements::expect_words(std::size_t count) const {
-    if (words_.size() > count) {
+void Statements::expect_form(std::string_view form) const {
+    const std::vector<std::string_view> parts = split_words(form);
+    const std::size_t count = words_.size();
+    if (count < parts.size() && !parts[count].starts_with('[')) {
+        const std::string_view lacking = parts[count].substr(0, parts[count].find(']'));
+        fail(fmt::format("no {} here; expected: {}", lacking, form));
+    }
+    if (count > parts.size()) {
         fail(
-            fmt::format("'{}' is more than stands on such a line; expected a comment to begin "
-                        "with '!'",
-                        words_[count]));
+            fmt::format("'{}' is more than stands on such a line; expected: {}, and a comment to "
+                        "begin with '!'",
+                        words_[parts.size()], form));
     }
 }
 

@@ -20,6 +20,8 @@ public:
     // To the next statement; false at the end of the file.
     bool next();
 
+    std::size_t line_count() const noexcept { return lines_.size(); }
+
     // All of the rest is about the present statement. Views hold until the next one.
     const std::vector<std::string_view>& words() const noexcept { return words_; }
     std::string_view text() const noexcept { return statement_; }
@@ -33,8 +35,9 @@ public:
     double real(std::size_t at, const char* what) const;
     std::int64_t whole_number(std::size_t at, const char* what) const;
 
-    // Throws LoadError if there are more words than these.
-    void expect_words(std::size_t count) const;
+    // Throws LoadError unless there are as many words as in the form, "type1 type2 k r0"; those in
+    // brackets may be left out, each pair of brackets as a whole.
+    void expect_form(std::string_view form) const;
 
 private:
     std::vector<std::string_view> lines_;

@@ -3,6 +3,7 @@
 #include "core/text.h"
 
 #include <fmt/format.h>
+#include <utility>
 
 namespace palpa {
 
@@ -13,6 +14,11 @@ std::string to_string(const TextPlace& place) {
 }
 
 LoadError::LoadError(const TextPlace& place, const std::string& message)
-    : std::runtime_error(printable(to_string(place) + ": " + message)) {}
+    : LoadError(place, message, {}) {}
+
+LoadError::LoadError(const TextPlace& place, const std::string& message,
+                     std::vector<std::string> further)
+    : std::runtime_error(printable(to_string(place) + ": " + message)),
+      further_(std::make_shared<const std::vector<std::string>>(std::move(further))) {}
 
 }  // namespace palpa

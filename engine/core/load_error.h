@@ -1,8 +1,10 @@
 // What a reader throws when its input cannot be used: where, what was read, what would be right.
 #pragma once
 #include <cstddef>
+#include <memory>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace palpa {
 
@@ -21,6 +23,13 @@ std::string to_string(const TextPlace& place);
 class LoadError : public std::runtime_error {
 public:
     LoadError(const TextPlace& place, const std::string& message);
+
+    // Of many problems the message names the first ones and counts the others; those are here.
+    LoadError(const TextPlace& place, const std::string& message, std::vector<std::string> further);
+    const std::vector<std::string>& further() const noexcept { return *further_; }
+
+private:
+    std::shared_ptr<const std::vector<std::string>> further_;  // shared: copies must not throw
 };
 
 }  // namespace palpa

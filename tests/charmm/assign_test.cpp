@@ -41,7 +41,7 @@ CLA 0.0 -0.150 2.27
 
 ForceField parsed(const std::string& text) {
     ForceField force_field;
-    parse_force_field(text, "a.str", force_field);
+    parse_force_field(text + "END\n", "a.str", force_field);
     return force_field;
 }
 

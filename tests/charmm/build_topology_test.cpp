@@ -199,6 +199,37 @@ TEST_CASE("all parameters that are missing are told at once, with near ones",
           "for A B C; did you mean 'A B D'?; s.psf:2: no angle parameters for B C C; s.psf:1: no "
           "dihedral parameters for A B C C; did you mean 'A B C D'?");
     CHECK(load_error_of([&] { build_topology(chain_of({"A", "E", "7"}), force_field_with("")); }) ==
-          "s.psf:2: unknown atom type 'E': no MASS line; s.psf:3: unknown atom type '7': no MASS "
-          "line");
+          "s.psf:2: unknown atom type 'E': no MASS line; s.psf:3: no atom type has the "
+          "number 7; expected a topology file whose MASS lines number the types");
+}
+
+TEST_CASE("unknown types, bonded and non-bonded numbers and maps are told in one error",
+          "[charmm][topology]") {
+    ForceField force_field = force_field_with("");
+    force_field.nonbonded.erase("C");
+    Connectivity chain = chain_of({"A", "B", "C", "E", "C"});
+    chain.angles = {{0, 1, 2}, {1, 2, 3}};  // one with an unknown type follows from that
+    chain.cmaps = {{0, 1, 2, 4, 1, 2, 4, 0}};
+
+    CHECK(
+        load_error_of([&] { build_topology(chain, force_field); }) ==
+        "s.psf:3: atom type 'C' has no NONBONDED parameters in a.rtf, a.prm; s.psf:4: unknown atom "
+        "type 'E': no MASS line; s.psf:1: no angle parameters for A B C; s.psf:1: no CMAP "
+        "parameters for A B C C B C C A");
+}
+
+TEST_CASE("a topology alone has no parameters", "[charmm][topology]") {
+    ForceField force_field;
+    parse_force_field("MASS 1 A 12.0 C\nMASS 2 B 12.0 C\n", "a.rtf", force_field);
+
+    CHECK(load_error_of([&] { build_topology(chain_of({"A", "B"}), force_field); }) ==
+          "s.psf:1: no NONBONDED parameters in a.rtf; expected a parameter file (.prm) beside the "
+          "topology");
+    CHECK(load_error_of([&] { build_topology(chain_of({"A", "B"}), {}); }) ==
+          "s.psf:1: no atom types in ; expected a file with MASS lines");
+    ForceField unnumbered;
+    parse_force_field("MASS -1 A 12.0 C\n", "a.rtf", unnumbered);
+    CHECK(load_error_of([&] { build_topology(chain_of({"56", "2"}), unnumbered); }) ==
+          "s.psf:1: atom types are numbers here, and no MASS line in a.rtf has one; expected the "
+          "topology file that numbers them");
 }

@@ -118,6 +118,17 @@ TEST_CASE("a whole structure stays as it is", "[charmm][complete]") {
     CHECK(completed.structure.records.empty());
 }
 
+TEST_CASE("an atom whose own name begins with a sign is its residue's", "[charmm][complete]") {
+    ForceField force_field;
+    parse_force_field("MASS 1 T 1.0 H\nRESI A 0.0\nATOM X T 0.0\nATOM +Y T 0.0\nEND\n", "a.rtf",
+                      force_field);
+
+    const CompletedStructure completed =
+        add_missing_atoms(force_field, structure_of({{"P", "A", "1", "X"}}));
+
+    CHECK(names_of(completed.structure) == std::vector<std::string>{"P A 1 X", "P A 1 +Y"});
+}
+
 TEST_CASE("completing refuses atoms and residues that there are not", "[charmm][complete]") {
     CHECK(load_error_of([] {
               add_missing_atoms(bead_force_field(), structure_of({{"P", "BEA", "1", "A"},

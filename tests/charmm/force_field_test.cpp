@@ -3,6 +3,7 @@
 #include "tests/support/load_error_of.h"
 #include "tests/support/temporary_folder.h"
 
+#include <fmt/format.h>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cstdlib>
@@ -92,7 +93,7 @@ return
 
 ForceField parsed(std::string_view text) {
     ForceField force_field;
-    parse_force_field(text, "a.str", force_field);
+    parse_force_field(fmt::format("{}\nEND\n", text), "a.str", force_field);
     return force_field;
 }
 
@@ -343,6 +344,10 @@ TEST_CASE("several files are read in order, and errors name theirs", "[charmm][f
                StartsWith(third.string() + ":2: ") && Contains(first.string() + ":1"));
     CHECK(load_error_of([&] { read_force_field(std::array{folder.path() / "none.prm"}); }) ==
           (folder.path() / "none.prm").string() + ": no such file");
+    CHECK(load_error_of([&] {
+              read_force_field(std::array{first, second, folder.path() / "." / "first.rtf"});
+          }) ==
+          (folder.path() / "." / "first.rtf").string() + ": given twice; expected each file once");
 }
 
 TEST_CASE("a value that does not parse is told with its line", "[charmm][force_field]") {
@@ -356,36 +361,39 @@ TEST_CASE("a value that does not parse is told with its line", "[charmm][force_f
         {"MASS x OT 15.9994 O\n", "1", "'X' is not a number"},
         {"MASS -1 OT nan O\n", "1", "'NAN' is not a number"},
         {"MASS -1 OT -1.0 O\n", "1", "expected 0 or more"},
-        {"MASS -1\n", "1", "no atom type here"},
+        {"MASS -1\n", "1", "no type here; expected: MASS number type mass [element]"},
         {"MASS -1 OT\n", "1", "no mass here"},
-        {"RESI\n", "1", "no residue name here"},
-        {"RESI TIP3\n", "1", "no residue's charge here"},
+        {"RESI\n", "1", "no name here; expected: RESI name charge [NOANG]"},
+        {"RESI TIP3\n", "1", "no charge here"},
         {"RESI TIP3 neutral\n", "1", "'NEUTRAL' is not a number"},
         {"RESI TIP3 0.0\nATOM OH2 OT\n", "2", "no charge here"},
-        {"RESI TIP3 0.0\nATOM OH2\n", "2", "no atom type here"},
+        {"RESI TIP3 0.0\nATOM OH2\n", "2", "no type here; expected: ATOM name type charge"},
         {"RESI TIP3 0.0\n\nATOM OH2 OT inf\n", "3", "'INF' is not a number; expected the charge"},
-        {"BONDS\nHT OT 450.0\n", "2", "no bond length here"},
-        {"BONDS\nHT\n", "2", "no second atom type here"},
+        {"BONDS\nHT OT 450.0\n", "2", "no r0 here; expected: type1 type2 k r0"},
+        {"BONDS\nHT\n", "2", "no type2 here"},
+        {"BONDS\nHT OT -450.0 1.0\n", "2", "a force constant of -450; expected 0 or more"},
+        {"ANGLES\nHT OT HT 1.0 90.0 -2.0 1.0\n", "2", "a force constant of -2"},
         {"BONDS\nHT OT 450.0 long\n", "2", "'LONG' is not a number"},
         {"ANGLES\nHT OT HT 55.0\n", "2", "no angle here"},
-        {"ANGLES\nHT OT\n", "2", "no third atom type here"},
+        {"ANGLES\nHT OT\n", "2", "no type3 here; expected: type1 type2 type3 k angle [k_UB S0]"},
         {"NONBONDED\nOT 0.0 -0.1\n", "2", "no Rmin/2 here"},
         {"NONBONDED\nOT 0.0 -0.1 -\n1e999\n", "2", "'1E999' is not a number"},
         {"NONBONDED\nOT 0.0 0.1521 1.7682\n", "2", "CHARMM writes the depth as -epsilon"},
         {"NONBONDED\nOT 0.0 -0.1521 -1.7682\n", "2", "Rmin/2 as 0 or more"},
-        {"NBFIX\nHT\n", "2", "no second atom type here"},
+        {"NBFIX\nHT\n", "2", "no type2 here"},
         {"MASS -1 OT 15.9994 OX\n", "1", "unknown element 'OX'"},
         {"RESI A 0.0 NOBOND\n", "1", "'NOBOND' is no option of a residue"},
         {"RESI A 0.0\nATOM O OT 0.1 B\n", "2", "'B' is more than stands on such a line"},
         {"RESI A 0.0\nIMPR A B C\n", "2", "3 names on a IMPR line; expected 4 for each"},
-        {"RESI A 0.0\nIC A B C D 1.0 2.0\n", "2", "no dihedral angle here"},
+        {"RESI A 0.0\nIC A B C D 1.0 2.0\n", "2", "no dihedral here; expected: IC a b c d"},
         {"RESI A 0.0\nPATCH MIDDLE X\n", "2", "'MIDDLE' is no end of a chain"},
         {"RESI A 0.0\nDELETE BOND A B\n", "2", "'BOND' cannot be deleted"},
         {"AUTO BONDS\n", "1", "'BONDS' cannot be generated"},
-        {"ANGLES\nA B C 1.0 90.0 2.0\n", "2", "no distance of Urey-Bradley here"},
+        {"ANGLES\nA B C 1.0 90.0 2.0\n", "2", "no S0 here"},
         {"BONDS\nA B 1.0 1.5 2.0\n", "2", "'2.0' is more than stands on such a line"},
         {"DIHEDRALS\nA B C D 1.0 1.5 0.0\n", "2", "'1.5' is not a whole number"},
-        {"DIHEDRALS\nA B C D 1.0 -1 0.0\n", "2", "a multiplicity of -1; expected 0 to 99"},
+        {"DIHEDRALS\nA B C D 1.0 -1 0.0\n", "2", "a multiplicity of -1; expected 0 to 6"},
+        {"IMPROPER\nA B C D 1.0 7 0.0\n", "2", "a multiplicity of 7; expected 0 to 6"},
         {"DIHEDRALS\nA X C D 1.0 1 0.0\n", "2", "expected X B C X"},
         {"IMPROPER\nA X C D 1.0 1 0.0\n", "2", "A X X D, X B C D"},
         {"DIHEDRALS\nA B C D 1.0 1 0.0\nA B C D 1.0 0 0.0\n", "3", "first in a.str:2"},
@@ -393,7 +401,9 @@ TEST_CASE("a value that does not parse is told with its line", "[charmm][force_f
         {"CMAP\nA B C D A B C D 2\n1 2\n\nNONBONDED\n", "2", "2 numbers; expected 4"},
         {"CMAP\nA B C D A B C D 2\n1 2\n", "2", "2 numbers; expected 4"},
         {"CMAP\nA B C D A B C D 99999999\n1 2\n", "2", "expected 2 to 360"},
-        {"CMAP\nA B C D A B C D 2\n1 x\n", "3", "'X' is not a number"},
+        {"CMAP\nA B C D A B C D 2\n1 x\n", "3",
+         "'X' is not a number; expected energy 2 of 4 of the map of a.str:2"},
+        {"CMAP\nA B C D A B C D 2\n1 2\nO.5 2\n", "4", "'O.5' is not a number; expected energy 3"},
         {"NONBONDED\nOT 0.0 -0.1 1.7 0.0 0.1 1.7\n", "2", "CHARMM writes the depth"},
         {"NONBONDED nbxmod 5 e14fac 0.5\n", "1", "E14FAC 0.5 is not supported"},
         {"NONBONDED geometric\n", "1", "'GEOMETRIC' is not supported"},
@@ -419,6 +429,60 @@ TEST_CASE("a line that nobody knows is told, in topology, parameters and script"
     CHECK_THAT(error_of("\nread psf card\n"),
                StartsWith("a.str:2: 'READ PSF CARD' cannot be read"));
     CHECK_THAT(error_of("read\n"), StartsWith("a.str:1: 'READ' cannot be read"));
+}
+
+TEST_CASE("a misspelt line or section has a hint", "[charmm][force_field]") {
+    CHECK_THAT(error_of("BONDS\nA B 1.0 1.0\nANGELS\n"),
+               StartsWith("a.str:3: 'ANGELS' is not a section of a parameter file") &&
+                   Contains("did you mean 'ANGLES'?"));
+    CHECK_THAT(error_of("CMAP\nA B C D A B C D 2\n1 2\n3 4\nNOBFIX\n"),
+               StartsWith("a.str:5: ") && Contains("did you mean 'NBFIX'?"));
+    CHECK_THAT(error_of("RESI A 0.0\nATM A T 0.0\n"),
+               StartsWith("a.str:2: ") && Contains("did you mean 'ATOM'?"));
+    CHECK_THAT(error_of("ANGELS\nA B C 1.0 90.0\n"), Contains("did you mean 'ANGLE'?"));
+}
+
+TEST_CASE("a file that ends inside a residue or a section is told as cut",
+          "[charmm][force_field]") {
+    const auto error = [](std::string_view text) {
+        return load_error_of([&] {
+            ForceField force_field;
+            parse_force_field(text, "a.str", force_field);
+        });
+    };
+
+    CHECK(error("MASS -1 OT 16.0\nRESI A 0.0\nATOM O OT 0.0\n") ==
+          "a.str:3: the file ends inside the residue of line 2, as if it were cut; expected END "
+          "behind it");
+    CHECK_THAT(error("PRES A 0.0\nEND\nRESI B 0.0"), StartsWith("a.str:3: the file ends inside"));
+    CHECK(error("BONDS\nA B 1.0 1.0\nreturn\n") != "no error");
+    CHECK(error("BONDS\nA B 1.0 1.0\n") ==
+          "a.str:2: the file ends inside a section of parameters, as if it were cut; expected END "
+          "behind it");
+    CHECK_THAT(error("CMAP\nA B C D A B C D 2\n1 2\n"), Contains("2 numbers; expected 4"));
+    CHECK(error("MASS -1 OT 16.0\n") == "no error");
+    CHECK(error("read rtf\nRESI A 0.0\nEND\nreturn\n") == "no error");
+}
+
+TEST_CASE("a structure given as a force field file is told", "[charmm][force_field]") {
+    struct Row {
+        const char* text;
+        const char* message;
+    };
+    const auto row = GENERATE(values<Row>({
+        {"HEADER  PLANT PROTEIN\n",
+         "a.str:1: this looks like coordinates (a PDB file); expected a "},
+        {"ATOM      1  N   THR A   1      17.047  14.099   3.625  1.00 13.79\n",
+         "a.str:1: this looks like coordinates (a PDB file)"},
+        {"* CRAMBIN\n  642\n 1 1 THR N 17.0 14.0 3.6 PROA 1 0.0\n",
+         "a.str:3: this looks like coordinates (a CRD file)"},
+        {"* CRAMBIN\n*\n  642  EXT\n", "a.str:3: this looks like coordinates (a CRD file)"},
+        {"data_1CRN\nloop_\n", "a.str:1: this looks like coordinates (an mmCIF file)"},
+        {"PSF EXT CMAP\n", "a.str:1: this looks like a PSF"},
+    }));
+    INFO(row.text);
+
+    CHECK_THAT(error_of(row.text), StartsWith(row.message));
 }
 
 TEST_CASE("an atom line needs a residue before it", "[charmm][force_field]") {
@@ -459,7 +523,7 @@ TEST_CASE("a further multiplicity in another file is told, the same terms are no
           "[charmm][force_field]") {
     ForceField force_field = parsed("DIHEDRALS\nA B C D 1.0 1 0.0\nA B C D 1.0 2 0.0\n");
 
-    parse_force_field("DIHEDRALS\nA B C D 1.0 2 0.0\n", "b.prm", force_field);
+    parse_force_field("DIHEDRALS\nA B C D 1.0 2 0.0\nEND\n", "b.prm", force_field);
     CHECK(force_field.dihedrals.begin()->second.size() == 2);
     CHECK_THAT(load_error_of([&] {
                    parse_force_field("DIHEDRALS\nA B C D 1.0 3 0.0\n", "b.prm", force_field);

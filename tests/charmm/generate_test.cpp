@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -171,10 +173,10 @@ TEST_CASE("two CYS without HG1 are bonded where their sulphurs are near, or as n
         structure.positions[1].x() = 2.6;
         CHECK(load_error_of([&] { build_connectivity(bead_force_field(), structure); }) ==
               "s.pdb:1: residue P CYS 1 lacks atom 'HG1'; s.pdb:2: residue Q CYS 1 lacks atom "
-              "'HG1'");
+              "'HG1'; `palpa prepare` adds atoms");
     }
     SECTION("named, as far apart as they may be") {
-        structure.positions[1].x() = 9;
+        structure.positions[1].x() = 2.9;
         const GenerateSettings settings{.segments = {},
                                         .patches = {{"DISU", {{"P", "1"}, {"Q", "1"}}}}};
         CHECK(build_connectivity(bead_force_field(), structure, settings).bonds.size() == 1);
@@ -244,10 +246,128 @@ TEST_CASE("all that is wrong with a structure is told at once", "[charmm][genera
     CHECK(error_of(names) ==
           "s.pdb:1: residue P BEA 1 with CAP has no atom 'D'; s.pdb:1: residue P BEA 1 with CAP "
           "lacks atom 'C'; s.pdb:4: residue P BEA 2 has no atom 'K'; s.pdb:4: residue P BEA 2 "
-          "lacks atom 'H'");
+          "lacks atom 'H'; `palpa prepare` adds atoms");
     CHECK(error_of({{"P", "BAD", "1", "A"}}) ==
           "a.rtf:42: unknown atom type 'TX': no MASS line; did you mean 'TA'?; a.rtf:43: atom 'Z' "
           "in a term of residue 'BAD', which has no such ATOM line");
+}
+
+TEST_CASE("unknown residues, patches and wrong atoms are told in one error", "[charmm][generate]") {
+    std::vector<AtomName> names = chain;
+    names[3].atom = "K";
+    names.push_back({"P", "BEE", "3", "A"});
+    names.push_back({"Q", "TRI", "1", "A"});
+
+    // Of TRI, whose patch there is not, nothing follows; nor of BEE.
+    CHECK(error_of(names, {.segments = {{"Q", "TOPP", "", true}}, .patches = {}}) ==
+          "s.pdb:7: no residue 'BEE' in a.rtf; did you mean 'BEA'?; s.pdb:8: no patch 'TOPP' in "
+          "a.rtf; did you mean 'TOP'?; s.pdb:4: residue P BEA 2 has no atom 'K'; s.pdb:4: residue "
+          "P BEA 2 lacks atom 'H'; `palpa prepare` adds atoms");
+    // The patch may have been meant for the end of P.
+    CHECK(error_of({{"P", "BEA", "1", "A"}}, {.segments = {{"R", "NONE", "", true}},
+                                              .patches = {}}) == "s.pdb: no segment 'R' (only P)");
+}
+
+TEST_CASE("residues that CHARMM calls otherwise are told by its names", "[charmm][generate]") {
+    CHECK_THAT(error_of({{"P", "HIS", "1", "N"}}),
+               StartsWith("s.pdb:1: no residue 'HIS' in a.rtf; expected HSD, HSE or HSP (by its "
+                          "hydrogens)"));
+    CHECK_THAT(error_of({{"P", "ACE", "1", "C"}}),
+               Contains("expected patch ACE on the residue behind it"));
+    CHECK_THAT(error_of({{"P", "NME", "1", "C"}}),
+               Contains("expected patch CT3 on the residue before it"));
+    CHECK_THAT(error_of({{"P", "HOH", "1", "O"}}), Contains("expected TIP3"));
+}
+
+TEST_CASE("atoms that may be called otherwise are told with what is lacking",
+          "[charmm][generate]") {
+    CHECK(error_of({{"W", "WAT", "1", "OW"}, {"W", "WAT", "1", "HW1"}, {"W", "WAT", "1", "H2"}}) ==
+          "s.pdb:2: residue W WAT 1 has no atom 'HW1'; s.pdb:1: residue W WAT 1 has no atom 'OW'; "
+          "s.pdb:1: residue W WAT 1 lacks atoms 'H1', 'O'; `palpa prepare` gives atoms CHARMM's "
+          "names; `palpa prepare` adds atoms");
+    // Here nothing is lacking that it could be.
+    CHECK_THAT(
+        error_of({{"P", "BEA", "1", "A"}, {"P", "BEA", "1", "B"}, {"P", "BEA", "1", "D"}},
+                 {.segments = {{"P", "NONE", "", true}}, .patches = {}}),
+        StartsWith("s.pdb:3: residue P BEA 1 has no atom 'D'") && !Contains("CHARMM's names"));
+}
+
+TEST_CASE("of many problems the first are named and all are kept", "[charmm][generate]") {
+    std::vector<AtomName> names;
+    for (int i = 1; i <= 11; ++i) {
+        names.push_back({"W", "WAT", std::to_string(i), "H1"});
+        names.push_back({"W", "WAT", std::to_string(i), "H2"});
+    }
+    try {
+        build_connectivity(bead_force_field(), structure_of(names));
+        FAIL("waters without oxygen are no waters");
+    } catch (const LoadError& error) {
+        CHECK_THAT(error.what(), StartsWith("s.pdb:1: residue W WAT 1 lacks atom 'O'; s.pdb:3: ") &&
+                                     Contains("WAT 8 lacks") && !Contains("WAT 9 lacks") &&
+                                     Contains("; and 3 more; `palpa prepare` adds atoms"));
+        CHECK(error.further() ==
+              std::vector<std::string>{"s.pdb:17: residue W WAT 9 lacks atom 'O'",
+                                       "s.pdb:19: residue W WAT 10 lacks atom 'O'",
+                                       "s.pdb:21: residue W WAT 11 lacks atom 'O'"});
+    }
+}
+
+TEST_CASE("a TER line ends a chain", "[charmm][generate]") {
+    std::vector<AtomName> names = chain;
+    names[3].atom = "C";  // the second one is the first of a chain now
+    Structure structure = structure_of(names);
+    structure.chain_ends = {3, 6};
+
+    const Connectivity parted = build_connectivity(bead_force_field(), structure);
+
+    CHECK(parted.bonds == std::vector<Pair>{{2, 1}, {4, 5}, {0, 2}, {3, 4}});
+    CHECK(parted.impropers.empty());
+    CHECK(parted.type[3] == "TH");
+    // One of another segment ends none of this.
+    names[3].atom = "H";
+    names.insert(names.begin() + 3, {"Q", "CYS", "1", "SG"});
+    names.insert(names.begin() + 4, {"Q", "CYS", "1", "HG1"});
+    structure = structure_of(names);
+    structure.chain_ends = {5};
+    CHECK(build_connectivity(bead_force_field(), structure).bonds.size() == 6);
+}
+
+TEST_CASE("a bond over a gap is told with both atoms", "[charmm][generate]") {
+    Structure structure = structure_of(chain);
+    for (std::size_t i = 3; i < 6; ++i) structure.positions[i].x() = 5.2;
+    const auto error = [&](const GenerateSettings& settings = {}) {
+        return load_error_of([&] { build_connectivity(bead_force_field(), structure, settings); });
+    };
+
+    SECTION("of a chain") {
+        CHECK(error() ==
+              "s.pdb:2: a bond of 5.2 Å from P BEA 1 B to P BEA 2 A of line 5; expected at most 3 "
+              "Å: where a chain has a gap there are two segments, or a TER line between them");
+    }
+    SECTION("of a residue") {
+        structure.positions[5].x() = 0;
+        CHECK_THAT(error(), Contains("from P BEA 2 A to P BEA 2 B of line 6; expected at most 3 Å: "
+                                     "the atoms of a residue stand together"));
+    }
+    SECTION("of a patch") {
+        structure = structure_of({{"P", "CYS", "1", "SG"}, {"Q", "CYS", "1", "SG"}});
+        structure.positions[1].x() = 3.1;
+        CHECK_THAT(error({.segments = {}, .patches = {{"DISU", {{"P", "1"}, {"Q", "1"}}}}}),
+                   StartsWith("s.pdb:1: a bond of 3.1 Å from P CYS 1 SG to Q CYS 1 SG of line 2") &&
+                       Contains("a patch is for residues that touch"));
+    }
+    SECTION("not where a position is unknown") {
+        structure.positions[4].setConstant(std::numeric_limits<double>::quiet_NaN());
+        CHECK(error() == "no error");
+    }
+}
+
+TEST_CASE("parameters alone hold no residues", "[charmm][generate]") {
+    ForceField force_field;
+    parse_force_field("BONDS\nA B 1.0 1.0\nEND\n", "a.prm", force_field);
+
+    CHECK(load_error_of([&] { build_connectivity(force_field, structure_of(chain)); }) ==
+          "s.pdb:1: no residues in a.prm; expected a topology file (.rtf) beside the parameters");
 }
 
 TEST_CASE("a template that names an atom it has not is told once, where it does",

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 using namespace palpa;
 
@@ -23,4 +24,13 @@ TEST_CASE("a load error tells its place before its message", "[core][load_error]
     CHECK(std::string(as_any_handler_sees_it.what()) == "water.str:3: no {} here");
     CHECK(std::string(LoadError({"a\n.pdb", 1, 0}, "'\x01' is no name").what()) ==
           "a\\x0a.pdb:1: '\\x01' is no name");
+}
+
+TEST_CASE("a load error keeps the problems that its message only counts", "[core][load_error]") {
+    const LoadError error({"a.pdb", 3, 0}, "this; and 2 more", {"that", "the other"});
+    const LoadError copy = error;
+
+    CHECK(std::string(copy.what()) == "a.pdb:3: this; and 2 more");
+    CHECK(copy.further() == std::vector<std::string>{"that", "the other"});
+    CHECK(LoadError({"a.pdb"}, "this").further().empty());
 }

@@ -2,6 +2,7 @@
 // numbers, their bonds and the terms of those, or another LoadError.
 #include "charmm/assign.h"
 #include "charmm/build_topology.h"
+#include "charmm/complete.h"
 #include "charmm/force_field.h"
 #include "charmm/generate.h"
 #include "core/load_error.h"
@@ -133,12 +134,35 @@ Structure one_of_each(const ForceField& force_field) {
     return structure;
 }
 
-// Chains of the residues in their order, a residue apart so that disulphides are found: with the
-// patches that templates name and with none, of the atoms that are left or of all.
+// Of every other atom the rest is found again, or refused; what is whole then has all of its lines.
+void expect_completed(const ForceField& force_field, const Structure& whole) {
+    Structure half;
+    half.file = whole.file;
+    for (std::size_t i = 0; i < whole.names.size(); i += 2) {
+        half.names.push_back(whole.names[i]);
+        half.positions.push_back(whole.positions[i]);
+        half.lines.push_back(whole.lines[i]);
+    }
+    try {
+        const CompletedStructure completed = add_missing_atoms(force_field, half);
+        const std::size_t count = completed.structure.names.size();
+        PALPA_EXPECT(count == half.names.size() + completed.added.size());
+        for (const std::uint32_t atom : completed.added) PALPA_EXPECT(atom < count);
+        for (const AtomCoordinate& line :
+             find_internal_coordinates(force_field, completed.structure)) {
+            for (const std::uint32_t atom : line.atoms) PALPA_EXPECT(atom < count);
+        }
+    } catch (const LoadError&) {
+        return;
+    }
+}
+
+// Chains of the residues in their order, so close that most bonds are short enough: with the
+// patches that templates name and with none, of the atoms that are left or of all, and completed.
 void expect_generated(const ForceField& force_field) {
     Structure structure = one_of_each(force_field);
     for (std::size_t i = 0; i < structure.positions.size(); ++i) {
-        structure.positions[i].x() = static_cast<double>(i);
+        structure.positions[i].x() = 0.05 * static_cast<double>(i);
     }
     for (const bool is_patched : {false, true}) {
         GenerateSettings settings;
@@ -160,6 +184,7 @@ void expect_generated(const ForceField& force_field) {
             continue;
         }
     }
+    expect_completed(force_field, structure);
 }
 
 }  // namespace
