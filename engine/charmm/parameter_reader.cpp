@@ -186,20 +186,20 @@ bool ParameterReader::is_inside_map() const {
 }
 
 // Numbers of the open map, as many on a line as there are.
-void ParameterReader::read_cmap_energies() {
-    std::vector<double>& energies = open_map_->parameter.energies;
-    const std::string place = to_string(open_map_->parameter.place);
+void ParameterReader::read_cmap_energies(OpenMap& map) const {
+    std::vector<double>& energies = map.parameter.energies;
+    const std::string place = to_string(map.parameter.place);
     for (const std::string_view word : statements_.words()) {
-        if (energies.size() == open_map_->count) {
+        if (energies.size() == map.count) {
             statements_.fail(fmt::format("'{}' is more than the {} numbers of the map of {}", word,
-                                         open_map_->count, place));
+                                         map.count, place));
         }
         const std::optional<double> energy = find_real(word);
         if (!energy) {
             statements_.fail(
                 fmt::format("'{}' is not a number; expected energy {} of {} of the map "
                             "of {}",
-                            word, energies.size() + 1, open_map_->count, place));
+                            word, energies.size() + 1, map.count, place));
         }
         energies.push_back(*energy);
     }
@@ -210,7 +210,7 @@ void ParameterReader::read_cmap() {
     const std::vector<std::string_view>& words = statements_.words();
     const bool is_header = words.size() == 9 && !find_real(words[0]) && find_integer(words[8]);
     if (open_map_ && !is_header && (is_inside_map() || find_real(words[0]))) {
-        return read_cmap_energies();
+        return read_cmap_energies(*open_map_);
     }
     end_cmap();
     statements_.expect_form("type1 type2 type3 type4 type5 type6 type7 type8 points");

@@ -43,13 +43,20 @@ private:
     };
     static std::optional<Section> find_section(std::string_view keyword);
 
+    // A CMAP map whose numbers are being read.
+    struct OpenMap {
+        std::array<std::string, 8> types;
+        std::size_t count = 0;  // of numbers, once it is whole
+        CmapParameter parameter;
+    };
+
     void start_section(Section section);
     [[noreturn]] void fail_section() const;
     void read_bond();
     void read_angle();
     void read_dihedral(bool is_improper);
     void read_cmap();
-    void read_cmap_energies();
+    void read_cmap_energies(OpenMap& map) const;
     bool is_inside_map() const;  // numbers of it are still to come
     void end_cmap();
     void read_nonbonded();
@@ -61,13 +68,7 @@ private:
     const Statements& statements_;
     ForceField& into_;
     Section section_ = Section::None;
-    // The CMAP map whose numbers are being read, if any.
-    struct OpenMap {
-        std::array<std::string, 8> types;
-        std::size_t count = 0;  // of numbers, once it is whole
-        CmapParameter parameter;
-    };
-    std::optional<OpenMap> open_map_;
+    std::optional<OpenMap> open_map_;  // the one that is not yet in the force field, if any
 };
 
 }  // namespace palpa

@@ -37,9 +37,10 @@ void check_atoms(const ForceField& force_field, const Structure& structure,
         if (instance.wanted.contains(name)) continue;
         missing.add({structure.file, structure.lines[atom], 0},
                     fmt::format("residue {} has no atom '{}'", instance.label(), name));
-        const bool may_be_other = std::any_of(
-            lacking.begin(), lacking.end(),
-            [&](std::string_view other) { return first_letter(other) == first_letter(name); });
+        const char letter = first_letter(name);
+        const bool may_be_other =
+            std::any_of(lacking.begin(), lacking.end(),
+                        [letter](std::string_view other) { return first_letter(other) == letter; });
         if (may_be_other) missing.advise(rename_advice);
     }
     if (lacking.empty()) return;
