@@ -21,6 +21,7 @@ using std::numbers::pi;
 constexpr double shortest = 1e-6;           // Å, or a sine: below it there is no direction
 constexpr double flat = pi / 12;            // how far from flat a table may have a flat dihedral
 constexpr double tetrahedral = 1.91063324;  // rad, acos(-1/3)
+constexpr double contact = 3;               // Å; heavy atoms are seldom nearer unless bonded
 
 // Zero where there is none.
 Vec3 find_unit(const Vec3& v) noexcept {
@@ -75,7 +76,10 @@ class Builder {
 public:
     Builder(const Connectivity& connectivity, const Topology& topology,
             std::span<const AtomCoordinate> lines, std::span<Vec3> positions)
-        : graph_(connectivity, topology), lines_(lines), positions_(positions) {
+        : graph_(connectivity, topology),
+          exclusions_(topology.exclusions),
+          lines_(lines),
+          positions_(positions) {
         std::vector<std::array<std::uint32_t, 2>> ends;
         for (std::uint32_t i = 0; i < lines.size(); ++i) {
             ends.push_back({lines[i].atoms[0], i});
@@ -202,6 +206,58 @@ private:
                                     angle(atom, centre, pivot), turn.dihedral + further);
     }
 
+    // Å, to the nearest heavy atom that is not up to three bonds away; at most `contact`.
+    double find_room(std::uint32_t atom) const noexcept {
+        double least2 = contact * contact;
+        for (std::uint32_t other = 0; other < positions_.size(); ++other) {
+            const double distance2 = (positions_[other] - positions_[atom]).squaredNorm();
+            // Of no atom without a place: a comparison with NaN is false.
+            if (!(distance2 < least2) || other == atom || graph_.is_hydrogen(other)) continue;
+            const auto excluded = exclusions_.of(std::min(atom, other));
+            if (std::ranges::binary_search(excluded, std::max(atom, other))) continue;
+            least2 = distance2;
+        }
+        return std::sqrt(least2);
+    }
+
+    // Where the bond between them is cut, one cannot be reached from the other.
+    bool is_in_ring(std::uint32_t centre, std::uint32_t pivot) const {
+        std::vector<std::uint32_t> seen{pivot};
+        for (std::size_t i = 0, bonds_left = 7, end = 1; i < seen.size(); ++i) {
+            if (i == end) {
+                end = seen.size();
+                if (--bonds_left == 0) return false;
+            }
+            for (const std::uint32_t other : graph_.neighbours(seen[i])) {
+                if (other == centre && i > 0) return true;
+                if (other == centre || std::ranges::count(seen, other) != 0) continue;
+                seen.push_back(other);
+            }
+        }
+        return false;
+    }
+
+    // An atom that the table has upon another, on a bond that turns freely, takes the roomiest of
+    // the three staggered places.
+    void avoid_contact(std::uint32_t atom, std::uint32_t centre, std::uint32_t pivot,
+                       const Turn& turn) {
+        if (graph_.is_planar(centre) || graph_.is_planar(pivot) || is_in_ring(centre, pivot))
+            return;
+        double room = find_room(atom);
+        Vec3 best = positions_[atom];
+        for (const double further : {2 * pi / 3, -2 * pi / 3}) {
+            if (room >= contact) break;
+            positions_[atom] =
+                positions_[centre] +
+                graph_.bond_length(centre, atom) * direction_of(turn, atom, centre, pivot, further);
+            const double here = find_room(atom);
+            if (here <= room) continue;
+            room = here;
+            best = positions_[atom];
+        }
+        positions_[atom] = best;
+    }
+
     // Where a planar centre leaves room beside two neighbours: the angle around it that they do not
     // take, shared out as the parameters differ.
     Vec3 in_plane(std::uint32_t atom, std::uint32_t centre, std::uint32_t a,
@@ -233,6 +289,7 @@ private:
         } else if (placed.size() == 1) {
             const Turn turn = find_turn(atom, centre, placed[0]);
             place(atom, centre, direction_of(turn, atom, centre, placed[0]), turn.by);
+            if (!graph_.is_hydrogen(atom)) avoid_contact(atom, centre, placed[0], turn);
         } else if (placed.size() == 2 && graph_.is_planar(centre)) {
             place(atom, centre, in_plane(atom, centre, placed[0], placed[1]), PlacedBy::Neighbours);
         } else if (placed.size() == 2 && degree <= 4) {
@@ -367,6 +424,7 @@ private:
     }
 
     BondGraph graph_;
+    const Exclusions& exclusions_;
     std::span<const AtomCoordinate> lines_;
     Lists lines_of_;  // by their ends
     std::span<Vec3> positions_;

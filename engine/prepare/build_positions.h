@@ -36,7 +36,9 @@ struct BuiltPositions {
 //   XH2 with two neighbours     symmetric, H-X-H as the parameters have it;
 //   XH3, XH2, XH with one       by a dihedral of the IC table, read either way round, XH3 with
 //                               threefold symmetry;
-//   heavy atoms                 in the same way, the table saying on which side;
+//   heavy atoms                 in the same way, the table saying on which side; one that would be
+//                               within 3 Å of another takes the roomiest of three staggered
+//                               places, where its bond turns freely;
 //   X without neighbours        (water) in any orientation.
 // An atom of three bonds is planar where its angles in the parameters sum up to 350 degree or more.
 // A dihedral between two such atoms is flat where the table has it within 15 degree of that. The

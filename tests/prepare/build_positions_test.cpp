@@ -148,6 +148,31 @@ TEST_CASE(
     CHECK(molecule.length(c, d) == Approx(1.4));
 }
 
+TEST_CASE("a heavy atom that its line has upon another one is staggered the other way",
+          "[prepare][positions]") {
+    Molecule molecule;
+    const std::uint32_t a = molecule.add(carbon, {1.5, 0, 0}), b = molecule.add(carbon, {0, 0, 0});
+    const std::uint32_t c = molecule.add(carbon, {0, 0, 1.5}), d = molecule.add(carbon);
+    molecule.bond(a, b, 1.5);
+    molecule.bond(b, c, 1.5);
+    molecule.bond(c, d, 1.5);
+    molecule.angle(b, c, d, 110);
+    const bool is_blocked = GENERATE(false, true);
+    const double side = GENERATE(1.0, -1.0);
+    // At 180 degree the fourth would be at (-1.41, 0, 2.01).
+    if (is_blocked) molecule.add(carbon, {-1.5, 0.3 * side, 2.5});
+
+    molecule.build({dihedral_line({a, b, c, d}, 180)});
+
+    const double found = molecule.dihedral_deg(a, b, c, d);
+    if (is_blocked) {
+        CHECK(std::abs(found) == Approx(60));
+        CHECK(molecule.positions[d].y() * side < 0);  // away from it
+    } else {
+        CHECK(std::abs(found) == Approx(180));
+    }
+}
+
 TEST_CASE(
     "what hangs on nothing that has a place is told, the rest is finite however the given "
     "atoms lie",

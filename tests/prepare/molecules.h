@@ -40,7 +40,8 @@ struct Molecule {
     void angle(std::uint32_t a, std::uint32_t b, std::uint32_t c, double theta0_deg) {
         topology.angles.push_back({a, b, c, 50, theta0_deg * degree});
     }
-    BuiltPositions build(std::vector<AtomCoordinate> coordinates = {}) {
+    BuiltPositions build(const std::vector<AtomCoordinate>& coordinates = {}) {
+        topology.exclusions = build_exclusions(topology.bonds, positions.size());
         return build_positions(connectivity, topology, coordinates, positions);
     }
     double length(std::uint32_t a, std::uint32_t b) const {
