@@ -158,8 +158,8 @@ void relax_system(PreparedSystem& system, std::span<const std::uint32_t> added,
               [&](double share) { progress("relaxing clashes", share); });
     constexpr std::string_view heading = "Relaxation";
     system.report.add(heading,
-                      fmt::format("{:.2f} to {:.2f} kcal/mol in {} steps (cutoff 9 Å, the file's "
-                                  "heavy atoms held by 5 kcal/mol/Å^2), rms force {:.2f} "
+                      fmt::format("{:.2f} to {:.2f} kcal/mol in {} steps (dielectric 4 r, cutoff "
+                                  "9 Å, the file's heavy atoms held by 5 kcal/mol/Å^2), rms force {:.2f} "
                                   "kcal/mol/Å left",
                                   relaxed.before.total(), relaxed.after.total(), relaxed.steps,
                                   relaxed.rms_force));

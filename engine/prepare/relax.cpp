@@ -16,9 +16,13 @@ constexpr double restraint = 5;  // kcal/mol/Å^2
 // Two, whatever the machine has: results repeat for a number of threads.
 constexpr std::size_t threads = 2;
 
+// Charges are screened as by 4 r: in vacuum salt bridges would pull side chains through the water
+// that is not there.
 NonbondedSettings short_ranged() {
     NonbondedSettings settings;
-    settings.electrostatics = ElectrostaticCutoff::ForceShift;
+    settings.dielectric = 4;
+    settings.distance_dielectric = true;
+    settings.electrostatics = ElectrostaticCutoff::Shift;
     settings.van_der_waals = VanDerWaalsCutoff::ForceSwitch;
     settings.switch_from = 7;
     settings.cutoff = cutoff;

@@ -19,7 +19,7 @@ struct Contact {
 };
 
 struct RelaxReport {
-    EnergyTerms before, after;  // kcal/mol, force-shifted and force-switched at 9 Å
+    EnergyTerms before, after;  // kcal/mol, dielectric 4 r, to 9 Å
     std::size_t steps = 0;
     double rms_force = 0;  // at the end, kcal/mol/Å
     Contact closest_before, closest_after;

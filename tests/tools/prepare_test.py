@@ -1,0 +1,254 @@
+"""palpa prepare from outside: downloaded structures become the systems that other programs made."""
+import json
+import os
+import re
+import subprocess
+import tempfile
+import unittest
+from collections import Counter
+from pathlib import Path
+
+PROGRAM = os.environ["PALPA_PROGRAM"]
+SHARED = os.environ.get("PALPA_DATA")
+KJ_PER_KCAL = 4.184
+
+
+def read_psf(path):
+    """Atoms as (segment, number, residue, name, type, charge), and the counts of the sections."""
+    atoms, counts = [], {}
+    lines = path.read_text().splitlines()
+    for i, line in enumerate(lines):
+        found = re.match(r"\s*(\d+) !(N\w+)", line)
+        if not found:
+            continue
+        counts[found[2]] = int(found[1])
+        if found[2] == "NATOM":
+            for row in lines[i + 1:i + 1 + int(found[1])]:
+                words = row.split()
+                atoms.append((*words[1:6], float(words[6])))
+    return atoms, counts
+
+
+def residues_of(rows):
+    """For each residue, in order, its atoms' types and charges as a multiset."""
+    residues, before = [], None
+    for key, kind, charge in rows:
+        if key != before:
+            residues.append(Counter())
+            before = key
+        residues[-1][kind, round(charge, 4)] += 1
+    return residues
+
+
+def residue_keys(rows):
+    """The reference's atoms; every residue of a chain begins with its N."""
+    begun = 0
+    for row in rows:
+        begun += row["name"] == "N" or row["resname"] == "3TL" and row["name"] == "O58"
+        yield begun, row["type"], row["charge"]
+
+
+class Prepare(unittest.TestCase):
+    def setUp(self):
+        if not SHARED:
+            self.skipTest("PALPA_DATA is not set")
+        self.data = Path(SHARED) / "data"
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def toppar(self, kind="36"):
+        charmm = self.data / "charmm"
+        if kind == "22":
+            return [charmm / "top_all22_prot.rtf", charmm / "par_all22_prot.prm"]
+        names = ("top_all36_prot.rtf", "par_all36m_prot.prm", "top_all36_cgenff.rtf",
+                 "par_all36_cgenff.prm", "toppar_water_ions.str")
+        return [charmm / name for name in names]
+
+    def tl3(self):
+        derived = self.data / "hiv" / "derived"
+        return [derived / "3tl_draft.rtf", derived / "3tl_draft.prm"]
+
+    def palpa(self, command, *arguments):
+        return subprocess.run([PROGRAM, command, *map(str, arguments)], capture_output=True,
+                              text=True)
+
+    def prepare(self, structure, toppar, *options):
+        result = self.palpa("prepare", structure, "--toppar", *toppar, "-o", self.folder / "out",
+                            "--overwrite", *options)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return self.folder / "out"
+
+    def energy(self, folder):
+        result = self.palpa("energy", folder / "system.psf", "--coordinates",
+                            folder / "system.crd", "--toppar", folder / "system.prm", "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return json.loads(result.stdout)
+
+    def refuse(self, structure, *options):
+        result = self.palpa("prepare", structure, "--toppar", *self.toppar(), "-o",
+                            self.folder / "refused", *options)
+        self.assertEqual(result.returncode, 2, result.stdout)
+        self.assertFalse((self.folder / "refused").exists(), "half written")
+        return result.stderr
+
+    def without_hydrogens(self, path):
+        """A PDB file's heavy atoms alone."""
+        kept = [line for line in path.read_text().splitlines()
+                if not (line.startswith(("ATOM", "HETATM")) and
+                        (line[76:78].strip() == "H" or line[12:16].strip().lstrip("0123456789")
+                         .startswith("H")))]
+        bare = self.folder / "bare.pdb"
+        bare.write_text("\n".join(kept) + "\n")
+        return bare
+
+    def check_reference(self, folder, case):
+        """The same atoms, types and charges, residue by residue."""
+        reference = json.loads((Path(SHARED) / "reference" / f"{case}.ff.json").read_text())
+        rows = [dict(zip(reference["atoms"]["columns"], row))
+                for row in reference["atoms"]["rows"]]
+        theirs = residues_of(residue_keys(rows))
+        atoms, counts = read_psf(folder / "system.psf")
+        self.assertEqual(len(atoms), len(rows))
+        ours = residues_of(((atom[0], atom[1]), atom[4], atom[5]) for atom in atoms)
+        self.assertEqual(len(ours), len(theirs))
+        for i, (a, b) in enumerate(zip(ours, theirs)):
+            self.assertEqual(a, b, f"residue {i + 1}")
+        return reference, counts
+
+    def check_clean(self, folder):
+        """No two atoms that are not bonded within 1.5 Å, by the file's own coordinates."""
+        report = (folder / "report.txt").read_text()
+        closest = float(re.search(r"closest contact after: ([\d.]+) Å", report)[1])
+        self.assertGreater(closest, 1.5)
+        before, after = map(float, re.search(r"(-?[\d.]+) to (-?[\d.]+) kcal/mol in", report)
+                            .groups())
+        self.assertLess(after, before)
+
+    def test_crambin_from_heavy_atoms_is_charmm_s_own(self):
+        folder = self.prepare(self.data / "structures" / "1crn.pdb", self.toppar()[:2])
+        # CHARMM's input has the sequence of another crambin (22 PRO -> 25 ILE): counts and
+        # residues that are alike.
+        _, counts = self.check_reference(folder, "crambin_c36m")
+        self.assertEqual([counts[key] for key in ("NBOND", "NTHETA", "NPHI", "NIMPHI", "NCRTERM")],
+                         [652, 1183, 1747, 111, 44])
+        self.check_clean(folder)
+        # Only what is used is written, and it is enough.
+        self.assertLess((folder / "system.prm").stat().st_size, 40000)
+        self.assertLess(self.energy(folder)["total"], 0)
+
+    def test_1hpv_in_charmm22(self):
+        folder = self.prepare(self.data / "hiv" / "1hpv_protein.pdb", self.toppar("22"),
+                              "--protonation", "A:69=HSE", "--protonation", "B:69=HSE")
+        self.check_reference(folder, "hiv_protease_1hpv")
+        self.check_clean(folder)
+
+    def test_1hpv_s_energies_at_the_reference_s_coordinates(self):
+        # The reference's places under our names: residue by residue, by name, but for the two
+        # hydrogens of the first residue, which it calls otherwise.
+        folder = self.prepare(self.data / "hiv" / "1hpv_protein.pdb", self.toppar("22"),
+                              "--protonation", "A:69=HSE", "--protonation", "B:69=HSE",
+                              "--no-relax", "--no-flips")
+        reference = Path(SHARED) / "reference"
+        rows = json.loads((reference / "hiv_protease_1hpv.ff.json").read_text())["atoms"]["rows"]
+        frame = json.loads((reference / "hiv_protease_1hpv.minimised_300_steps.json")
+                           .read_text())["frames"][0]
+        places, residue = {}, 0
+        other = {"H1": "HN1", "H2": "HN2"}
+        for row, place in zip(rows, frame["x"]):
+            residue += row[0] == "N"
+            name = other.get(row[0], row[0]) if row[1] == "PRO" else row[0]
+            places[residue, name] = [10 * value for value in place]
+        atoms, _ = read_psf(folder / "system.psf")
+        lines, residue, before = ["* REFERENCE", "*", f"{len(atoms):10}  EXT"], 0, None
+        for i, (segment, number, name, atom, *_) in enumerate(atoms, 1):
+            residue += (segment, number) != before
+            before = (segment, number)
+            x, y, z = places[residue, atom]
+            lines.append(f"{i:10}{residue:10}  {name:<8}  {atom:<8}{x:20.10f}{y:20.10f}{z:20.10f}"
+                         f"  {segment:<8}  {number:<8}{0:20.10f}")
+        (folder / "system.crd").write_text("\n".join(lines) + "\n")
+        result = self.palpa("energy", folder / "system.psf", "--coordinates",
+                            folder / "system.crd", "--toppar", folder / "system.prm", "--json",
+                            "--coulomb-constant", 332.06371)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        ours, theirs = json.loads(result.stdout), frame["energy"]
+        for term, name in (("bond", "bond"), ("angle", "angle"), ("urey_bradley", "urey"),
+                           ("dihedral", "proper"), ("improper", "improper"), ("cmap", "cmap"),
+                           ("lj14", "lj14")):
+            with self.subTest(term=term):
+                self.assertAlmostEqual(ours[term] * KJ_PER_KCAL / theirs[name], 1, delta=1e-7)
+
+    def test_hiv_protease_with_tl3(self):
+        folder = self.prepare(self.data / "hiv" / "derived" / "standin_2az8_tl3.pdb",
+                              [*self.toppar(), *self.tl3()], "--protonation", "A:69=HSE",
+                              "--protonation", "B:69=HSE")
+        reference, counts = self.check_reference(folder, "hiv_tl3_c36m")
+        self.assertEqual(counts["NPHI"], reference["counts"]["dihedrals_before_expansion"])
+        self.check_clean(folder)
+        # Atoms of the file in its order.
+        given = [line[12:16].strip() for line in (self.data / "hiv" / "derived" /
+                 "standin_2az8_tl3.pdb").read_text().splitlines()
+                 if line.startswith(("ATOM", "HETATM"))]
+        renamed = {"CD1": "CD", "O": "OT1", "OXT": "OT2"}
+        ours = iter(atom[3] for atom in read_psf(folder / "system.psf")[0])
+        for name in given:
+            self.assertTrue(any(mine in (name, renamed.get(name)) for mine in ours), name)
+
+    def test_other_structures(self):
+        hiv = self.data / "hiv"
+        for name, options in (("1hsg_protein", []), ("1hxw_protein", []),
+                              ("1hvr_protein", ["--as", "CSO=CYS"]), ("5w5w_protein", []),
+                              ("4k4p_protein", []), ("4k4q_protein", []), ("5vea_protein", []),
+                              ("1tw7_charmm_allH", [])):
+            with self.subTest(name=name):
+                folder = self.prepare(hiv / f"{name}.pdb", self.toppar()[:2], *options)
+                self.check_clean(folder)
+        with self.subTest(name="alanine dipeptide"):
+            folder = self.prepare(self.data / "structures" / "alanine_dipeptide.pdb",
+                                  self.toppar()[:2])
+            atoms, counts = read_psf(folder / "system.psf")
+            self.assertEqual((len(atoms), counts["NCRTERM"]), (22, 1))
+
+    def test_a_ligand_s_hydrogens(self):
+        """TL-3 without hydrogens: built on the heavy atoms of a file that has them."""
+        whole = self.data / "hiv" / "derived" / "5w5w_tl3_complex.pdb"
+        bare = self.without_hydrogens(whole)
+        folder = self.prepare(bare, [*self.toppar(), *self.tl3()])
+        atoms, _ = read_psf(folder / "system.psf")
+        self.assertEqual(sum(atom[2] == "3TL" for atom in atoms), 130)
+        self.check_clean(folder)
+
+    def test_what_cannot_be_prepared_is_told_in_one_line(self):
+        hiv = self.data / "hiv"
+        one_line = [
+            (hiv / "1hsg_ligand.pdb", [], "'MK1'.*--without MK1"),
+            (hiv / "1hvr_protein.pdb", [], "'CSO'.*--as CSO=CYS"),
+            (hiv / "1hsg_protein.pdb", ["--protonation", "A:25=ASPX"], "did you mean 'ASPP'"),
+            (hiv / "1hsg_protein.pdb", ["--without", "HOH"], "nothing here is 'HOH'"),
+            (hiv / "1hsg_protein.pdb", ["--first", "C=NTER"], "no chain or segment 'C'"),
+            (hiv / "absent.pdb", [], "absent.pdb"),
+        ]
+        for structure, options, expected in one_line:
+            with self.subTest(expected=expected):
+                message = self.refuse(structure, *options)
+                self.assertRegex(message, expected)
+                self.assertEqual(message.strip().count("\n"), 0, message)
+        result = self.palpa("prepare", hiv / "5vea_ligand.pdb", "--toppar", *self.toppar(),
+                            *self.tl3(), "-o", self.folder / "refused")
+        self.assertEqual(result.returncode, 2)
+        self.assertRegex(result.stderr, "A:101 and B:101 have each 33 of its 66.*halves")
+        self.assertEqual(result.stderr.strip().count("\n"), 0, result.stderr)
+
+    def test_nothing_is_overwritten_unasked(self):
+        structure = self.data / "structures" / "alanine_dipeptide.pdb"
+        folder = self.prepare(structure, self.toppar()[:2])
+        before = (folder / "system.psf").read_text()
+        result = self.palpa("prepare", structure, "--toppar", *self.toppar()[:2], "-o", folder)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("--overwrite", result.stderr)
+        self.assertEqual((folder / "system.psf").read_text(), before)
+
+
+if __name__ == "__main__":
+    unittest.main()
