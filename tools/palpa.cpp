@@ -231,6 +231,7 @@ void add_prepare(CLI::App& program, palpa::PrepareOptions& options) {
         .add_option("--y-towards", options.y_towards,
                     "CHAIN:NUMBER-CHAIN:NUMBER: y from one residue to another")
         ->needs(x_along);
+    prepare.add_option("--title", options.title, "what the files say of themselves");
     prepare.add_flag("--overwrite", options.overwrites, "replace files of an earlier run");
     prepare.add_flag("--json", options.json, "print counts and warnings as JSON");
 }

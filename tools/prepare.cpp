@@ -109,9 +109,10 @@ int prepare_command(const PrepareOptions& options) {
     };
     const PreparedSystem system = prepare_system(force_field, structure, settings, progress);
     if (shows_progress) fmt::print(stderr, "\r{:46}\r", "");
+    const std::string origin = fmt::format("Prepared from {} by palpa prepare; see report.txt.",
+                                           options.structure.filename().string());
     write_prepared(system, options.folder,
-                   fmt::format("Prepared from {} by palpa prepare; see report.txt.",
-                               options.structure.filename().string()));
+                   options.title.empty() ? origin : fmt::format("{}\n{}", options.title, origin));
     if (options.json) {
         nlohmann::ordered_json json;
         json["atoms"] = system.structure.names.size();

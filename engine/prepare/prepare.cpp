@@ -23,6 +23,7 @@
 
 #include <fmt/format.h>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -54,6 +55,15 @@ TypedSystem type_system(const ForceField& force_field, const NamedResidues& name
         build_connectivity(force_field, system.completed.structure, system.settings);
     system.topology = build_topology(system.connectivity, force_field);
     return system;
+}
+
+// Protein files name no elements with their types; whoever draws the system needs them.
+void name_elements(PreparedSystem& system) {
+    for (std::size_t i = 0; i < system.structure.names.size(); ++i) {
+        const auto type = system.parameters.types.find(system.connectivity.type[i]);
+        if (type == system.parameters.types.end() || !type->second.element.empty()) continue;
+        type->second.element = element_of(system.structure, i);
+    }
 }
 
 void check_size(const PreparedSystem& system) {
@@ -122,7 +132,7 @@ void orient(PreparedSystem& system, std::span<const std::uint32_t> added,
     constexpr std::string_view heading = "Hydrogen bonds";
     system.report.add(heading, fmt::format("{} groups turned to their lowest energy, {:.1f} "
                                            "kcal/mol gained in {} sweeps",
-                                           oriented.groups.size(), -oriented.energy_change,
+                                           oriented.groups.size(), std::abs(oriented.energy_change),
                                            oriented.sweeps));
     for (const OrientedGroup& group : oriented.groups) {
         const bool is_amide = group.kind == OrientedGroup::Kind::Amide;
@@ -205,6 +215,7 @@ PreparedSystem prepare_system(const ForceField& force_field, const Structure& st
     result.connectivity = std::move(system.connectivity);
     result.topology = std::move(system.topology);
     result.parameters = keep_used_parameters(force_field, result.connectivity);
+    name_elements(result);
     check_size(result);
     report_charge(result);
 

@@ -1,18 +1,17 @@
 #!/usr/bin/env python3
 """Sums what HIV-1 protease does to TL-3, pair by pair, for poses of scenes/hiv.
 
-usage: make_hiv_poses.py FORCE_FIELD.json SYSTEM.crd > hiv_poses.csv
+usage: make_hiv_poses.py SYSTEM.psf SYSTEM.crd PARAMETERS.prm ... > hiv_poses.csv
 
-Independent of the program: charges, sigma and epsilon are the reference set's (nm, kJ/mol), sums
-are exact (math.fsum); only the places are the scene's, since that turned them. See README.md
-beside this file.
+Independent of the program's sums: sigma and epsilon are read here from CHARMM's own files
+(par_all36m_prot.prm, par_all36_cgenff.prm), everything is turned into nm and kJ/mol, sums are exact
+(math.fsum). Names, types, charges and places are the scene's. See README.md beside this file.
 """
-import json
 import math
 import sys
 
 COULOMB = 332.0716 * 0.4184  # kJ nm/mol/e2, from CHARMM's own kcal A/mol/e2
-SEGMENTS = {"S0": "PROA", "S1": "PROB", "LIG": "TL3"}
+LIGAND = "TL3C"
 
 
 def read_places(path):
@@ -25,18 +24,45 @@ def read_places(path):
     return places
 
 
+def read_atoms(path):
+    """((segment, residue number, atom), type, charge, mass) of each atom of a PSF."""
+    lines = open(path).read().splitlines()
+    at = next(i for i, line in enumerate(lines) if "!NATOM" in line)
+    rows = [line.split() for line in lines[at + 1:at + 1 + int(lines[at].split()[0])]]
+    return [((row[1], row[2], row[4]), row[5], float(row[6]), float(row[7])) for row in rows]
+
+
+def read_wells(paths):
+    """type -> (sigma in nm, epsilon in kJ/mol), and the types of replaced pairs."""
+    wells, replaced = {}, []
+    for path in paths:
+        section = ""
+        for line in open(path):
+            words = line.split("!")[0].split()
+            if not words or words[0].startswith("*"):
+                continue
+            if words[0] in ("NONBONDED", "NBFIX", "END", "HBOND", "CMAP", "BONDS"):
+                section = words[0]
+            elif section == "NONBONDED" and len(words) >= 4 and words[0] != "cutnb":
+                wells[words[0]] = (float(words[3]) * 2 / 10 / 2 ** (1 / 6), -float(words[2]) * 4.184)
+            elif section == "NBFIX":
+                replaced.append(tuple(words[:2]))
+    return wells, replaced
+
+
 def main():
-    force_field = json.load(open(sys.argv[1]))
-    rows = force_field["atoms"]["rows"]
     places = read_places(sys.argv[2])
-    assert len(places) == len(rows)
-    atoms = [(places[SEGMENTS[row[8]], str(row[2]), row[0]], row[4:8]) for row in rows]
-    ligand = [atom for atom, row in zip(atoms, rows) if row[8] == "LIG"]
-    protein = [(*place, *numbers) for (place, numbers), row in zip(atoms, rows)
-               if row[8] != "LIG"]
-    # Replaced pairs stand between atoms of the protein only.
-    replaced = {name for pair in force_field["nbfix"] for name in pair[:2]}
-    assert not replaced & {row[3] for row in rows if row[8] == "LIG"}
+    wells, pairs = read_wells(sys.argv[3:])
+    atoms, types = [], []
+    for name, kind, charge, mass in read_atoms(sys.argv[1]):
+        # mass, charge, sigma, epsilon
+        atoms.append((places[name], (mass, charge, *wells[kind]), name[0] == LIGAND))
+        types.append((kind, name[0] == LIGAND))
+    ligand = [(place, numbers) for place, numbers, is_ligand in atoms if is_ligand]
+    protein = [(*place, *numbers) for place, numbers, is_ligand in atoms if not is_ligand]
+    ours = {kind for kind, is_ligand in types if is_ligand}
+    theirs = {kind for kind, is_ligand in types if not is_ligand}
+    assert not any(a in ours and b in theirs or b in ours and a in theirs for a, b in pairs)
     weight = math.fsum(numbers[0] for _, numbers in ligand)
     centre = [math.fsum(numbers[0] * place[k] for place, numbers in ligand) / weight
               for k in range(3)]

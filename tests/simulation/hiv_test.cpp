@@ -53,7 +53,7 @@ struct Shipped {
         double mass = 0;
         for (const std::string_view line : split_lines(text)) {
             const std::vector<std::string_view> words = split_words(line);
-            if (words.size() != 10 || words[7] != "TL3") continue;
+            if (words.size() != 10 || words[7] != "TL3C") continue;
             const double m = simulation.atoms.mass.at(places.size());
             places.emplace_back(*find_real(words[4]), *find_real(words[5]), *find_real(words[6]));
             centre += m * places.back();
@@ -74,7 +74,7 @@ struct Shipped {
 TEST_CASE("energy, force and torque on TL-3 are those of an independent sum", "[simulation][hiv]") {
     const Shipped shipped;
     REQUIRE(shipped.places.size() == 130);
-    REQUIRE(environment_points(shipped.simulation).positions.size() == 3144);
+    REQUIRE(environment_points(shipped.simulation).positions.size() == 3145);
     const std::string text = read_text_file(PALPA_TEST_DATA "/hiv_poses.csv");
     const std::vector<std::string_view> rows = split_lines(text);
     REQUIRE(rows.size() == 5);
@@ -92,7 +92,7 @@ TEST_CASE("energy, force and torque on TL-3 are those of an independent sum", "[
 
         const FieldSum field = shipped.field(moved);
 
-        // The scene has parameters of six decimals, the reference twelve digits of sigma.
+        // The scene has charges of six decimals, the independent sum reads the same ones.
         CHECK_THAT(field.van_der_waals * 4.184, WithinRel(v[4], 1e-8));
         CHECK_THAT(field.electrostatic * 4.184, WithinRel(v[5], 1e-8));
         const Vec3 force(v[6], v[7], v[8]), torque(v[9], v[10], v[11]);
