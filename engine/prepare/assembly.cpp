@@ -302,12 +302,15 @@ private:
         }
         constexpr double slip = 0.011;  // of numbers with two decimals
         const bool is_half = std::abs(occupancy - 0.5) < slip;
-        report_.add(heading,
-                    fmt::format("{} lies on a symmetry axis: {} of its {} heavy atoms come within "
-                                "{} Å of it by operator {}; only the original is kept{}",
-                                residue_label(structure_, residue), count, of, overlap,
-                                operators_[operator_index].name,
-                                is_half ? "; its occupancy is 1/2, as on a two-fold axis" : ""));
+        const std::string text = fmt::format(
+            "{} lies on a symmetry axis: {} of its {} heavy atoms come within {} Å of "
+            "it by operator {}; only the original is kept{}",
+            residue_label(structure_, residue), count, of, overlap, operators_[operator_index].name,
+            is_half ? "; its occupancy is 1/2, as on a two-fold axis" : "");
+        report_.add(heading, text);
+        if (2 * count >= of) return;
+        report_.warn(
+            fmt::format("{}: wrong, if the file holds half of it, bonded to its copy", text));
     }
 
     const Structure& structure_;

@@ -167,7 +167,11 @@ TEST_CASE("an mmCIF assembly takes the archive's chains, not the author's", "[pr
 
 TEST_CASE("chain B of HIV-1 protease 5VEA is chain A by the crystal's two-fold",
           "[prepare][assembly]") {
-    const auto path = test::find_shared_data("data/hiv/5vea_protein.pdb");
+    // The halves of the ligand do not touch: both are kept.
+    const auto [name, atoms] = GENERATE(table<std::string, std::size_t>(
+        {{"data/hiv/5vea_protein.pdb", 1540}, {"data/hiv/5vea_ligand.pdb", 66}}));
+    INFO(name);
+    const auto path = test::find_shared_data(name);
     if (!path) return;
     const std::string text = read_text_file(*path);
     const double half_root = std::sqrt(3.0) / 2;
@@ -182,7 +186,8 @@ TEST_CASE("chain B of HIV-1 protease 5VEA is chain A by the crystal's two-fold",
                         i / 3 + 1, rows[i][0], rows[i][1], rows[i][2], rows[i][3]);
     }
     for (const std::string_view line : split_lines(text)) {
-        const bool is_atom = line.starts_with("ATOM") || line.starts_with("TER");
+        const bool is_atom =
+            line.starts_with("ATOM") || line.starts_with("HETATM") || line.starts_with("TER");
         if (is_atom && line.size() > 21 && line[21] == 'A') one_chain += fmt::format("{}\n", line);
     }
     one_chain += "END\n";
@@ -190,10 +195,10 @@ TEST_CASE("chain B of HIV-1 protease 5VEA is chain A by the crystal's two-fold",
     Report report;
     const Structure built = build_assembly(parse_pdb(one_chain, "a.pdb"), 1, report);
 
-    const Structure expected = parse_pdb(text, "5vea_protein.pdb");
-    REQUIRE(built.names.size() == 1540);
-    REQUIRE(expected.names.size() == 1540);
-    CHECK(built.chain_ends == expected.chain_ends);
+    const Structure expected = parse_pdb(text, "5vea.pdb");
+    REQUIRE(built.names.size() == atoms);
+    REQUIRE(expected.names.size() == atoms);
+    CHECK(built.chain_ends == std::vector{atoms / 2, atoms});
     double farthest = 0;
     for (std::size_t i = 0; i < built.names.size(); ++i) {
         const AtomName &is = built.names[i], &was = expected.names[i];  // segments differ
@@ -268,6 +273,20 @@ TEST_CASE("halves of a ligand that are a bond apart are both kept", "[prepare][a
         writer.structure(), "A,", {identity, {"2", diagonal(-1, -1, 1), Vec3::Zero(), 0}});
     Report report;
     CHECK(build_assembly(structure, 1, report).names.size() == 4);
+}
+
+TEST_CASE("a residue of which little lies on the axis is kept once, with a warning",
+          "[prepare][assembly]") {
+    StructureWriter writer;
+    writer.atom("LIG", "A", 1, "C1", {0.7, 0, 0}, "C");
+    writer.atom("LIG", "A", 1, "C2", {2.2, 0, 0}, "C");
+    writer.atom("LIG", "A", 1, "C3", {3.7, 0, 0}, "C");
+    const Structure structure = with_assembly(
+        writer.structure(), "A,", {identity, {"2", diagonal(-1, -1, 1), Vec3::Zero(), 0}});
+    Report report;
+    CHECK(build_assembly(structure, 1, report).names.size() == 3);
+    REQUIRE(report.warnings().size() == 1);
+    CHECK_THAT(report.warnings()[0], Contains("1 of its 3 heavy atoms"));
 }
 
 TEST_CASE("assemblies that are not there, or not of this world, are refused",
