@@ -221,6 +221,11 @@ void add_prepare(CLI::App& program, palpa::PrepareOptions& options) {
     prepare.add_flag("--keep-waters", settings.keeps_waters, "waters are left out otherwise");
     prepare.add_flag("!--no-ions", settings.keeps_ions, "ions are kept otherwise");
     prepare.add_option("--model", settings.model, "the first unless given");
+    prepare
+        .add_option("--assembly", settings.assembly,
+                    "build this biological assembly of the file, often 1, by its symmetry; "
+                    "unless given, what the file holds is taken as it is")
+        ->check(in_range(1, 1e6));
     prepare.add_option("--altloc", options.alternates,
                        "CHAIN:NUMBER=LETTER: the location to take, not the most occupied");
     prepare.add_flag("!--no-flips", settings.flips, "amides and imidazoles stay as they are");

@@ -1,6 +1,7 @@
 #include "formats/cif.h"
 
 #include "core/load_error.h"
+#include "formats/lines.h"
 
 #include <gemmi/cif.hpp>
 
@@ -65,6 +66,13 @@ struct Action<rules::missing_value> {
 };
 
 }  // namespace
+
+std::string_view unquoted(std::string_view value) noexcept {
+    if (value.empty() || value == "?" || value == ".") return {};
+    const bool lines = value.find('\n') != std::string_view::npos;  // between semicolons
+    const bool quotes = value.front() == '\'' || value.front() == '"';
+    return lines || quotes ? find_field(value, {1, value.size() - 2}) : value;
+}
 
 void parse_cif(std::string_view text, const std::string& file, CifListener& listener) {
     pegtl::memory_input<> input(text.data(), text.size(), file);

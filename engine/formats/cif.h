@@ -12,6 +12,9 @@ struct CifToken {
     std::size_t line = 0, column = 0;
 };
 
+// What a value says: without its quotes, empty for '?' and '.'.
+std::string_view unquoted(std::string_view value) noexcept;
+
 // Called in the order of the file.
 class CifListener {
 public:

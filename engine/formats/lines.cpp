@@ -38,6 +38,20 @@ bool is_name(std::string_view text) noexcept {
            std::all_of(text.begin(), text.end(), [](char c) { return c > ' ' && c <= '~'; });
 }
 
+std::string chain_list(std::string_view text) {
+    std::string list;
+    for (const char c : text) {
+        const bool separates = c == ',' || c <= ' ';
+        if (!separates) {
+            list += c;
+        } else if (!list.empty() && list.back() != ',') {
+            list += ',';
+        }
+    }
+    if (!list.empty() && list.back() != ',') list += ',';
+    return list;
+}
+
 std::string_view shortened(std::string_view text) noexcept { return text.substr(0, 80); }
 
 std::optional<double> find_coordinate(std::string_view text) {

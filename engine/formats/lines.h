@@ -2,6 +2,7 @@
 #pragma once
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace palpa {
@@ -37,6 +38,9 @@ std::string_view find_field(std::string_view line, Columns columns) noexcept;
 
 // Printable ASCII without blanks, and not empty: what a name in a structure file may be.
 bool is_name(std::string_view text) noexcept;
+
+// The words between commas, blanks and line ends, each with a comma behind it.
+std::string chain_list(std::string_view text);
 
 // What a message quotes of a word that may be as long as its file.
 std::string_view shortened(std::string_view text) noexcept;

@@ -5,6 +5,7 @@
 #include "core/text.h"
 #include "formats/cif.h"
 #include "formats/lines.h"
+#include "formats/mmcif_assemblies.h"
 #include "formats/structure_builder.h"
 
 #include <fmt/format.h>
@@ -66,14 +67,6 @@ static_assert(column_names.size() == LabelNumber + 1);
 
 constexpr std::string_view category = "_ATOM_SITE.";
 constexpr std::string_view dictionary_category = "_CHEM_COMP_ATOM.";
-
-// What a value says: without its quotes, empty for '?' and '.'.
-std::string_view unquoted(std::string_view value) {
-    if (value.empty() || value == "?" || value == ".") return {};
-    const bool lines = value.find('\n') != std::string_view::npos;  // between semicolons
-    const bool quotes = value.front() == '\'' || value.front() == '"';
-    return lines || quotes ? trimmed(value.substr(1, value.size() - 2)) : value;
-}
 
 // Takes the atoms out of what the grammar tells.
 class AtomSites final : public CifListener {
@@ -221,6 +214,7 @@ private:
         name.residue = word(either(AuthResidue, LabelResidue), "the name of a residue");
         record.chain = word(either(AuthChain, LabelChain), "the name of a chain");
         name.segment = record.chain;
+        record.label_chain = text(LabelChain);
         record.residue_number =
             integer(either(AuthNumber, LabelNumber), "a residue number, a whole number");
         record.insertion_code = letter(Insertion, "one letter");
@@ -254,13 +248,52 @@ private:
     std::string_view last_label_chain_;
 };
 
+// Tells two listeners.
+class Both final : public CifListener {
+public:
+    Both(AtomSites& sites, MmcifAssemblies& assemblies) : sites_(sites), assemblies_(assemblies) {}
+
+    void begin_loop() override {
+        sites_.begin_loop();
+        assemblies_.begin_loop();
+    }
+    void add_loop_tag(const CifToken& tag) override {
+        sites_.add_loop_tag(tag);
+        assemblies_.add_loop_tag(tag);
+    }
+    void add_loop_value(const CifToken& value) override {
+        sites_.add_loop_value(value);
+        assemblies_.add_loop_value(value);
+    }
+    void end_loop() override {
+        sites_.end_loop();
+        assemblies_.end_loop();
+    }
+    void add_tag(const CifToken& tag) override {
+        sites_.add_tag(tag);
+        assemblies_.add_tag(tag);
+    }
+    void add_value(const CifToken& value) override {
+        sites_.add_value(value);
+        assemblies_.add_value(value);
+    }
+
+private:
+    AtomSites& sites_;
+    MmcifAssemblies& assemblies_;
+};
+
 }  // namespace
 
 Structure parse_mmcif(std::string_view text, const std::string& file) {
     AtomSites sites(file, count_lines(text, "ATOM") + count_lines(text, "HETATM"));
-    parse_cif(text, file, sites);
+    MmcifAssemblies assemblies(file);
+    Both both(sites, assemblies);
+    parse_cif(text, file, both);
     const std::size_t length = text.find_last_not_of(" \t\r\n") + 1;  // 0 without any
-    return sites.build(text.data() + length, count_lines(text, ""));
+    Structure structure = sites.build(text.data() + length, count_lines(text, ""));
+    assemblies.move_into(structure);
+    return structure;
 }
 
 Structure read_mmcif(const std::filesystem::path& path) {

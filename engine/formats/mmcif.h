@@ -1,4 +1,4 @@
-// Macromolecular CIF files (.cif, .mmcif) of the Protein Data Bank: the atoms.
+// Macromolecular CIF files (.cif, .mmcif) of the Protein Data Bank: atoms and assemblies.
 #pragma once
 #include "molecule/atoms.h"
 
@@ -13,6 +13,7 @@ namespace palpa {
 // file gives none the archive's (label_*); the segment is the chain. A chain ends where
 // label_asym_id changes. '?' and '.' count as not given: occupancy is then 1, B-factor 0, the
 // element guessed from the name; a position must be given.
+// Biological assemblies are those of _pdbx_struct_assembly_gen and _pdbx_struct_oper_list.
 // Throws LoadError with the line of what is wrong: text that is no CIF, a value that does not
 // parse, a missing or repeated column, a row that is not complete, an unknown element, an atom that
 // comes twice, a file without atoms.

@@ -4,6 +4,7 @@
 #include "core/load_error.h"
 #include "core/text.h"
 #include "formats/lines.h"
+#include "formats/remark_350.h"
 #include "formats/structure_builder.h"
 
 #include <fmt/format.h>
@@ -105,7 +106,8 @@ public:
     Reader(std::string_view text, const std::string& file)
         : file_(file),
           lines_(text),
-          builder_(file, count_lines(text, "ATOM") + count_lines(text, "HETATM")) {}
+          builder_(file, count_lines(text, "ATOM") + count_lines(text, "HETATM")),
+          remark_350_(file) {}
 
     Structure read() {
         for (; !lines_.at_end(); lines_.advance()) read_line(lines_.line());
@@ -118,7 +120,9 @@ public:
             builder_.add_note(
                 fmt::format("records left out as unknown: {}", fmt::join(unknown_, ", ")));
         }
-        return builder_.build(lines_.number());
+        Structure structure = builder_.build(lines_.number());
+        remark_350_.move_into(structure);
+        return structure;
     }
 
 private:
@@ -160,6 +164,8 @@ private:
             residue_offset_ = 0;
         } else if (line.starts_with("END") && record == "END") {
             end_line_ = lines_.number();
+        } else if (line.starts_with("REMARK 350")) {
+            remark_350_.add_line(line, lines_.number());
         } else if (!trimmed(line).empty()) {
             check_other(record);
         }
@@ -302,6 +308,7 @@ private:
     const std::string& file_;
     LineReader lines_;
     StructureBuilder builder_;
+    Remark350 remark_350_;
     std::int32_t model_ = 1;
     std::size_t model_line_ = 0;  // of the model that is open
     std::size_t end_line_ = 0;

@@ -8,10 +8,10 @@
 
 namespace palpa {
 
-// Reads ATOM, HETATM, TER, MODEL, ENDMDL and END; leaves out the other records of the format.
-// An atom's segment is columns 73 to 76, or the chain where they are blank. Residue names may have
-// four letters (CHARMM's). An element that is missing is guessed from the name. Blank occupancy is
-// 1, blank B-factor 0.
+// Reads ATOM, HETATM, TER, MODEL, ENDMDL, END and the assemblies of REMARK 350; leaves out the
+// other records of the format. An atom's segment is columns 73 to 76, or the chain where they are
+// blank. Residue names may have four letters (CHARMM's). An element that is missing is guessed from
+// the name. Blank occupancy is 1, blank B-factor 0.
 //
 // Numbers that outgrow their columns are taken as other programs write them: serials and residue
 // numbers in hybrid-36 ("A0000") or hexadecimal ("186a0"), serials as stars, with a sixth digit on

@@ -32,9 +32,34 @@ struct AtomRecord {
     bool element_guessed = false;    // the file names none
     std::int32_t formal_charge = 0;  // e
     std::string chain;
-    std::string element;  // as files spell it: "MG"
+    std::string label_chain;  // the archive's name of it, label_asym_id; empty in PDB files
+    std::string element;      // as files spell it: "MG"
     double occupancy = 1;
     double b_factor = 0;  // Å^2
+};
+
+// How a copy of a chain stands: x' = rotation x + translation, Å.
+struct SymmetryOperator {
+    std::string name;  // its number in the file, mostly
+    Mat3 rotation;     // as the file says, which may be no rotation
+    Vec3 translation;
+    std::size_t line = 0;  // its first, in the file
+};
+
+// Chains of an assembly that are copied alike.
+struct AssemblyPart {
+    // Their names, "A,B,": label_chain of the atoms, or chain where that is empty; nothing for the
+    // chain without a name.
+    std::string chains;
+    // Indices into the operators: a copy for every choice of one out of each list. The operator of
+    // the last list acts first.
+    std::vector<std::vector<std::uint32_t>> operators;
+};
+
+// What the molecule is outside of the crystal, as the authors of a file see it.
+struct Assembly {
+    std::string name;  // "1"
+    std::vector<AssemblyPart> parts;
 };
 
 // Where the atoms of a structure file are, in the order of the file. All of them: models, alternate
@@ -49,6 +74,8 @@ struct Structure {
     std::vector<AtomRecord> records{};      // one an atom
     std::vector<std::size_t> chain_ends{};  // each as the number of atoms before it
     std::vector<std::string> notes{};       // what a user should know or decide, a sentence each
+    std::vector<SymmetryOperator> operators{};  // of the assemblies
+    std::vector<Assembly> assemblies{};
 };
 
 // A range of an atom table.

@@ -2,6 +2,7 @@
 
 #include "core/load_error.h"
 #include "core/text.h"
+#include "prepare/assembly.h"
 #include "prepare/residues.h"
 
 #include <fmt/format.h>
@@ -181,7 +182,10 @@ bool is_water(std::string_view residue_name) noexcept {
 Structure choose_atoms(const Structure& structure, const PrepareSettings& settings,
                        Report& report) {
     const Structure model = choose_model(structure, settings, report);
-    const Structure wanted = leave_out(model, settings, report);
+    if (settings.assembly == 0) warn_of_assembly(model, report);
+    const Structure whole =
+        settings.assembly > 0 ? build_assembly(model, settings.assembly, report) : model;
+    const Structure wanted = leave_out(whole, settings, report);
     if (wanted.names.empty()) {
         throw LoadError({structure.file},
                         "no atom is left once waters, ions and what was asked "

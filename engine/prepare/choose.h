@@ -11,9 +11,10 @@ namespace palpa {
 
 bool is_water(std::string_view residue_name) noexcept;
 
-// Takes one model, leaves out what the settings say, and takes of each residue with alternate
-// locations the one with the highest mean occupancy, the first in the alphabet where they are
-// equal. Throws LoadError for choices that mean nothing here, and where no atom is left.
+// Takes one model, builds the assembly asked for, leaves out what the settings say, and takes of
+// each residue with alternate locations the one with the highest mean occupancy, the first in the
+// alphabet where they are equal. Throws LoadError for choices that mean nothing here, and where no
+// atom is left.
 Structure choose_atoms(const Structure& structure, const PrepareSettings& settings, Report& report);
 
 }  // namespace palpa

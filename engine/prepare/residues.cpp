@@ -60,6 +60,8 @@ Structure keep_atoms(const Structure& structure, const std::vector<bool>& kept) 
     Structure result;
     result.file = structure.file;
     result.notes = structure.notes;
+    result.operators = structure.operators;
+    result.assemblies = structure.assemblies;
     std::size_t end = 0;
     const auto close_chains = [&](std::size_t before) {
         for (; end < structure.chain_ends.size() && structure.chain_ends[end] <= before; ++end) {

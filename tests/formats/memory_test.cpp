@@ -70,6 +70,38 @@ std::string mmcif_text() {
     return text;
 }
 
+// As virus capsids have them.
+std::string pdb_assembly_text() {
+    std::string text =
+        "REMARK 350 BIOMOLECULE: 1\nREMARK 350 APPLY THE FOLLOWING TO CHAINS: A, B\n";
+    for (int i = 0; i < 3 * 900; ++i) {
+        text += fmt::format("REMARK 350   BIOMT{}{:4}{:10.6f}{:10.6f}{:10.6f}{:15.5f}\n", i % 3 + 1,
+                            i / 3 + 1, 1.0, 0.0, 0.0, i * 0.1);
+    }
+    return text + "ATOM      1  C   ALA A   1       1.000   2.000   3.000\n";
+}
+
+std::string mmcif_assembly_text() {
+    std::string text = "data_x\nloop_\n_pdbx_struct_oper_list.id\n";
+    for (int i = 0; i < 12; ++i) {
+        text += i % 4 == 3
+                    ? fmt::format("_pdbx_struct_oper_list.vector[{}]\n", i / 4 + 1)
+                    : fmt::format("_pdbx_struct_oper_list.matrix[{}][{}]\n", i / 4 + 1, i % 4 + 1);
+    }
+    for (int i = 1; i <= 900; ++i) {
+        text += fmt::format(
+            "{} 1.0000000000 0.0000000000 0.0000000000 {:.4f} 0.0000000000 "
+            "1.0000000000 0.0000000000 0.0 0.0000000000 0.0000000000 1.0000000000 "
+            "0.0\n",
+            i, i * 0.1);
+    }
+    text +=
+        "loop_\n_pdbx_struct_assembly_gen.assembly_id\n"
+        "_pdbx_struct_assembly_gen.oper_expression\n_pdbx_struct_assembly_gen.asym_id_list\n";
+    for (int i = 1; i <= 900; ++i) text += fmt::format("{} {} A,B,C,D,E,F,G,H\n", i, i);
+    return text + "1 1-900 A,B\n2 '(1-10)(11-20)' A,B\n" + mmcif_text().substr(7);
+}
+
 std::string crd_text() {
     std::string text = fmt::format("{}\n", atom_count);
     for (int i = 0; i < atom_count; ++i) {
@@ -137,6 +169,14 @@ std::string one_word(const char* before) { return fmt::format("{}{:\x01>200000}\
 TEST_CASE("no reader takes more than ten times the file's size and 64 KiB", "[formats][memory]") {
     SECTION("PDB") { check_peaks(pdb_text(), parse_pdb); }
     SECTION("mmCIF") { check_peaks(mmcif_text(), parse_mmcif); }
+    SECTION("assemblies of PDB") { check_peaks(pdb_assembly_text(), parse_pdb); }
+    SECTION("assemblies of mmCIF") { check_peaks(mmcif_assembly_text(), parse_mmcif); }
+    SECTION("lists that ask for more than their length") {
+        std::string text = mmcif_assembly_text();
+        for (int i = 0; i < 20; ++i)
+            text = replaced(text, "\n1 1-900 A,B", "\n1 1-900 A,B\n1 1-900 A,B");
+        check_peak(text, parse_mmcif);
+    }
     SECTION("CRD") { check_peaks(crd_text(), parse_crd); }
     SECTION("PSF") { check_peaks(psf_text(), parse_psf); }
     SECTION("counts that promise too much") {

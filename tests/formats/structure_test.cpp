@@ -190,5 +190,12 @@ TEST_CASE("GroEL with its 58,674 atoms is read", "[formats][structure]") {
     CHECK(structure.names.size() - hetero == 58674);
     CHECK(chains_of(structure).size() == 21);
     CHECK(structure.chain_ends.size() == 21);
+    // Its REMARK 350, three lines of chains and the identity.
+    REQUIRE(structure.assemblies.size() == 1);
+    REQUIRE(structure.assemblies[0].parts.size() == 1);
+    CHECK(structure.assemblies[0].parts[0].chains == "A,B,C,D,E,F,G,H,I,J,K,L,M,N,O,P,Q,R,S,T,U,");
+    REQUIRE(structure.operators.size() == 1);
+    CHECK(structure.operators[0].rotation == Mat3::Identity());
+    CHECK(structure.operators[0].translation == Vec3::Zero());
     check_round_trip(structure);
 }

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 namespace palpa::test {
 
@@ -23,6 +24,20 @@ inline void expect_whole(const Structure& structure) {
         PALPA_EXPECT(std::isfinite(record.occupancy) && std::isfinite(record.b_factor));
         PALPA_EXPECT(is_element(record.element));
         PALPA_EXPECT(structure.lines[i] >= (i == 0 ? 1 : structure.lines[i - 1]));
+    }
+    for (const SymmetryOperator& one : structure.operators) {
+        PALPA_EXPECT(one.rotation.allFinite());
+        PALPA_EXPECT(one.translation.cwiseAbs().maxCoeff() <= farthest_coordinate);
+    }
+    for (const Assembly& assembly : structure.assemblies) {
+        for (const AssemblyPart& part : assembly.parts) {
+            std::size_t copies = 1;
+            for (const auto& list : part.operators) {
+                copies *= list.size();
+                for (const std::uint32_t i : list) PALPA_EXPECT(i < structure.operators.size());
+            }
+            PALPA_EXPECT(!part.operators.empty() && copies >= 1 && copies <= 1000);
+        }
     }
     std::size_t last = 0;
     for (const std::size_t end : structure.chain_ends) {

@@ -39,7 +39,7 @@ std::vector<ServoTick> ticks_of(const std::string& path, const std::vector<std::
 
 TEST_CASE("TL-3 pulled within its pocket resists, and slides back when it is let go",
           "[session][slow]") {
-    const std::vector<ServoTick> ticks = ticks_of("scene.toml", {"seconds=5"});
+    const std::vector<ServoTick> ticks = ticks_of("scene.toml", {"seconds=7"});
     const Vec3 rest = ticks.front().touch.molecule_angstrom;
     const ServoTick &held = ticks[3200], &last = ticks.back();
 

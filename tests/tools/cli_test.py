@@ -138,6 +138,13 @@ class Cli(unittest.TestCase):
         self.assertEqual([(row["name"], row["unit"], row["reference"]) for row in rows],
                          [("load/dimer.crd", "ms", "6 atoms"), ("load/toppar", "ms", "2 types")])
 
+    def test_an_assembly_that_is_not_there(self):
+        arguments = ("prepare", WATER / "dimer.crd", "--toppar", WATER / "tip3p.str", "-o", "out",
+                     "--assembly")
+        self.assert_bad_input(self.palpa(*arguments, "1"), "dimer.crd: no assembly 1")
+        self.assert_bad_input(self.palpa(*arguments, "0"), "--assembly: '0' is not a number from 1")
+        self.assertFalse((self.tmp / "out").exists())
+
     def test_check_tells_what_the_line_is_like(self):
         result = self.palpa("run", "--check", WATER)
         for text in ("-6.594 kcal/mol at 2.767 Å, 29.3 N/m", "0.322 nN at 3.10 Å, felt as 0.896 N",

@@ -199,11 +199,14 @@ class Prepare(unittest.TestCase):
         hiv = self.data / "hiv"
         for name, options in (("1hsg_protein", []), ("1hxw_protein", []),
                               ("1hvr_protein", ["--as", "CSO=CYS"]), ("5w5w_protein", []),
-                              ("4k4p_protein", []), ("4k4q_protein", []), ("5vea_protein", []),
-                              ("1tw7_charmm_allH", [])):
+                              ("4k4p_protein", []), ("4k4q_protein", []), ("5vea_protein", [])):
             with self.subTest(name=name):
                 folder = self.prepare(hiv / f"{name}.pdb", self.toppar()[:2], *options)
                 self.check_clean(folder)
+        with self.subTest(name="a clash of the file's own hydrogens is told"):
+            folder = self.prepare(hiv / "1tw7_charmm_allH.pdb", self.toppar()[:2])
+            self.assertRegex((folder / "report.txt").read_text(),
+                             "a clash is left: .*PROA GLN 2 HE22 and PROB ASN 98 HD22")
         with self.subTest(name="alanine dipeptide"):
             folder = self.prepare(self.data / "structures" / "alanine_dipeptide.pdb",
                                   self.toppar()[:2])
