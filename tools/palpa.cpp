@@ -206,7 +206,7 @@ void add_prepare(CLI::App& program, palpa::PrepareOptions& options) {
         ->required();
     prepare
         .add_option("-o,--output", options.folder,
-                    "folder for system.psf, .pdb, .crd, .prm and report.txt")
+                    "folder for system.psf, .pdb, .crd, .prm, report.txt and scene.toml")
         ->required();
     prepare.add_option("--without", settings.without,
                        "residue names (MK1), chains (chain:B) or residues (A:101) to leave out");
@@ -234,8 +234,12 @@ void add_prepare(CLI::App& program, palpa::PrepareOptions& options) {
         "--x-along", options.x_along, "segment whose long axis becomes x, its middle the origin");
     prepare
         .add_option("--y-towards", options.y_towards,
-                    "CHAIN:NUMBER-CHAIN:NUMBER: y from one residue to another")
+                    "CHAIN:NUMBER-CHAIN:NUMBER: y from one residue to another; :NUMBER is the mean "
+                    "of all chains")
         ->needs(x_along);
+    prepare.add_option("--grab", options.grab,
+                       "segment that scene.toml gives to the hand, the smallest unless given; "
+                       "without a second segment there is no scene.toml");
     prepare.add_option("--title", options.title, "what the files say of themselves");
     prepare.add_flag("--overwrite", options.overwrites, "replace files of an earlier run");
     prepare.add_flag("--json", options.json, "print counts and warnings as JSON");

@@ -1,6 +1,7 @@
 #include "tools/prepare.h"
 
 #include "charmm/force_field.h"
+#include "core/files.h"
 #include "core/load_error.h"
 #include "core/text.h"
 #include "formats/structure.h"
@@ -82,8 +83,8 @@ PrepareSettings build_settings(const PrepareOptions& options) {
     return settings;
 }
 
-constexpr std::array<std::string_view, 5> written{"system.psf", "system.pdb", "system.crd",
-                                                  "system.prm", "report.txt"};
+constexpr std::array<std::string_view, 6> written{"system.psf", "system.pdb", "system.crd",
+                                                  "system.prm", "report.txt", "scene.toml"};
 
 void refuse_overwriting(const PrepareOptions& options) {
     if (options.overwrites) return;
@@ -111,8 +112,13 @@ int prepare_command(const PrepareOptions& options) {
     if (shows_progress) fmt::print(stderr, "\r{:46}\r", "");
     const std::string origin = fmt::format("Prepared from {} by palpa prepare; see report.txt.",
                                            options.structure.filename().string());
+    const std::string in_hand = options.grab.empty() ? find_smallest_segment(system) : options.grab;
+    const std::string scene =
+        in_hand.empty() ? in_hand
+                        : format_scene_of(system, in_hand, options.structure.stem().string());
     write_prepared(system, options.folder,
                    options.title.empty() ? origin : fmt::format("{}\n{}", options.title, origin));
+    if (!scene.empty()) write_text_file(options.folder / "scene.toml", scene);
     if (options.json) {
         nlohmann::ordered_json json;
         json["atoms"] = system.structure.names.size();
@@ -125,7 +131,11 @@ int prepare_command(const PrepareOptions& options) {
         fmt::print("{}\n", json.dump(2));
         return 0;
     }
-    fmt::print("{}{}\n", system.report.to_text(), (options.folder / "report.txt").string());
+    fmt::print("{}written: {}\n", system.report.to_text(), options.folder.string());
+    if (!scene.empty()) {
+        fmt::print("feel it: palpa run {}   ({} is in the hand; --grab takes another)\n",
+                   options.folder.string(), in_hand);
+    }
     return 0;
 }
 

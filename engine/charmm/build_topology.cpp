@@ -129,8 +129,7 @@ private:
     void add_bonds() {
         std::map<std::array<std::uint32_t, 2>, const HarmonicParameter*> known;
         for (const auto& atoms : connectivity_.bonds) {
-            const auto* const bond =
-                find_once(atoms, known, "bond", force_field_.bonds, find_bond);
+            const auto* const bond = find_once(atoms, known, "bond", force_field_.bonds, find_bond);
             if (bond) topology_.bonds.push_back({atoms[0], atoms[1], bond->k, bond->value});
         }
     }
@@ -190,8 +189,7 @@ private:
         std::map<std::array<std::uint32_t, 8>, const CmapParameter*> known;
         std::map<const CmapParameter*, std::uint32_t> index_of;
         for (const auto& atoms : connectivity_.cmaps) {
-            const auto* const cmap =
-                find_once(atoms, known, "CMAP", force_field_.cmaps, find_cmap);
+            const auto* const cmap = find_once(atoms, known, "CMAP", force_field_.cmaps, find_cmap);
             if (!cmap) continue;
             const auto [map, is_new] =
                 index_of.try_emplace(cmap, static_cast<std::uint32_t>(topology_.cmap_maps.size()));

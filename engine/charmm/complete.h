@@ -19,9 +19,9 @@ struct CompletedStructure {
     std::vector<std::uint32_t> added;  // the atoms without a position, rising
 };
 
-// Adds what is missing; refuses, as `build_connectivity` does, whatever else is wrong with residues,
-// patches and names, all of it gathered in one LoadError. Lines (and records) of added atoms are
-// those of the residue's first atom, the element that of the type.
+// Adds what is missing; refuses, as `build_connectivity` does, whatever else is wrong with
+// residues, patches and names, all of it gathered in one LoadError. Lines (and records) of added
+// atoms are those of the residue's first atom, the element that of the type.
 CompletedStructure add_missing_atoms(const ForceField& force_field, const Structure& structure,
                                      const GenerateSettings& settings = {});
 

@@ -57,16 +57,17 @@ ForceField keep_used_parameters(const ForceField& force_field, const Connectivit
     using Terms = std::vector<DihedralTerm>;
     kept.bonds = keep(force_field.bonds, find_used<HarmonicParameter>(
                                              force_field, names, connectivity.bonds, find_bond));
-    kept.angles = keep(force_field.angles, find_used<AngleParameter>(
-                                               force_field, names, connectivity.angles, find_angle));
+    kept.angles =
+        keep(force_field.angles,
+             find_used<AngleParameter>(force_field, names, connectivity.angles, find_angle));
     kept.dihedrals =
         keep(force_field.dihedrals,
              find_used<Terms>(force_field, names, connectivity.dihedrals, find_dihedral));
     kept.impropers =
         keep(force_field.impropers,
              find_used<Terms>(force_field, names, connectivity.impropers, find_improper));
-    kept.cmaps = keep(force_field.cmaps, find_used<CmapParameter>(
-                                             force_field, names, connectivity.cmaps, find_cmap));
+    kept.cmaps = keep(force_field.cmaps,
+                      find_used<CmapParameter>(force_field, names, connectivity.cmaps, find_cmap));
     for (const auto& [types, pair] : force_field.nbfix) {
         if (kept.types.contains(types.first) && kept.types.contains(types.second)) {
             kept.nbfix.emplace(types, pair);

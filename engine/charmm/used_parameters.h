@@ -6,8 +6,8 @@
 namespace palpa {
 
 // A force field of parameters only, with which `build_topology` makes the same of this structure as
-// with the whole one; an entry that it would not take is not there. Parameters that are missing stay
-// missing.
+// with the whole one; an entry that it would not take is not there. Parameters that are missing
+// stay missing.
 ForceField keep_used_parameters(const ForceField& force_field, const Connectivity& connectivity);
 
 }  // namespace palpa

@@ -60,16 +60,20 @@ Vec3 direction_of_others(const Structure& structure, std::span<const Vec3> posit
            middle_of(structure, positions, others.front());
 }
 
+// Of the residue of this number, or the mean of those in all chains where none is named.
 Vec3 place_of(const Structure& structure, std::span<const Vec3> positions,
               const ResidueChoice& choice) {
+    Vec3 sum = Vec3::Zero();
+    double count = 0;
     for (const ResidueRange& residue : find_residues(structure)) {
         const AtomName& name = structure.names[residue.first];
-        if (name.number != choice.number ||
-            (chain_of(structure, residue.first) != choice.chain && name.segment != choice.chain)) {
-            continue;
-        }
-        return positions[find_atom(structure, residue, "CA").value_or(residue.first)];
+        const bool is_chain = choice.chain.empty() || name.segment == choice.chain ||
+                              chain_of(structure, residue.first) == choice.chain;
+        if (name.number != choice.number || !is_chain) continue;
+        sum += positions[find_atom(structure, residue, "CA").value_or(residue.first)];
+        ++count;
     }
+    if (count > 0) return sum / count;
     throw LoadError({structure.file},
                     fmt::format("--y-towards: no residue {}:{} here", choice.chain, choice.number));
 }

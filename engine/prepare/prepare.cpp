@@ -79,14 +79,13 @@ void check_size(const PreparedSystem& system) {
 void report_charge(PreparedSystem& system) {
     double charge = 0;
     for (const double q : system.topology.charge) charge += q;
-    system.report.add("System", fmt::format("{} atoms, charge {:+.2f} e, {} bonds, {} angles, "
-                                            "{} dihedrals, {} impropers, {} CMAP terms",
-                                            system.structure.names.size(), charge,
-                                            system.connectivity.bonds.size(),
-                                            system.connectivity.angles.size(),
-                                            system.connectivity.dihedrals.size(),
-                                            system.connectivity.impropers.size(),
-                                            system.connectivity.cmaps.size()));
+    system.report.add(
+        "System",
+        fmt::format("{} atoms, charge {:+.2f} e, {} bonds, {} angles, "
+                    "{} dihedrals, {} impropers, {} CMAP terms",
+                    system.structure.names.size(), charge, system.connectivity.bonds.size(),
+                    system.connectivity.angles.size(), system.connectivity.dihedrals.size(),
+                    system.connectivity.impropers.size(), system.connectivity.cmaps.size()));
 }
 
 std::string atom_label(const PreparedSystem& system, std::uint32_t atom) {
@@ -108,9 +107,10 @@ void build_missing(PreparedSystem& system, const std::vector<AtomCoordinate>& co
                                                  built.placed.size() - hydrogens));
     if (guesses > 0) {
         guessed.pop_back();
-        system.report.warn(fmt::format("{} heavy atoms were built without a dihedral from an IC "
-                                       "table:{}",
-                                       guesses, guessed));
+        system.report.warn(
+            fmt::format("{} heavy atoms were built without a dihedral from an IC "
+                        "table:{}",
+                        guesses, guessed));
     }
     if (built.unplaced.empty()) return;
     Missing missing;
@@ -126,9 +126,8 @@ void orient(PreparedSystem& system, std::span<const std::uint32_t> added,
             const PrepareSettings& settings) {
     OrientSettings orient_settings;
     orient_settings.may_flip = settings.flips;
-    const OrientReport oriented =
-        orient_groups(system.connectivity, system.topology, added, orient_settings,
-                      system.structure.positions);
+    const OrientReport oriented = orient_groups(system.connectivity, system.topology, added,
+                                                orient_settings, system.structure.positions);
     constexpr std::string_view heading = "Hydrogen bonds";
     system.report.add(heading, fmt::format("{} groups turned to their lowest energy, {:.1f} "
                                            "kcal/mol gained in {} sweeps",
@@ -167,12 +166,13 @@ void relax_system(PreparedSystem& system, std::span<const std::uint32_t> added,
         relax(system.topology, is_built, is_hydrogen, system.structure.positions,
               [&](double share) { progress("relaxing clashes", share); });
     constexpr std::string_view heading = "Relaxation";
-    system.report.add(heading,
-                      fmt::format("{:.2f} to {:.2f} kcal/mol in {} steps (dielectric 4 r, cutoff "
-                                  "9 Å, the file's heavy atoms held by 5 kcal/mol/Å^2), rms force {:.2f} "
-                                  "kcal/mol/Å left",
-                                  relaxed.before.total(), relaxed.after.total(), relaxed.steps,
-                                  relaxed.rms_force));
+    system.report.add(
+        heading,
+        fmt::format("{:.2f} to {:.2f} kcal/mol in {} steps (dielectric 4 r, cutoff "
+                    "9 Å, the file's heavy atoms held by 5 kcal/mol/Å^2), rms force {:.2f} "
+                    "kcal/mol/Å left",
+                    relaxed.before.total(), relaxed.after.total(), relaxed.steps,
+                    relaxed.rms_force));
     system.report.add(heading, fmt::format("closest contact before: {}",
                                            contact_label(system, relaxed.closest_before)));
     system.report.add(heading, fmt::format("closest contact after: {}",
@@ -181,8 +181,8 @@ void relax_system(PreparedSystem& system, std::span<const std::uint32_t> added,
                                            relaxed.largest_move.distance,
                                            atom_label(system, relaxed.largest_move.a)));
     if (relaxed.closest_after.distance > 0 && relaxed.closest_after.distance < 1.5) {
-        system.report.warn(fmt::format("a clash is left: {}",
-                                       contact_label(system, relaxed.closest_after)));
+        system.report.warn(
+            fmt::format("a clash is left: {}", contact_label(system, relaxed.closest_after)));
     }
 }
 

@@ -9,6 +9,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <string>
 #include <string_view>
 
 namespace palpa {
@@ -28,6 +29,15 @@ using PrepareProgress = std::function<void(std::string_view stage, double share)
 // residues, atoms, patches and parameters.
 PreparedSystem prepare_system(const ForceField& force_field, const Structure& structure,
                               const PrepareSettings& settings, const PrepareProgress& progress);
+
+// A scene file that gives this segment to the hand, in space, and holds the others: constant gains,
+// a period that two cores can keep, the stroke `hold`. Throws LoadError if there is no such segment
+// or no other.
+std::string format_scene_of(const PreparedSystem& system, const std::string& segment,
+                            std::string_view title);
+
+// The segment of the fewest atoms, or nothing where there is only one: what a hand would take.
+std::string find_smallest_segment(const PreparedSystem& system);
 
 // system.psf, system.pdb, system.crd, system.prm and report.txt, all of them or none. `title`: what
 // the files say of themselves.

@@ -10,8 +10,8 @@
 namespace palpa {
 namespace {
 
-constexpr double cutoff = 9;    // Å
-constexpr double skin = 2;      // Å
+constexpr double cutoff = 9;     // Å
+constexpr double skin = 2;       // Å
 constexpr double restraint = 5;  // kcal/mol/Å^2
 // Two, whatever the machine has: results repeat for a number of threads.
 constexpr std::size_t threads = 2;
@@ -98,8 +98,7 @@ RelaxReport relax(const Topology& topology, std::span<const std::uint8_t> is_bui
     for (std::size_t i = 0; i < k.size(); ++i) {
         if (is_built[i] == 0 && is_hydrogen[i] == 0) k[i] = restraint;
     }
-    const MinimiseReport all =
-        minimise(topology, settings, {k, given, {}}, positions, part(0.5));
+    const MinimiseReport all = minimise(topology, settings, {k, given, {}}, positions, part(0.5));
     report.steps = built.steps + all.steps;
     report.rms_force = all.rms_force;
     report.after = find_energy(topology, positions);

@@ -27,8 +27,9 @@ struct RelaxReport {
 };
 
 // First the built atoms alone, then all of them, the given heavy atoms held by 5 kcal/mol/Å^2 to
-// where the file has them. Energies fall from step to step (forces/minimise.h). `is_built`: an entry
-// per atom. Steps are limited by size: up to 300 each for systems below 27,000 atoms, 50 at least.
+// where the file has them. Energies fall from step to step (forces/minimise.h). `is_built`: an
+// entry per atom. Steps are limited by size: up to 300 each for systems below 27,000 atoms, 50 at
+// least.
 RelaxReport relax(const Topology& topology, std::span<const std::uint8_t> is_built,
                   std::span<const std::uint8_t> is_hydrogen, std::vector<Vec3>& positions,
                   const std::function<void(double share)>& progress);
