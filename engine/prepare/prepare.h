@@ -36,7 +36,8 @@ PreparedSystem prepare_system(const ForceField& force_field, const Structure& st
 std::string format_scene_of(const PreparedSystem& system, const std::string& segment,
                             std::string_view title);
 
-// The segment of the fewest atoms, or nothing where there is only one: what a hand would take.
+// The segment of the fewest atoms, ions last, or nothing where there is only one: what a hand would
+// take.
 std::string find_smallest_segment(const PreparedSystem& system);
 
 // system.psf, system.pdb, system.crd, system.prm and report.txt, all of them or none. `title`: what

@@ -9,6 +9,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <utility>
 #include <vector>
 
 namespace palpa {
@@ -47,9 +48,12 @@ std::string nearest_atom(const Structure& structure, const std::vector<std::size
 std::string find_smallest_segment(const PreparedSystem& system) {
     const auto segments = find_segments(system.structure);
     if (segments.size() < 2) return {};
-    return std::min_element(
-               segments.begin(), segments.end(),
-               [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); })
+    constexpr std::size_t ion = 3;  // atoms at most
+    const auto rank = [&](const auto& entry) {
+        return std::pair(entry.second.size() <= ion, entry.second.size());
+    };
+    return std::min_element(segments.begin(), segments.end(),
+                            [&](const auto& a, const auto& b) { return rank(a) < rank(b); })
         ->first;
 }
 
