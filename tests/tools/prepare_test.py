@@ -127,15 +127,17 @@ class Prepare(unittest.TestCase):
 
     def test_crambin_from_heavy_atoms_is_charmm_s_own(self):
         folder = self.prepare(self.data / "structures" / "1crn.pdb", self.toppar()[:2])
-        # CHARMM's input has the sequence of another crambin (22 PRO -> 25 ILE): counts and
-        # residues that are alike.
         _, counts = self.check_reference(folder, "crambin_c36m")
         self.assertEqual([counts[key] for key in ("NBOND", "NTHETA", "NPHI", "NIMPHI", "NCRTERM")],
                          [652, 1183, 1747, 111, 44])
         self.check_clean(folder)
         # Only what is used is written, and it is enough.
         self.assertLess((folder / "system.prm").stat().st_size, 40000)
-        self.assertLess(self.energy(folder)["total"], 0)
+        relaxed = self.energy(folder)["total"]
+        unrelaxed = self.prepare(self.data / "structures" / "1crn.pdb", self.toppar()[:2],
+                                 "--no-relax")
+        self.assertLess(relaxed, self.energy(unrelaxed)["total"])
+        self.assertLess(relaxed, 0)
 
     def test_1hpv_in_charmm22(self):
         folder = self.prepare(self.data / "hiv" / "1hpv_protein.pdb", self.toppar("22"),
@@ -175,7 +177,8 @@ class Prepare(unittest.TestCase):
         ours, theirs = json.loads(result.stdout), frame["energy"]
         for term, name in (("bond", "bond"), ("angle", "angle"), ("urey_bradley", "urey"),
                            ("dihedral", "proper"), ("improper", "improper"), ("cmap", "cmap"),
-                           ("lj14", "lj14")):
+                           ("lj", "lj"), ("lj14", "lj14"), ("coulomb", "coulomb"),
+                           ("coulomb14", "coulomb14")):
             with self.subTest(term=term):
                 self.assertAlmostEqual(ours[term] * KJ_PER_KCAL / theirs[name], 1, delta=1e-7)
 
