@@ -33,7 +33,7 @@ void visit_force_field(FieldVisitor& v, ForceFieldDescription& f) {
 
 void visit_molecule(FieldVisitor& v, MoleculeDescription& m) {
     v.enter_table({.key = m.name, .meaning = "one molecule"});
-    v.file({.key = "structure", .meaning = "CHARMM coordinate file (.crd)", .required = true},
+    v.file({.key = "structure", .meaning = "structure file: .crd, .pdb or .cif", .required = true},
            m.structure);
     v.file({.key = "topology",
             .meaning = "PSF file for types, charges, masses and bonds; unset: they come from the "

@@ -4,8 +4,9 @@
 #include "core/load_error.h"
 #include "core/text.h"
 #include "core/units.h"
-#include "formats/crd.h"
 #include "formats/psf.h"
+#include "formats/structure.h"
+#include "molecule/alternatives.h"
 #include "simulation/components.h"
 #include "simulation/probe.h"
 #include "simulation/simulation.h"
@@ -42,9 +43,16 @@ const Content& find_or_read(std::map<std::filesystem::path, Content>& files,
     return files.emplace(path, read(path)).first->second;
 }
 
+Structure read_whole_structure(const std::filesystem::path& path) {
+    Structure structure = read_structure(path);
+    refuse_alternatives(structure);
+    return structure;
+}
+
 AtomRange add_atoms(const MoleculeDescription& molecule, const ForceField& force_field,
                     Files& files, AtomTable& atoms) {
-    const Structure& structure = find_or_read(files.structures, molecule.structure, read_crd);
+    const Structure& structure =
+        find_or_read(files.structures, molecule.structure, read_whole_structure);
     if (molecule.topology.empty()) {
         return add_segment_atoms(force_field, structure, molecule.segment, atoms);
     }

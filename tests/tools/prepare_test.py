@@ -231,7 +231,11 @@ class Prepare(unittest.TestCase):
         result = self.palpa("run", "--headless", "--seconds", 0.1, "--json", folder)
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(json.loads(result.stdout)["warnings"], [])
-        self.assertIn('molecule = "3TL"', (folder / "scene.toml").read_text())
+        scene = (folder / "scene.toml").read_text()
+        self.assertIn('molecule = "3TL"', scene)
+        (folder / "scene.toml").write_text(scene.replace("system.crd", "system.pdb"))
+        result = self.palpa("run", "--check", folder)
+        self.assertEqual(result.returncode, 0, result.stderr)
         result = self.palpa("prepare", self.data / "structures" / "alanine_dipeptide.pdb",
                             "--toppar", *self.toppar()[:2], "-o", self.folder / "alone")
         self.assertEqual(result.returncode, 0, result.stderr)
