@@ -1,7 +1,6 @@
 #include "tools/prepare.h"
 
 #include "charmm/force_field.h"
-#include "core/files.h"
 #include "core/load_error.h"
 #include "core/text.h"
 #include "formats/structure.h"
@@ -117,8 +116,8 @@ int prepare_command(const PrepareOptions& options) {
         in_hand.empty() ? in_hand
                         : format_scene_of(system, in_hand, options.structure.stem().string());
     write_prepared(system, options.folder,
-                   options.title.empty() ? origin : fmt::format("{}\n{}", options.title, origin));
-    if (!scene.empty()) write_text_file(options.folder / "scene.toml", scene);
+                   options.title.empty() ? origin : fmt::format("{}\n{}", options.title, origin),
+                   scene);
     if (options.json) {
         nlohmann::ordered_json json;
         json["atoms"] = system.structure.names.size();

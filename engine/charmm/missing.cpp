@@ -21,6 +21,11 @@ void Missing::add(const TextPlace& place, std::string what) {
     problems_.push_back(std::move(what));
 }
 
+void Missing::add(const LoadError& error) {
+    problems_.emplace_back(error.what());
+    problems_.insert(problems_.end(), error.further().begin(), error.further().end());
+}
+
 void Missing::advise(std::string what) {
     if (seen_.insert(what).second) advice_.push_back(std::move(what));
 }

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <sstream>
 #include <system_error>
+#include <vector>
 
 namespace palpa {
 namespace {
@@ -55,6 +56,34 @@ void write_text_file(const std::filesystem::path& path, std::string_view text) {
         std::error_code ignored;
         std::filesystem::remove(draft, ignored);
         throw LoadError({path.string()}, "cannot be written: " + error.message());
+    }
+}
+
+void write_text_files(std::span<const TextFile> files) {
+    std::vector<std::filesystem::path> drafts;
+    const auto remove_drafts = [&] {
+        std::error_code ignored;
+        for (const auto& draft : drafts) std::filesystem::remove(draft, ignored);
+    };
+    try {
+        for (const TextFile& file : files) {
+            if (std::filesystem::is_directory(file.path)) {
+                throw LoadError({file.path.string()}, "is a folder; expected a file, or nothing");
+            }
+            std::filesystem::path draft = file.path;
+            draft += ".whole";
+            drafts.push_back(draft);
+            write_text_file(draft, file.text);
+        }
+        for (std::size_t i = 0; i < files.size(); ++i) {
+            std::filesystem::rename(drafts[i], files[i].path);
+        }
+    } catch (const std::filesystem::filesystem_error& error) {
+        remove_drafts();
+        throw LoadError({error.path1().string()}, "cannot be written: " + error.code().message());
+    } catch (const LoadError&) {
+        remove_drafts();
+        throw;
     }
 }
 

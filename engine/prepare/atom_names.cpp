@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <set>
 #include <string>
@@ -24,7 +25,7 @@ namespace palpa {
 namespace {
 
 constexpr std::string_view heading = "Atom names";
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 // What a residue is to consist of, once its patches are in.
 struct Wanted {
@@ -223,11 +224,19 @@ private:
             name = to;
             return;
         }
+        // The end of a chain that is closed in another way.
+        if (name == "OXT") {
+            kept_[atom] = false;
+            report_.add(heading, fmt::format("{}: left out OXT, which its end does not have",
+                                             residue_label(structure_, residue)));
+            return;
+        }
         std::vector<std::string_view> names;
         for (const auto& entry : wanted.elements) names.emplace_back(entry.first);
         missing_.add(
             place(atom),
-            fmt::format("{} has an atom '{}' that its topology does not know{}",
+            fmt::format("{} has an atom '{}' that its topology does not know{}; expected the "
+                                 "names of CHARMM or the PDB",
                         residue_label(structure_, residue), name, near_name_hint(name, names)));
     }
 

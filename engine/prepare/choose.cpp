@@ -157,6 +157,38 @@ char choose_location(const Structure& structure, const ResidueRange& residue,
     return chosen;
 }
 
+// Atoms that the chosen location does not have (a backbone in two places, its side chain in three):
+// of each the most occupied place, in the residue that was chosen.
+void keep_others(const Structure& structure, const ResidueRange& residue, std::vector<bool>& kept) {
+    std::set<std::string_view> there;
+    std::string_view name;
+    for (std::size_t i = residue.first; i < residue.end(); ++i) {
+        if (!kept[i]) continue;
+        there.insert(structure.names[i].atom);
+        name = structure.names[i].residue;
+    }
+    std::map<std::string_view, std::size_t> best;
+    for (std::size_t i = residue.first; i < residue.end(); ++i) {
+        const AtomName& atom = structure.names[i];
+        if (there.contains(atom.atom) || atom.residue != name) continue;
+        const auto [found, is_new] = best.try_emplace(atom.atom, i);
+        if (structure.records[i].occupancy > structure.records[found->second].occupancy) {
+            found->second = i;
+        }
+    }
+    for (const auto& [atom, index] : best) kept[index] = true;
+}
+
+bool has_locations(const Structure& structure, const ResidueChoice& choice) {
+    for (std::size_t i = 0; i < structure.names.size(); ++i) {
+        if (structure.records[i].alternate != ' ' && structure.names[i].number == choice.number &&
+            chain_of(structure, i) == choice.chain) {
+            return true;
+        }
+    }
+    return false;
+}
+
 Structure choose_locations(const Structure& structure, const PrepareSettings& settings,
                            Report& report) {
     if (structure.records.empty()) return structure;
@@ -166,6 +198,15 @@ Structure choose_locations(const Structure& structure, const PrepareSettings& se
         for (std::size_t i = residue.first; i < residue.end(); ++i) {
             const char location = structure.records[i].alternate;
             kept[i] = location == ' ' || location == chosen;
+        }
+        keep_others(structure, residue, kept);
+    }
+    for (const auto& [choice, location] : settings.alternates) {
+        if (!has_locations(structure, choice)) {
+            throw LoadError({structure.file},
+                            fmt::format("--altloc {}:{}={}: no residue of that number has "
+                                        "alternate locations",
+                                        choice.chain, choice.number, location));
         }
     }
     Structure result = keep_atoms(structure, kept);

@@ -14,6 +14,7 @@
 #include "prepare/align.h"
 #include "prepare/atom_names.h"
 #include "prepare/build_positions.h"
+#include "prepare/check_coordinates.h"
 #include "prepare/choose.h"
 #include "prepare/orient.h"
 #include "prepare/relax.h"
@@ -22,10 +23,12 @@
 #include "prepare/segments.h"
 
 #include <fmt/format.h>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -66,12 +69,12 @@ void name_elements(PreparedSystem& system) {
     }
 }
 
-void check_size(const PreparedSystem& system) {
+void check_size(const Structure& structure) {
     constexpr std::size_t most_atoms = 400'000;
-    const std::size_t atoms = system.structure.names.size();
+    const std::size_t atoms = structure.names.size();
     if (atoms <= most_atoms) return;
-    throw LoadError({system.structure.file},
-                    fmt::format("{} atoms with those to be built; expected at most {}: leave out "
+    throw LoadError({structure.file},
+                    fmt::format("{} atoms; expected at most {}: leave out "
                                 "what is not needed with --without, waters first",
                                 atoms, most_atoms));
 }
@@ -126,6 +129,9 @@ void orient(PreparedSystem& system, std::span<const std::uint32_t> added,
             const PrepareSettings& settings) {
     OrientSettings orient_settings;
     orient_settings.may_flip = settings.flips;
+    // Thousands of waters settle slowly, and need not: each has been turned twice.
+    constexpr std::size_t many = 3000;
+    if (settings.keeps_waters && added.size() > many) orient_settings.sweep_limit = 2;
     const OrientReport oriented = orient_groups(system.connectivity, system.topology, added,
                                                 orient_settings, system.structure.positions);
     constexpr std::string_view heading = "Hydrogen bonds";
@@ -149,16 +155,22 @@ void orient(PreparedSystem& system, std::span<const std::uint32_t> added,
     }
 }
 
-std::string contact_label(const PreparedSystem& system, const Contact& contact) {
-    return fmt::format("{:.2f} Å, {} and {}", contact.distance, atom_label(system, contact.a),
-                       atom_label(system, contact.b));
+std::string contact_label(const PreparedSystem& system, const std::optional<Contact>& contact) {
+    if (!contact) return "none within 4 Å";
+    return fmt::format("{:.2f} Å, {} and {}", contact->distance, atom_label(system, contact->a),
+                       atom_label(system, contact->b));
 }
 
-void relax_system(PreparedSystem& system, std::span<const std::uint32_t> added,
+void warn_of_clash(PreparedSystem& system, const std::optional<Contact>& closest) {
+    constexpr double clash = 1.5;  // Å
+    if (!closest || closest->distance > clash) return;
+    system.report.warn(fmt::format("a clash is left: {}", contact_label(system, closest)));
+}
+
+void relax_system(PreparedSystem& system, std::span<const std::uint8_t> is_built,
                   const PrepareProgress& progress) {
     const std::size_t count = system.structure.names.size();
-    std::vector<std::uint8_t> is_built(count, 0), is_hydrogen(count, 0);
-    for (const std::uint32_t atom : added) is_built[atom] = 1;
+    std::vector<std::uint8_t> is_hydrogen(count, 0);
     for (std::size_t i = 0; i < count; ++i) {
         is_hydrogen[i] = element_of(system.structure, i) == "H" ? 1 : 0;
     }
@@ -180,10 +192,36 @@ void relax_system(PreparedSystem& system, std::span<const std::uint32_t> added,
     system.report.add(heading, fmt::format("largest move of an atom of the file: {:.2f} Å, {}",
                                            relaxed.largest_move.distance,
                                            atom_label(system, relaxed.largest_move.a)));
-    if (relaxed.closest_after.distance > 0 && relaxed.closest_after.distance < 1.5) {
-        system.report.warn(
-            fmt::format("a clash is left: {}", contact_label(system, relaxed.closest_after)));
+    warn_of_clash(system, relaxed.closest_after);
+    constexpr double large_force = 1;  // kcal/mol/Å
+    if (relaxed.rms_force > large_force) {
+        system.report.warn(fmt::format("relaxing stopped early: an rms force of {:.1f} kcal/mol/Å "
+                                       "is left",
+                                       relaxed.rms_force));
     }
+}
+
+// A PDB file has one column for a chain; longer names become letters that are free, in turn.
+Structure with_short_chains(Structure structure) {
+    constexpr std::string_view letters =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789";
+    std::map<std::string, std::string> names;
+    std::set<std::string> taken;
+    for (const AtomRecord& record : structure.records) {
+        if (record.chain.size() <= 1) taken.insert(record.chain);
+    }
+    for (AtomRecord& record : structure.records) {
+        if (record.chain.size() <= 1) continue;
+        const auto [name, is_new] = names.try_emplace(record.chain);
+        if (is_new) {
+            std::size_t at = 0;
+            while (at < letters.size() && taken.contains(std::string(1, letters[at]))) ++at;
+            name->second = std::string(1, letters[at < letters.size() ? at : 0]);
+            taken.insert(name->second);
+        }
+        record.chain = name->second;
+    }
+    return structure;
 }
 
 void create_folder(const std::filesystem::path& folder) {
@@ -200,23 +238,28 @@ PreparedSystem prepare_system(const ForceField& force_field, const Structure& st
     Report& report = result.report;
     progress("choosing and naming atoms", 0);
     const Structure chosen = choose_atoms(structure, settings, report);
+    check_size(chosen);
     const NamedResidues named = name_residues(force_field, chosen, settings, report);
+    Missing problems = named.problems;
     TypedSystem system;
     try {
         if (!named.structure.names.empty()) {
             system = type_system(force_field, named, settings, report);
         }
     } catch (const LoadError& error) {
-        if (!named.problems) throw;
-        throw LoadError({}, fmt::format("{}; {}", named.problems->what(), error.what()));
+        if (problems.empty()) throw;
+        problems.add(error);
     }
-    if (named.problems) throw LoadError(*named.problems);
+    problems.throw_if_any();
     result.structure = std::move(system.completed.structure);
     result.connectivity = std::move(system.connectivity);
     result.topology = std::move(system.topology);
     result.parameters = keep_used_parameters(force_field, result.connectivity);
     name_elements(result);
-    check_size(result);
+    check_size(result.structure);
+    std::vector<std::uint8_t> is_added(result.structure.names.size(), 0);
+    for (const std::uint32_t atom : system.completed.added) is_added[atom] = 1;
+    check_coordinates(result.structure, result.topology, is_added, report);
     report_charge(result);
 
     progress("building missing atoms", 0);
@@ -225,22 +268,26 @@ PreparedSystem prepare_system(const ForceField& force_field, const Structure& st
     build_missing(result, coordinates);
     progress("orienting hydrogens", 0);
     orient(result, system.completed.added, settings);
-    if (settings.relaxes) relax_system(result, system.completed.added, progress);
+    if (settings.relaxes) {
+        relax_system(result, is_added, progress);
+    } else {
+        warn_of_clash(result, find_closest_contact(result.topology, result.structure.positions));
+    }
     if (settings.align) align(result.structure, *settings.align, result.structure.positions);
     return result;
 }
 
 void write_prepared(const PreparedSystem& system, const std::filesystem::path& folder,
-                    std::string_view title) {
-    // Everything is made before anything is written.
-    const std::array<std::pair<const char*, std::string>, 5> files{
-        {{"system.psf", format_psf(system.connectivity, title)},
-         {"system.pdb", format_pdb(system.structure, title)},
-         {"system.crd", format_crd(system.structure, title)},
-         {"system.prm", format_parameters(system.parameters, title)},
-         {"report.txt", fmt::format("{}\n\n{}", title, system.report.to_text())}}};
+                    std::string_view title, std::string_view scene) {
+    std::vector<TextFile> files{
+        {folder / "system.psf", format_psf(system.connectivity, title)},
+        {folder / "system.pdb", format_pdb(with_short_chains(system.structure), title)},
+        {folder / "system.crd", format_crd(system.structure, title)},
+        {folder / "system.prm", format_parameters(system.parameters, title)},
+        {folder / "report.txt", fmt::format("{}\n\n{}", title, system.report.to_text())}};
+    if (!scene.empty()) files.push_back({folder / "scene.toml", std::string(scene)});
     create_folder(folder);
-    for (const auto& [name, text] : files) write_text_file(folder / name, text);
+    write_text_files(files);
 }
 
 }  // namespace palpa

@@ -54,10 +54,10 @@ Contact find_largest_move(std::span<const Vec3> before, std::span<const Vec3> af
 
 }  // namespace
 
-Contact find_closest_contact(const Topology& topology, std::span<const Vec3> positions) {
+std::optional<Contact> find_closest_contact(const Topology& topology, std::span<const Vec3> positions) {
     constexpr double reach = 4;  // Å
     const PairList list = build_pair_list(topology.exclusions, reach, 0, positions);
-    Contact closest;
+    std::optional<Contact> closest;
     double least = reach;
     for (std::size_t row = 0; row < list.atoms.size(); ++row) {
         const std::uint32_t a = list.atoms[row];
@@ -65,7 +65,7 @@ Contact find_closest_contact(const Topology& topology, std::span<const Vec3> pos
             const double distance = (positions[a] - positions[b]).norm();
             if (!(distance < least)) continue;
             least = distance;
-            closest = {std::min(a, b), std::max(a, b), distance};
+            closest = Contact{std::min(a, b), std::max(a, b), distance};
         }
     }
     return closest;

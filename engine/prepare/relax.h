@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,7 +23,7 @@ struct RelaxReport {
     EnergyTerms before, after;  // kcal/mol, dielectric 4 r, to 9 Å
     std::size_t steps = 0;
     double rms_force = 0;  // at the end, kcal/mol/Å
-    Contact closest_before, closest_after;
+    std::optional<Contact> closest_before, closest_after;
     Contact largest_move;  // of a given heavy atom, a; b unused
 };
 
@@ -34,8 +35,7 @@ RelaxReport relax(const Topology& topology, std::span<const std::uint8_t> is_bui
                   std::span<const std::uint8_t> is_hydrogen, std::vector<Vec3>& positions,
                   const std::function<void(double share)>& progress);
 
-// The closest of all pairs that interact, but for those three bonds apart; 0 Å apart and atom 0
-// twice if no pair is nearer than 4 Å.
-Contact find_closest_contact(const Topology& topology, std::span<const Vec3> positions);
+// The closest of all pairs that interact, but for those three bonds apart, within 4 Å.
+std::optional<Contact> find_closest_contact(const Topology& topology, std::span<const Vec3> positions);
 
 }  // namespace palpa

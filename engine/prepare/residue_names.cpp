@@ -4,6 +4,7 @@
 #include "core/text.h"
 #include "prepare/choose.h"
 #include "prepare/histidine.h"
+#include "prepare/patch_fit.h"
 #include "prepare/residues.h"
 
 #include <fmt/format.h>
@@ -137,13 +138,7 @@ public:
             report_.add(heading,
                         fmt::format("{} ({} residue{})", what, count, count == 1 ? "" : "s"));
         }
-        NamedResidues result{std::move(structure_), std::move(patches_), std::nullopt};
-        try {
-            missing_.throw_if_any();
-        } catch (const LoadError& problems) {
-            result.problems = problems;
-        }
-        return result;
+        return {std::move(structure_), std::move(patches_), std::move(missing_)};
     }
 
 private:
@@ -163,7 +158,9 @@ private:
         for (const ResidueRange& residue : find_residues(structure_)) {
             rename(residue);
             const std::string& name = name_of(residue);
-            if (is_known(name) || name == "HIS") {
+            const bool is_histidine =
+                name == "HIS" && is_known("HSD") && is_known("HSE") && is_known("HSP");
+            if (is_known(name) || is_histidine) {
                 if (is_taken_as_another(residue)) leave_out_surplus(residue, kept);
                 continue;
             }
@@ -172,6 +169,16 @@ private:
                         false);
         }
         for (const auto& [name, residues] : unknown) report_unknown(name, residues);
+        for (const auto& [from, to] : settings_.residue_names) {
+            const auto known = [&](const std::string& name) {
+                return std::any_of(structure_.names.begin(), structure_.names.end(),
+                                   [&](const AtomName& atom) { return atom.residue == name; });
+            };
+            if (!renamed_.contains(taken_as(from, to)) && !known(from)) {
+                missing_.add({structure_.file},
+                             fmt::format("--as {}={}: no residue '{}' here", from, to, from));
+            }
+        }
         structure_ = keep_atoms(structure_, kept);
     }
 
@@ -204,7 +211,14 @@ private:
             for (std::size_t i = 0; i < settings_.protonation.size(); ++i) {
                 const auto& [choice, state] = settings_.protonation[i];
                 if (choice.chain != chain || choice.number != number) continue;
-                is_used[i] = is_chosen = true;
+                is_used[i] = true;
+                if (is_chosen) {
+                    missing_.add({structure_.file},
+                                 fmt::format("--protonation: two states for {}",
+                                             residue_label(structure_, residue)));
+                    continue;
+                }
+                is_chosen = true;
                 choose_state(residue, state);
             }
             if (!is_chosen) find_state(residue);
@@ -217,6 +231,15 @@ private:
         }
     }
 
+    static std::string taken_as(const std::string& from, const std::string& to) {
+        return fmt::format("{} taken as {}, as asked", from, to);
+    }
+
+    // One atom is an ion, whatever else has its name in the force field.
+    bool is_named_like_an_ion(const ResidueRange& residue, const std::string& name) const {
+        return residue.count == 1 && force_field_.residues.at(name).atoms.size() > 1;
+    }
+
     void rename(const ResidueRange& residue) {
         const std::string before = name_of(residue);
         for (const auto& [from, to] : settings_.residue_names) {
@@ -224,12 +247,18 @@ private:
             rename_residue(structure_, residue, to);
             if (to == "MET" && from == "MSE") rename_selenium(residue);
             taken_as_another_.push_back(residue.first);
-            ++renamed_[fmt::format("{} taken as {}, as asked", from, to)];
+            ++renamed_[taken_as(from, to)];
             return;
         }
-        if (is_known(before) || before == "HIS") return;
-        const auto alias =
-            is_water(before) ? std::optional<std::string_view>("TIP3") : look_up(aliases, before);
+        if (before == "HIS") return;
+        if (is_known(before) && !is_named_like_an_ion(residue, before)) return;
+        // "NA+", "CL-", "MG2"
+        const std::string plain =
+            residue.count == 1 ? before.substr(0, before.find_first_of("+-0123456789")) : before;
+        auto alias = is_water(before) ? std::optional<std::string_view>("TIP3")
+                                      : look_up(aliases, plain);
+        if (!alias && is_known(plain)) alias = plain;
+        if (alias == before) return;
         if (!alias || !is_known(*alias)) return;
         rename_residue(structure_, residue, *alias);
         if (const auto patch = look_up(protonated, before)) add_patch(residue, *patch);
@@ -250,19 +279,41 @@ private:
     // What --protonation says of a residue: another residue, a patch, or its usual state.
     void choose_state(const ResidueRange& residue, const std::string& state) {
         const std::string label = residue_label(structure_, residue);
-        if (is_known(state)) {
-            rename_residue(structure_, residue, state);
-        } else if (force_field_.patches.contains(state)) {
-            add_patch(residue, state);
+        const auto patch = look_up(protonated, state);
+        const auto other = look_up(aliases, state);
+        const std::string residue_name(other ? *other : state);
+        const std::string patch_name(patch ? *patch : state);
+        if (force_field_.patches.contains(patch_name)) {
+            choose_patch(residue, patch_name);
+        } else if (is_known(residue_name)) {
+            rename_residue(structure_, residue, residue_name);
         } else {
             std::vector<std::string_view> names = keys(force_field_.patches);
             for (const auto& entry : force_field_.residues) names.emplace_back(entry.first);
             missing_.add({structure_.file},
                          fmt::format("--protonation {}: no residue and no patch '{}'{}", label,
                                      state, near_name_hint(state, names)));
+            find_state(residue);
             return;
         }
         report_.add(protonation_heading, fmt::format("{}: {}, as asked", label, state));
+    }
+
+    void choose_patch(const ResidueRange& residue, const std::string& patch) {
+        const std::string name = name_of(residue);
+        const auto known = force_field_.residues.find(name);
+        const std::string misfit =
+            known == force_field_.residues.end()
+                ? std::string("one of its atoms")
+                : find_misfit(known->second, force_field_.patches.at(patch));
+        if (misfit.empty()) {
+            add_patch(residue, patch);
+            return;
+        }
+        missing_.add({structure_.file, structure_.lines[residue.first], 0},
+                     fmt::format("--protonation: patch {} is not for {}, which has no '{}'", patch,
+                                 residue_label(structure_, residue), misfit));
+        find_state(residue);
     }
 
     std::size_t hydrogens_at(const ResidueRange& residue, std::string_view heavy) const {

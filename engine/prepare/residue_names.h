@@ -1,13 +1,12 @@
 // From the residue names of a file to those of the force field, protonation included.
 #pragma once
 #include "charmm/force_field.h"
-#include "core/load_error.h"
+#include "charmm/missing.h"
 #include "molecule/atoms.h"
 #include "prepare/report.h"
 #include "prepare/settings.h"
 
 #include <cstddef>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,7 +23,7 @@ struct NamedResidues {
     std::vector<ResiduePatch> patches;
     // What is wrong with residues: those without a topology (left out of the structure, so that
     // what else is missing can be found too) and choices that fit nothing. To be thrown.
-    std::optional<LoadError> problems;
+    Missing problems;
 };
 
 // Residues are named as the settings say; caps (ACE, NME, NH2) become part of the residue beside

@@ -3,10 +3,12 @@
 #include "charmm/missing.h"
 #include "core/text.h"
 #include "prepare/choose.h"
+#include "prepare/patch_fit.h"
 #include "prepare/residues.h"
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -131,8 +133,8 @@ private:
         const std::string segment = unique_segment(chain_name);
         SegmentSettings settings;
         settings.segment = segment;
-        settings.first = choose_first(first, last, is_behind_gap);
-        settings.last = choose_last(last, goes_on_behind(last));
+        const bool is_before_gap = goes_on_behind(last);
+        choose_ends(first, last, is_behind_gap, is_before_gap, settings);
         if (is_behind_gap) {
             report_.warn(
                 fmt::format("chain {} has a gap between {} and {}: neutral caps close it "
@@ -141,8 +143,12 @@ private:
                             residue_label(structure_, residues_[first])));
         }
         last_of_chain_[chain_name] = last;
-        choose_as_asked(settings_.first, chain_name, segment, settings.first, used_first_);
-        choose_as_asked(settings_.last, chain_name, segment, settings.last, used_last_);
+        // A chain's name means its real ends, not those at gaps.
+        const std::string end_name = is_before_gap && segment == chain_name ? "" : segment;
+        choose_as_asked(settings_.first, {segment, is_behind_gap ? segment : chain_name}, first,
+                        settings.first, used_first_);
+        choose_as_asked(settings_.last, {end_name, is_before_gap ? end_name : chain_name}, last,
+                        settings.last, used_last_);
         report_.add(heading, fmt::format("segment {}: {} to {}, {} residues; first {}, last {}",
                                          segment, residue_label(structure_, residues_[first]),
                                          residue_label(structure_, residues_[last]), end - first,
@@ -166,31 +172,52 @@ private:
         return false;
     }
 
-    std::string choose_first(std::size_t first, std::size_t last, bool is_gap) const {
+    void choose_ends(std::size_t first, std::size_t last, bool is_behind_gap, bool is_before_gap,
+                     SegmentSettings& settings) const {
         const bool is_proline = structure_.names[residues_[first].first].residue == "PRO";
-        if (!has_atom(first, "CAY") && !is_gap) return "";
-        const bool is_single = first == last;
-        if (is_proline) return is_single ? "ACPD" : "ACP";
-        return is_single ? "ACED" : "ACE";
+        const bool has_end = has_atom(last, "OXT") || has_atom(last, "OT2");
+        if (is_behind_gap || has_atom(first, "CAY")) settings.first = is_proline ? "ACP" : "ACE";
+        if (has_atom(last, "NT")) settings.last = "CT2";
+        if (has_atom(last, "CAT") || (is_before_gap && !has_end)) settings.last = "CT3";
+        if (first != last || settings.last != "CT3") return;
+        // One residue with both: CHARMM has ACE in another form for it, and hydrogens of NTER and
+        // CT3 have the same names.
+        if (settings.first.empty()) {
+            settings.last = has_atom(last, "CAT") ? "CT3" : find_neutral_end();
+        } else {
+            settings.first += "D";
+        }
     }
 
-    std::string choose_last(std::size_t last, bool is_gap) const {
-        if (has_atom(last, "CAT")) return "CT3";
-        if (has_atom(last, "NT")) return "CT2";
-        const bool has_end = has_atom(last, "OXT") || has_atom(last, "OT2");
-        return is_gap && !has_end ? "CT3" : "";
+    // A C-terminus that goes with NTER; the template's where there is none.
+    std::string find_neutral_end() const {
+        const auto found = force_field_.patches.find("CNEU");
+        if (found == force_field_.patches.end()) return "";
+        const bool is_alone =
+            std::none_of(found->second.atoms.begin(), found->second.atoms.end(),
+                         [](const ResidueAtom& atom) { return atom.name == "HT2"; });
+        return is_alone ? "CNEU" : "";
     }
 
     void choose_as_asked(const std::vector<std::pair<std::string, std::string>>& choices,
-                         const std::string& chain_name, const std::string& segment,
+                         const std::array<std::string, 2>& names, std::size_t residue,
                          std::string& patch, std::set<std::string>& used) {
         for (const auto& [where, name] : choices) {
-            if (where != segment && where != chain_name) continue;
+            if (where != names[0] && where != names[1]) continue;
             used.insert(where);
             if (name != "NONE" && !force_field_.patches.contains(name)) {
                 missing_.add({structure_.file},
                              fmt::format("no patch '{}' for the ends of {}{}", name, where,
                                          near_name_hint(name, keys(force_field_.patches))));
+                continue;
+            }
+            const std::string misfit =
+                name == "NONE" ? std::string()
+                               : find_misfit(residue_of(residue), force_field_.patches.at(name));
+            if (!misfit.empty()) {
+                missing_.add({structure_.file, structure_.lines[residues_[residue].first], 0},
+                             fmt::format("patch {} is not for {}, which has no '{}'", name,
+                                         residue_label(structure_, residues_[residue]), misfit));
                 continue;
             }
             patch = name;
@@ -269,12 +296,23 @@ private:
                                 residue_label(structure_, residues_[b]), why));
     }
 
+    bool has_sulphur(std::size_t index) const {
+        return structure_.names[residues_[index].first].residue == "CYS" && has_atom(index, "SG");
+    }
+
     void add_disulphides() {
         std::set<std::size_t> taken;
         for (const auto& [one, other] : settings_.disulphides) {
             const auto a = find_residue_of(one);
             const auto b = find_residue_of(other);
             if (!a || !b) continue;
+            const bool are_cysteines = *a != *b && has_sulphur(*a) && has_sulphur(*b);
+            if (!are_cysteines) {
+                missing_.add({structure_.file},
+                             fmt::format("--disulphide {}:{}-{}:{}: expected two CYS that have SG",
+                                         one.chain, one.number, other.chain, other.number));
+                continue;
+            }
             add_disulphide(*a, *b, "as asked");
             taken.insert(*a);
             taken.insert(*b);
@@ -282,6 +320,14 @@ private:
         if (!settings_.finds_disulphides) return;
         for (const auto& [distance, a, b] : find_sulphur_pairs()) {
             if (taken.contains(a) || taken.contains(b)) continue;
+            if (distance > longest_link) {
+                report_.add(disulphide_heading,
+                            fmt::format("{} and {}: not bonded, SG {:.2f} Å apart (--disulphide "
+                                        "bonds them)",
+                                        residue_label(structure_, residues_[a]),
+                                        residue_label(structure_, residues_[b]), distance));
+                continue;
+            }
             taken.insert(a);
             taken.insert(b);
             add_disulphide(a, b, fmt::format("SG {:.2f} Å apart", distance));
@@ -302,7 +348,8 @@ private:
                 const double distance = (structure_.positions[sulphurs[i].second] -
                                          structure_.positions[sulphurs[j].second])
                                             .norm();
-                if (distance < longest_link) {
+                constexpr double worth_telling = 3;  // Å
+                if (distance < worth_telling) {
                     pairs.emplace_back(distance, sulphurs[i].first, sulphurs[j].first);
                 }
             }

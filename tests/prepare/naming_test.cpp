@@ -29,7 +29,7 @@ Named name_all(const Structure& structure, const PrepareSettings& settings = {})
     static const ForceField force_field = small_force_field();
     Named result;
     NamedResidues named = name_residues(force_field, structure, settings, result.report);
-    if (named.problems) throw LoadError(*named.problems);
+    named.problems.throw_if_any();
     result.generate =
         split_segments(force_field, named.structure, named.patches, settings, result.report);
     result.structure = name_atoms(force_field, named.structure, result.generate, result.report);
