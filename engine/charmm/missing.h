@@ -18,7 +18,7 @@ public:
     static constexpr std::size_t most_named = 8;
 
     void add(const TextPlace& place, std::string what);
-    void advise(std::string what);  // what stands once at the end of the message
+    void advise(std::string what);     // what stands once at the end of the message
     void add(const LoadError& error);  // another stage's problems, behind ours
     bool empty() const noexcept { return problems_.empty(); }
     void throw_if_any() const;

@@ -236,7 +236,7 @@ private:
         missing_.add(
             place(atom),
             fmt::format("{} has an atom '{}' that its topology does not know{}; expected the "
-                                 "names of CHARMM or the PDB",
+                        "names of CHARMM or the PDB",
                         residue_label(structure_, residue), name, near_name_hint(name, names)));
     }
 

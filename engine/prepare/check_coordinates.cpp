@@ -91,17 +91,18 @@ void check_hands(const Structure& structure, std::span<const std::uint8_t> is_ad
         if (to_n.cross(to_c).dot(to_cb) < 0) wrong.push_back(residue_label(structure, residue));
     }
     if (wrong.empty()) return;
-    report.warn(fmt::format("D-amino acids, or a mirror image: {}; their dihedral maps are those "
-                            "of L",
-                            join_some(wrong)));
+    report.warn(
+        fmt::format("D-amino acids, or a mirror image: {}; their dihedral maps are those "
+                    "of L",
+                    join_some(wrong)));
 }
 
 }  // namespace
 
 void check_coordinates(const Structure& structure, const Topology& topology,
                        std::span<const std::uint8_t> is_added, Report& report) {
-    refuse_coincident(structure, is_added);
     check_bonds(structure, topology, is_added, report);
+    refuse_coincident(structure, is_added);
     check_hands(structure, is_added, report);
 }
 

@@ -13,9 +13,10 @@ std::string find_misfit(const Residue& residue, const Residue& patch) {
     const auto deleted = std::find_if(patch.deleted_atoms.begin(), patch.deleted_atoms.end(),
                                       [&](const auto& name) { return !there.contains(name); });
     if (deleted != patch.deleted_atoms.end()) return *deleted;
-    const auto changed = std::find_if(patch.atoms.begin(), patch.atoms.end(), [&](const auto& atom) {
-        return !there.contains(atom.name) && !bonded.contains(atom.name);
-    });
+    const auto changed =
+        std::find_if(patch.atoms.begin(), patch.atoms.end(), [&](const auto& atom) {
+            return !there.contains(atom.name) && !bonded.contains(atom.name);
+        });
     return changed == patch.atoms.end() ? std::string() : changed->name;
 }
 

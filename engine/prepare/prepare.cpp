@@ -73,10 +73,9 @@ void check_size(const Structure& structure) {
     constexpr std::size_t most_atoms = 400'000;
     const std::size_t atoms = structure.names.size();
     if (atoms <= most_atoms) return;
-    throw LoadError({structure.file},
-                    fmt::format("{} atoms; expected at most {}: leave out "
-                                "what is not needed with --without, waters first",
-                                atoms, most_atoms));
+    throw LoadError({structure.file}, fmt::format("{} atoms; expected at most {}: leave out "
+                                                  "what is not needed with --without, waters first",
+                                                  atoms, most_atoms));
 }
 
 void report_charge(PreparedSystem& system) {
@@ -195,9 +194,10 @@ void relax_system(PreparedSystem& system, std::span<const std::uint8_t> is_built
     warn_of_clash(system, relaxed.closest_after);
     constexpr double large_force = 1;  // kcal/mol/Å
     if (relaxed.rms_force > large_force) {
-        system.report.warn(fmt::format("relaxing stopped early: an rms force of {:.1f} kcal/mol/Å "
-                                       "is left",
-                                       relaxed.rms_force));
+        system.report.warn(
+            fmt::format("relaxing stopped early: an rms force of {:.1f} kcal/mol/Å "
+                        "is left",
+                        relaxed.rms_force));
     }
 }
 

@@ -40,8 +40,8 @@ std::string format_scene_of(const PreparedSystem& system, const std::string& seg
 // take.
 std::string find_smallest_segment(const PreparedSystem& system);
 
-// system.psf, system.pdb, system.crd, system.prm, report.txt and, unless `scene` is empty, scene.toml:
-// all of them or none. `title`: what the files say of themselves.
+// system.psf, system.pdb, system.crd, system.prm, report.txt and, unless `scene` is empty,
+// scene.toml: all of them or none. `title`: what the files say of themselves.
 void write_prepared(const PreparedSystem& system, const std::filesystem::path& folder,
                     std::string_view title, std::string_view scene);
 

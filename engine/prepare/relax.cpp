@@ -54,7 +54,8 @@ Contact find_largest_move(std::span<const Vec3> before, std::span<const Vec3> af
 
 }  // namespace
 
-std::optional<Contact> find_closest_contact(const Topology& topology, std::span<const Vec3> positions) {
+std::optional<Contact> find_closest_contact(const Topology& topology,
+                                            std::span<const Vec3> positions) {
     constexpr double reach = 4;  // Å
     const PairList list = build_pair_list(topology.exclusions, reach, 0, positions);
     std::optional<Contact> closest;

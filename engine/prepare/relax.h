@@ -36,6 +36,7 @@ RelaxReport relax(const Topology& topology, std::span<const std::uint8_t> is_bui
                   const std::function<void(double share)>& progress);
 
 // The closest of all pairs that interact, but for those three bonds apart, within 4 Å.
-std::optional<Contact> find_closest_contact(const Topology& topology, std::span<const Vec3> positions);
+std::optional<Contact> find_closest_contact(const Topology& topology,
+                                            std::span<const Vec3> positions);
 
 }  // namespace palpa

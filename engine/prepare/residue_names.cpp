@@ -255,8 +255,8 @@ private:
         // "NA+", "CL-", "MG2"
         const std::string plain =
             residue.count == 1 ? before.substr(0, before.find_first_of("+-0123456789")) : before;
-        auto alias = is_water(before) ? std::optional<std::string_view>("TIP3")
-                                      : look_up(aliases, plain);
+        auto alias =
+            is_water(before) ? std::optional<std::string_view>("TIP3") : look_up(aliases, plain);
         if (!alias && is_known(plain)) alias = plain;
         if (alias == before) return;
         if (!alias || !is_known(*alias)) return;
@@ -302,10 +302,9 @@ private:
     void choose_patch(const ResidueRange& residue, const std::string& patch) {
         const std::string name = name_of(residue);
         const auto known = force_field_.residues.find(name);
-        const std::string misfit =
-            known == force_field_.residues.end()
-                ? std::string("one of its atoms")
-                : find_misfit(known->second, force_field_.patches.at(patch));
+        const std::string misfit = known == force_field_.residues.end()
+                                       ? std::string("one of its atoms")
+                                       : find_misfit(known->second, force_field_.patches.at(patch));
         if (misfit.empty()) {
             add_patch(residue, patch);
             return;

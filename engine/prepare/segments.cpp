@@ -173,30 +173,25 @@ private:
     }
 
     void choose_ends(std::size_t first, std::size_t last, bool is_behind_gap, bool is_before_gap,
-                     SegmentSettings& settings) const {
+                     SegmentSettings& settings) {
         const bool is_proline = structure_.names[residues_[first].first].residue == "PRO";
         const bool has_end = has_atom(last, "OXT") || has_atom(last, "OT2");
         if (is_behind_gap || has_atom(first, "CAY")) settings.first = is_proline ? "ACP" : "ACE";
         if (has_atom(last, "NT")) settings.last = "CT2";
         if (has_atom(last, "CAT") || (is_before_gap && !has_end)) settings.last = "CT3";
         if (first != last || settings.last != "CT3") return;
-        // One residue with both: CHARMM has ACE in another form for it, and hydrogens of NTER and
-        // CT3 have the same names.
-        if (settings.first.empty()) {
-            settings.last = has_atom(last, "CAT") ? "CT3" : find_neutral_end();
-        } else {
+        // One residue with both: CHARMM has ACE in another form for it; NTER does not go with CT3,
+        // whose hydrogens have the same names.
+        if (!settings.first.empty()) {
             settings.first += "D";
+        } else if (!has_atom(last, "CAT")) {
+            settings.last.clear();
+            report_.warn(
+                fmt::format("{} stands alone before a gap, charged at both ends; --without "
+                            "{}:{} leaves it out",
+                            residue_label(structure_, residues_[last]), chain(last),
+                            structure_.names[residues_[last].first].number));
         }
-    }
-
-    // A C-terminus that goes with NTER; the template's where there is none.
-    std::string find_neutral_end() const {
-        const auto found = force_field_.patches.find("CNEU");
-        if (found == force_field_.patches.end()) return "";
-        const bool is_alone =
-            std::none_of(found->second.atoms.begin(), found->second.atoms.end(),
-                         [](const ResidueAtom& atom) { return atom.name == "HT2"; });
-        return is_alone ? "CNEU" : "";
     }
 
     void choose_as_asked(const std::vector<std::pair<std::string, std::string>>& choices,

@@ -32,6 +32,17 @@ TEST_CASE("of two locations the more occupied one is taken, or the one asked for
                Contains("ALA A 1 has no alternate location 'C'"));
 }
 
+TEST_CASE("atoms that the chosen location lacks come from another", "[prepare]") {
+    StructureWriter writer;
+    writer.atom("ALA", "A", 1, "CA", {0, 0, 0}, "C", 'A', 0.4);
+    writer.atom("ALA", "A", 1, "CA", {1, 0, 0}, "C", 'B', 0.3);
+    writer.atom("ALA", "A", 1, "CB", {2, 0, 0}, "C", 'C', 0.9);
+    Report report;
+    const Structure chosen = choose_atoms(writer.structure(), {}, report);
+    REQUIRE(joined_names(chosen) == "CA CB ");
+    CHECK(chosen.positions[0].x() == 0);
+}
+
 TEST_CASE("equal locations: the first of the alphabet, and two residues in one place",
           "[prepare]") {
     StructureWriter writer;

@@ -250,6 +250,16 @@ class Prepare(unittest.TestCase):
             (hiv / "1hsg_protein.pdb", ["--without", "HOH"], "nothing here is 'HOH'"),
             (hiv / "1hsg_protein.pdb", ["--first", "C=NTER"], "no chain or segment 'C'"),
             (hiv / "absent.pdb", [], "absent.pdb"),
+            (hiv / "1hpv_protein.pdb", ["--protonation", "A:69=XXX"], "no residue and no patch 'XXX'"),
+            (hiv / "1hpv_protein.pdb", ["--protonation", "A:25=LSN"],
+             "patch LSN is not for ASP A 25, which has no 'HZ3'"),
+            (hiv / "1hpv_protein.pdb", ["--protonation", "A:25=ASPP", "A:25=ASP"],
+             "two states for ASP A 25"),
+            (hiv / "1hpv_protein.pdb", ["--first", "A=NTER"], "NTER is not for PRO A 1"),
+            (hiv / "1hpv_protein.pdb", ["--as", "QQQ=ALA"], "no residue 'QQQ' here"),
+            (hiv / "1hpv_protein.pdb", ["--altloc", "A:13=B"], "--altloc A:13=B"),
+            (self.data / "structures" / "1crn.pdb", ["--disulphide", "A:3-A:10"],
+             "expected two CYS"),
         ]
         for structure, options, expected in one_line:
             with self.subTest(expected=expected):
@@ -261,6 +271,56 @@ class Prepare(unittest.TestCase):
         self.assertEqual(result.returncode, 2)
         self.assertRegex(result.stderr, "A:101 and B:101 have each 33 of its 66.*halves")
         self.assertEqual(result.stderr.strip().count("\n"), 0, result.stderr)
+
+    def crambin(self, change):
+        """A copy of 1CRN whose ATOM lines were changed."""
+        lines = (self.data / "structures" / "1crn.pdb").read_text().splitlines()
+        copy = self.folder / "changed.pdb"
+        copy.write_text("\n".join(change(line) if line.startswith("ATOM") else line
+                                  for line in lines) + "\n")
+        return copy
+
+    @staticmethod
+    def moved(line, turn):
+        x, y, z = turn(*(float(line[at:at + 8]) for at in (30, 38, 46)))
+        return f"{line[:30]}{x:8.3f}{y:8.3f}{z:8.3f}{line[54:]}"
+
+    def test_coordinates_that_cannot_be_are_refused_or_told(self):
+        nanometres = self.crambin(
+            lambda line: self.moved(line, lambda x, y, z: (x / 10, y / 10, z / 10)))
+        self.assertIn("expected coordinates in Å", self.refuse(nanometres))
+        one_place = self.crambin(lambda line: self.moved(line, lambda x, y, z: (14.0, 7.0, 4.0))
+                                 if line[17:26] == "SER A  11" else line)
+        self.assertRegex(self.refuse(one_place), "is 0.00 Å from A2 SER 11")
+        mirror = self.crambin(lambda line: self.moved(line, lambda x, y, z: (-x, y, z)))
+        folder = self.prepare(mirror, self.toppar()[:2], "--no-relax")
+        self.assertIn("D-amino acids, or a mirror image", (folder / "report.txt").read_text())
+
+    def test_single_residues_beside_a_gap(self):
+        for gap, warning in (("A:45", "gap between ALA A 44|gap between TYR A 44"),
+                             ("A:2", "THR A 1 stands alone before a gap")):
+            with self.subTest(gap=gap):
+                folder = self.prepare(self.data / "structures" / "1crn.pdb", self.toppar()[:2],
+                                      "--without", gap)
+                self.assertRegex((folder / "report.txt").read_text(), warning)
+
+    def test_a_single_atom_is_an_ion(self):
+        """CGenFF has a residue CA of another molecule."""
+        calcium = self.folder / "calcium.pdb"
+        calcium.write_text((self.data / "structures" / "1crn.pdb").read_text().replace("END", "") +
+                           "HETATM  900 CA    CA I   1      60.000  60.000  60.000  1.00  0.00"
+                           "          CA\n")
+        folder = self.prepare(calcium, self.toppar())
+        self.assertEqual(read_psf(folder / "system.psf")[0][-1][2], "CAL")
+
+    def test_a_failed_write_leaves_nothing(self):
+        blocked = self.folder / "blocked"
+        (blocked / "system.crd").mkdir(parents=True)
+        result = self.palpa("prepare", self.data / "structures" / "alanine_dipeptide.pdb",
+                            "--toppar", *self.toppar()[:2], "-o", blocked, "--overwrite")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("system.crd", result.stderr)
+        self.assertEqual([path.name for path in blocked.iterdir()], ["system.crd"])
 
     def test_nothing_is_overwritten_unasked(self):
         structure = self.data / "structures" / "alanine_dipeptide.pdb"
