@@ -155,7 +155,7 @@ public:
 
     Structure name() {
         for (std::size_t i = 0; i < residues_.size(); ++i) name_residue(i);
-        if (backbones_ > 0 && incomplete_backbones_ == backbones_) {
+        if (backbones_ > 0 && alpha_carbons_ == backbones_) {
             throw LoadError(
                 {structure_.file},
                 "no residue has N, CA and C: this looks like alpha-carbons only, from "
@@ -268,7 +268,7 @@ private:
             return std::find(lacking.begin(), lacking.end(), name) != lacking.end();
         };
         if (lacks("N") || lacks("CA") || lacks("C")) {
-            ++incomplete_backbones_;
+            if (lacks("N") && lacks("C") && !lacks("CA")) ++alpha_carbons_;
             missing_.add(place(residue.first),
                          fmt::format("{} lacks {} of its backbone; expected N, CA and C, or "
                                      "--without {}:{}",
@@ -431,7 +431,7 @@ private:
     std::map<std::string, std::size_t> renamed_;
     std::vector<std::string> dropped_;
     std::size_t renamed_hydrogens_ = 0, corrected_elements_ = 0;
-    std::size_t backbones_ = 0, incomplete_backbones_ = 0;
+    std::size_t backbones_ = 0, alpha_carbons_ = 0;
 };
 
 }  // namespace

@@ -3,7 +3,9 @@
 #include "core/assertion.h"
 #include "field/pair_field.h"
 #include "forces/torsion.h"
+#include "prepare/anchor_grid.h"
 #include "prepare/bond_graph.h"
+#include "prepare/turning_groups.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -28,218 +30,6 @@ constexpr double near_range = 6;     // Å; all that a first look at a water's r
 constexpr int looks = 2;             // how often a water looks at all rotations, not at small ones
 constexpr double grid_step = pi / 18;  // rad
 constexpr double fine_step = pi / 720;
-
-// What turns as one body.
-struct Group {
-    Kind kind;
-    std::uint32_t centre;               // stays where it is
-    std::optional<std::uint32_t> axis;  // the other atom of the axis; none: any rotation
-    std::vector<std::uint32_t> moved;
-    double period = 2 * pi;  // rad, after how much of a turn it is the same
-    double reach = 0;        // Å, of the moved atoms from the centre
-    std::vector<std::uint32_t> dihedrals, impropers;  // that change as it turns
-};
-
-// Atoms by where the group that they belong to has its centre, which never moves.
-class Grid {
-public:
-    Grid(std::vector<Vec3> anchors) : anchors_(std::move(anchors)) {
-        low_ = Vec3::Zero();
-        Vec3 high = Vec3::Zero();
-        if (!anchors_.empty()) low_ = high = anchors_[0];
-        for (const Vec3& anchor : anchors_) {
-            low_ = low_.cwiseMin(anchor);
-            high = high.cwiseMax(anchor);
-        }
-        // Far apart atoms must not make more cells than there are atoms.
-        const double room = ((high - low_).array() + 1.0).prod();
-        edge_ = std::max(5.0, std::cbrt(8 * room / (static_cast<double>(anchors_.size()) + 1)));
-        for (int k = 0; k < 3; ++k) cells_[k] = static_cast<int>((high - low_)[k] / edge_) + 1;
-        std::vector<std::array<std::uint32_t, 2>> entries;
-        for (std::uint32_t atom = 0; atom < anchors_.size(); ++atom) {
-            std::array<int, 3> cell{};
-            for (int k = 0; k < 3; ++k)
-                cell[k] = static_cast<int>((anchors_[atom] - low_)[k] / edge_);
-            entries.push_back({index(cell), atom});
-        }
-        atoms_ = Lists(entries, static_cast<std::size_t>(cells_[0]) * cells_[1] * cells_[2]);
-    }
-
-    // Calls `visit` for every atom whose anchor is within the radius.
-    template <class Visit>
-    void visit_near(const Vec3& place, double radius, const Visit& visit) const {
-        std::array<int, 3> first{}, last{};
-        for (int k = 0; k < 3; ++k) {
-            const double from = std::floor((place[k] - radius - low_[k]) / edge_);
-            const double to = std::floor((place[k] + radius - low_[k]) / edge_);
-            first[k] = static_cast<int>(std::clamp(from, 0.0, cells_[k] - 1.0));
-            last[k] = static_cast<int>(std::clamp(to, 0.0, cells_[k] - 1.0));
-        }
-        for (int x = first[0]; x <= last[0]; ++x) {
-            for (int y = first[1]; y <= last[1]; ++y) {
-                for (int z = first[2]; z <= last[2]; ++z) {
-                    for (const std::uint32_t atom : atoms_.of(index({x, y, z}))) {
-                        if ((anchors_[atom] - place).squaredNorm() < radius * radius) visit(atom);
-                    }
-                }
-            }
-        }
-    }
-
-private:
-    std::uint32_t index(const std::array<int, 3>& cell) const noexcept {
-        return static_cast<std::uint32_t>((cell[0] * cells_[1] + cell[1]) * cells_[2] + cell[2]);
-    }
-
-    std::vector<Vec3> anchors_;
-    Vec3 low_;
-    double edge_ = 5;  // Å
-    std::array<int, 3> cells_{1, 1, 1};
-    Lists atoms_;
-};
-
-// Finds the groups by their bonds.
-class GroupFinder {
-public:
-    GroupFinder(const BondGraph& graph, std::span<const std::uint32_t> built, std::size_t atoms,
-                const OrientSettings& settings)
-        : graph_(graph), settings_(settings), is_built_(atoms, false) {
-        for (const std::uint32_t atom : built) is_built_[atom] = true;
-    }
-
-    std::vector<Group> find() const {
-        std::vector<Group> groups;
-        for (std::uint32_t atom = 0; atom < is_built_.size(); ++atom) {
-            if (auto group = find_turning(atom)) groups.push_back(std::move(*group));
-        }
-        std::stable_sort(groups.begin(), groups.end(),
-                         [](const Group& a, const Group& b) { return a.kind < b.kind; });
-        if (!settings_.may_flip) return groups;
-        for (const auto finder : {&GroupFinder::find_amide, &GroupFinder::find_imidazole}) {
-            for (std::uint32_t atom = 0; atom < is_built_.size(); ++atom) {
-                if (auto group = (this->*finder)(atom)) groups.push_back(std::move(*group));
-            }
-        }
-        return groups;
-    }
-
-private:
-    struct Around {
-        std::vector<std::uint32_t> heavy, hydrogens;
-        bool all_built = true;  // of the hydrogens
-    };
-    Around look_around(std::uint32_t atom) const {
-        Around around;
-        for (const std::uint32_t other : graph_.neighbours(atom)) {
-            const bool is_hydrogen = graph_.is_hydrogen(other);
-            (is_hydrogen ? around.hydrogens : around.heavy).push_back(other);
-            if (is_hydrogen && !is_built_[other]) around.all_built = false;
-        }
-        return around;
-    }
-
-    bool is_carbon(std::uint32_t atom) const noexcept { return graph_.has_mass(atom, 12); }
-    bool is_nitrogen(std::uint32_t atom) const noexcept { return graph_.has_mass(atom, 14); }
-
-    std::optional<Group> find_turning(std::uint32_t atom) const {
-        if (graph_.is_hydrogen(atom) || graph_.is_planar(atom)) return std::nullopt;
-        Around around = look_around(atom);
-        if (around.hydrogens.empty() || !around.all_built) return std::nullopt;
-        Group group{.kind = Kind::Rotor,
-                    .centre = atom,
-                    .axis = {},
-                    .moved = around.hydrogens,
-                    .dihedrals = {},
-                    .impropers = {}};
-        if (around.heavy.empty() && around.hydrogens.size() > 1) {
-            group.kind = Kind::Water;
-            return group;
-        }
-        if (around.heavy.size() != 1 || (is_carbon(atom) && !settings_.has_methyls))
-            return std::nullopt;
-        group.axis = around.heavy[0];
-        if (around.hydrogens.size() == 3) group.period = 2 * pi / 3;
-        return group;
-    }
-
-    // By its carbon: a neighbour, O with no other, NH2.
-    std::optional<Group> find_amide(std::uint32_t carbon) const {
-        if (!is_carbon(carbon) || graph_.neighbours(carbon).size() != 3) return std::nullopt;
-        std::optional<std::uint32_t> axis, o, n;
-        Around of_n;
-        for (const std::uint32_t other : graph_.neighbours(carbon)) {
-            if (graph_.has_mass(other, 16) && graph_.neighbours(other).size() == 1) {
-                o = other;
-            } else if (is_nitrogen(other) && graph_.neighbours(other).size() == 3 &&
-                       look_around(other).hydrogens.size() == 2) {
-                n = other;
-                of_n = look_around(other);
-            } else if (!graph_.is_hydrogen(other)) {
-                axis = other;
-            }
-        }
-        if (!axis || !o || !n || !of_n.all_built) return std::nullopt;
-        return Group{.kind = Kind::Amide,
-                     .centre = carbon,
-                     .axis = axis,
-                     .moved = {*o, *n, of_n.hydrogens[0], of_n.hydrogens[1]},
-                     .dihedrals = {},
-                     .impropers = {}};
-    }
-
-    // By the carbon with the substituent: N C N C follow in the ring.
-    std::optional<Group> find_imidazole(std::uint32_t carbon) const {
-        if (!is_carbon(carbon) || graph_.neighbours(carbon).size() != 3) return std::nullopt;
-        for (const std::uint32_t first_n : graph_.neighbours(carbon)) {
-            if (!is_nitrogen(first_n)) continue;
-            for (const std::uint32_t middle : graph_.neighbours(first_n)) {
-                if (middle == carbon || !is_carbon(middle)) continue;
-                for (const std::uint32_t second_n : graph_.neighbours(middle)) {
-                    if (second_n == first_n || !is_nitrogen(second_n)) continue;
-                    for (const std::uint32_t last : graph_.neighbours(second_n)) {
-                        if (last == middle || !is_carbon(last)) continue;
-                        if (auto group = make_imidazole({carbon, first_n, middle, second_n, last}))
-                            return group;
-                    }
-                }
-            }
-        }
-        return std::nullopt;
-    }
-
-    std::optional<Group> make_imidazole(const std::array<std::uint32_t, 5>& ring) const {
-        const auto in_ring = [&](std::uint32_t atom) {
-            return std::find(ring.begin(), ring.end(), atom) != ring.end();
-        };
-        if (std::ranges::count(graph_.neighbours(ring[0]), ring[4]) == 0) return std::nullopt;
-        Group group{.kind = Kind::Imidazole,
-                    .centre = ring[0],
-                    .axis = {},
-                    .moved = {},
-                    .dihedrals = {},
-                    .impropers = {}};
-        for (const std::uint32_t other : graph_.neighbours(ring[0])) {
-            if (!in_ring(other) && !graph_.is_hydrogen(other)) group.axis = other;
-        }
-        if (!group.axis) return std::nullopt;
-        for (std::size_t i = 1; i < ring.size(); ++i) {
-            const Around around = look_around(ring[i]);
-            const bool is_closed = std::all_of(around.heavy.begin(), around.heavy.end(), in_ring);
-            if (!is_closed || !around.all_built) return std::nullopt;
-            group.moved.push_back(ring[i]);
-        }
-        for (std::size_t i = 0; i < 4; ++i) {
-            for (const std::uint32_t h : look_around(group.moved[i]).hydrogens) {
-                group.moved.push_back(h);
-            }
-        }
-        return group;
-    }
-
-    const BondGraph& graph_;
-    const OrientSettings& settings_;
-    std::vector<bool> is_built_;
-};
 
 // All rotations, about 30 degree apart: directions on a spiral over the sphere, each with a turn
 // about itself.
@@ -268,7 +58,7 @@ public:
           settings_(settings),
           positions_(positions),
           graph_(connectivity, topology),
-          groups_(GroupFinder(graph_, built, positions.size(), settings).find()),
+          groups_(find_turning_groups(graph_, built, positions.size(), settings)),
           rotations_(make_rotations()),
           excluded_(find_excluded(topology)),
           pairs14_(find_pairs14(topology)),
@@ -282,7 +72,7 @@ public:
 
     OrientReport run() {
         OrientReport report;
-        for (const Group& group : groups_) {
+        for (const TurningGroup& group : groups_) {
             OrientedGroup& entry = report.groups.emplace_back();
             entry.kind = group.kind;
             entry.atom = group.centre;
@@ -318,7 +108,7 @@ private:
     };
     enum class Extent { Near, All };
 
-    static bool is_flip(const Group& group) noexcept {
+    static bool is_flip(const TurningGroup& group) noexcept {
         return group.kind == Kind::Amide || group.kind == Kind::Imidazole;
     }
 
@@ -344,7 +134,7 @@ private:
 
     std::vector<Vec3> find_anchors() {
         std::vector<Vec3> anchors(positions_.begin(), positions_.end());
-        for (Group& group : groups_) {
+        for (TurningGroup& group : groups_) {
             for (const std::uint32_t atom : group.moved) {
                 anchors[atom] = positions_[group.centre];
                 const double reach = (positions_[atom] - positions_[group.centre]).norm();
@@ -369,7 +159,7 @@ private:
             for (const std::uint32_t atom : groups_[i].moved) entries.push_back({atom, i});
         }
         const Lists groups_of(entries, positions_.size());
-        const auto add = [&](const auto& terms, std::vector<std::uint32_t> Group::* into) {
+        const auto add = [&](const auto& terms, std::vector<std::uint32_t> TurningGroup::* into) {
             for (std::uint32_t i = 0; i < terms.size(); ++i) {
                 for (const std::uint32_t atom : {terms[i].a, terms[i].b, terms[i].c, terms[i].d}) {
                     for (const std::uint32_t number : groups_of.of(atom)) {
@@ -379,12 +169,12 @@ private:
                 }
             }
         };
-        add(topology_.dihedrals, &Group::dihedrals);
-        add(topology_.impropers, &Group::impropers);
+        add(topology_.dihedrals, &TurningGroup::dihedrals);
+        add(topology_.impropers, &TurningGroup::impropers);
     }
 
     // Of the first moved atom about the axis.
-    double dihedral(const Group& group) const noexcept {
+    double dihedral(const TurningGroup& group) const noexcept {
         if (!group.axis) return 0;
         for (const std::uint32_t other : graph_.neighbours(*group.axis)) {
             if (other == group.centre || graph_.is_hydrogen(other)) continue;
@@ -397,7 +187,7 @@ private:
 
     // Lists for each moved atom of the group what it interacts with beside the group itself, as
     // things stand. Those out of reach of the cutoff whatever the group does are left out.
-    void gather(const Group& group) {
+    void gather(const TurningGroup& group) {
         if (partners_.size() < group.moved.size()) partners_.resize(group.moved.size());
         for (Partners& list : partners_) list.all.clear();
         const auto is_moved = [&](std::uint32_t atom) {
@@ -455,7 +245,7 @@ private:
     }
 
     // Of what was gathered, at the group's present positions.
-    double energy(const Group& group, Extent extent) const noexcept {
+    double energy(const TurningGroup& group, Extent extent) const noexcept {
         double sum = 0;
         for (std::size_t slot = 0; slot < group.moved.size(); ++slot) {
             const Vec3 place = positions_[group.moved[slot]];
@@ -482,12 +272,13 @@ private:
         return sum;
     }
 
-    double energy_now(const Group& group) {
+    double energy_now(const TurningGroup& group) {
         gather(group);
         return energy(group, Extent::All);
     }
 
-    void put(const Group& group, std::span<const Vec3> start, const Quaternion& rotation) noexcept {
+    void put(const TurningGroup& group, std::span<const Vec3> start,
+             const Quaternion& rotation) noexcept {
         const Mat3 matrix = rotation.toRotationMatrix();
         const Vec3 centre = positions_[group.centre];
         for (std::size_t i = 0; i < group.moved.size(); ++i) {
@@ -495,7 +286,7 @@ private:
         }
     }
 
-    std::vector<Vec3> places(const Group& group) const {
+    std::vector<Vec3> places(const TurningGroup& group) const {
         std::vector<Vec3> result;
         for (const std::uint32_t atom : group.moved) result.push_back(positions_[atom]);
         return result;
@@ -508,7 +299,8 @@ private:
         Quaternion rotation = Quaternion::Identity();
     };
 
-    bool attempt(const Group& group, const Quaternion& rotation, Extent extent, Search& search) {
+    bool attempt(const TurningGroup& group, const Quaternion& rotation, Extent extent,
+                 Search& search) {
         put(group, search.start, rotation);
         const double here = energy(group, extent);
         if (!(here < search.energy)) return false;
@@ -517,13 +309,13 @@ private:
         return true;
     }
 
-    void look_around_axis(const Group& group, const Vec3& axis, Search& search) {
+    void look_around_axis(const TurningGroup& group, const Vec3& axis, Search& search) {
         for (int i = 1; i * grid_step < group.period - 1e-9; ++i) {
             attempt(group, Quaternion(Eigen::AngleAxisd(i * grid_step, axis)), Extent::All, search);
         }
     }
 
-    void look_at_rotations(const Group& group, Search& search) {
+    void look_at_rotations(const TurningGroup& group, Search& search) {
         Search near{search.start, energy(group, Extent::Near)};
         for (const Quaternion& rotation : rotations_) {
             attempt(group, rotation, Extent::Near, near);
@@ -531,7 +323,8 @@ private:
         attempt(group, near.rotation, Extent::All, search);
     }
 
-    void refine(const Group& group, std::span<const Vec3> axes, double step, Search& search) {
+    void refine(const TurningGroup& group, std::span<const Vec3> axes, double step,
+                Search& search) {
         for (int tries = 0; step > fine_step && tries < 64; ++tries) {
             bool is_better = false;
             for (const Vec3& axis : axes) {
@@ -547,7 +340,7 @@ private:
 
     // Turns the group to where its energy is lowest; returns the change, 0 if it stayed.
     double turn(std::size_t number) {
-        const Group& group = groups_[number];
+        const TurningGroup& group = groups_[number];
         gather(group);
         Search search{places(group), energy(group, Extent::All)};
         const std::vector<Vec3> start = search.start;
@@ -575,7 +368,7 @@ private:
         return search.energy - before;
     }
 
-    void put_back(const Group& group, std::span<const Vec3> start) noexcept {
+    void put_back(const TurningGroup& group, std::span<const Vec3> start) noexcept {
         for (std::size_t i = 0; i < start.size(); ++i) positions_[group.moved[i]] = start[i];
     }
 
@@ -619,7 +412,7 @@ private:
 
     // Half a turn, and what is near turned to fit: kept if that gains enough.
     bool try_flip(std::size_t number, OrientReport& report) {
-        const Group& group = groups_[number];
+        const TurningGroup& group = groups_[number];
         std::vector<std::uint32_t> near;
         for (const std::uint32_t atom : group.moved) {
             if (graph_.is_hydrogen(atom)) continue;
@@ -657,11 +450,11 @@ private:
     const OrientSettings& settings_;
     std::span<Vec3> positions_;
     BondGraph graph_;
-    std::vector<Group> groups_;
+    std::vector<TurningGroup> groups_;
     std::vector<Quaternion> rotations_;
     Lists excluded_, pairs14_;
     double largest_reach_ = 0;  // Å
-    Grid grid_;
+    AnchorGrid grid_;
     Lists of_centre_;  // groups by their centre
     NonbondedSettings nonbonded_;
 
