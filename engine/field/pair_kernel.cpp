@@ -1,6 +1,7 @@
 #include "field/pair_kernel.h"
 
 #include "core/assertion.h"
+#include "field/grid.h"
 #include "field/pair_job.h"
 
 #include <algorithm>
@@ -479,12 +480,6 @@ namespace palpa {
 namespace {
 
 HWY_EXPORT(sum_job);
-
-// Rounds to multiples of 2^-10: beyond 2^42 a double has no finer ones.
-double rounded_to_grid(double x) noexcept {
-    constexpr double shift = 1.5 * (std::uint64_t{1} << 42);
-    return (x + shift) - shift;
-}
 
 // Whether all are near enough to the origin.
 bool place_atoms(const ClusterList& list, std::span<const Vec3> positions,
