@@ -262,8 +262,10 @@ public:
 
 private:
     static constexpr std::size_t step = lane_count > cluster_size ? 2 : 1;
-    // Tiles between two sums in double.
+    // Tiles between two sums of energies in double, which are of eight rows each; and how many such
+    // stretches between two of the forces on a row.
     static constexpr std::size_t most_tiles = 16 * step;
+    static constexpr std::size_t most_stretches = 8;
 
     // Of a few hundred pairs; kept in registers.
     struct Sums {
@@ -276,6 +278,7 @@ private:
         const Electrostatics<electrostatic_end> electrostatics = electrostatics_;
         const VanDerWaals<van_der_waals_end> van_der_waals = van_der_waals_;
         Sums sums{nearest2_, hn::Zero(floats), hn::Zero(floats)};
+        std::size_t stretches = 0;
         for (std::size_t t = list_.first_plain[c]; t < list_.first_plain[c + 1];) {
             const std::size_t end = std::min(t + most_tiles, list_.first_plain[c + 1]);
             for (; t < end; t += step) {
@@ -284,7 +287,8 @@ private:
                 sum_tile<false>(electrostatics, van_der_waals, sums, first.cluster, second.cluster,
                                 first.rows | second.rows, 0, 0);
             }
-            flush(c, sums);
+            flush_energies(sums);
+            if (++stretches % most_stretches == 0) flush_rows(c);
         }
         for (std::size_t t = list_.first_masked[c]; t < list_.first_masked[c + 1];) {
             const std::size_t end = std::min(t + most_tiles, list_.first_masked[c + 1]);
@@ -294,8 +298,10 @@ private:
                 sum_tile<true>(electrostatics, van_der_waals, sums, first.cluster, second.cluster,
                                rows_of(first.pairs | second.pairs), first.pairs, second.pairs);
             }
-            flush(c, sums);
+            flush_energies(sums);
+            if (++stretches % most_stretches == 0) flush_rows(c);
         }
+        flush_rows(c);
         nearest2_ = sums.nearest2;
     }
 
@@ -329,8 +335,8 @@ private:
         }
     }
 
-    // Moves sums in single precision to those in double.
-    HWY_INLINE void flush(std::size_t c, Sums& sums) {
+    // Move sums in single precision to those in double.
+    HWY_INLINE void flush_rows(std::size_t c) {
         ClusterForces& forces = forces_[c];
         for (std::size_t r = 0; r < cluster_size; ++r) {
             forces.on[0][r] += sum_of(hn::Load(floats, rows_.fx[r]));
@@ -338,6 +344,9 @@ private:
             forces.on[2][r] += sum_of(hn::Load(floats, rows_.fz[r]));
         }
         clear_row_forces();
+    }
+
+    HWY_INLINE void flush_energies(Sums& sums) {
         if constexpr (with_energy) {
             lj_sum_ = hn::Add(
                 lj_sum_, hn::Add(lower_half(sums.van_der_waals), upper_half(sums.van_der_waals)));

@@ -72,8 +72,8 @@ inline constexpr double farthest_single_precision = 8000;  // Å
 enum class PairResult { Forces, ForcesAndEnergies };
 
 // Adds the forces (kcal/mol/Å, one entry per atom) of all pairs of a list that is not outdated and
-// whose cutoff is at least the scheme's. Pairs are in single precision, sums over more than a few
-// hundred of them in double. Repeats to the bit with the same list, processor and number of
+// whose cutoff is at least the scheme's. Pairs are in single precision, sums over more than a
+// thousand of them in double. Repeats to the bit with the same list, processor and number of
 // threads. Threads beyond the first are started at each call; std::system_error where there are
 // none.
 //
