@@ -11,8 +11,6 @@
 namespace palpa {
 namespace {
 
-constexpr std::uint32_t all_rows = (1U << cluster_size) - 1;
-
 std::size_t clusters_of(std::size_t atom_count) noexcept {
     return (atom_count + cluster_size - 1) / cluster_size;
 }
