@@ -13,13 +13,13 @@
 #include "simulation/probe.h"
 #include "simulation/simulation.h"
 #include "simulation/step.h"
+#include "tools/bench_kernel.h"
 #include "tools/run.h"
 #include "view/build_frame.h"
 #include "view/orbit_camera.h"
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <fstream>
@@ -31,25 +31,12 @@
 namespace palpa {
 namespace {
 
-struct Row {
-    std::string name;
-    std::vector<double> samples;  // in `unit`
-    std::string unit;
-    std::optional<double> error;
-    std::string error_unit, reference;
-};
+using Row = BenchRow;
 
 double quantile(std::vector<double> samples, double share) {
     std::sort(samples.begin(), samples.end());
     return samples[static_cast<std::size_t>(
         std::lround(share * static_cast<double>(samples.size() - 1)))];
-}
-
-template <class Work>
-double seconds_of(const Work& work) {
-    const auto begin = std::chrono::steady_clock::now();
-    work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
 std::string machine_name() {
@@ -205,11 +192,16 @@ nlohmann::ordered_json as_json(const Row& row) {
 int bench_command(const BenchOptions& options) {
     std::vector<Row> rows;
     bench_files(options, rows);
+    if (options.kernel && options.scenes.empty()) bench_gas_kernels(rows);
     for (const std::filesystem::path& path : options.scenes) {
         const SceneDescription scene = read_scene(path, options.settings);
         const std::filesystem::path folder = std::filesystem::absolute(scene.file).parent_path();
         const std::string name = folder.filename().string();
         fmt::print(stderr, "timing {}\n", name);
+        if (options.kernel) {
+            bench_kernels(name, scene, rows);
+            continue;
+        }
         if (options.render) {
             bench_render(name, load_simulation(scene), rows);
             continue;
@@ -225,10 +217,10 @@ int bench_command(const BenchOptions& options) {
         fmt::print("{}\n", report.dump(2));
         return 0;
     }
-    fmt::print("{}, commit {}\n{:<44}{:>12}{:>12}{:>12}\n", machine_name(), commit_name, "",
+    fmt::print("{}, commit {}\n{:<58}{:>10}{:>10}{:>10}\n", machine_name(), commit_name, "",
                "median", "p10", "p90");
     for (const Row& row : rows) {
-        fmt::print("{:<44}{:>12.4g}{:>12.4g}{:>12.4g} {}", row.name, quantile(row.samples, 0.5),
+        fmt::print("{:<58}{:>10.4g}{:>10.4g}{:>10.4g} {}", row.name, quantile(row.samples, 0.5),
                    quantile(row.samples, 0.1), quantile(row.samples, 0.9), row.unit);
         if (row.error) {
             fmt::print(", error {:.2g} {} against {}", *row.error, row.error_unit, row.reference);

@@ -1,4 +1,4 @@
-// palpa bench: speed against error of scenes, and of reading files, on this machine.
+// palpa bench: speed against error of scenes, of kernels, and of reading files, on this machine.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -12,6 +12,8 @@ struct BenchOptions {
     std::vector<std::filesystem::path> toppar;      // and of these CHARMM files, together
     std::vector<std::string> settings;
     bool render = false;  // pictures, instead of loading and steps
+    bool kernel =
+        false;  // the kernels of pairs alone, instead of loading and steps; needs no scene
     bool json = false;
 };
 

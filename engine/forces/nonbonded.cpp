@@ -62,14 +62,15 @@ NonbondedEnergy add_pairs(const Topology& topology, const Law& law, double coulo
 }
 
 template <class Law>
-NonbondedEnergy add_pairs14(const Topology& topology, const Law& law, double coulomb,
-                            std::span<const Vec3> positions, std::span<Vec3> forces) noexcept {
+NonbondedEnergy add_given_pairs(const Topology& topology, const LennardJonesTable& lennard_jones,
+                                const Law& law, double coulomb,
+                                std::span<const std::array<std::uint32_t, 2>> pairs,
+                                std::span<const Vec3> positions, std::span<Vec3> forces) noexcept {
     NonbondedEnergy energy;
-    for (const auto& [i, j] : topology.exclusions.pairs14) {
-        add_pair(law, positions[i] - positions[j],
-                 coulomb * topology.charge[i] * topology.charge[j],
-                 topology.lennard_jones14.row(topology.type[i])[topology.type[j]], energy,
-                 forces[i], forces[j]);
+    for (const auto& [i, j] : pairs) {
+        add_pair(
+            law, positions[i] - positions[j], coulomb * topology.charge[i] * topology.charge[j],
+            lennard_jones.row(topology.type[i])[topology.type[j]], energy, forces[i], forces[j]);
     }
     return energy;
 }
@@ -232,6 +233,18 @@ NonbondedEnergy add_nonbonded_forces(const Topology& topology, const NonbondedSe
     });
 }
 
+NonbondedEnergy add_pair_forces(const Topology& topology, const NonbondedSettings& settings,
+                                std::span<const std::array<std::uint32_t, 2>> pairs,
+                                std::span<const Vec3> positions, std::span<Vec3> forces) noexcept {
+    PALPA_ASSERT(!find_problem(settings));
+    PALPA_ASSERT(positions.size() == topology.size() && forces.size() == topology.size());
+    const double coulomb = settings.coulomb_constant / settings.dielectric;
+    return with_law(settings, [&](const auto& law) {
+        return add_given_pairs(topology, topology.lennard_jones, law, coulomb, pairs, positions,
+                               forces);
+    });
+}
+
 NonbondedEnergy add_nonbonded14_forces(const Topology& topology, const NonbondedSettings& settings,
                                        std::span<const Vec3> positions,
                                        std::span<Vec3> forces) noexcept {
@@ -240,7 +253,8 @@ NonbondedEnergy add_nonbonded14_forces(const Topology& topology, const Nonbonded
     const double coulomb =
         settings.coulomb_constant / settings.dielectric * settings.coulomb14_factor;
     return with_law(settings, [&](const auto& law) {
-        return add_pairs14(topology, law, coulomb, positions, forces);
+        return add_given_pairs(topology, topology.lennard_jones14, law, coulomb,
+                               topology.exclusions.pairs14, positions, forces);
     });
 }
 

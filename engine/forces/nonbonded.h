@@ -3,34 +3,17 @@
 #pragma once
 #include "charmm/topology.h"
 #include "core/units.h"
+#include "field/cutoff.h"
 #include "forces/pair_list.h"
 #include "math/vec.h"
 
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string_view>
 
 namespace palpa {
-
-// How energies end at a cutoff c, atom by atom, with m where switching begins. U is the energy
-// without a cutoff, and S(r) = (c^2 - r^2)^2 (c^2 + 2 r^2 - 3 m^2) / (c^2 - m^2)^3 between m and c,
-// 1 before. Sources: B. R. Brooks et al., J. Comput. Chem. 4, 187 (1983); P. J. Steinbach, B. R.
-// Brooks, J. Comput. Chem. 15, 667 (1994). CHARMM's keywords are given in capitals.
-enum class ElectrostaticCutoff {
-    None,         // no end
-    Switch,       // SWITCH: U S(r)
-    Shift,        // SHIFT: U (1 - (r/c)^2)^2
-    ForceShift,   // FSHIFT: U (1 - r/c)^2, whose force is that of U less its value at c. Of a
-                  // constant dielectric only, as in CHARMM
-    ForceSwitch,  // FSWITCH: the force of U times S(r); the energy is its integral
-};
-enum class VanDerWaalsCutoff {
-    None,         // no end
-    Switch,       // VSWITCH: U S(r)
-    ForceSwitch,  // VFSWITCH: with U = A r^-12 - B r^-6, from m on
-                  // A k12 (r^-6 - c^-6)^2 - B k6 (r^-3 - c^-3)^2, k12 = c^6/(c^6 - m^6),
-                  // k6 = c^3/(c^3 - m^3); before m, U moved by a constant to meet it
-};
 
 struct NonbondedSettings {
     double coulomb_constant = units::charmm_coulomb_constant;  // C, kcal Å/mol/e^2
@@ -77,6 +60,11 @@ NonbondedEnergy add_nonbonded_forces(const Topology& topology, const NonbondedSe
                                      const PairList& list, PairRows rows,
                                      std::span<const Vec3> positions,
                                      std::span<Vec3> forces) noexcept;
+
+// Only the pairs given, by the numbers of plain pairs.
+NonbondedEnergy add_pair_forces(const Topology& topology, const NonbondedSettings& settings,
+                                std::span<const std::array<std::uint32_t, 2>> pairs,
+                                std::span<const Vec3> positions, std::span<Vec3> forces) noexcept;
 
 // The pairs three bonds apart, with Lennard-Jones numbers of their own, ended by the same cutoff.
 NonbondedEnergy add_nonbonded14_forces(const Topology& topology, const NonbondedSettings& settings,

@@ -1,0 +1,26 @@
+// How the energies of pairs end at a cutoff: what every sum over pairs of the force field can do.
+#pragma once
+
+namespace palpa {
+
+// How energies end at a cutoff c, atom by atom, with m where switching begins. U is the energy
+// without a cutoff, and S(r) = (c^2 - r^2)^2 (c^2 + 2 r^2 - 3 m^2) / (c^2 - m^2)^3 between m and c,
+// 1 before. Sources: B. R. Brooks et al., J. Comput. Chem. 4, 187 (1983); P. J. Steinbach, B. R.
+// Brooks, J. Comput. Chem. 15, 667 (1994). CHARMM's keywords are given in capitals.
+enum class ElectrostaticCutoff {
+    None,         // no end
+    Switch,       // SWITCH: U S(r)
+    Shift,        // SHIFT: U (1 - (r/c)^2)^2
+    ForceShift,   // FSHIFT: U (1 - r/c)^2, whose force is that of U less its value at c. Of a
+                  // constant dielectric only, as in CHARMM
+    ForceSwitch,  // FSWITCH: the force of U times S(r); the energy is its integral
+};
+enum class VanDerWaalsCutoff {
+    None,         // no end
+    Switch,       // VSWITCH: U S(r)
+    ForceSwitch,  // VFSWITCH: with U = A r^-12 - B r^-6, from m on
+                  // A k12 (r^-6 - c^-6)^2 - B k6 (r^-3 - c^-3)^2, k12 = c^6/(c^6 - m^6),
+                  // k6 = c^3/(c^3 - m^3); before m, U moved by a constant to meet it
+};
+
+}  // namespace palpa

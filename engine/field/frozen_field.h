@@ -1,0 +1,73 @@
+// The field of points that stay where they are on a group that moves, in single precision and as
+// wide as the processor at hand can: what a servo tick can afford. Its slow twin in double is
+// field/pair_field.h.
+#pragma once
+#include "field/pair_field.h"
+#include "math/vec.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace palpa {
+
+// Sixteen points of the environment; a coordinate is high + low as in field/pair_kernel.h.
+struct alignas(64) FrozenPoints {
+    using Column = std::array<float, 16>;
+
+    std::array<Column, 3> high, low;  // Å, from the origin
+    Column charge;                    // e
+    Column sqrt_epsilon;              // (kcal/mol)^(1/2)
+    Column half_rmin;                 // Å
+};
+
+// The numbers that one type of the group has with sixteen points of the environment, replaced pairs
+// included.
+struct alignas(64) FrozenNumbers {
+    FrozenPoints::Column epsilon12;  // 12 times the depth, kcal/mol
+    FrozenPoints::Column rmin;       // Å
+};
+
+// Of an environment and a group but for the group's place; constant after building.
+struct FrozenField {
+    double coulomb_constant = 0;  // kcal Å/mol/e^2
+    Vec3 origin = Vec3::Zero();
+    std::vector<FrozenPoints> points;
+
+    // Types of the group that have a replaced pair here, each with a row of `points.size()`.
+    std::vector<FrozenNumbers> numbers;
+
+    struct GroupPoint {
+        float charge;     // times the Coulomb constant
+        float epsilon12;  // 12 sqrt(epsilon)
+        float half_rmin;
+        std::int32_t row;  // of `numbers`, -1 for the combination rules
+    };
+    std::vector<GroupPoint> group;
+
+    // What the twin takes, where single precision does not do.
+    struct Points {
+        std::vector<Vec3> positions;
+        std::vector<double> charge, sqrt_epsilon, half_rmin;
+        std::vector<std::uint32_t> type;
+    };
+    Points environment, group_numbers;  // the latter without positions
+    std::vector<ReplacedPair> replaced;
+};
+
+// The positions of the group do not matter.
+FrozenField build_frozen_field(const FieldPoints& group, const FieldPoints& environment,
+                               const PairRule& rule);
+
+// As `evaluate_pair_field`. Pairs are in single precision, sums over more than some hundreds in
+// double; with two points nearer than `nearest_single_precision`, or one further than
+// `farthest_single_precision` from the middle of the environment (field/pair_kernel.h), all is the
+// twin's. Repeats to the bit on the same kind of processor. Without allocation or lock.
+//
+// Against the twin: force, torque (about the origin of the frozen field, in a lever of 1 Å at
+// least) and stiffness within 2e-6 of the sum of all pairs' magnitudes, the energy within 1e-6.
+FieldSum evaluate_frozen_field(const FrozenField& field, std::span<const Vec3> group) noexcept;
+
+}  // namespace palpa

@@ -1,0 +1,15 @@
+// What field/frozen_field.cpp asks of the part of it that is compiled for each kind of processor.
+#pragma once
+#include "field/frozen_field.h"
+
+#include <limits>
+#include <span>
+
+namespace palpa {
+
+struct FrozenSum {
+    FieldSum sum;                                             // torque about the field's origin
+    float nearest2 = std::numeric_limits<float>::infinity();  // Å^2
+};
+
+}  // namespace palpa

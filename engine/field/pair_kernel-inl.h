@@ -1,0 +1,67 @@
+// What the single-precision kernels share, compiled once for each kind of processor: included
+// again and again by Highway's foreach_target, so there is no #pragma once.
+#if defined(PALPA_PAIR_KERNEL_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef PALPA_PAIR_KERNEL_INL
+#undef PALPA_PAIR_KERNEL_INL
+#else
+#define PALPA_PAIR_KERNEL_INL
+#endif
+
+#include <hwy/highway.h>
+
+#include <cstddef>
+
+HWY_BEFORE_NAMESPACE();
+namespace palpa::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Floats = hn::CappedTag<float, 16>;
+#if HWY_TARGET == HWY_SCALAR
+using Doubles = hn::CappedTag<double, 1>;
+#else
+using HalfFloats = hn::Half<Floats>;
+using Doubles = hn::Rebind<double, HalfFloats>;
+#endif
+using V = hn::Vec<Floats>;
+using M = hn::Mask<Floats>;
+using W = hn::Vec<Doubles>;
+
+constexpr Floats floats;
+constexpr Doubles doubles;
+constexpr std::size_t lane_count = hn::MaxLanes(Floats());
+
+HWY_INLINE V all(double value) { return hn::Set(floats, static_cast<float>(value)); }
+
+// 1/sqrt(x) to the last bit or two, from the processor's estimate e: with h = 1 - x e^2,
+// (1 - h)^(-1/2) = 1 + h/2 + 3h^2/8 + ...
+HWY_INLINE V inverse_root(V x) {
+    const V e = hn::ApproximateReciprocalSqrt(x);
+    const V h = hn::NegMulAdd(hn::Mul(x, e), e, all(1));
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+    return hn::MulAdd(hn::Mul(e, all(0.5)), h, e);  // 14 bits to begin with
+#else
+    const V first = hn::MulAdd(hn::Mul(e, h), hn::MulAdd(h, all(0.375), all(0.5)), e);
+#if HWY_ARCH_ARM
+    return hn::MulAdd(hn::Mul(first, all(0.5)), hn::NegMulAdd(hn::Mul(x, first), first, all(1)),
+                      first);  // 8 bits
+#else
+    return first;
+#endif
+#endif
+}
+
+// The two halves of some floats, in double; of a single one, the upper half is nothing.
+#if HWY_TARGET == HWY_SCALAR
+HWY_INLINE W lower_half(V v) { return hn::PromoteTo(doubles, v); }
+HWY_INLINE W upper_half(V) { return hn::Zero(doubles); }
+#else
+HWY_INLINE W lower_half(V v) { return hn::PromoteTo(doubles, hn::LowerHalf(v)); }
+HWY_INLINE W upper_half(V v) { return hn::PromoteTo(doubles, hn::UpperHalf(HalfFloats(), v)); }
+#endif
+
+HWY_INLINE double sum_of(W v) { return hn::GetLane(hn::SumOfLanes(doubles, v)); }
+HWY_INLINE double sum_of(V v) { return sum_of(hn::Add(lower_half(v), upper_half(v))); }
+
+}  // namespace palpa::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,88 @@
+// Lennard-Jones and Coulomb over a list of clusters in single precision, as wide as the processor
+// at hand can: what is near the speed of light for a force field. Its slow twin in double is
+// forces/nonbonded.h.
+#pragma once
+#include "field/cluster_list.h"
+#include "field/cutoff.h"
+#include "math/vec.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace palpa {
+
+// What all pairs have in common.
+struct PairScheme {
+    double coulomb = 0;  // C/eps, kcal Å/mol/e^2
+    ElectrostaticCutoff electrostatics = ElectrostaticCutoff::None;
+    VanDerWaalsCutoff van_der_waals = VanDerWaalsCutoff::None;
+    double switch_from = 10;  // m, Å
+    double cutoff = 12;       // c, Å
+};
+
+// One entry per atom. Every pair follows CHARMM's combination rules; what does not is left out of
+// the list.
+struct PairParameters {
+    std::span<const double> charge;        // e
+    std::span<const double> sqrt_epsilon;  // (kcal/mol)^(1/2)
+    std::span<const double> half_rmin;     // Å
+};
+
+// The atoms of a cluster as the kernel wants them. A coordinate is high + low: high a multiple of
+// 2^-10 Å, so that differences of two are exact, and low what is left; so a pair's distance keeps
+// the precision of the distance, not that of the extent.
+struct alignas(64) ClusterAtoms {
+    using Column = std::array<float, cluster_size>;
+
+    std::array<Column, 3> high, low;  // Å, from the origin
+    Column charge;                    // e
+    Column sqrt_epsilon;              // (kcal/mol)^(1/2)
+    Column half_rmin;                 // Å
+};
+
+struct alignas(64) ClusterForces {
+    std::array<std::array<double, cluster_size>, 3> on;  // kcal/mol/Å
+};
+
+// What one call needs and the next one uses again; made by `build_pair_workspace` for one list.
+struct PairWorkspace {
+    Vec3 origin = Vec3::Zero();
+    std::vector<ClusterAtoms> atoms;                 // of the list, its empty cluster last
+    std::vector<std::vector<ClusterForces>> forces;  // of each thread
+};
+
+PairWorkspace build_pair_workspace(const ClusterList& list, const PairParameters& parameters,
+                                   PairWorkspace storage = {});
+
+struct PairKernelSum {
+    // Without it nothing was added: two atoms are nearer than `nearest_single_precision`, or one is
+    // further than `farthest_single_precision` from the origin, or nowhere. Such pairs are the
+    // twin's.
+    bool is_sound = false;
+    double van_der_waals = 0;  // kcal/mol; 0 where no energies are asked for
+    double electrostatic = 0;  // kcal/mol
+};
+
+inline constexpr double nearest_single_precision = 0.5;    // Å
+inline constexpr double farthest_single_precision = 8000;  // Å
+
+enum class PairResult { Forces, ForcesAndEnergies };
+
+// Adds the forces (kcal/mol/Å, one entry per atom) of all pairs of a list that is not outdated and
+// whose cutoff is at least the scheme's. Pairs are in single precision, sums over more than a
+// thousand of them in double. Repeats to the bit with the same list, processor and number of
+// threads. Threads beyond the first are started at each call; std::system_error where there are
+// none.
+//
+// Against the twin: forces within 2e-5 of the larger of the atom's own and the rms force, the
+// energy within 1e-6 of the sum of all pairs' repulsion, attraction and electrostatic energy, each
+// without its sign. (Of a single pair the van der Waals part alone can be off by 2e-6 of its own.)
+PairKernelSum add_cluster_pair_forces(const ClusterList& list, const PairScheme& scheme,
+                                      std::span<const Vec3> positions, PairWorkspace& workspace,
+                                      std::span<Vec3> forces, PairResult result,
+                                      std::size_t threads = 1);
+
+}  // namespace palpa

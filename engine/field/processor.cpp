@@ -1,0 +1,34 @@
+#include "field/processor.h"
+
+#include "core/assertion.h"
+
+#include <hwy/highway.h>
+
+#include <cstdint>
+
+namespace palpa {
+namespace {
+
+std::vector<std::int64_t> list_targets() {
+    hwy::SetSupportedTargetsForTest(0);
+    return hwy::SupportedAndGeneratedTargets();
+}
+
+}  // namespace
+
+std::vector<std::string> list_processor_kinds() {
+    std::vector<std::string> kinds;
+    for (const std::int64_t target : list_targets()) kinds.emplace_back(hwy::TargetName(target));
+    return kinds;
+}
+
+void use_processor_kind(std::string_view kind) {
+    for (const std::int64_t target : list_targets()) {
+        if (hwy::TargetName(target) != kind) continue;
+        hwy::GetChosenTarget().Update(target);
+        return;
+    }
+    PALPA_ASSERT(false);
+}
+
+}  // namespace palpa

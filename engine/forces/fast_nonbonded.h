@@ -1,0 +1,51 @@
+// The non-bonded sum of a topology in single precision, as fast as the processor at hand can: the
+// pairs of forces/nonbonded.h by the kernel of field/pair_kernel.h.
+#pragma once
+#include "charmm/topology.h"
+#include "field/pair_kernel.h"
+#include "forces/nonbonded.h"
+#include "math/vec.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace palpa {
+
+// Of one topology, constant after building.
+struct FastAtoms {
+    std::vector<double> sqrt_epsilon, half_rmin;  // per atom, as in `PairParameters`
+    // Pairs that the kernel leaves out: those that the topology excludes, then those whose numbers
+    // are not combined from the two types' own (NBFIX), from `first_replaced` on.
+    std::vector<std::array<std::uint32_t, 2>> left_out;
+    std::size_t first_replaced = 0;
+
+    std::span<const std::array<std::uint32_t, 2>> replaced() const noexcept {
+        return std::span(left_out).subspan(first_replaced);
+    }
+};
+
+FastAtoms build_fast_atoms(const Topology& topology);
+
+// The list at hand and the kernel's memory; the settings say whether it is one of all pairs.
+struct FastPairs {
+    ClusterList list;
+    PairWorkspace workspace;
+    std::size_t builds = 0;  // of the list so far
+};
+
+// Adds the forces (kcal/mol/Å) of all pairs but those three bonds apart, as `add_nonbonded_forces`
+// does, and returns their energies, zero unless asked for. Settings must be sound. A list with a
+// cutoff holds pairs up to `skin` (Å) beyond it; `pairs`, empty before the first call and of one
+// topology and cutoff ever after, is built anew when outdated. Pairs with replaced numbers are
+// summed in double. So is everything where single precision does not do: a dielectric that grows
+// with the distance, atoms as close or as far apart as field/pair_kernel.h says.
+NonbondedEnergy add_fast_nonbonded_forces(const Topology& topology, const FastAtoms& atoms,
+                                          const NonbondedSettings& settings, double skin,
+                                          std::span<const Vec3> positions, FastPairs& pairs,
+                                          std::span<Vec3> forces, PairResult result,
+                                          std::size_t threads = 1);
+
+}  // namespace palpa

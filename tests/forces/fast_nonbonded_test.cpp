@@ -1,0 +1,261 @@
+// Single precision against its twin in double: every scheme, every kind of processor.
+#include "forces/fast_nonbonded.h"
+
+#include "field/processor.h"
+#include "forces/pair_law.h"
+#include "tests/support/check_forces.h"
+#include "tests/support/reference_case.h"
+#include "tests/support/shared_data.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <random>
+#include <string>
+#include <vector>
+
+using namespace palpa;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double skin = 1;
+
+std::vector<NonbondedSettings> all_schemes() {
+    std::vector<NonbondedSettings> schemes;
+    using Electrostatics = ElectrostaticCutoff;
+    using VanDerWaals = VanDerWaalsCutoff;
+    for (const auto electrostatics :
+         {Electrostatics::None, Electrostatics::Switch, Electrostatics::Shift,
+          Electrostatics::ForceShift, Electrostatics::ForceSwitch}) {
+        for (const auto van_der_waals :
+             {VanDerWaals::None, VanDerWaals::Switch, VanDerWaals::ForceSwitch}) {
+            schemes.push_back({.coulomb_constant = test::reference_coulomb_constant,
+                               .electrostatics = electrostatics,
+                               .van_der_waals = van_der_waals});
+        }
+    }
+    return schemes;
+}
+
+// The twin's sums, and what their errors are measured by.
+struct Expected {
+    NonbondedEnergy energy, magnitude;
+    std::vector<Vec3> forces;
+    double rms_force = 0;
+};
+
+// Repulsion, attraction and the electrostatic energy of each pair, all positive.
+NonbondedEnergy sum_magnitudes(const Topology& topology, const NonbondedSettings& settings,
+                               std::span<const Vec3> positions) {
+    return with_law(settings, [&](const auto& law) {
+        NonbondedEnergy sum;
+        for (std::uint32_t i = 0; i < topology.size(); ++i) {
+            const auto excluded = topology.exclusions.of(i);
+            for (std::uint32_t j = i + 1; j < topology.size(); ++j) {
+                const double r2 = (positions[i] - positions[j]).squaredNorm();
+                if (r2 >= law.reach2) continue;
+                if (std::binary_search(excluded.begin(), excluded.end(), j)) continue;
+                const LennardJonesPair& lj =
+                    topology.lennard_jones.row(topology.type[i])[topology.type[j]];
+                const double charges =
+                    settings.coulomb_constant * topology.charge[i] * topology.charge[j];
+                const double s6 = std::pow(lj.rmin * lj.rmin / r2, 3);
+                sum.van_der_waals += lj.epsilon * (s6 * s6 + 2 * s6);
+                sum.electrostatic +=
+                    std::abs(law.evaluate(r2, 1 / std::sqrt(r2), charges, lj).electrostatic.energy);
+            }
+        }
+        return sum;
+    });
+}
+
+Expected expect(const Topology& topology, const NonbondedSettings& settings,
+                std::span<const Vec3> positions) {
+    Expected expected{{}, sum_magnitudes(topology, settings, positions), {}};
+    expected.forces.assign(topology.size(), Vec3::Zero());
+    expected.energy = add_nonbonded_forces(topology, settings, positions, expected.forces);
+    double sum = 0;
+    for (const Vec3& force : expected.forces) sum += force.squaredNorm();
+    expected.rms_force = std::sqrt(sum / static_cast<double>(topology.size()));
+    return expected;
+}
+
+// Largest errors found: energies relative to the sum of all pairs' magnitudes, forces to the larger
+// of the atom's own and the rms force.
+struct Worst {
+    double van_der_waals = 0, electrostatic = 0, force = 0;
+};
+
+void check_against(const Expected& expected, const NonbondedEnergy& energy,
+                   const std::vector<Vec3>& forces, Worst& worst) {
+    const auto relative = [](double error, double scale) {
+        return scale > 0 ? std::abs(error) / scale : std::abs(error);
+    };
+    const double lj_error = energy.van_der_waals - expected.energy.van_der_waals;
+    const double coulomb_error = energy.electrostatic - expected.energy.electrostatic;
+    const double van_der_waals = relative(lj_error, expected.magnitude.van_der_waals);
+    const double electrostatic = relative(coulomb_error, expected.magnitude.electrostatic);
+    const double total = relative(lj_error + coulomb_error, expected.magnitude.van_der_waals +
+                                                                expected.magnitude.electrostatic);
+    double force = 0;
+    for (std::size_t i = 0; i < forces.size(); ++i) {
+        force = std::max(force, relative((forces[i] - expected.forces[i]).norm(),
+                                         std::max(expected.rms_force, expected.forces[i].norm())));
+    }
+    CHECK(total <= 1e-6);
+    // In r^-12 a rounding of single precision, 6e-8, counts twelvefold; a single pair can have
+    // several of them on one side.
+    CHECK(van_der_waals <= 2e-6);
+    CHECK(electrostatic <= 1e-6);
+    CHECK(force <= 2e-5);
+    worst.van_der_waals = std::max(worst.van_der_waals, van_der_waals);
+    worst.electrostatic = std::max(worst.electrostatic, electrostatic);
+    worst.force = std::max(worst.force, force);
+}
+
+void check_positions(const Topology& topology, const FastAtoms& atoms,
+                     std::span<const Vec3> positions, const std::vector<std::string>& kinds,
+                     Worst& worst) {
+    for (const NonbondedSettings& settings : all_schemes()) {
+        const Expected expected = expect(topology, settings, positions);
+        for (const std::string& kind : kinds) {
+            INFO(fmt::format("electrostatics {}, van der Waals {}, {}",
+                             static_cast<int>(settings.electrostatics),
+                             static_cast<int>(settings.van_der_waals), kind));
+            use_processor_kind(kind);
+            FastPairs pairs;
+            std::vector<Vec3> forces(topology.size(), Vec3::Zero());
+            const NonbondedEnergy energy =
+                add_fast_nonbonded_forces(topology, atoms, settings, skin, positions, pairs, forces,
+                                          PairResult::ForcesAndEnergies);
+            check_against(expected, energy, forces, worst);
+            std::vector<Vec3> forces_alone(topology.size(), Vec3::Zero());
+            add_fast_nonbonded_forces(topology, atoms, settings, skin, positions, pairs,
+                                      forces_alone, PairResult::Forces, 2);
+            check_against(expected, energy, forces_alone, worst);
+        }
+    }
+    use_processor_kind(kinds.front());
+}
+
+void check_case(const fs::path& folder, const std::string& name, const std::string& frames) {
+    INFO(name << " " << frames);
+    const test::ReferenceCase reference = test::read_reference_case(folder / (name + ".ff.json"));
+    const FastAtoms atoms = build_fast_atoms(reference.topology);
+    Worst worst;
+    for (const auto& frame :
+         test::read_reference_frames(folder / (name + "." + frames + ".json"))) {
+        INFO(frame.name);
+        check_positions(reference.topology, atoms, frame.positions, list_processor_kinds(), worst);
+    }
+    fmt::print("{} {}: van der Waals {:.2g}, electrostatic {:.2g}, force {:.2g}\n", name, frames,
+               worst.van_der_waals, worst.electrostatic, worst.force);
+}
+
+// Ions without a bond; two types have NBFIX numbers together.
+Topology build_salt(std::size_t count) {
+    Topology topology;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        topology.type.push_back(i % 3);
+        topology.charge.push_back(i % 3 == 0 ? 1 : -0.5);
+    }
+    const std::vector<LennardJonesType> types{{0.0469, 1.41}, {0.15, 2.27}, {0.1, 1.9}};
+    const std::vector<Nbfix> nbfix{{0, 1, {0.083875, 3.731}}};
+    topology.lennard_jones = build_lennard_jones_table(types, nbfix);
+    topology.lennard_jones14 = topology.lennard_jones;
+    topology.exclusions = build_exclusions({}, count);
+    return topology;
+}
+
+}  // namespace
+
+TEST_CASE("single precision agrees with the twin on small reference cases", "[forces][fast]") {
+    const fs::path folder(PALPA_TEST_DATA);
+    check_case(folder, "ala_dipeptide", "frames");
+    check_case(folder, "tetra_aera_c36m", "frames");
+}
+
+TEST_CASE("single precision agrees with the twin on every reference case", "[forces][fast][slow]") {
+    const auto folder = test::find_shared_data("reference");
+    if (!folder) return;
+    check_case(*folder, "water_dimer_charmm", "frames");
+    check_case(*folder, "water_dimer_standard", "frames");
+    check_case(*folder, "tetra_adka_c36m", "frames");
+    check_case(*folder, "tetra_ampa_c36m", "frames");
+    const auto frame = [&](const std::string& name, const std::vector<std::string>& frames) {
+        for (const std::string& each : frames) check_case(*folder, name, each);
+    };
+    frame("crambin_c36m",
+          {"input", "minimised_300_steps", "minimised_noise0.003nm_3", "minimised_noise0.005nm_2"});
+    frame("ubiquitin", {"pdb_plus_built_hydrogens", "minimised_300_steps", "minimised_noise0.005nm",
+                        "pdb_noise0.003nm"});
+    frame("hiv_protease_1hpv", {"pdb_plus_built_hydrogens", "minimised_300_steps",
+                                "minimised_noise0.002nm", "minimised_noise0.003nm"});
+    frame("hiv_tl3_c36m",
+          {"input", "minimised_300_steps", "minimised_noise0.003nm_3", "minimised_noise0.005nm_2"});
+}
+
+TEST_CASE("pairs of replaced numbers count with them, and once", "[forces][fast]") {
+    const Topology topology = build_salt(90);
+    std::mt19937 random(4);
+    const std::vector<Vec3> positions = test::random_positions(random, 90, 9, 2.2);
+    const FastAtoms atoms = build_fast_atoms(topology);
+    Worst worst;
+
+    CHECK(atoms.replaced().size() == 30 * 30);
+    check_positions(topology, atoms, positions, list_processor_kinds(), worst);
+}
+
+TEST_CASE("the list is built anew when outdated, and not before", "[forces][fast]") {
+    const Topology topology = build_salt(90);
+    std::mt19937 random(5);
+    std::vector<Vec3> positions = test::random_positions(random, 90, 9, 2.5);
+    const FastAtoms atoms = build_fast_atoms(topology);
+    const NonbondedSettings settings{.electrostatics = ElectrostaticCutoff::ForceSwitch,
+                                     .van_der_waals = VanDerWaalsCutoff::ForceSwitch,
+                                     .switch_from = 5,
+                                     .cutoff = 6};
+    FastPairs pairs;
+
+    for (int step = 0; step < 40; ++step) {
+        positions[7].x() += 0.1;
+        std::vector<Vec3> forces(90, Vec3::Zero());
+        add_fast_nonbonded_forces(topology, atoms, settings, skin, positions, pairs, forces,
+                                  PairResult::Forces);
+        const Expected expected = expect(topology, settings, positions);
+        for (std::size_t i = 0; i < 90; ++i) {
+            CHECK((forces[i] - expected.forces[i]).norm() <=
+                  2e-5 * std::max(expected.rms_force, expected.forces[i].norm()));
+        }
+    }
+
+    // 3.9 Å in pieces of 0.5 to 0.6 Å.
+    CHECK(pairs.builds >= 7);
+    CHECK(pairs.builds <= 9);
+}
+
+TEST_CASE("what single precision cannot do is the twin's to the bit", "[forces][fast]") {
+    const Topology topology = build_salt(30);
+    std::mt19937 random(6);
+    std::vector<Vec3> positions = test::random_positions(random, 30, 9, 2.5);
+    NonbondedSettings settings;
+    SECTION("a dielectric that grows with the distance") { settings.distance_dielectric = true; }
+    SECTION("two atoms at one place") { positions[2] = positions[1]; }
+    SECTION("an atom far off") { positions[2].z() = 1e7; }
+
+    const FastAtoms atoms = build_fast_atoms(topology);
+    FastPairs pairs;
+    std::vector<Vec3> forces(30, Vec3::Zero()), expected(30, Vec3::Zero());
+    const NonbondedEnergy energy = add_fast_nonbonded_forces(
+        topology, atoms, settings, skin, positions, pairs, forces, PairResult::ForcesAndEnergies);
+    const NonbondedEnergy twin = add_nonbonded_forces(topology, settings, positions, expected);
+
+    CHECK(energy.van_der_waals == twin.van_der_waals);
+    CHECK(energy.electrostatic == twin.electrostatic);
+    CHECK(forces == expected);
+}

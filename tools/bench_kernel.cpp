@@ -1,0 +1,266 @@
+#include "tools/bench_kernel.h"
+
+#include "charmm/build_topology.h"
+#include "charmm/force_field.h"
+#include "core/load_error.h"
+#include "field/frozen_field.h"
+#include "field/processor.h"
+#include "forces/bonded.h"
+#include "forces/cmap.h"
+#include "forces/fast_nonbonded.h"
+#include "forces/force_field.h"
+#include "formats/psf.h"
+#include "formats/structure.h"
+#include "molecule/match_atoms.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <random>
+#include <span>
+
+namespace palpa {
+namespace {
+
+struct System {
+    std::string name;
+    Topology topology;
+    std::vector<Vec3> positions;
+};
+
+System load_system(const std::string& name, const SceneDescription& scene) {
+    for (const MoleculeDescription& molecule : scene.molecules) {
+        if (molecule.topology.empty()) continue;
+        const Connectivity connectivity = read_psf(molecule.topology);
+        return {name, build_topology(connectivity, read_force_field(scene.force_field.files)),
+                match_positions(connectivity, read_structure(molecule.structure))};
+    }
+    throw LoadError({scene.file.string()},
+                    "no molecule names a topology file; expected one, as scenes/hiv has");
+}
+
+// On a grid of 2.15 Å, shaken: as dense as a protein.
+System build_gas() {
+    constexpr std::size_t count = 3274, edge = 15;
+    System gas{"gas", {}, {}};
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    for (std::size_t i = 0; i < count; ++i) {
+        const double x = uniform(random), y = uniform(random), z = uniform(random);
+        const Vec3 cell(static_cast<double>(i % edge), static_cast<double>(i / edge % edge),
+                        static_cast<double>(i / edge / edge));
+        gas.positions.push_back(2.15 * cell + 0.2 * Vec3(x, y, z));
+        gas.topology.charge.push_back(0.5 * uniform(random));
+        gas.topology.type.push_back(static_cast<std::uint32_t>(i % 3));
+    }
+    const std::vector<LennardJonesType> types{{0.11, 1.2}, {0.03, 0.9}, {0.2, 1.4}};
+    gas.topology.lennard_jones = build_lennard_jones_table(types, {});
+    gas.topology.lennard_jones14 = gas.topology.lennard_jones;
+    gas.topology.exclusions = build_exclusions({}, count);
+    return gas;
+}
+
+double worst_force(std::span<const Vec3> forces, std::span<const Vec3> twin) {
+    double rms = 0, worst = 0;
+    for (const Vec3& force : twin) rms += force.squaredNorm();
+    rms = std::sqrt(rms / static_cast<double>(twin.size()));
+    for (std::size_t i = 0; i < twin.size(); ++i) {
+        worst = std::max(worst, (forces[i] - twin[i]).norm() / std::max(rms, twin[i].norm()));
+    }
+    return worst;
+}
+
+template <class Work>
+std::vector<double> sample(const Work& work, double seconds) {
+    for (int i = 0; i < 3; ++i) work();
+    std::vector<double> samples;
+    double sum = 0;
+    while (samples.size() < 21 || sum < seconds) {
+        samples.push_back(1e6 * seconds_of(work));
+        sum += 1e-6 * samples.back();
+    }
+    return samples;
+}
+
+double median(std::vector<double> samples) {
+    const auto middle = samples.begin() + static_cast<std::ptrdiff_t>(samples.size() / 2);
+    std::nth_element(samples.begin(), middle, samples.end());
+    return *middle;
+}
+
+// How many pairs the sum is about.
+std::size_t count_pairs(const System& system, const NonbondedSettings& settings) {
+    const std::size_t n = system.positions.size();
+    if (!has_end(settings)) return n * (n - 1) / 2;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t j = i + 1; j < n; ++j) {
+            count += (system.positions[i] - system.positions[j]).squaredNorm() <
+                             settings.cutoff * settings.cutoff
+                         ? 1
+                         : 0;
+        }
+    }
+    return count;
+}
+
+std::string rate_of(std::size_t pairs, const std::vector<double>& samples) {
+    return fmt::format("the twin in double; {:.3g} M pairs, {:.0f} M/s",
+                       1e-6 * static_cast<double>(pairs),
+                       static_cast<double>(pairs) / median(samples));
+}
+
+struct Case {
+    const char* name;
+    NonbondedSettings settings;
+};
+
+constexpr double skin = 1;  // Å
+
+void bench_large(const System& system, const Case& which, std::vector<BenchRow>& rows) {
+    const std::size_t n = system.positions.size();
+    const FastAtoms atoms = build_fast_atoms(system.topology);
+    const std::size_t pair_count = count_pairs(system, which.settings);
+    std::vector<Vec3> twin(n, Vec3::Zero());
+    add_nonbonded_forces(system.topology, which.settings, system.positions, twin);
+    for (const std::string& kind : list_processor_kinds()) {
+        use_processor_kind(kind);
+        for (const PairResult result : {PairResult::Forces, PairResult::ForcesAndEnergies}) {
+            for (const std::size_t threads : {1U, 2U}) {
+                FastPairs pairs;
+                std::vector<Vec3> forces(n, Vec3::Zero());
+                const auto add = [&] {
+                    add_fast_nonbonded_forces(system.topology, atoms, which.settings, skin,
+                                              system.positions, pairs, forces, result, threads);
+                };
+                add();
+                const double error = worst_force(forces, twin);
+                const std::vector<double> samples = sample(add, 0.3);
+                rows.push_back(
+                    {fmt::format("kernel/{}/{}/{}/{}/threads={}", system.name, which.name,
+                                 result == PairResult::Forces ? "forces" : "energies", kind,
+                                 threads),
+                     samples, "us", error, "of max(own, rms) force", rate_of(pair_count, samples)});
+            }
+        }
+    }
+    use_processor_kind(list_processor_kinds().front());
+    if (!has_end(which.settings)) return;
+    rows.push_back({fmt::format("kernel/{}/{}/list", system.name, which.name),
+                    sample(
+                        [&] {
+                            build_cluster_list(system.positions, atoms.left_out,
+                                               which.settings.cutoff, skin);
+                        },
+                        0.3),
+                    "us",
+                    {},
+                    "",
+                    fmt::format("built anew when an atom has moved {} Å", skin / 2)});
+}
+
+// All terms but the pairs of the kernel, in double.
+void bench_bonded(const System& system, std::vector<BenchRow>& rows) {
+    std::vector<Vec3> forces(system.positions.size(), Vec3::Zero());
+    const Topology& topology = system.topology;
+    const auto add = [&] {
+        add_bond_forces(topology.bonds, system.positions, forces);
+        add_angle_forces(topology.angles, system.positions, forces);
+        add_urey_bradley_forces(topology.urey_bradleys, system.positions, forces);
+        add_dihedral_forces(topology.dihedrals, system.positions, forces);
+        add_improper_forces(topology.impropers, system.positions, forces);
+        add_cmap_forces(topology.cmap_terms, topology.cmap_maps, system.positions, forces);
+        add_nonbonded14_forces(topology, {}, system.positions, forces);
+    };
+    rows.push_back({fmt::format("kernel/{}/bonded-and-1-4", system.name),
+                    sample(add, 0.3),
+                    "us",
+                    {},
+                    "",
+                    "in double"});
+}
+
+// Points of the system by index, as the field takes them.
+struct Points {
+    std::vector<Vec3> positions;
+    std::vector<double> charge, sqrt_epsilon, half_rmin;
+
+    FieldPoints view() const { return {positions, charge, sqrt_epsilon, half_rmin}; }
+};
+Points pick(const System& system, const FastAtoms& atoms, std::span<const std::uint32_t> which) {
+    Points points;
+    for (const std::uint32_t i : which) {
+        points.positions.push_back(system.positions[i]);
+        points.charge.push_back(system.topology.charge[i]);
+        points.sqrt_epsilon.push_back(atoms.sqrt_epsilon[i]);
+        points.half_rmin.push_back(atoms.half_rmin[i]);
+    }
+    return points;
+}
+
+// The last 130 atoms, an inhibitor's, in the field of the 1,000 nearest others.
+void bench_small(const System& system, std::vector<BenchRow>& rows) {
+    constexpr std::size_t group_size = 130, environment_size = 1000;
+    const std::size_t n = system.positions.size();
+    if (n < group_size + environment_size) return;
+    const FastAtoms atoms = build_fast_atoms(system.topology);
+    std::vector<std::uint32_t> order(n);
+    std::iota(order.begin(), order.end(), 0U);
+    const auto group = std::span(order).last(group_size);
+    Vec3 centre = Vec3::Zero();
+    for (const std::uint32_t i : group) centre += system.positions[i] / group_size;
+    const auto others = std::span(order).first(n - group_size);
+    std::sort(others.begin(), others.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return (system.positions[a] - centre).squaredNorm() <
+               (system.positions[b] - centre).squaredNorm();
+    });
+    const Points moving = pick(system, atoms, group);
+    const Points frozen = pick(system, atoms, others.first(environment_size));
+    const PairRule rule{units::charmm_coulomb_constant};
+    const FrozenField field = build_frozen_field(moving.view(), frozen.view(), rule);
+    const FieldSum twin = evaluate_pair_field(moving.view(), frozen.view(), rule);
+    const std::string name =
+        fmt::format("kernel/{}/{}-in-{}/stiffness", system.name, group_size, environment_size);
+    for (const std::string& kind : list_processor_kinds()) {
+        use_processor_kind(kind);
+        FieldSum sum;
+        const auto evaluate = [&] { sum = evaluate_frozen_field(field, moving.positions); };
+        const std::vector<double> samples = sample(evaluate, 0.3);
+        const double error =
+            std::max((sum.force - twin.force).norm() / twin.force.norm(),
+                     (sum.stiffness - twin.stiffness).norm() / twin.stiffness.norm());
+        rows.push_back({fmt::format("{}/{}", name, kind), samples, "us", error,
+                        "of force or stiffness", rate_of(group_size * environment_size, samples)});
+    }
+    use_processor_kind(list_processor_kinds().front());
+    rows.push_back({name + "/double",
+                    sample([&] { evaluate_pair_field(moving.view(), frozen.view(), rule); }, 0.3),
+                    "us",
+                    {},
+                    "",
+                    "the twin"});
+}
+
+void bench_system(const System& system, std::vector<BenchRow>& rows) {
+    const Case all_pairs{"all-pairs", {}};
+    const Case force_switch{"force-switch=12",
+                            {.electrostatics = ElectrostaticCutoff::ForceSwitch,
+                             .van_der_waals = VanDerWaalsCutoff::ForceSwitch}};
+    for (const Case& which : {all_pairs, force_switch}) bench_large(system, which, rows);
+    bench_bonded(system, rows);
+    bench_small(system, rows);
+}
+
+}  // namespace
+
+void bench_kernels(const std::string& scene_name, const SceneDescription& scene,
+                   std::vector<BenchRow>& rows) {
+    bench_system(load_system(scene_name, scene), rows);
+}
+
+void bench_gas_kernels(std::vector<BenchRow>& rows) { bench_system(build_gas(), rows); }
+
+}  // namespace palpa
