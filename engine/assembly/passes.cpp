@@ -1,0 +1,294 @@
+#include "assembly/passes.h"
+
+#include "core/assertion.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace palpa {
+namespace {
+
+// Without the direction in which nothing has inertia: no torque of the atoms' forces has it either.
+Mat3 pseudo_inverse(const Mat3& inertia) {
+    const Eigen::SelfAdjointEigenSolver<Mat3> solver(inertia);
+    Mat3 result = Mat3::Zero();
+    for (int i = 0; i < 3; ++i) {
+        const double moment = solver.eigenvalues()[i];
+        const Vec3 axis = solver.eigenvectors().col(i);
+        if (moment > 1e-6 * solver.eigenvalues()[2]) result += axis * axis.transpose() / moment;
+    }
+    return result;
+}
+
+BodyState body_state(const AssemblyTree& tree, std::uint32_t body, std::span<const Vec3> positions,
+                     std::span<const Vec3> forces) {
+    const auto shares =
+        std::span(tree.shares)
+            .subspan(tree.first_share[body], tree.first_share[body + 1] - tree.first_share[body]);
+    BodyState result;
+    double mass = 0;
+    result.centre.setZero();
+    for (const AtomShare& share : shares) {
+        mass += share.mass;
+        result.centre += share.mass * positions[share.atom];
+    }
+    result.centre /= mass;
+    result.mass = mass;
+
+    // I = sum of m (r^2 - r r^T)
+    Mat3 spread = Mat3::Zero();
+    for (const AtomShare& share : shares) {
+        const Vec3 arm = positions[share.atom] - result.centre;
+        spread += share.mass * arm * arm.transpose();
+    }
+    const Mat3 inertia = spread.trace() * Mat3::Identity() - spread;
+    result.inverse_inertia =
+        tree.is_linear[body] != 0 ? pseudo_inverse(inertia) : Mat3(inertia.inverse());
+
+    result.force.setZero();
+    result.torque.setZero();
+    for (std::uint32_t i = tree.first_atom[body]; i < tree.first_atom[body + 1]; ++i) {
+        const std::uint32_t atom = tree.atoms[i];
+        result.force += forces[atom];
+        result.torque += (positions[atom] - result.centre).cross(forces[atom]);
+    }
+    return result;
+}
+
+// phi_ij of a rigid body: a force F and a torque n at r_j from its centre turn it by
+// alpha = I^-1 (n + r_j x F), and the point at r_i has the acceleration F / m + alpha x r_i.
+Mat6 rigid_phi(const BodyState& body, const Vec3& r_i, const Vec3& r_j) {
+    const Mat3 turn = body.inverse_inertia * cross_matrix(r_j);
+    Mat6 phi;
+    phi.topLeftCorner<3, 3>() = body.inverse_inertia;
+    phi.topRightCorner<3, 3>() = turn;
+    phi.bottomLeftCorner<3, 3>() = -cross_matrix(r_i) * body.inverse_inertia;
+    phi.bottomRightCorner<3, 3>() = 1 / body.mass * Mat3::Identity() - cross_matrix(r_i) * turn;
+    return phi;
+}
+
+bool is_seam(const AssemblyTree& tree, std::uint32_t link) {
+    return link >= tree.bodies.bodies.size();
+}
+
+// Of a copy of a body: an n-th of its mass and of its forces.
+void update_leaf(const AssemblyTree& tree, const AssemblyNode& leaf, const BodyState& body,
+                 AssemblyState& state) {
+    const double copies = tree.copies[leaf.body];
+    for (std::uint32_t i = 0; i < leaf.handles; ++i) {
+        if (is_seam(tree, leaf.links[i])) state.points[leaf.links[i]] = body.centre;
+    }
+    const Vec3 turn = body.inverse_inertia * body.torque;
+    for (std::uint32_t j = 0; j < leaf.handles; ++j) {
+        const Vec3 r_j = state.points[leaf.links[j]] - body.centre;
+        Vec6& b = state.b[leaf.first_handle + j];
+        b.head<3>() = turn;
+        b.tail<3>() = body.force / body.mass + turn.cross(r_j);
+        for (std::uint32_t i = 0; i <= j; ++i) {
+            const Vec3 r_i = state.points[leaf.links[i]] - body.centre;
+            state.phi[leaf.first_pair + pair_number(i, j)] = copies * rigid_phi(body, r_i, r_j);
+        }
+    }
+}
+
+// At the centre of mass of the molecule.
+void place_ground(const AssemblyTree& tree, AssemblyState& state) {
+    for (const std::uint32_t base : tree.bases) state.points[base].setZero();
+    std::ranges::fill(state.molecule_mass, 0);
+    for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+        const std::uint32_t molecule = tree.molecule_of[b];
+        state.points[tree.bases[molecule]] += state.bodies[b].mass * state.bodies[b].centre;
+        state.molecule_mass[molecule] += state.bodies[b].mass;
+    }
+    for (std::size_t i = 0; i < tree.bases.size(); ++i) {
+        state.points[tree.bases[i]] /= state.molecule_mass[i];
+    }
+}
+
+// By Cholesky's factors, m = L L^T and m^-1 = K^T K with K = L^-1. Shorter ways, by blocks of three
+// and determinants, cost six digits in large trees.
+Mat6 inverse_of_positive(const Mat6& m) {
+    Mat6 L, K = Mat6::Zero();
+    for (int j = 0; j < 6; ++j) {
+        double square = m(j, j);
+        for (int k = 0; k < j; ++k) square -= L(j, k) * L(j, k);
+        const double inverse = 1 / std::sqrt(square);
+        for (int i = j + 1; i < 6; ++i) {
+            double product = m(i, j);
+            for (int k = 0; k < j; ++k) product -= L(i, k) * L(j, k);
+            L(i, j) = product * inverse;
+        }
+        K(j, j) = inverse;
+        for (int i = 0; i < j; ++i) {
+            double sum = 0;
+            for (int k = i; k < j; ++k) sum -= L(j, k) * K(k, i);
+            K(j, i) = sum * inverse;
+        }
+    }
+    return K.transpose().lazyProduct(K);
+}
+
+JointInertia joint_inertia(const AssemblyTree& tree, const AssemblyState& state, std::uint32_t link,
+                           const Mat6& phi_a, const Mat6& phi_b) {
+    JointInertia joint;
+    joint.W = inverse_of_positive(phi_a + phi_b);
+    joint.gain.setZero();
+    joint.D = 0;
+    if (is_seam(tree, link) || state.is_active[link] == 0) return joint;
+    const Vec3& axis = state.axes[link];
+    const Vec6 VS = joint.W.leftCols<3>() * axis;
+    joint.D = 1 / axis.dot(VS.head<3>());
+    joint.gain = joint.D * VS;
+    joint.W -= joint.gain * VS.transpose();
+    return joint;
+}
+
+// Where a side's quantities stand; the handle that is joined is its last.
+struct Side {
+    const AssemblyNode* node;
+    double sign;  // of the acceleration of the joined handle in u
+
+    std::uint32_t joined() const { return node->handles - 1; }
+    std::uint32_t handle(std::uint32_t i) const { return node->first_handle + i; }
+    std::uint32_t pair(std::uint32_t i, std::uint32_t j) const {
+        return node->first_pair + pair_number(i, j);
+    }
+};
+
+std::array<Side, 2> sides_of(const AssemblyTree& tree, const AssemblyNode& node) {
+    return {Side{&tree.nodes[node.a], 1}, Side{&tree.nodes[node.b], -1}};
+}
+
+// With the force from A on B, W u, where for open handles f
+//     u = sum_(i in A) phi_ia^T f_i - sum_(j in B) phi_jb^T f_j + beta,   beta = b_a - b_b,
+// the handles of A accelerate by -phi_ia W u more and those of B by phi_jb W u.
+void join(const AssemblyTree& tree, std::size_t number, AssemblyState& state) {
+    const AssemblyNode& node = tree.nodes[number];
+    const std::array<Side, 2> sides = sides_of(tree, node);
+    const auto joined_pair = [](const Side& side) {
+        return side.pair(side.joined(), side.joined());
+    };
+    JointInertia& joint = state.joints[number];
+    joint = joint_inertia(tree, state, node.link, state.phi[joined_pair(sides[0])],
+                          state.phi[joined_pair(sides[1])]);
+    const Vec6 beta =
+        state.b[sides[0].handle(sides[0].joined())] - state.b[sides[1].handle(sides[1].joined())];
+    const Vec6 gamma = joint.W * beta;
+
+    for (std::uint32_t j = 0; j < node.handles; ++j) {
+        const Side& side_j = sides[node.side[j]];
+        const std::uint32_t j_there = node.number[j];
+        const Mat6& across_j = state.phi[side_j.pair(j_there, side_j.joined())];
+        const Mat6 W_across_j = joint.W * across_j.transpose();
+        state.b[node.first_handle + j] =
+            state.b[side_j.handle(j_there)] - side_j.sign * (across_j * gamma);
+        for (std::uint32_t i = 0; i <= j; ++i) {
+            const Side& side_i = sides[node.side[i]];
+            const std::uint32_t i_there = node.number[i];
+            Mat6& phi = state.phi[node.first_pair + pair_number(i, j)];
+            const Mat6& across_i = state.phi[side_i.pair(i_there, side_i.joined())];
+            phi.noalias() = across_i.lazyProduct(W_across_j);
+            if (node.side[i] == node.side[j]) phi = state.phi[side_i.pair(i_there, j_there)] - phi;
+        }
+    }
+}
+
+// At a root: a base that is active is pushed by nothing, another by what makes it accelerate as it
+// has to.
+void update_base(const AssemblyTree& tree, std::size_t molecule, AssemblyState& state) {
+    const AssemblyNode& root = tree.nodes[tree.roots[molecule]];
+    const Mat6& phi = state.phi[root.first_pair];
+    const Vec6& b = state.b[root.first_handle];
+    const std::uint32_t base = tree.bases[molecule];
+    Vec6& f = state.f[root.first_handle];
+    if (state.is_active[base] != 0) {
+        f.setZero();
+    } else {
+        // An ion or a molecule whose atoms are in line cannot be turned in every direction.
+        f = Eigen::CompleteOrthogonalDecomposition<Mat6>(phi).solve(
+            state.held_acceleration[molecule] - b);
+    }
+    state.base_force[molecule] = f;
+    state.base_acceleration[molecule] = phi * f + b;
+}
+
+void separate(const AssemblyTree& tree, std::size_t number, AssemblyState& state) {
+    const AssemblyNode& node = tree.nodes[number];
+    const std::array<Side, 2> sides = sides_of(tree, node);
+    const JointInertia& joint = state.joints[number];
+    Vec6 u =
+        state.b[sides[0].handle(sides[0].joined())] - state.b[sides[1].handle(sides[1].joined())];
+    for (std::uint32_t i = 0; i < node.handles; ++i) {
+        const Side& side = sides[node.side[i]];
+        const std::uint32_t i_there = node.number[i];
+        const Vec6& f = state.f[node.first_handle + i];
+        u += side.sign * (state.phi[side.pair(i_there, side.joined())].transpose() * f);
+        state.f[side.handle(i_there)] = f;
+    }
+    const Vec6 force = joint.W * u;  // from A on B
+    for (const Side& side : sides) state.f[side.handle(side.joined())] = -side.sign * force;
+    if (!is_seam(tree, node.link)) state.joint_acceleration[node.link] = -joint.gain.dot(u);
+}
+
+}  // namespace
+
+AssemblyState build_assembly_state(const AssemblyTree& tree) {
+    const std::size_t bodies = tree.bodies.bodies.size(), molecules = tree.roots.size();
+    AssemblyState state;
+    state.is_active.assign(bodies, 1);
+    state.held_acceleration.assign(molecules, Vec6::Zero());
+    state.bodies.resize(bodies);
+    state.molecule_mass.assign(molecules, 0);
+    state.points.assign(tree.links, Vec3::Zero());
+    state.axes.assign(bodies, Vec3::Zero());
+    state.phi.assign(tree.pairs, Mat6::Zero());
+    state.b.assign(tree.handles, Vec6::Zero());
+    state.joints.assign(tree.nodes.size(), {Mat6::Zero(), Vec6::Zero(), 0});
+    state.f.assign(tree.handles, Vec6::Zero());
+    state.joint_acceleration.assign(bodies, 0);
+    state.base_acceleration.assign(molecules, Vec6::Zero());
+    state.base_force.assign(molecules, Vec6::Zero());
+    return state;
+}
+
+void update_bodies(const AssemblyTree& tree, std::span<const Vec3> positions,
+                   std::span<const Vec3> forces, AssemblyState& state) noexcept {
+    PALPA_ASSERT(positions.size() == tree.atoms.size() && forces.size() == tree.atoms.size());
+    const std::span<const Body> bodies = tree.bodies.bodies;
+    for (std::uint32_t b = 0; b < bodies.size(); ++b) {
+        state.bodies[b] = body_state(tree, b, positions, forces);
+        if (tree.bodies.is_base(b)) continue;
+        const auto [j, k] = bodies[b].axis;
+        state.points[b] = positions[k];
+        state.axes[b] = (positions[k] - positions[j]).normalized();
+    }
+    place_ground(tree, state);
+    for (const AssemblyNode& node : tree.nodes) {
+        if (node.is_leaf()) update_leaf(tree, node, state.bodies[node.body], state);
+    }
+}
+
+void upward_pass(const AssemblyTree& tree, AssemblyState& state) noexcept {
+    for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
+        if (!tree.nodes[i].is_leaf()) join(tree, i, state);
+    }
+}
+
+void downward_pass(const AssemblyTree& tree, AssemblyState& state) noexcept {
+    for (std::size_t molecule = 0; molecule < tree.roots.size(); ++molecule) {
+        update_base(tree, molecule, state);
+    }
+    for (std::size_t i = tree.nodes.size(); i-- > 0;) {
+        if (!tree.nodes[i].is_leaf()) separate(tree, i, state);
+    }
+}
+
+void update_accelerations(const AssemblyTree& tree, std::span<const Vec3> positions,
+                          std::span<const Vec3> forces, AssemblyState& state) noexcept {
+    update_bodies(tree, positions, forces, state);
+    upward_pass(tree, state);
+    downward_pass(tree, state);
+}
+
+}  // namespace palpa
