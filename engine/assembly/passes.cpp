@@ -1,5 +1,6 @@
 #include "assembly/passes.h"
 
+#include "assembly/sides.h"
 #include "core/assertion.h"
 
 #include <Eigen/Dense>
@@ -144,36 +145,19 @@ JointInertia joint_inertia(const AssemblyTree& tree, const AssemblyState& state,
     return joint;
 }
 
-// Where a side's quantities stand; the handle that is joined is its last.
-struct Side {
-    const AssemblyNode* node;
-    double sign;  // of the acceleration of the joined handle in u
-
-    std::uint32_t joined() const { return node->handles - 1; }
-    std::uint32_t handle(std::uint32_t i) const { return node->first_handle + i; }
-    std::uint32_t pair(std::uint32_t i, std::uint32_t j) const {
-        return node->first_pair + pair_number(i, j);
-    }
-};
-
-std::array<Side, 2> sides_of(const AssemblyTree& tree, const AssemblyNode& node) {
-    return {Side{&tree.nodes[node.a], 1}, Side{&tree.nodes[node.b], -1}};
-}
-
 // With the force from A on B, W u, where for open handles f
 //     u = sum_(i in A) phi_ia^T f_i - sum_(j in B) phi_jb^T f_j + beta,   beta = b_a - b_b,
 // the handles of A accelerate by -phi_ia W u more and those of B by phi_jb W u.
 void join(const AssemblyTree& tree, std::size_t number, AssemblyState& state) {
     const AssemblyNode& node = tree.nodes[number];
-    const std::array<Side, 2> sides = sides_of(tree, node);
+    const std::array sides = sides_of(tree, node);
     const auto joined_pair = [](const Side& side) {
         return side.pair(side.joined(), side.joined());
     };
     JointInertia& joint = state.joints[number];
     joint = joint_inertia(tree, state, node.link, state.phi[joined_pair(sides[0])],
                           state.phi[joined_pair(sides[1])]);
-    const Vec6 beta =
-        state.b[sides[0].handle(sides[0].joined())] - state.b[sides[1].handle(sides[1].joined())];
+    const Vec6 beta = state.b[sides[0].joined_handle()] - state.b[sides[1].joined_handle()];
     const Vec6 gamma = joint.W * beta;
 
     for (std::uint32_t j = 0; j < node.handles; ++j) {
@@ -215,10 +199,9 @@ void update_base(const AssemblyTree& tree, std::size_t molecule, AssemblyState& 
 
 void separate(const AssemblyTree& tree, std::size_t number, AssemblyState& state) {
     const AssemblyNode& node = tree.nodes[number];
-    const std::array<Side, 2> sides = sides_of(tree, node);
+    const std::array sides = sides_of(tree, node);
     const JointInertia& joint = state.joints[number];
-    Vec6 u =
-        state.b[sides[0].handle(sides[0].joined())] - state.b[sides[1].handle(sides[1].joined())];
+    Vec6 u = state.b[sides[0].joined_handle()] - state.b[sides[1].joined_handle()];
     for (std::uint32_t i = 0; i < node.handles; ++i) {
         const Side& side = sides[node.side[i]];
         const std::uint32_t i_there = node.number[i];
@@ -227,7 +210,7 @@ void separate(const AssemblyTree& tree, std::size_t number, AssemblyState& state
         state.f[side.handle(i_there)] = f;
     }
     const Vec6 force = joint.W * u;  // from A on B
-    for (const Side& side : sides) state.f[side.handle(side.joined())] = -side.sign * force;
+    for (const Side& side : sides) state.f[side.joined_handle()] = -side.sign * force;
     if (!is_seam(tree, node.link)) state.joint_acceleration[node.link] = -joint.gain.dot(u);
 }
 
