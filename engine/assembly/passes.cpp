@@ -178,42 +178,6 @@ void join(const AssemblyTree& tree, std::size_t number, AssemblyState& state) {
     }
 }
 
-// At a root: a base that is active is pushed by nothing, another by what makes it accelerate as it
-// has to.
-void update_base(const AssemblyTree& tree, std::size_t molecule, AssemblyState& state) {
-    const AssemblyNode& root = tree.nodes[tree.roots[molecule]];
-    const Mat6& phi = state.phi[root.first_pair];
-    const Vec6& b = state.b[root.first_handle];
-    const std::uint32_t base = tree.bases[molecule];
-    Vec6& f = state.f[root.first_handle];
-    if (state.is_active[base] != 0) {
-        f.setZero();
-    } else {
-        // An ion or a molecule whose atoms are in line cannot be turned in every direction.
-        f = Eigen::CompleteOrthogonalDecomposition<Mat6>(phi).solve(
-            state.held_acceleration[molecule] - b);
-    }
-    state.base_force[molecule] = f;
-    state.base_acceleration[molecule] = phi * f + b;
-}
-
-void separate(const AssemblyTree& tree, std::size_t number, AssemblyState& state) {
-    const AssemblyNode& node = tree.nodes[number];
-    const std::array sides = sides_of(tree, node);
-    const JointInertia& joint = state.joints[number];
-    Vec6 u = state.b[sides[0].joined_handle()] - state.b[sides[1].joined_handle()];
-    for (std::uint32_t i = 0; i < node.handles; ++i) {
-        const Side& side = sides[node.side[i]];
-        const std::uint32_t i_there = node.number[i];
-        const Vec6& f = state.f[node.first_handle + i];
-        u += side.sign * (state.phi[side.pair(i_there, side.joined())].transpose() * f);
-        state.f[side.handle(i_there)] = f;
-    }
-    const Vec6 force = joint.W * u;  // from A on B
-    for (const Side& side : sides) state.f[side.joined_handle()] = -side.sign * force;
-    if (!is_seam(tree, node.link)) state.joint_acceleration[node.link] = -joint.gain.dot(u);
-}
-
 }  // namespace
 
 AssemblyState build_assembly_state(const AssemblyTree& tree) {
@@ -256,6 +220,40 @@ void upward_pass(const AssemblyTree& tree, AssemblyState& state) noexcept {
     for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
         if (!tree.nodes[i].is_leaf()) join(tree, i, state);
     }
+}
+
+void update_base(const AssemblyTree& tree, std::size_t molecule, AssemblyState& state) noexcept {
+    const AssemblyNode& root = tree.nodes[tree.roots[molecule]];
+    const Mat6& phi = state.phi[root.first_pair];
+    const Vec6& b = state.b[root.first_handle];
+    const std::uint32_t base = tree.bases[molecule];
+    Vec6& f = state.f[root.first_handle];
+    if (state.is_active[base] != 0) {
+        f.setZero();
+    } else {
+        // An ion or a molecule whose atoms are in line cannot be turned in every direction.
+        f = Eigen::CompleteOrthogonalDecomposition<Mat6>(phi).solve(
+            state.held_acceleration[molecule] - b);
+    }
+    state.base_force[molecule] = f;
+    state.base_acceleration[molecule] = phi * f + b;
+}
+
+void separate(const AssemblyTree& tree, std::size_t number, AssemblyState& state) noexcept {
+    const AssemblyNode& node = tree.nodes[number];
+    const std::array sides = sides_of(tree, node);
+    const JointInertia& joint = state.joints[number];
+    Vec6 u = state.b[sides[0].joined_handle()] - state.b[sides[1].joined_handle()];
+    for (std::uint32_t i = 0; i < node.handles; ++i) {
+        const Side& side = sides[node.side[i]];
+        const std::uint32_t i_there = node.number[i];
+        const Vec6& f = state.f[node.first_handle + i];
+        u += side.sign * (state.phi[side.pair(i_there, side.joined())].transpose() * f);
+        state.f[side.handle(i_there)] = f;
+    }
+    const Vec6 force = joint.W * u;  // from A on B
+    for (const Side& side : sides) state.f[side.joined_handle()] = -side.sign * force;
+    if (!is_seam(tree, node.link)) state.joint_acceleration[node.link] = -joint.gain.dot(u);
 }
 
 void downward_pass(const AssemblyTree& tree, AssemblyState& state) noexcept {

@@ -81,6 +81,14 @@ void update_bodies(const AssemblyTree& tree, std::span<const Vec3> positions,
 // From the leaves to the roots: phi, b and the joints' inertias.
 void upward_pass(const AssemblyTree& tree, AssemblyState& state) noexcept;
 
+// At a root: a base that is active is pushed by nothing, another by what makes it accelerate as it
+// has to.
+void update_base(const AssemblyTree& tree, std::size_t molecule, AssemblyState& state) noexcept;
+
+// At a joined part whose handles have their forces: its joint's acceleration, and the forces on the
+// handles of its two parts.
+void separate(const AssemblyTree& tree, std::size_t node, AssemblyState& state) noexcept;
+
 // From the roots to the leaves: forces on handles, and with them the accelerations.
 void downward_pass(const AssemblyTree& tree, AssemblyState& state) noexcept;
 

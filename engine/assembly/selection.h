@@ -32,9 +32,9 @@ struct JointSelection {
 
 JointSelection build_joint_selection(const AssemblyTree& tree);
 
-// Opens the part with the largest metric, again and again, roots first: its joint becomes active and
-// its two parts wait for their turn. What is left in the queue is what is neglected: squares of the
-// accelerations that those joints would have, no bound on an error of shape or force.
+// Opens the part with the largest metric, again and again, roots first: its joint becomes active
+// and its two parts wait for their turn. What is left in the queue is what is neglected: squares of
+// the accelerations that those joints would have, no bound on an error of shape or force.
 //
 // The state must have been through upward_pass with all joints active that may be chosen, and the
 // metric must be of that. Writes forces on handles and accelerations of the joints it opens.
