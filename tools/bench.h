@@ -12,6 +12,7 @@ struct BenchOptions {
     std::vector<std::filesystem::path> toppar;      // and of these CHARMM files, together
     std::vector<std::string> settings;
     bool render = false;  // pictures, instead of loading and steps
+    bool tree = false;    // passes over the assembly trees, likewise
     bool json = false;
 };
 

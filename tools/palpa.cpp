@@ -132,11 +132,16 @@ void add_bench(CLI::App& program, palpa::BenchOptions& options) {
     bench.add_option("--toppar", options.toppar,
                      "CHARMM topology and parameter files: time the reading of all together");
     bench.final_callback([&options] {
-        if (options.scenes.empty() && options.structures.empty() && options.toppar.empty()) {
-            throw CLI::RequiredError("a scene, --load or --toppar");
+        if (options.scenes.empty() && options.structures.empty() && options.toppar.empty() &&
+            !options.tree) {
+            throw CLI::RequiredError("a scene, --load, --toppar or --tree");
         }
     });
     bench.add_flag("--render", options.render, "time pictures instead of steps");
+    bench
+        .add_flag("--tree", options.tree,
+                  "time joint accelerations of the scenes' molecules and of polymers, instead")
+        ->excludes("--render");
     bench.add_flag("--json", options.json, "print JSON");
     add_set_option(bench, options.settings);
 }

@@ -5,9 +5,9 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <optional>
-#include <queue>
 #include <string>
 #include <utility>
 
@@ -159,15 +159,13 @@ bool turns(JointKind kind, const JointRules& rules) {
 std::size_t smallest_ring(const Neighbours& neighbours, std::array<std::uint32_t, 2> bond,
                           std::uint32_t number) {
     std::vector<std::size_t> steps(neighbours.atoms(), 0);
-    std::queue<std::uint32_t> queue({bond[0]});
+    std::vector<std::uint32_t> reached{bond[0]};
     steps[bond[0]] = 1;
-    while (!queue.empty() && steps[bond[1]] == 0) {
-        const std::uint32_t atom = queue.front();
-        queue.pop();
-        for (const Neighbour to : neighbours.of(atom)) {
+    for (std::size_t i = 0; i < reached.size() && steps[bond[1]] == 0; ++i) {
+        for (const Neighbour to : neighbours.of(reached[i])) {
             if (to.bond == number || steps[to.atom] != 0) continue;
-            steps[to.atom] = steps[atom] + 1;
-            queue.push(to.atom);
+            steps[to.atom] = steps[reached[i]] + 1;
+            reached.push_back(to.atom);
         }
     }
     return steps[bond[1]];
@@ -190,16 +188,15 @@ std::vector<std::optional<BondMotion>> find_overrides(const Connectivity& connec
                                                       std::vector<std::string>& problems) {
     std::vector<std::optional<BondMotion>> asked(connectivity.bonds.size());
     for (const JointOverride& joint_override : rules.overrides) {
-        const auto [a, b] = joint_override.bond;
-        const auto found = std::ranges::find_if(connectivity.bonds, [&](const auto& bond) {
-            return (bond[0] == a && bond[1] == b) || (bond[0] == b && bond[1] == a);
-        });
-        if (found == connectivity.bonds.end()) {
-            problems.push_back(fmt::format("{} are not bonded, and so no joint",
-                                           bond_name(connectivity, joint_override.bond)));
-            continue;
+        bool is_found = false;
+        for (std::size_t i = 0; i < asked.size(); ++i) {
+            if (!std::ranges::is_permutation(connectivity.bonds[i], joint_override.bond)) continue;
+            asked[i] = joint_override.motion;
+            is_found = true;
         }
-        asked[static_cast<std::size_t>(found - connectivity.bonds.begin())] = joint_override.motion;
+        if (is_found) continue;
+        problems.push_back(fmt::format("{} are not bonded, and so no joint",
+                                       bond_name(connectivity, joint_override.bond)));
     }
     return asked;
 }

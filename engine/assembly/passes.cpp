@@ -138,10 +138,10 @@ JointInertia joint_inertia(const AssemblyTree& tree, const AssemblyState& state,
     joint.D = 0;
     if (is_seam(tree, link) || state.is_active[link] == 0) return joint;
     const Vec3& axis = state.axes[link];
-    const Vec6 VS = joint.W.leftCols<3>() * axis;
-    joint.D = 1 / axis.dot(VS.head<3>());
-    joint.gain = joint.D * VS;
-    joint.W -= joint.gain * VS.transpose();
+    const Vec6 V_axis = joint.W.leftCols<3>() * axis;
+    joint.D = 1 / axis.dot(V_axis.head<3>());
+    joint.gain = joint.D * V_axis;
+    joint.W -= joint.gain * V_axis.transpose();
     return joint;
 }
 
