@@ -15,11 +15,11 @@ enum class MetricWeight : std::uint8_t {
 
 // The weighted sum of squared joint accelerations in a part is a quadratic form of the forces on
 // its handles: sum_ij f_i^T psi_ij f_j + sum_i p_i^T f_i + eta (S. Redon et al., ACM Trans. Graph.
-// 24, 936 (2005)). Laid out as in AssemblyState; of leaves all is 0.
+// 24, 936 (2005)). Laid out as in AssemblyState, for joined parts; of leaves all is 0.
 struct AccelerationMetric {
     std::vector<Mat6> psi;    // of pairs of handles
     std::vector<Vec6> p;      // of handles
-    std::vector<double> eta;  // of nodes
+    std::vector<double> eta;  // of parts
 };
 
 AccelerationMetric build_acceleration_metric(const AssemblyTree& tree);

@@ -1,6 +1,6 @@
 #include "assembly/passes.h"
 
-#include "assembly/sides.h"
+#include "assembly/parts.h"
 #include "core/assertion.h"
 
 #include <Eigen/Dense>
@@ -69,30 +69,6 @@ Mat6 rigid_phi(const BodyState& body, const Vec3& r_i, const Vec3& r_j) {
     return phi;
 }
 
-bool is_seam(const AssemblyTree& tree, std::uint32_t link) {
-    return link >= tree.bodies.bodies.size();
-}
-
-// Of a copy of a body: an n-th of its mass and of its forces.
-void update_leaf(const AssemblyTree& tree, const AssemblyNode& leaf, const BodyState& body,
-                 AssemblyState& state) {
-    const double copies = tree.copies[leaf.body];
-    for (std::uint32_t i = 0; i < leaf.handles; ++i) {
-        if (is_seam(tree, leaf.links[i])) state.points[leaf.links[i]] = body.centre;
-    }
-    const Vec3 turn = body.inverse_inertia * body.torque;
-    for (std::uint32_t j = 0; j < leaf.handles; ++j) {
-        const Vec3 r_j = state.points[leaf.links[j]] - body.centre;
-        Vec6& b = state.b[leaf.first_handle + j];
-        b.head<3>() = turn;
-        b.tail<3>() = body.force / body.mass + turn.cross(r_j);
-        for (std::uint32_t i = 0; i <= j; ++i) {
-            const Vec3 r_i = state.points[leaf.links[i]] - body.centre;
-            state.phi[leaf.first_pair + pair_number(i, j)] = copies * rigid_phi(body, r_i, r_j);
-        }
-    }
-}
-
 // At the centre of mass of the molecule.
 void place_ground(const AssemblyTree& tree, AssemblyState& state) {
     for (const std::uint32_t base : tree.bases) state.points[base].setZero();
@@ -148,37 +124,86 @@ JointInertia joint_inertia(const AssemblyTree& tree, const AssemblyState& state,
 // With the force from A on B, W u, where for open handles f
 //     u = sum_(i in A) phi_ia^T f_i - sum_(j in B) phi_jb^T f_j + beta,   beta = b_a - b_b,
 // the handles of A accelerate by -phi_ia W u more and those of B by phi_jb W u.
-void join(const AssemblyTree& tree, std::size_t number, AssemblyState& state) {
-    const AssemblyNode& node = tree.nodes[number];
+void join(const AssemblyTree& tree, const AssemblyNode& node, AssemblyState& state) {
     const std::array sides = sides_of(tree, node);
-    const auto joined_pair = [](const Side& side) {
-        return side.pair(side.joined(), side.joined());
-    };
-    JointInertia& joint = state.joints[number];
-    joint = joint_inertia(tree, state, node.link, state.phi[joined_pair(sides[0])],
-                          state.phi[joined_pair(sides[1])]);
-    const Vec6 beta = state.b[sides[0].joined_handle()] - state.b[sides[1].joined_handle()];
-    const Vec6 gamma = joint.W * beta;
+    const std::array<PartInertia, 2> parts{PartInertia(tree, state, *sides[0].node),
+                                           PartInertia(tree, state, *sides[1].node)};
+    const std::uint32_t a = sides[0].joined(), b = sides[1].joined();
+    JointInertia& joint = state.joints[node.part];
+    joint = joint_inertia(tree, state, node.link, parts[0].phi(a, a), parts[1].phi(b, b));
+    const Vec6 gamma = joint.W * (parts[0].b(a) - parts[1].b(b));
 
     for (std::uint32_t j = 0; j < node.handles; ++j) {
-        const Side& side_j = sides[node.side[j]];
-        const std::uint32_t j_there = node.number[j];
-        const Mat6& across_j = state.phi[side_j.pair(j_there, side_j.joined())];
+        const std::uint32_t side_j = node.side[j], j_there = node.number[j];
+        const Mat6& across_j = parts[side_j].phi(j_there, sides[side_j].joined());
         const Mat6 W_across_j = joint.W * across_j.transpose();
         state.b[node.first_handle + j] =
-            state.b[side_j.handle(j_there)] - side_j.sign * (across_j * gamma);
+            parts[side_j].b(j_there) - sides[side_j].sign * (across_j * gamma);
         for (std::uint32_t i = 0; i <= j; ++i) {
-            const Side& side_i = sides[node.side[i]];
-            const std::uint32_t i_there = node.number[i];
+            const std::uint32_t side_i = node.side[i], i_there = node.number[i];
+            const Mat6& across_i = parts[side_i].phi(i_there, sides[side_i].joined());
             Mat6& phi = state.phi[node.first_pair + pair_number(i, j)];
-            const Mat6& across_i = state.phi[side_i.pair(i_there, side_i.joined())];
             phi.noalias() = across_i.lazyProduct(W_across_j);
-            if (node.side[i] == node.side[j]) phi = state.phi[side_i.pair(i_there, j_there)] - phi;
+            if (side_i == side_j) phi = parts[side_i].phi(i_there, j_there) - phi;
         }
     }
 }
 
+// How the joined handle of a side accelerates under the forces on the side's other handles, with
+// nothing on itself.
+Vec6 open_acceleration(const AssemblyTree& tree, const AssemblyState& state,
+                       const AssemblyNode& node, std::uint32_t side) {
+    const AssemblyNode& part = side == 0 ? tree.nodes[node.a] : tree.nodes[node.b];
+    if (!part.is_leaf()) {
+        const std::uint32_t joined = part.handles - 1;
+        Vec6 acceleration = state.b[part.first_handle + joined];
+        for (std::uint32_t i = 0; i < node.handles; ++i) {
+            if (node.side[i] != side) continue;
+            const Mat6& phi = state.phi[part.first_pair + pair_number(node.number[i], joined)];
+            acceleration += phi.transpose() * state.f[node.first_handle + i];
+        }
+        return acceleration;
+    }
+    // The same as rigid_phi, without matrices.
+    const BodyState& body = state.bodies[part.body];
+    const double copies = tree.copies[part.body];
+    Vec3 torque = body.torque / copies, force = body.force / copies;
+    for (std::uint32_t i = 0; i < node.handles; ++i) {
+        if (node.side[i] != side) continue;
+        const Vec6& f = state.f[node.first_handle + i];
+        const Vec3 arm = state.points[node.links[i]] - body.centre;
+        torque += f.head<3>() + arm.cross(f.tail<3>());
+        force += f.tail<3>();
+    }
+    const Vec3 turn = copies * (body.inverse_inertia * torque);
+    Vec6 acceleration;
+    acceleration << turn,
+        copies / body.mass * force + turn.cross(state.points[node.link] - body.centre);
+    return acceleration;
+}
+
 }  // namespace
+
+// Of a copy of a body: an n-th of its mass and of its forces.
+PartInertia::PartInertia(const AssemblyTree& tree, const AssemblyState& state,
+                         const AssemblyNode& node) noexcept {
+    if (!node.is_leaf()) {
+        phi_ = &state.phi[node.first_pair];
+        b_ = &state.b[node.first_handle];
+        return;
+    }
+    const BodyState& body = state.bodies[node.body];
+    const double copies = tree.copies[node.body];
+    const Vec3 turn = body.inverse_inertia * body.torque;
+    for (std::uint32_t j = 0; j < node.handles; ++j) {
+        const Vec3 r_j = state.points[node.links[j]] - body.centre;
+        leaf_b_[j] << turn, body.force / body.mass + turn.cross(r_j);
+        for (std::uint32_t i = 0; i <= j; ++i) {
+            const Vec3 r_i = state.points[node.links[i]] - body.centre;
+            leaf_phi_[pair_number(i, j)] = copies * rigid_phi(body, r_i, r_j);
+        }
+    }
+}
 
 AssemblyState build_assembly_state(const AssemblyTree& tree) {
     const std::size_t bodies = tree.bodies.bodies.size(), molecules = tree.roots.size();
@@ -191,7 +216,7 @@ AssemblyState build_assembly_state(const AssemblyTree& tree) {
     state.axes.assign(bodies, Vec3::Zero());
     state.phi.assign(tree.pairs, Mat6::Zero());
     state.b.assign(tree.handles, Vec6::Zero());
-    state.joints.assign(tree.nodes.size(), {Mat6::Zero(), Vec6::Zero(), 0});
+    state.joints.assign(tree.parts, {Mat6::Zero(), Vec6::Zero(), 0});
     state.f.assign(tree.handles, Vec6::Zero());
     state.joint_acceleration.assign(bodies, 0);
     state.base_acceleration.assign(molecules, Vec6::Zero());
@@ -212,48 +237,52 @@ void update_bodies(const AssemblyTree& tree, std::span<const Vec3> positions,
     }
     place_ground(tree, state);
     for (const AssemblyNode& node : tree.nodes) {
-        if (node.is_leaf()) update_leaf(tree, node, state.bodies[node.body], state);
+        if (!node.is_leaf() || tree.copies[node.body] == 1) continue;
+        for (std::uint32_t i = 0; i < node.handles; ++i) {
+            if (!is_seam(tree, node.links[i])) continue;
+            state.points[node.links[i]] = state.bodies[node.body].centre;
+        }
     }
 }
 
 void upward_pass(const AssemblyTree& tree, AssemblyState& state) noexcept {
-    for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
-        if (!tree.nodes[i].is_leaf()) join(tree, i, state);
+    for (const AssemblyNode& node : tree.nodes) {
+        if (!node.is_leaf()) join(tree, node, state);
     }
 }
 
 void update_base(const AssemblyTree& tree, std::size_t molecule, AssemblyState& state) noexcept {
     const AssemblyNode& root = tree.nodes[tree.roots[molecule]];
-    const Mat6& phi = state.phi[root.first_pair];
-    const Vec6& b = state.b[root.first_handle];
-    const std::uint32_t base = tree.bases[molecule];
-    Vec6& f = state.f[root.first_handle];
-    if (state.is_active[base] != 0) {
-        f.setZero();
-    } else {
+    const PartInertia part(tree, state, root);
+    Vec6 f = Vec6::Zero();
+    if (state.is_active[tree.bases[molecule]] == 0) {
         // An ion or a molecule whose atoms are in line cannot be turned in every direction.
-        f = Eigen::CompleteOrthogonalDecomposition<Mat6>(phi).solve(
-            state.held_acceleration[molecule] - b);
+        f = Eigen::CompleteOrthogonalDecomposition<Mat6>(part.phi(0, 0))
+                .solve(state.held_acceleration[molecule] - part.b(0));
     }
     state.base_force[molecule] = f;
-    state.base_acceleration[molecule] = phi * f + b;
+    state.base_acceleration[molecule] = part.phi(0, 0) * f + part.b(0);
+    if (!root.is_leaf()) state.f[root.first_handle] = f;
 }
 
 void separate(const AssemblyTree& tree, std::size_t number, AssemblyState& state) noexcept {
     const AssemblyNode& node = tree.nodes[number];
-    const std::array sides = sides_of(tree, node);
-    const JointInertia& joint = state.joints[number];
-    Vec6 u = state.b[sides[0].joined_handle()] - state.b[sides[1].joined_handle()];
-    for (std::uint32_t i = 0; i < node.handles; ++i) {
-        const Side& side = sides[node.side[i]];
-        const std::uint32_t i_there = node.number[i];
-        const Vec6& f = state.f[node.first_handle + i];
-        u += side.sign * (state.phi[side.pair(i_there, side.joined())].transpose() * f);
-        state.f[side.handle(i_there)] = f;
-    }
-    const Vec6 force = joint.W * u;  // from A on B
-    for (const Side& side : sides) state.f[side.joined_handle()] = -side.sign * force;
+    const JointInertia& joint = state.joints[node.part];
+    const Vec6 u =
+        open_acceleration(tree, state, node, 0) - open_acceleration(tree, state, node, 1);
     if (!is_seam(tree, node.link)) state.joint_acceleration[node.link] = -joint.gain.dot(u);
+
+    const Vec6 force = joint.W * u;  // from A on B
+    const std::array sides = sides_of(tree, node);
+    for (const Side& side : sides) {
+        if (side.node->is_leaf()) continue;
+        state.f[side.node->first_handle + side.joined()] = -side.sign * force;
+    }
+    for (std::uint32_t i = 0; i < node.handles; ++i) {
+        const AssemblyNode& part = *sides[node.side[i]].node;
+        if (part.is_leaf()) continue;
+        state.f[part.first_handle + node.number[i]] = state.f[node.first_handle + i];
+    }
 }
 
 void downward_pass(const AssemblyTree& tree, AssemblyState& state) noexcept {

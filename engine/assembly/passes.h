@@ -34,10 +34,11 @@ struct BodyState {
     Vec3 force;            // kcal/mol/Å
 };
 
-// Quantities of a node's handles stand at AssemblyNode::first_handle, those of pairs of handles
-// (i, j) with i <= j at first_pair + pair_number(i, j). Spatial vectors have the world's axes and
-// are taken at the point of the handle's link. Times are in AKMA units, in which kcal/mol = amu
-// Å^2.
+// Quantities of joined parts: those of handles stand at AssemblyNode::first_handle, those of pairs
+// of handles (i, j) with i <= j at first_pair + pair_number(i, j). Those of leaves follow from
+// BodyState and are computed where they are needed, which costs less than to fetch them. Spatial
+// vectors have the world's axes and are taken at the point of the handle's link. The unit of time
+// is AKMA's, in which kcal/mol is amu Å^2/time^2.
 struct AssemblyState {
     // The caller writes what may move. One entry per body: its joint, or for a base its six degrees
     // of freedom. What is not active stays rigid. All are active at first.
@@ -53,12 +54,10 @@ struct AssemblyState {
     std::vector<Vec3> points;           // of each link, Å
     std::vector<Vec3> axes;             // of each joint, length 1
 
-    // update_bodies for leaves, upward_pass for joined parts.
-    std::vector<Mat6> phi;  // of pairs of handles
-    std::vector<Vec6> b;    // of handles
-
-    // upward_pass, of each joined part.
-    std::vector<JointInertia> joints;
+    // upward_pass.
+    std::vector<Mat6> phi;             // of pairs of handles
+    std::vector<Vec6> b;               // of handles
+    std::vector<JointInertia> joints;  // of each joined part
 
     // downward_pass.
     std::vector<Vec6> f;                     // on handles, from outside the part
@@ -74,7 +73,7 @@ constexpr std::uint32_t pair_number(std::uint32_t i, std::uint32_t j) noexcept {
 // Of the right sizes, with everything active.
 AssemblyState build_assembly_state(const AssemblyTree& tree);
 
-// Where the links are, and the leaves' phi and b. One position and one force (kcal/mol/Å) per atom.
+// What the bodies weigh, and where the links are. One position and one force (kcal/mol/Å) per atom.
 void update_bodies(const AssemblyTree& tree, std::span<const Vec3> positions,
                    std::span<const Vec3> forces, AssemblyState& state) noexcept;
 

@@ -57,7 +57,7 @@ void select_joints(const AssemblyTree& tree, const AccelerationMetric& metric,
         selection.parts.pop_back();
         selection.neglected -= sum;
         separate(tree, number, state);
-        if (state.joints[number].D > 0) {
+        if (state.joints[node.part].D > 0) {
             selection.is_active[node.link] = 1;
             ++selection.joints;
         }

@@ -203,11 +203,14 @@ private:
 
     std::uint32_t add_node(AssemblyNode node) {
         const auto number = static_cast<std::uint32_t>(tree_.nodes.size());
-        node.first_handle = tree_.handles;
-        node.first_pair = tree_.pairs;
-        tree_.handles += node.handles;
-        tree_.pairs += node.handles * (node.handles + 1) / 2;
-        if (!node.is_leaf()) tree_.nodes[node.a].parent = tree_.nodes[node.b].parent = number;
+        if (!node.is_leaf()) {
+            node.part = tree_.parts++;
+            node.first_handle = tree_.handles;
+            node.first_pair = tree_.pairs;
+            tree_.handles += node.handles;
+            tree_.pairs += node.handles * (node.handles + 1) / 2;
+            tree_.nodes[node.a].parent = tree_.nodes[node.b].parent = number;
+        }
         tree_.nodes.push_back(node);
         return number;
     }

@@ -36,8 +36,9 @@ struct AssemblyNode {
     // Of a joined part: each handle's side, 0 for A and 1 for B, and its number there.
     std::array<std::uint8_t, 3> side{}, number{};
 
-    // Where the state keeps what belongs to its handles and to pairs of them.
-    std::uint32_t first_handle = 0, first_pair = 0;
+    // Of a joined part: where the state keeps what belongs to it, to its handles and to pairs of
+    // them.
+    std::uint32_t part = 0, first_handle = 0, first_pair = 0;
 
     bool is_leaf() const noexcept { return body != no_body; }
 };
@@ -54,7 +55,9 @@ struct AssemblyTree {
 
     std::vector<AssemblyNode> nodes;   // children before their parents
     std::vector<std::uint32_t> roots;  // of each molecule; its one handle leads to the ground
-    std::uint32_t links = 0, handles = 0, pairs = 0;  // in all
+    std::uint32_t links = 0;           // in all
+    // Of joined parts: how many there are, and how many handles and pairs of them they have.
+    std::uint32_t parts = 0, handles = 0, pairs = 0;
 
     // What a body weighs, [first_share[b], first_share[b + 1]). Both atoms of a joint's bond lie on
     // its axis and so are at rest in both bodies: their mass is divided between the bodies that

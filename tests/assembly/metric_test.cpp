@@ -28,7 +28,7 @@ std::vector<Sums> sums_below(const AssemblyTree& tree, const AssemblyState& stat
         sums[i].joints = sums[node.a].joints + sums[node.b].joints;
         if (node.link >= tree.bodies.bodies.size() || state.is_active[node.link] == 0) continue;
         const double acceleration = state.joint_acceleration[node.link];
-        const double factor = weight == MetricWeight::Plain ? 1 : 1 / state.joints[i].D;
+        const double factor = weight == MetricWeight::Plain ? 1 : 1 / state.joints[node.part].D;
         sums[i].of_squares += factor * acceleration * acceleration;
         ++sums[i].joints;
     }
