@@ -65,6 +65,7 @@ void add_rows(const std::string& name, TreeBench& bench, std::vector<BenchRow>& 
         upward_pass(bench.tree, state);
         downward_pass(bench.tree, state);
     });
+    if (bench.tree.bodies.joints() == 0) return;
     time("/metric", [&] { update_metric(bench.tree, state, MetricWeight::Plain, bench.metric); });
     rows.back().error = metric_error(bench);
     rows.back().error_unit = "relative";
@@ -120,10 +121,13 @@ void bench_tree(const std::string& scene_name, const AtomTable& atoms,
     connectivity.bonds = atoms.bonds;
     JointRules all_rotors;
     all_rotors.methyl = all_rotors.amide_nh2 = all_rotors.guanidinium_nh2 = true;
-    for (const JointRules& rules : {JointRules{}, all_rotors}) {
-        TreeBench bench = build_tree_bench(connectivity, atoms.positions, rules);
-        add_rows(fmt::format("tree/{}/joints={}", scene_name, bench.tree.bodies.joints()), bench,
-                 rows);
+    TreeBench by_rule = build_tree_bench(connectivity, atoms.positions, {});
+    TreeBench with_rotors = build_tree_bench(connectivity, atoms.positions, all_rotors);
+    const std::size_t joints = by_rule.tree.bodies.joints();
+    const std::size_t more = with_rotors.tree.bodies.joints();
+    add_rows(fmt::format("tree/{}/joints={}", scene_name, joints), by_rule, rows);
+    if (more > joints) {
+        add_rows(fmt::format("tree/{}/joints={}", scene_name, more), with_rotors, rows);
     }
 }
 
