@@ -14,6 +14,8 @@
 #include "simulation/simulation.h"
 #include "simulation/step.h"
 #include "tools/bench_kernel.h"
+#include "tools/bench_row.h"
+#include "tools/bench_tree.h"
 #include "tools/run.h"
 #include "view/build_frame.h"
 #include "view/orbit_camera.h"
@@ -30,8 +32,6 @@
 
 namespace palpa {
 namespace {
-
-using Row = BenchRow;
 
 double quantile(std::vector<double> samples, double share) {
     std::sort(samples.begin(), samples.end());
@@ -51,11 +51,12 @@ std::string machine_name() {
 }
 
 // One simulation step, while the hand sweeps back and forth over 10 mm.
-Row bench_step(const std::string& scene_name, Simulation simulation) {
+BenchRow bench_step(const std::string& scene_name, Simulation simulation) {
     constexpr int batches = 101;
     // Steps too short for the clock are timed together.
     const int batch = simulation.relaxed ? 1 : 200;
-    Row row{"step/" + scene_name, {}, "us", {}, "relative", "central difference of the energy"};
+    BenchRow row{
+        "step/" + scene_name, {}, "us", {}, "relative", "central difference of the energy"};
     TouchModel felt = build_touch_model(simulation, {});
     HandPose hand;
     int tick = 0;
@@ -83,14 +84,14 @@ Row bench_step(const std::string& scene_name, Simulation simulation) {
 }
 
 // The scene as `palpa run` plays it, 10 s at its own period, without a recording.
-Row bench_lockstep(const std::string& scene_name, SceneDescription scene) {
+BenchRow bench_lockstep(const std::string& scene_name, SceneDescription scene) {
     scene.seconds = 10;
-    Row row{fmt::format("lockstep/{}/period={}ms/seconds=10", scene_name, scene.period_ms),
-            {},
-            "s",
-            {},
-            "J",
-            "net work of the first run"};
+    BenchRow row{fmt::format("lockstep/{}/period={}ms/seconds=10", scene_name, scene.period_ms),
+                 {},
+                 "s",
+                 {},
+                 "J",
+                 "net work of the first run"};
     std::optional<double> first;
     double worst = 0;
     for (int run = 0; run < 7; ++run) {
@@ -107,9 +108,9 @@ Row bench_lockstep(const std::string& scene_name, SceneDescription scene) {
     return row;
 }
 
-Row bench_load(const std::string& scene_name, const std::filesystem::path& path,
-               const std::vector<std::string>& settings) {
-    Row row{"load/" + scene_name, {}, "ms", {}, "", ""};
+BenchRow bench_load(const std::string& scene_name, const std::filesystem::path& path,
+                    const std::vector<std::string>& settings) {
+    BenchRow row{"load/" + scene_name, {}, "ms", {}, "", ""};
     for (int run = 0; run < 21; ++run) {
         row.samples.push_back(1e3 * seconds_of([&] {
                                   const Simulation simulation =
@@ -121,15 +122,15 @@ Row bench_load(const std::string& scene_name, const std::filesystem::path& path,
 
 // `read` returns what stands beside the time: how much was read.
 template <class Read>
-Row bench_read(const std::string& name, const Read& read) {
-    Row row{"load/" + name, {}, "ms", {}, "", ""};
+BenchRow bench_read(const std::string& name, const Read& read) {
+    BenchRow row{"load/" + name, {}, "ms", {}, "", ""};
     for (int run = 0; run < 21; ++run) {
         row.samples.push_back(1e3 * seconds_of([&] { row.reference = read(); }));
     }
     return row;
 }
 
-void bench_files(const BenchOptions& options, std::vector<Row>& rows) {
+void bench_files(const BenchOptions& options, std::vector<BenchRow>& rows) {
     for (const std::filesystem::path& path : options.structures) {
         rows.push_back(bench_read(path.filename().string(), [&] {
             const bool is_psf = upper_case(path.extension().string()) == ".PSF";
@@ -145,7 +146,7 @@ void bench_files(const BenchOptions& options, std::vector<Row>& rows) {
 
 // Whole frames, recorded, submitted and waited for; and with the colours brought back.
 void bench_render(const std::string& scene_name, const Simulation& simulation,
-                  std::vector<Row>& rows) {
+                  std::vector<BenchRow>& rows) {
     constexpr int warm_up = 5, frames = 60;
     GpuDevice gpu{GpuOptions{}};
     Renderer renderer(gpu);
@@ -155,13 +156,13 @@ void bench_render(const std::string& scene_name, const Simulation& simulation,
         frame_all(camera, frame, 16.0F / 9);
         frame.camera = frame_camera(camera, frame);
         const auto time = [&](const char* what, const auto& draw) {
-            Row row{fmt::format("render/{}/{}x{}/ball-and-stick{}", scene_name, size.width,
-                                size.height, what),
-                    {},
-                    "ms",
-                    {},
-                    "",
-                    ""};
+            BenchRow row{fmt::format("render/{}/{}x{}/ball-and-stick{}", scene_name, size.width,
+                                     size.height, what),
+                         {},
+                         "ms",
+                         {},
+                         "",
+                         ""};
             for (int i = 0; i < warm_up; ++i) draw();
             for (int i = 0; i < frames; ++i) row.samples.push_back(1e3 * seconds_of(draw));
             rows.push_back(row);
@@ -174,7 +175,7 @@ void bench_render(const std::string& scene_name, const Simulation& simulation,
     }
 }
 
-nlohmann::ordered_json as_json(const Row& row) {
+nlohmann::ordered_json as_json(const BenchRow& row) {
     nlohmann::ordered_json json;
     json["name"] = row.name;
     json["median"] = quantile(row.samples, 0.5);
@@ -190,7 +191,7 @@ nlohmann::ordered_json as_json(const Row& row) {
 }  // namespace
 
 int bench_command(const BenchOptions& options) {
-    std::vector<Row> rows;
+    std::vector<BenchRow> rows;
     bench_files(options, rows);
     if (options.kernel && options.scenes.empty()) bench_gas_kernels(rows);
     for (const std::filesystem::path& path : options.scenes) {
@@ -206,20 +207,25 @@ int bench_command(const BenchOptions& options) {
             bench_render(name, load_simulation(scene), rows);
             continue;
         }
+        if (options.tree) {
+            bench_tree(name, load_simulation(scene).atoms, rows);
+            continue;
+        }
         rows.push_back(bench_load(name, path, options.settings));
         rows.push_back(bench_step(name, load_simulation(scene)));
         rows.push_back(bench_lockstep(name, scene));
     }
+    if (options.tree) bench_polymers(rows);
     nlohmann::ordered_json report{{"machine", machine_name()}, {"commit", commit_name}};
     report["rows"] = nlohmann::ordered_json::array();
-    for (const Row& row : rows) report["rows"].push_back(as_json(row));
+    for (const BenchRow& row : rows) report["rows"].push_back(as_json(row));
     if (options.json) {
         fmt::print("{}\n", report.dump(2));
         return 0;
     }
     fmt::print("{}, commit {}\n{:<58}{:>10}{:>10}{:>10}\n", machine_name(), commit_name, "",
                "median", "p10", "p90");
-    for (const Row& row : rows) {
+    for (const BenchRow& row : rows) {
         fmt::print("{:<58}{:>10.4g}{:>10.4g}{:>10.4g} {}", row.name, quantile(row.samples, 0.5),
                    quantile(row.samples, 0.1), quantile(row.samples, 0.9), row.unit);
         if (row.error) {

@@ -12,8 +12,8 @@ struct BenchOptions {
     std::vector<std::filesystem::path> toppar;      // and of these CHARMM files, together
     std::vector<std::string> settings;
     bool render = false;  // pictures, instead of loading and steps
-    bool kernel =
-        false;  // the kernels of pairs alone, instead of loading and steps; needs no scene
+    bool kernel = false;  // the kernels of pairs alone, likewise; needs no scene
+    bool tree = false;    // passes over the assembly trees, likewise
     bool json = false;
 };
 

@@ -133,14 +133,21 @@ void add_bench(CLI::App& program, palpa::BenchOptions& options) {
                      "CHARMM topology and parameter files: time the reading of all together");
     bench.final_callback([&options] {
         if (options.scenes.empty() && options.structures.empty() && options.toppar.empty() &&
-            !options.kernel) {
-            throw CLI::RequiredError("a scene, --kernel, --load or --toppar");
+            !options.kernel && !options.tree) {
+            throw CLI::RequiredError("a scene, --kernel, --load, --toppar or --tree");
         }
     });
     bench.add_flag("--render", options.render, "time pictures instead of steps");
-    bench.add_flag("--kernel", options.kernel,
-                   "time the kernels of pairs alone, of all atoms of a scene's topology file; of a "
-                   "made-up gas without a scene");
+    bench
+        .add_flag("--kernel", options.kernel,
+                  "time the kernels of pairs alone, of all atoms of a scene's topology file; of a "
+                  "made-up gas without a scene")
+        ->excludes("--render");
+    bench
+        .add_flag("--tree", options.tree,
+                  "time joint accelerations of the scenes' molecules and of polymers, instead")
+        ->excludes("--render")
+        ->excludes("--kernel");
     bench.add_flag("--json", options.json, "print JSON");
     add_set_option(bench, options.settings);
 }

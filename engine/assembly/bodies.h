@@ -1,0 +1,40 @@
+// Rigid bodies joined by torsions: what is left of molecules when all but some bonds are rigid.
+#pragma once
+#include "assembly/joints.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace palpa {
+
+inline constexpr std::uint32_t no_body = std::numeric_limits<std::uint32_t>::max();
+
+// A body and the joint by which it hangs on its parent: both go by one number. The base of a
+// molecule has no joint; six degrees of freedom carry it.
+struct Body {
+    std::uint32_t parent = no_body;
+    // The axis j -> k, j an atom of the parent and k of this body. A turn is positive where k's
+    // side turns right-handed about it.
+    std::array<std::uint32_t, 2> axis{};
+};
+
+struct TorsionBodies {
+    std::vector<Body> bodies;                           // a parent before its children
+    std::vector<std::uint32_t> body_of;                 // of each atom
+    std::vector<std::array<std::uint32_t, 2>> springs;  // bonds that were cut, atoms
+
+    bool is_base(std::size_t body) const noexcept { return bodies[body].parent == no_body; }
+    std::size_t molecules() const noexcept;
+    std::size_t joints() const noexcept { return bodies.size() - molecules(); }
+    // With all bases free; a base that is fixed or guided has six less.
+    std::size_t degrees_of_freedom() const noexcept { return joints() + 6 * molecules(); }
+};
+
+// Molecules are what is bonded, in the order of their first atoms, which their bases hold.
+TorsionBodies build_bodies(const Connectivity& connectivity, const Joints& joints);
+
+}  // namespace palpa

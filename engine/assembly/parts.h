@@ -1,0 +1,47 @@
+// The parts of an assembly tree, as the passes over it see them.
+#pragma once
+#include "assembly/passes.h"
+
+#include <array>
+#include <cstdint>
+
+namespace palpa {
+
+inline bool is_seam(const AssemblyTree& tree, std::uint32_t link) noexcept {
+    return link >= tree.bodies.bodies.size();
+}
+
+// phi and b of a part's handles: of a joined part those of the state, of a leaf its own.
+class PartInertia {
+public:
+    PartInertia(const AssemblyTree& tree, const AssemblyState& state,
+                const AssemblyNode& node) noexcept;
+    PartInertia(const PartInertia&) = delete;
+    PartInertia& operator=(const PartInertia&) = delete;
+
+    // i <= j
+    const Mat6& phi(std::uint32_t i, std::uint32_t j) const noexcept {
+        return phi_[pair_number(i, j)];
+    }
+    const Vec6& b(std::uint32_t i) const noexcept { return b_[i]; }
+
+private:
+    std::array<Mat6, 6> leaf_phi_;
+    std::array<Vec6, 3> leaf_b_;
+    const Mat6* phi_ = leaf_phi_.data();
+    const Vec6* b_ = leaf_b_.data();
+};
+
+// One of the two parts of a joined one. The handle that is joined is its last.
+struct Side {
+    const AssemblyNode* node;
+    double sign;  // of the acceleration of the joined handle in u = a_A - a_B
+
+    std::uint32_t joined() const noexcept { return node->handles - 1; }
+};
+
+inline std::array<Side, 2> sides_of(const AssemblyTree& tree, const AssemblyNode& node) noexcept {
+    return {Side{&tree.nodes[node.a], 1}, Side{&tree.nodes[node.b], -1}};
+}
+
+}  // namespace palpa

@@ -1,0 +1,304 @@
+#include "assembly/passes.h"
+
+#include "assembly/parts.h"
+#include "core/assertion.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace palpa {
+namespace {
+
+// Without the direction in which nothing has inertia: no torque of the atoms' forces has it either.
+Mat3 pseudo_inverse(const Mat3& inertia) {
+    const Eigen::SelfAdjointEigenSolver<Mat3> solver(inertia);
+    Mat3 result = Mat3::Zero();
+    for (int i = 0; i < 3; ++i) {
+        const double moment = solver.eigenvalues()[i];
+        const Vec3 axis = solver.eigenvectors().col(i);
+        if (moment > 1e-6 * solver.eigenvalues()[2]) result += axis * axis.transpose() / moment;
+    }
+    return result;
+}
+
+BodyState body_state(const AssemblyTree& tree, std::uint32_t body, std::span<const Vec3> positions,
+                     std::span<const Vec3> forces) {
+    const auto shares =
+        std::span(tree.shares)
+            .subspan(tree.first_share[body], tree.first_share[body + 1] - tree.first_share[body]);
+    BodyState result;
+    double mass = 0;
+    result.centre.setZero();
+    for (const AtomShare& share : shares) {
+        mass += share.mass;
+        result.centre += share.mass * positions[share.atom];
+    }
+    result.centre /= mass;
+    result.mass = mass;
+
+    // I = sum of m (r^2 - r r^T)
+    Mat3 spread = Mat3::Zero();
+    for (const AtomShare& share : shares) {
+        const Vec3 arm = positions[share.atom] - result.centre;
+        spread += share.mass * arm * arm.transpose();
+    }
+    const Mat3 inertia = spread.trace() * Mat3::Identity() - spread;
+    result.inverse_inertia =
+        tree.is_linear[body] != 0 ? pseudo_inverse(inertia) : Mat3(inertia.inverse());
+
+    result.force.setZero();
+    result.torque.setZero();
+    for (std::uint32_t i = tree.first_atom[body]; i < tree.first_atom[body + 1]; ++i) {
+        const std::uint32_t atom = tree.atoms[i];
+        result.force += forces[atom];
+        result.torque += (positions[atom] - result.centre).cross(forces[atom]);
+    }
+    return result;
+}
+
+// phi_ij of a rigid body: a force F and a torque n at r_j from its centre turn it by
+// alpha = I^-1 (n + r_j x F), and the point at r_i has the acceleration F / m + alpha x r_i.
+Mat6 rigid_phi(const BodyState& body, const Vec3& r_i, const Vec3& r_j) {
+    const Mat3 turn = body.inverse_inertia * cross_matrix(r_j);
+    Mat6 phi;
+    phi.topLeftCorner<3, 3>() = body.inverse_inertia;
+    phi.topRightCorner<3, 3>() = turn;
+    phi.bottomLeftCorner<3, 3>() = -cross_matrix(r_i) * body.inverse_inertia;
+    phi.bottomRightCorner<3, 3>() = 1 / body.mass * Mat3::Identity() - cross_matrix(r_i) * turn;
+    return phi;
+}
+
+// At the centre of mass of the molecule.
+void place_ground(const AssemblyTree& tree, AssemblyState& state) {
+    for (const std::uint32_t base : tree.bases) state.points[base].setZero();
+    std::ranges::fill(state.molecule_mass, 0);
+    for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+        const std::uint32_t molecule = tree.molecule_of[b];
+        state.points[tree.bases[molecule]] += state.bodies[b].mass * state.bodies[b].centre;
+        state.molecule_mass[molecule] += state.bodies[b].mass;
+    }
+    for (std::size_t i = 0; i < tree.bases.size(); ++i) {
+        state.points[tree.bases[i]] /= state.molecule_mass[i];
+    }
+}
+
+// By Cholesky's factors, m = L L^T and m^-1 = K^T K with K = L^-1. Shorter ways, by blocks of three
+// and determinants, cost six digits in large trees.
+Mat6 inverse_of_positive(const Mat6& m) {
+    Mat6 L, K = Mat6::Zero();
+    for (int j = 0; j < 6; ++j) {
+        double square = m(j, j);
+        for (int k = 0; k < j; ++k) square -= L(j, k) * L(j, k);
+        const double inverse = 1 / std::sqrt(square);
+        for (int i = j + 1; i < 6; ++i) {
+            double product = m(i, j);
+            for (int k = 0; k < j; ++k) product -= L(i, k) * L(j, k);
+            L(i, j) = product * inverse;
+        }
+        K(j, j) = inverse;
+        for (int i = 0; i < j; ++i) {
+            double sum = 0;
+            for (int k = i; k < j; ++k) sum -= L(j, k) * K(k, i);
+            K(j, i) = sum * inverse;
+        }
+    }
+    return K.transpose().lazyProduct(K);
+}
+
+JointInertia joint_inertia(const AssemblyTree& tree, const AssemblyState& state, std::uint32_t link,
+                           const Mat6& phi_a, const Mat6& phi_b) {
+    JointInertia joint;
+    joint.W = inverse_of_positive(phi_a + phi_b);
+    joint.gain.setZero();
+    joint.D = 0;
+    if (is_seam(tree, link) || state.is_active[link] == 0) return joint;
+    const Vec3& axis = state.axes[link];
+    const Vec6 V_axis = joint.W.leftCols<3>() * axis;
+    joint.D = 1 / axis.dot(V_axis.head<3>());
+    joint.gain = joint.D * V_axis;
+    joint.W -= joint.gain * V_axis.transpose();
+    return joint;
+}
+
+// With the force from A on B, W u, where for open handles f
+//     u = sum_(i in A) phi_ia^T f_i - sum_(j in B) phi_jb^T f_j + beta,   beta = b_a - b_b,
+// the handles of A accelerate by -phi_ia W u more and those of B by phi_jb W u.
+void join(const AssemblyTree& tree, const AssemblyNode& node, AssemblyState& state) {
+    const std::array sides = sides_of(tree, node);
+    const std::array<PartInertia, 2> parts{PartInertia(tree, state, *sides[0].node),
+                                           PartInertia(tree, state, *sides[1].node)};
+    const std::uint32_t a = sides[0].joined(), b = sides[1].joined();
+    JointInertia& joint = state.joints[node.part];
+    joint = joint_inertia(tree, state, node.link, parts[0].phi(a, a), parts[1].phi(b, b));
+    const Vec6 gamma = joint.W * (parts[0].b(a) - parts[1].b(b));
+
+    for (std::uint32_t j = 0; j < node.handles; ++j) {
+        const std::uint32_t side_j = node.side[j], j_there = node.number[j];
+        const Mat6& across_j = parts[side_j].phi(j_there, sides[side_j].joined());
+        const Mat6 W_across_j = joint.W * across_j.transpose();
+        state.b[node.first_handle + j] =
+            parts[side_j].b(j_there) - sides[side_j].sign * (across_j * gamma);
+        for (std::uint32_t i = 0; i <= j; ++i) {
+            const std::uint32_t side_i = node.side[i], i_there = node.number[i];
+            const Mat6& across_i = parts[side_i].phi(i_there, sides[side_i].joined());
+            Mat6& phi = state.phi[node.first_pair + pair_number(i, j)];
+            phi.noalias() = across_i.lazyProduct(W_across_j);
+            if (side_i == side_j) phi = parts[side_i].phi(i_there, j_there) - phi;
+        }
+    }
+}
+
+// How the joined handle of a side accelerates under the forces on the side's other handles, with
+// nothing on itself.
+Vec6 open_acceleration(const AssemblyTree& tree, const AssemblyState& state,
+                       const AssemblyNode& node, std::uint32_t side) {
+    const AssemblyNode& part = side == 0 ? tree.nodes[node.a] : tree.nodes[node.b];
+    if (!part.is_leaf()) {
+        const std::uint32_t joined = part.handles - 1;
+        Vec6 acceleration = state.b[part.first_handle + joined];
+        for (std::uint32_t i = 0; i < node.handles; ++i) {
+            if (node.side[i] != side) continue;
+            const Mat6& phi = state.phi[part.first_pair + pair_number(node.number[i], joined)];
+            acceleration += phi.transpose() * state.f[node.first_handle + i];
+        }
+        return acceleration;
+    }
+    // The same as rigid_phi, without matrices.
+    const BodyState& body = state.bodies[part.body];
+    const double copies = tree.copies[part.body];
+    Vec3 torque = body.torque / copies, force = body.force / copies;
+    for (std::uint32_t i = 0; i < node.handles; ++i) {
+        if (node.side[i] != side) continue;
+        const Vec6& f = state.f[node.first_handle + i];
+        const Vec3 arm = state.points[node.links[i]] - body.centre;
+        torque += f.head<3>() + arm.cross(f.tail<3>());
+        force += f.tail<3>();
+    }
+    const Vec3 turn = copies * (body.inverse_inertia * torque);
+    Vec6 acceleration;
+    acceleration << turn,
+        copies / body.mass * force + turn.cross(state.points[node.link] - body.centre);
+    return acceleration;
+}
+
+}  // namespace
+
+// Of a copy of a body: an n-th of its mass and of its forces.
+PartInertia::PartInertia(const AssemblyTree& tree, const AssemblyState& state,
+                         const AssemblyNode& node) noexcept {
+    if (!node.is_leaf()) {
+        phi_ = &state.phi[node.first_pair];
+        b_ = &state.b[node.first_handle];
+        return;
+    }
+    const BodyState& body = state.bodies[node.body];
+    const double copies = tree.copies[node.body];
+    const Vec3 turn = body.inverse_inertia * body.torque;
+    for (std::uint32_t j = 0; j < node.handles; ++j) {
+        const Vec3 r_j = state.points[node.links[j]] - body.centre;
+        leaf_b_[j] << turn, body.force / body.mass + turn.cross(r_j);
+        for (std::uint32_t i = 0; i <= j; ++i) {
+            const Vec3 r_i = state.points[node.links[i]] - body.centre;
+            leaf_phi_[pair_number(i, j)] = copies * rigid_phi(body, r_i, r_j);
+        }
+    }
+}
+
+AssemblyState build_assembly_state(const AssemblyTree& tree) {
+    const std::size_t bodies = tree.bodies.bodies.size(), molecules = tree.roots.size();
+    AssemblyState state;
+    state.is_active.assign(bodies, 1);
+    state.held_acceleration.assign(molecules, Vec6::Zero());
+    state.bodies.resize(bodies);
+    state.molecule_mass.assign(molecules, 0);
+    state.points.assign(tree.links, Vec3::Zero());
+    state.axes.assign(bodies, Vec3::Zero());
+    state.phi.assign(tree.pairs, Mat6::Zero());
+    state.b.assign(tree.handles, Vec6::Zero());
+    state.joints.assign(tree.parts, {Mat6::Zero(), Vec6::Zero(), 0});
+    state.f.assign(tree.handles, Vec6::Zero());
+    state.joint_acceleration.assign(bodies, 0);
+    state.base_acceleration.assign(molecules, Vec6::Zero());
+    state.base_force.assign(molecules, Vec6::Zero());
+    return state;
+}
+
+void update_bodies(const AssemblyTree& tree, std::span<const Vec3> positions,
+                   std::span<const Vec3> forces, AssemblyState& state) noexcept {
+    PALPA_ASSERT(positions.size() == tree.atoms.size() && forces.size() == tree.atoms.size());
+    const std::span<const Body> bodies = tree.bodies.bodies;
+    for (std::uint32_t b = 0; b < bodies.size(); ++b) {
+        state.bodies[b] = body_state(tree, b, positions, forces);
+        if (tree.bodies.is_base(b)) continue;
+        const auto [j, k] = bodies[b].axis;
+        state.points[b] = positions[k];
+        state.axes[b] = (positions[k] - positions[j]).normalized();
+    }
+    place_ground(tree, state);
+    for (const AssemblyNode& node : tree.nodes) {
+        if (!node.is_leaf() || tree.copies[node.body] == 1) continue;
+        for (std::uint32_t i = 0; i < node.handles; ++i) {
+            if (!is_seam(tree, node.links[i])) continue;
+            state.points[node.links[i]] = state.bodies[node.body].centre;
+        }
+    }
+}
+
+void upward_pass(const AssemblyTree& tree, AssemblyState& state) noexcept {
+    for (const AssemblyNode& node : tree.nodes) {
+        if (!node.is_leaf()) join(tree, node, state);
+    }
+}
+
+void update_base(const AssemblyTree& tree, std::size_t molecule, AssemblyState& state) noexcept {
+    const AssemblyNode& root = tree.nodes[tree.roots[molecule]];
+    const PartInertia part(tree, state, root);
+    Vec6 f = Vec6::Zero();
+    if (state.is_active[tree.bases[molecule]] == 0) {
+        // An ion or a molecule whose atoms are in line cannot be turned in every direction.
+        f = Eigen::CompleteOrthogonalDecomposition<Mat6>(part.phi(0, 0))
+                .solve(state.held_acceleration[molecule] - part.b(0));
+    }
+    state.base_force[molecule] = f;
+    state.base_acceleration[molecule] = part.phi(0, 0) * f + part.b(0);
+    if (!root.is_leaf()) state.f[root.first_handle] = f;
+}
+
+void separate(const AssemblyTree& tree, std::size_t number, AssemblyState& state) noexcept {
+    const AssemblyNode& node = tree.nodes[number];
+    const JointInertia& joint = state.joints[node.part];
+    const Vec6 u =
+        open_acceleration(tree, state, node, 0) - open_acceleration(tree, state, node, 1);
+    if (!is_seam(tree, node.link)) state.joint_acceleration[node.link] = -joint.gain.dot(u);
+
+    const Vec6 force = joint.W * u;  // from A on B
+    const std::array sides = sides_of(tree, node);
+    for (const Side& side : sides) {
+        if (side.node->is_leaf()) continue;
+        state.f[side.node->first_handle + side.joined()] = -side.sign * force;
+    }
+    for (std::uint32_t i = 0; i < node.handles; ++i) {
+        const AssemblyNode& part = *sides[node.side[i]].node;
+        if (part.is_leaf()) continue;
+        state.f[part.first_handle + node.number[i]] = state.f[node.first_handle + i];
+    }
+}
+
+void downward_pass(const AssemblyTree& tree, AssemblyState& state) noexcept {
+    for (std::size_t molecule = 0; molecule < tree.roots.size(); ++molecule) {
+        update_base(tree, molecule, state);
+    }
+    for (std::size_t i = tree.nodes.size(); i-- > 0;) {
+        if (!tree.nodes[i].is_leaf()) separate(tree, i, state);
+    }
+}
+
+void update_accelerations(const AssemblyTree& tree, std::span<const Vec3> positions,
+                          std::span<const Vec3> forces, AssemblyState& state) noexcept {
+    update_bodies(tree, positions, forces, state);
+    upward_pass(tree, state);
+    downward_pass(tree, state);
+}
+
+}  // namespace palpa

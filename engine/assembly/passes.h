@@ -1,0 +1,98 @@
+// Joint accelerations of molecules at rest by divide and conquer: up the assembly tree and down.
+//
+// How a part accelerates at its handles depends on the forces there, for all i and j of them, by
+//     a_i = sum_j phi_ij f_j + b_i
+// with inverse inertias phi and the bias b that forces on atoms cause. Joining two parts removes
+// two handles; the equations of the joint give phi and b of what remains (R. Featherstone 1999).
+#pragma once
+#include "assembly/tree.h"
+#include "math/spatial.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace palpa {
+
+// What a joint makes of the two parts that it joins, with V = (phi_A + phi_B)^-1 at the two handles
+// and S = (axis, 0), the way in which B may move against A:
+//     D = (S^T V S)^-1,   W = V - V S D S^T V,   gain = D S^T V,
+// and in a rigid joint W = V, gain = 0. What acts from A on B is W u, and the joint's acceleration
+// is -gain u, where u is the acceleration of A less that of B at the joint as if it were open.
+struct JointInertia {
+    Mat6 W;
+    Vec6 gain;
+    double D;  // 1/(amu Å^2): inverse of the inertia that a torque on the joint meets; 0 if rigid
+};
+
+// A body with the atoms that it shares, and all forces on its own.
+struct BodyState {
+    double mass;           // amu
+    Vec3 centre;           // of mass, Å
+    Mat3 inverse_inertia;  // about the centre, 1/(amu Å^2)
+    Vec3 torque;           // about the centre, kcal/mol
+    Vec3 force;            // kcal/mol/Å
+};
+
+// Quantities of joined parts: those of handles stand at AssemblyNode::first_handle, those of pairs
+// of handles (i, j) with i <= j at first_pair + pair_number(i, j). Those of leaves follow from
+// BodyState and are computed where they are needed, which costs less than to fetch them. Spatial
+// vectors have the world's axes and are taken at the point of the handle's link. The unit of time
+// is AKMA's, in which kcal/mol is amu Å^2/time^2.
+struct AssemblyState {
+    // The caller writes what may move. One entry per body: its joint, or for a base its six degrees
+    // of freedom. What is not active stays rigid. All are active at first.
+    std::vector<std::uint8_t> is_active;
+    // And how a base accelerates that is not active: about the point of its molecule, 0 at first. A
+    // fixed base has 0, a guided one what its guide wants.
+    std::vector<Vec6> held_acceleration;  // of each molecule
+
+    // update_bodies. A joint's point is the atom at the end of its axis, the ground's the centre of
+    // mass of its molecule, a seam's the centre of its body.
+    std::vector<BodyState> bodies;
+    std::vector<double> molecule_mass;  // amu
+    std::vector<Vec3> points;           // of each link, Å
+    std::vector<Vec3> axes;             // of each joint, length 1
+
+    // upward_pass.
+    std::vector<Mat6> phi;             // of pairs of handles
+    std::vector<Vec6> b;               // of handles
+    std::vector<JointInertia> joints;  // of each joined part
+
+    // downward_pass.
+    std::vector<Vec6> f;                     // on handles, from outside the part
+    std::vector<double> joint_acceleration;  // of each body's joint, rad/time^2; 0 for bases
+    std::vector<Vec6> base_acceleration;     // of each molecule, at the point of its ground link
+    std::vector<Vec6> base_force;            // of each molecule: what holds its base; 0 if free
+};
+
+constexpr std::uint32_t pair_number(std::uint32_t i, std::uint32_t j) noexcept {
+    return j * (j + 1) / 2 + i;
+}
+
+// Of the right sizes, with everything active.
+AssemblyState build_assembly_state(const AssemblyTree& tree);
+
+// What the bodies weigh, and where the links are. One position and one force (kcal/mol/Å) per atom.
+void update_bodies(const AssemblyTree& tree, std::span<const Vec3> positions,
+                   std::span<const Vec3> forces, AssemblyState& state) noexcept;
+
+// From the leaves to the roots: phi, b and the joints' inertias.
+void upward_pass(const AssemblyTree& tree, AssemblyState& state) noexcept;
+
+// At a root: a base that is active is pushed by nothing, another by what makes it accelerate as it
+// has to.
+void update_base(const AssemblyTree& tree, std::size_t molecule, AssemblyState& state) noexcept;
+
+// At a joined part whose handles have their forces: its joint's acceleration, and the forces on the
+// handles of its two parts.
+void separate(const AssemblyTree& tree, std::size_t node, AssemblyState& state) noexcept;
+
+// From the roots to the leaves: forces on handles, and with them the accelerations.
+void downward_pass(const AssemblyTree& tree, AssemblyState& state) noexcept;
+
+// The three, one after the other.
+void update_accelerations(const AssemblyTree& tree, std::span<const Vec3> positions,
+                          std::span<const Vec3> forces, AssemblyState& state) noexcept;
+
+}  // namespace palpa

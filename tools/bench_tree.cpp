@@ -1,0 +1,158 @@
+#include "tools/bench_tree.h"
+
+#include "assembly/bodies.h"
+#include "assembly/joints.h"
+#include "assembly/metric.h"
+#include "assembly/passes.h"
+#include "assembly/selection.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <random>
+
+namespace palpa {
+namespace {
+
+constexpr int runs = 41;
+
+struct TreeBench {
+    AssemblyTree tree;
+    AssemblyState state;
+    AccelerationMetric metric;
+    JointSelection selection;
+    std::vector<Vec3> positions, forces;
+};
+
+TreeBench build_tree_bench(const Connectivity& connectivity, std::vector<Vec3> positions,
+                           const JointRules& rules) {
+    const TorsionBodies bodies = build_bodies(connectivity, build_joints(connectivity, rules));
+    TreeBench bench;
+    bench.tree = build_assembly_tree(bodies, connectivity.mass, positions);
+    bench.state = build_assembly_state(bench.tree);
+    bench.metric = build_acceleration_metric(bench.tree);
+    bench.selection = build_joint_selection(bench.tree);
+    bench.positions = std::move(positions);
+    std::mt19937 random(1);
+    for (std::size_t i = 0; i < bench.positions.size(); ++i) {
+        const auto component = [&] { return static_cast<double>(random() % 2001) / 100 - 10; };
+        const double x = component(), y = component(), z = component();
+        bench.forces.emplace_back(x, y, z);
+    }
+    return bench;
+}
+
+// How far the root's metric, which comes up, is from the squares that come down.
+double metric_error(const TreeBench& bench) {
+    double sum = 0, metric = 0;
+    for (const double a : bench.state.joint_acceleration) sum += a * a;
+    for (const std::uint32_t root : bench.tree.roots) {
+        metric += find_metric(bench.tree, bench.state, bench.metric, root);
+    }
+    return std::abs(metric - sum) / sum;
+}
+
+void add_rows(const std::string& name, TreeBench& bench, std::vector<BenchRow>& rows) {
+    const auto time = [&](const char* what, const auto& work) {
+        BenchRow row{name + what, {}, "us", {}, "", ""};
+        for (int run = 0; run < runs; ++run) row.samples.push_back(1e6 * seconds_of(work));
+        rows.push_back(row);
+    };
+    AssemblyState& state = bench.state;
+    time("/bodies", [&] { update_bodies(bench.tree, bench.positions, bench.forces, state); });
+    time("/passes", [&] {
+        upward_pass(bench.tree, state);
+        downward_pass(bench.tree, state);
+    });
+    if (bench.tree.bodies.joints() == 0) return;
+    time("/metric", [&] { update_metric(bench.tree, state, MetricWeight::Plain, bench.metric); });
+    rows.back().error = metric_error(bench);
+    rows.back().error_unit = "relative";
+    rows.back().reference = "sum of squared accelerations";
+    time("/select=40",
+         [&] { select_joints(bench.tree, bench.metric, {.joints = 40}, state, bench.selection); });
+    rows.back().reference = fmt::format("{:.1f} % of the squares neglected",
+                                        100 * bench.selection.neglected / bench.selection.total);
+}
+
+// A chain of CH2 that winds like a helix, with a CH3 at each end: n joints have n + 3 carbons.
+Connectivity polymer_of(std::size_t joints, std::vector<Vec3>& positions) {
+    Connectivity result;
+    result.file = "polymer";
+    const auto add = [&](double mass, const Vec3& position) {
+        result.names.push_back({"P", "CH2", "1", mass > 2 ? "C" : "H"});
+        result.mass.push_back(mass);
+        positions.push_back(position);
+        return static_cast<std::uint32_t>(positions.size() - 1);
+    };
+    std::uint32_t before = 0;
+    for (std::size_t i = 0; i < joints + 3; ++i) {
+        // Bonds of 1.5 Å that meet at 113 degrees.
+        const double turn = 1.9 * static_cast<double>(i), rise = 0.9 * static_cast<double>(i);
+        const Vec3 out(std::cos(turn), std::sin(turn), 0), along(0, 0, 1);
+        const Vec3 side = along.cross(out), carbon = 0.75 * out + rise * along;
+        const std::uint32_t c = add(12.011, carbon);
+        if (i > 0) result.bonds.push_back({before, c});
+        before = c;
+        std::vector<Vec3> directions{0.6 * out + 0.8 * side, 0.6 * out - 0.8 * side};
+        if (i == 0) directions.push_back(-along);
+        if (i == joints + 2) directions.push_back(along);
+        for (const Vec3& direction : directions) {
+            result.bonds.push_back({c, add(1.008, carbon + 1.09 * direction.normalized())});
+        }
+    }
+    return result;
+}
+
+double median(std::vector<double> samples) {
+    std::ranges::nth_element(samples, samples.begin() + runs / 2);
+    return samples[runs / 2];
+}
+
+}  // namespace
+
+void bench_tree(const std::string& scene_name, const AtomTable& atoms,
+                std::vector<BenchRow>& rows) {
+    Connectivity connectivity;
+    connectivity.file = scene_name;
+    connectivity.names = atoms.names;
+    connectivity.mass = atoms.mass;
+    connectivity.bonds = atoms.bonds;
+    JointRules all_rotors;
+    all_rotors.methyl = all_rotors.amide_nh2 = all_rotors.guanidinium_nh2 = true;
+    TreeBench by_rule = build_tree_bench(connectivity, atoms.positions, {});
+    TreeBench with_rotors = build_tree_bench(connectivity, atoms.positions, all_rotors);
+    const std::size_t joints = by_rule.tree.bodies.joints();
+    const std::size_t more = with_rotors.tree.bodies.joints();
+    add_rows(fmt::format("tree/{}/joints={}", scene_name, joints), by_rule, rows);
+    if (more > joints) {
+        add_rows(fmt::format("tree/{}/joints={}", scene_name, more), with_rotors, rows);
+    }
+}
+
+void bench_polymers(std::vector<BenchRow>& rows) {
+    // Least squares of log time over log joints.
+    double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+    for (const std::size_t joints : {100, 1000, 5000, 20000}) {
+        std::vector<Vec3> positions;
+        const Connectivity polymer = polymer_of(joints, positions);
+        TreeBench bench = build_tree_bench(polymer, positions, {});
+        add_rows(fmt::format("tree/polymer/joints={}", joints), bench, rows);
+        const double log_joints = std::log(static_cast<double>(joints));
+        const double log_time = std::log(median((rows.end() - 3)->samples));
+        n += 1;
+        x += log_joints;
+        y += log_time;
+        xx += log_joints * log_joints;
+        xy += log_joints * log_time;
+    }
+    rows.push_back({"tree/polymer/passes/exponent",
+                    {(n * xy - x * y) / (n * xx - x * x)},
+                    "",
+                    {},
+                    "",
+                    "100 to 20000 joints"});
+}
+
+}  // namespace palpa
