@@ -28,7 +28,9 @@ TEST_CASE("a load error tells its place before its message", "[core][load_error]
 
 TEST_CASE("a load error keeps the problems that its message only counts", "[core][load_error]") {
     const LoadError error({"a.pdb", 3, 0}, "this; and 2 more", {"that", "the other"});
-    const LoadError copy = error;
+    std::vector<LoadError> copies(2, error);
+    copies.pop_back();
+    const LoadError& copy = copies.front();
 
     CHECK(std::string(copy.what()) == "a.pdb:3: this; and 2 more");
     CHECK(copy.further() == std::vector<std::string>{"that", "the other"});
