@@ -60,7 +60,8 @@ class Scripts(unittest.TestCase):
                                (ROOT / "tests" / "CMakeLists.txt").read_text()))
         names = {"CLI11": "cli11", "Eigen3": "eigen3", "fmt": "fmt", "Catch2": "catch2",
                  "nlohmann_json": "nlohmann-json", "tomlplusplus": "tomlplusplus",
-                 "glm": "glm", "hwy": "highway", "PNG": "libpng", "Vulkan": "vulkan", "glfw3": "glfw3"}
+                 "glm": "glm", "hwy": "highway", "PNG": "libpng", "Vulkan": "vulkan",
+                 "glfw3": "glfw3"}
         for package in found - {"Threads", "Python3", "PkgConfig"}:
             self.assertIn(f'"{names[package]}"', vcpkg)
 
