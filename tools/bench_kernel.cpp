@@ -50,8 +50,9 @@ System build_gas() {
     std::uniform_real_distribution<double> uniform(-1, 1);
     for (std::size_t i = 0; i < count; ++i) {
         const double x = uniform(random), y = uniform(random), z = uniform(random);
-        const Vec3 cell(static_cast<double>(i % edge), static_cast<double>(i / edge % edge),
-                        static_cast<double>(i / edge / edge));
+        const std::size_t row = i / edge % edge, layer = i / edge / edge;
+        const Vec3 cell(static_cast<double>(i % edge), static_cast<double>(row),
+                        static_cast<double>(layer));
         gas.positions.push_back(2.15 * cell + 0.2 * Vec3(x, y, z));
         gas.topology.charge.push_back(0.5 * uniform(random));
         gas.topology.type.push_back(static_cast<std::uint32_t>(i % 3));

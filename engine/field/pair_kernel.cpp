@@ -49,14 +49,14 @@ struct Switching {
 };
 
 // The forms of forces/pair_law.h, put so that no two large numbers cancel in single precision.
-template <ElectrostaticCutoff end>
+template <ElectrostaticCutoff End>
 class Electrostatics {
 public:
     explicit HWY_INLINE Electrostatics(const PairScheme& scheme) : switching_(scheme) {
         const double c = scheme.cutoff, m = scheme.switch_from, width = c * c - m * m;
         inverse_c_ = all(1 / c);
         inverse_c2_ = all(1 / (c * c));
-        if constexpr (end == ElectrostaticCutoff::ForceSwitch) {
+        if constexpr (End == ElectrostaticCutoff::ForceSwitch) {
             // The energy before m is U moved by C0; after it, by x = r - m > 0,
             //   C0 + 1/r + integral over (1 - S)/r^2 = C0 + 1/r + x^3 p(x)/r
             const double width3 = width * width * width;
@@ -73,34 +73,34 @@ public:
         }
     }
 
-    template <bool with_energy>
+    template <bool WithEnergy>
     HWY_INLINE void add(V r2, V inverse_r, V charges, Terms& terms) const {
         const V u = hn::Mul(charges, inverse_r);
-        if constexpr (end == ElectrostaticCutoff::None) {
+        if constexpr (End == ElectrostaticCutoff::None) {
             terms.a = hn::Add(terms.a, u);
-            if constexpr (with_energy) terms.electrostatic = hn::Add(terms.electrostatic, u);
-        } else if constexpr (end == ElectrostaticCutoff::Switch) {
+            if constexpr (WithEnergy) terms.electrostatic = hn::Add(terms.electrostatic, u);
+        } else if constexpr (End == ElectrostaticCutoff::Switch) {
             const V y = switching_.place(r2);
             const V energy = hn::Mul(u, switching_.value(y));
             terms.a = hn::Add(terms.a, energy);
             terms.b = hn::NegMulAdd(u, switching_.slope(y), terms.b);
-            if constexpr (with_energy) terms.electrostatic = hn::Add(terms.electrostatic, energy);
-        } else if constexpr (end == ElectrostaticCutoff::Shift) {
+            if constexpr (WithEnergy) terms.electrostatic = hn::Add(terms.electrostatic, energy);
+        } else if constexpr (End == ElectrostaticCutoff::Shift) {
             const V left = hn::NegMulAdd(r2, inverse_c2_, all(1));
             const V once = hn::Mul(u, left), energy = hn::Mul(once, left);
             terms.a = hn::Add(terms.a, energy);
             terms.b = hn::MulAdd(hn::Mul(once, all(4)), inverse_c2_, terms.b);
-            if constexpr (with_energy) terms.electrostatic = hn::Add(terms.electrostatic, energy);
-        } else if constexpr (end == ElectrostaticCutoff::ForceShift) {
+            if constexpr (WithEnergy) terms.electrostatic = hn::Add(terms.electrostatic, energy);
+        } else if constexpr (End == ElectrostaticCutoff::ForceShift) {
             terms.a = hn::Add(terms.a, u);
             terms.b = hn::NegMulAdd(u, inverse_c2_, terms.b);
-            if constexpr (with_energy) {
+            if constexpr (WithEnergy) {
                 const V left = hn::NegMulAdd(hn::Mul(r2, inverse_r), inverse_c_, all(1));
                 terms.electrostatic = hn::MulAdd(hn::Mul(u, left), left, terms.electrostatic);
             }
         } else {
             terms.a = hn::MulAdd(u, switching_.value(switching_.place(r2)), terms.a);
-            if constexpr (with_energy) {
+            if constexpr (WithEnergy) {
                 const V x = hn::Max(hn::MulSub(r2, inverse_r, m_), hn::Zero(floats));
                 const V x3 = hn::Mul(hn::Mul(x, x), x);
                 const V p = hn::MulAdd(hn::MulAdd(hn::MulAdd(p3_, x, p2_), x, p1_), x, p0_);
@@ -118,7 +118,7 @@ private:
 };
 
 // Of 12 times the depth of the well.
-template <VanDerWaalsCutoff end>
+template <VanDerWaalsCutoff End>
 class VanDerWaals {
 public:
     explicit HWY_INLINE VanDerWaals(const PairScheme& scheme) : switching_(scheme) {
@@ -134,24 +134,24 @@ public:
     }
 
     // Sets a and b.
-    template <bool with_energy>
+    template <bool WithEnergy>
     HWY_INLINE void set(V r2, V inverse_r, V inverse_r2, V epsilon12, V rmin, Terms& terms) const {
-        if constexpr (end == VanDerWaalsCutoff::ForceSwitch) {
-            set_force_switched<with_energy>(inverse_r, inverse_r2, epsilon12, rmin, terms);
+        if constexpr (End == VanDerWaalsCutoff::ForceSwitch) {
+            set_force_switched<WithEnergy>(inverse_r, inverse_r2, epsilon12, rmin, terms);
             return;
         }
         const V s = hn::Mul(rmin, inverse_r), s2 = hn::Mul(s, s);
         const V s6 = hn::Mul(hn::Mul(s2, s2), s2), well = hn::Mul(epsilon12, s6);
         terms.a = hn::MulSub(well, s6, well);
         terms.b = hn::Zero(floats);
-        if constexpr (end == VanDerWaalsCutoff::Switch) {
+        if constexpr (End == VanDerWaalsCutoff::Switch) {
             const V y = switching_.place(r2), value = switching_.value(y);
             const V energy = hn::Mul(well, hn::Sub(s6, all(2)));
             terms.a = hn::Mul(terms.a, value);
             terms.b = hn::Mul(hn::Mul(energy, all(-1.0 / 12)), switching_.slope(y));
-            if constexpr (with_energy)
+            if constexpr (WithEnergy)
                 terms.van_der_waals = hn::MulAdd(energy, value, terms.van_der_waals);
-        } else if constexpr (with_energy) {
+        } else if constexpr (WithEnergy) {
             terms.van_der_waals = hn::MulAdd(well, hn::Sub(s6, all(2)), terms.van_der_waals);
         }
     }
@@ -159,7 +159,7 @@ public:
 private:
     // With u = r^-6 and v = r^-3: p = u before m and k12 (u - c^-6) after it, the smaller of the
     // two everywhere; q the same of v. The energy is A (p u - min(p, m^-6) c^-6) and so on.
-    template <bool with_energy>
+    template <bool WithEnergy>
     HWY_INLINE void set_force_switched(V inverse_r, V inverse_r2, V epsilon12, V rmin,
                                        Terms& terms) const {
         const V v = hn::Mul(inverse_r2, inverse_r), u = hn::Mul(v, v);
@@ -169,7 +169,7 @@ private:
         const V pu = hn::Mul(p, u), qv = hn::Mul(q, v), well = hn::Mul(epsilon12, rmin6);
         terms.a = hn::Mul(well, hn::MulSub(rmin6, pu, qv));
         terms.b = hn::Zero(floats);
-        if constexpr (with_energy) {
+        if constexpr (WithEnergy) {
             const V repulsion = hn::NegMulAdd(hn::Min(p, inverse_m6_), inverse_c6_, pu);
             const V attraction = hn::NegMulAdd(hn::Min(q, inverse_m3_), inverse_c3_, qv);
             terms.van_der_waals =
@@ -238,8 +238,7 @@ HWY_INLINE M load_mask(std::uint64_t first, std::uint64_t second, std::uint32_t 
     return hn::LoadMaskBits(floats, bits);
 }
 
-template <ElectrostaticCutoff electrostatic_end, VanDerWaalsCutoff van_der_waals_end,
-          bool with_energy>
+template <ElectrostaticCutoff ElectrostaticEnd, VanDerWaalsCutoff VanDerWaalsEnd, bool WithEnergy>
 class Kernel {
 public:
     explicit HWY_INLINE Kernel(const PairJob& job)
@@ -275,8 +274,8 @@ private:
     HWY_INLINE void sum_cluster(std::size_t c) {
         load_rows(c);
         // Copies: stores to memory cannot change them.
-        const Electrostatics<electrostatic_end> electrostatics = electrostatics_;
-        const VanDerWaals<van_der_waals_end> van_der_waals = van_der_waals_;
+        const Electrostatics<ElectrostaticEnd> electrostatics = electrostatics_;
+        const VanDerWaals<VanDerWaalsEnd> van_der_waals = van_der_waals_;
         Sums sums{nearest2_, hn::Zero(floats), hn::Zero(floats)};
         std::size_t stretches = 0;
         for (std::size_t t = list_.first_plain[c]; t < list_.first_plain[c + 1];) {
@@ -347,7 +346,7 @@ private:
     }
 
     HWY_INLINE void flush_energies(Sums& sums) {
-        if constexpr (with_energy) {
+        if constexpr (WithEnergy) {
             lj_sum_ = hn::Add(
                 lj_sum_, hn::Add(lower_half(sums.van_der_waals), upper_half(sums.van_der_waals)));
             coulomb_sum_ = hn::Add(coulomb_sum_, hn::Add(lower_half(sums.electrostatic),
@@ -357,9 +356,9 @@ private:
         }
     }
 
-    template <bool masked>
-    HWY_INLINE void sum_tile(const Electrostatics<electrostatic_end>& electrostatics,
-                             const VanDerWaals<van_der_waals_end>& van_der_waals, Sums& sums,
+    template <bool IsMasked>
+    HWY_INLINE void sum_tile(const Electrostatics<ElectrostaticEnd>& electrostatics,
+                             const VanDerWaals<VanDerWaalsEnd>& van_der_waals, Sums& sums,
                              std::uint32_t first, std::uint32_t second, std::uint32_t rows,
                              std::uint64_t first_pairs, std::uint64_t second_pairs) {
         const ClusterAtoms& a = atoms_[first];
@@ -386,7 +385,7 @@ private:
                 const V rmin = hn::Add(hn::Set(floats, rows_.half_rmin[r]), half_rmin);
                 V counted2 = distance2;
                 M counts = hn::Lt(distance2, cutoff2_);
-                if constexpr (masked) {
+                if constexpr (IsMasked) {
                     const M pairs = load_mask(first_pairs, second_pairs, r, column);
                     counted2 = hn::IfThenElse(pairs, distance2, all(1e30));
                     counts = hn::And(counts, pairs);
@@ -398,13 +397,13 @@ private:
                 if constexpr (van_der_waals_ends) epsilon12 = hn::IfThenElseZero(counts, epsilon12);
                 sums.nearest2 = hn::Min(sums.nearest2, counted2);
                 // A pair that does not count may be at one place.
-                const V r2 = masked ? hn::Max(distance2, all(1e-2)) : distance2;
+                const V r2 = IsMasked ? hn::Max(distance2, all(1e-2)) : distance2;
                 const V inverse_r = inverse_root(r2), inverse_r2 = hn::Mul(inverse_r, inverse_r);
                 Terms terms{hn::Zero(floats), hn::Zero(floats), sums.van_der_waals,
                             sums.electrostatic};
-                van_der_waals.template set<with_energy>(r2, inverse_r, inverse_r2, epsilon12, rmin,
-                                                        terms);
-                electrostatics.template add<with_energy>(r2, inverse_r, charges, terms);
+                van_der_waals.template set<WithEnergy>(r2, inverse_r, inverse_r2, epsilon12, rmin,
+                                                       terms);
+                electrostatics.template add<WithEnergy>(r2, inverse_r, charges, terms);
                 sums.van_der_waals = terms.van_der_waals;
                 sums.electrostatic = terms.electrostatic;
                 const V gradient = hn::MulAdd(terms.a, inverse_r2, terms.b);
@@ -426,15 +425,15 @@ private:
         }
     }
 
-    static constexpr bool electrostatics_end = electrostatic_end != ElectrostaticCutoff::None;
-    static constexpr bool van_der_waals_ends = van_der_waals_end != VanDerWaalsCutoff::None;
+    static constexpr bool electrostatics_end = ElectrostaticEnd != ElectrostaticCutoff::None;
+    static constexpr bool van_der_waals_ends = VanDerWaalsEnd != VanDerWaalsCutoff::None;
 
     const ClusterList& list_;
     const ClusterAtoms* atoms_;
     ClusterForces* forces_;
     float coulomb_;
-    Electrostatics<electrostatic_end> electrostatics_;
-    VanDerWaals<van_der_waals_end> van_der_waals_;
+    Electrostatics<ElectrostaticEnd> electrostatics_;
+    VanDerWaals<VanDerWaalsEnd> van_der_waals_;
     V cutoff2_;
     std::array<float, 3> centre_{};
     Rows rows_;
@@ -442,25 +441,25 @@ private:
     W lj_sum_, coulomb_sum_;  // the first times 12
 };
 
-template <ElectrostaticCutoff electrostatic_end, VanDerWaalsCutoff van_der_waals_end>
+template <ElectrostaticCutoff ElectrostaticEnd, VanDerWaalsCutoff VanDerWaalsEnd>
 JobSum sum_with_scheme(const PairJob& job) {
     if (job.with_energies)
-        return Kernel<electrostatic_end, van_der_waals_end, true>(job).sum(job.begin, job.end);
-    return Kernel<electrostatic_end, van_der_waals_end, false>(job).sum(job.begin, job.end);
+        return Kernel<ElectrostaticEnd, VanDerWaalsEnd, true>(job).sum(job.begin, job.end);
+    return Kernel<ElectrostaticEnd, VanDerWaalsEnd, false>(job).sum(job.begin, job.end);
 }
 
-template <ElectrostaticCutoff electrostatic_end>
+template <ElectrostaticCutoff ElectrostaticEnd>
 JobSum sum_with_electrostatics(const PairJob& job) {
     using enum VanDerWaalsCutoff;
     switch (job.scheme->van_der_waals) {
         case Switch:
-            return sum_with_scheme<electrostatic_end, Switch>(job);
+            return sum_with_scheme<ElectrostaticEnd, Switch>(job);
         case ForceSwitch:
-            return sum_with_scheme<electrostatic_end, ForceSwitch>(job);
+            return sum_with_scheme<ElectrostaticEnd, ForceSwitch>(job);
         case None:
             break;
     }
-    return sum_with_scheme<electrostatic_end, None>(job);
+    return sum_with_scheme<ElectrostaticEnd, None>(job);
 }
 
 JobSum sum_job(const PairJob& job) {

@@ -32,7 +32,8 @@ Points random_points(std::mt19937& random, int x_count, int y_count, int z_count
     std::uniform_real_distribution<double> uniform(-1, 1);
     Points points;
     for (int i = 0; i < x_count * y_count * z_count; ++i) {
-        const Vec3 cell(i % x_count, i / x_count % y_count, i / x_count / y_count);
+        const int row = i / x_count % y_count, layer = i / x_count / y_count;
+        const Vec3 cell(i % x_count, row, layer);
         const double dx = uniform(random), dy = uniform(random), dz = uniform(random);
         points.positions.push_back(corner + 2.5 * cell + 0.3 * Vec3(dx, dy, dz));
         points.charge.push_back(uniform(random));

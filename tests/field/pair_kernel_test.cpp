@@ -28,8 +28,9 @@ Gas random_gas(std::size_t atoms) {
     std::uniform_real_distribution<double> uniform(-1, 1);
     Gas gas;
     for (std::size_t i = 0; i < atoms; ++i) {
-        const double x = static_cast<double>(i % 7), y = static_cast<double>(i / 7 % 7),
-                     z = static_cast<double>(i / 49);
+        const std::size_t row = i / 7 % 7, layer = i / 49;
+        const auto x = static_cast<double>(i % 7), y = static_cast<double>(row),
+                   z = static_cast<double>(layer);
         const double dx = uniform(random), dy = uniform(random), dz = uniform(random);
         gas.positions.push_back(2.5 * Vec3(x, y, z) + 0.4 * Vec3(dx, dy, dz));
         gas.charge.push_back(uniform(random));
