@@ -54,7 +54,7 @@ std::string machine_name() {
 BenchRow bench_step(const std::string& scene_name, Simulation simulation) {
     constexpr int batches = 101;
     // Steps too short for the clock are timed together.
-    const int batch = simulation.relaxed ? 1 : 200;
+    const int batch = moves_in_space(simulation) ? 1 : 200;
     BenchRow row{
         "step/" + scene_name, {}, "us", {}, "relative", "central difference of the energy"};
     TouchModel felt = build_touch_model(simulation, {});
@@ -71,7 +71,8 @@ BenchRow bench_step(const std::string& scene_name, Simulation simulation) {
     }
     double worst = 0;
     constexpr double h = 1e-4;
-    const double nearest = simulation.relaxed ? -0.5 : 2.4, farthest = simulation.relaxed ? 0.5 : 8;
+    const double nearest = moves_in_space(simulation) ? -0.5 : 2.4,
+                 farthest = moves_in_space(simulation) ? 0.5 : 8;
     for (double distance = nearest; distance < farthest; distance += 0.1) {
         const double slope = (force_along_line_at(simulation, distance + h).energy -
                               force_along_line_at(simulation, distance - h).energy) /

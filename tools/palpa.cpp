@@ -7,6 +7,7 @@
 #include "tools/bench.h"
 #include "tools/energy.h"
 #include "tools/prepare.h"
+#include "tools/relax.h"
 #include "tools/render.h"
 #include "tools/run.h"
 
@@ -256,6 +257,16 @@ void add_prepare(CLI::App& program, palpa::PrepareOptions& options) {
     prepare.add_flag("--json", options.json, "print counts and warnings as JSON");
 }
 
+void add_relax(CLI::App& program, palpa::RelaxOptions& options) {
+    CLI::App& relax =
+        *program.add_subcommand("relax", "Bring the flexible molecules of a scene to rest");
+    relax.add_option("scene", options.scene, "scene folder or file")->required();
+    relax.add_option("-o,--output", options.coordinates,
+                     "CHARMM coordinates (.crd) to write: where they rest");
+    relax.add_flag("--json", options.json, "print JSON");
+    add_set_option(relax, options.settings);
+}
+
 int run_program(int argc, char** argv) {
     CLI::App program("Palpa: feel molecules", "palpa");
     program.require_subcommand(1);
@@ -266,8 +277,10 @@ int run_program(int argc, char** argv) {
     palpa::RenderOptions render;
     palpa::EnergyOptions energy;
     palpa::PrepareOptions prepare;
+    palpa::RelaxOptions relax;
     add_energy(program, energy);
     add_prepare(program, prepare);
+    add_relax(program, relax);
     add_run(program, run);
     add_bench(program, bench);
     add_render(program, render);
@@ -289,6 +302,7 @@ int run_program(int argc, char** argv) {
     }
     if (program.got_subcommand("energy")) return palpa::energy_command(energy);
     if (program.got_subcommand("prepare")) return palpa::prepare_command(prepare);
+    if (program.got_subcommand("relax")) return palpa::relax_command(relax);
     if (program.got_subcommand("render")) return palpa::render_command(render);
     return program.got_subcommand("run") ? palpa::run_command(run) : palpa::bench_command(bench);
 }

@@ -38,10 +38,32 @@ void show_progress(double share) {
     std::fflush(stderr);
 }
 
+// What moves by itself, and how it came to rest.
+void print_flexible(const Simulation& simulation) {
+    const Flexible& flexible = *simulation.flexible;
+    const JointRelaxReport& r = flexible.relaxed;
+    fmt::print("  freedom     {} degrees: {} joints, {} of bases; {} more of the hand\n",
+               flexible.model.coordinates, flexible.joints,
+               flexible.model.coordinates - static_cast<Eigen::Index>(flexible.joints),
+               build_touch_model(simulation, {}).active_freedom - flexible.model.coordinates);
+    if (flexible.joints_held > 0) {
+        fmt::print("  region      {} joints further away are held\n", flexible.joints_held);
+    }
+    fmt::print(
+        "  relaxed     {:.3f} to {:.3f} kcal/mol in {} steps, moved {:.3f} Å at most, rms "
+        "force {:.3g} kcal/mol left\n",
+        r.energy_before, r.energy_after, r.steps, r.largest_move, r.rms_force);
+    const TouchModel start = build_touch_model(simulation, {});
+    fmt::print("  start       {:.3f} kcal/mol, {:.3f} nN\n", start.potential_kcal_per_mol,
+               start.force_newton.norm() * 1e9);
+}
+
 // What the molecule will meet on its line, found by looking along it.
 void print_line(const SceneDescription& scene, const Simulation& simulation) {
     constexpr double nN = units::newton_per_kcal_per_mol_angstrom * 1e9;
-    if (simulation.relaxed) {
+    if (simulation.flexible) {
+        print_flexible(simulation);
+    } else if (simulation.relaxed) {
         const RelaxReport& r = *simulation.relaxed;
         const TouchModel start = build_touch_model(simulation, {});
         fmt::print(
@@ -73,7 +95,7 @@ void print_line(const SceneDescription& scene, const Simulation& simulation) {
     }
     if (const std::optional<double> wall =
             repulsion_distance(simulation, scene.hand.peak_nN / nN,
-                               simulation.relaxed ? grabbed_distance(simulation) : 30)) {
+                               moves_in_space(simulation) ? grabbed_distance(simulation) : 30)) {
         fmt::print("  repulsion   {} nN at {:.3f} Å, felt as {:.3f} N\n", scene.hand.peak_nN, *wall,
                    hand_force(simulation.laws.force, scene.hand.peak_nN * 1e-9));
     }

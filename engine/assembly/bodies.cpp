@@ -32,7 +32,8 @@ std::size_t TorsionBodies::molecules() const noexcept {
         std::ranges::count(bodies, no_body, [](const Body& body) { return body.parent; }));
 }
 
-TorsionBodies build_bodies(const Connectivity& connectivity, const Joints& joints) {
+TorsionBodies build_bodies(const Connectivity& connectivity, const Joints& joints,
+                           std::span<const std::uint32_t> base_atoms) {
     const std::size_t atoms = connectivity.mass.size();
     const Neighbours neighbours(atoms, connectivity.bonds);
     const std::vector<Motion> motions = motions_of(connectivity, joints);
@@ -60,15 +61,17 @@ TorsionBodies build_bodies(const Connectivity& connectivity, const Joints& joint
             }
         }
     };
-    for (std::uint32_t atom = 0; atom < atoms; ++atom) {
-        if (result.body_of[atom] != no_body) continue;
+    const auto add_molecule = [&](std::uint32_t atom) {
+        if (result.body_of[atom] != no_body) return;
         add_body({}, atom);
         while (!waiting.empty()) {
             const Body next = waiting.back();
             waiting.pop_back();
             add_body(next, next.axis[1]);
         }
-    }
+    };
+    for (const std::uint32_t atom : base_atoms) add_molecule(atom);
+    for (std::uint32_t atom = 0; atom < atoms; ++atom) add_molecule(atom);
     return result;
 }
 

@@ -34,7 +34,10 @@ struct TorsionBodies {
     std::size_t degrees_of_freedom() const noexcept { return joints() + 6 * molecules(); }
 };
 
-// Molecules are what is bonded, in the order of their first atoms, which their bases hold.
-TorsionBodies build_bodies(const Connectivity& connectivity, const Joints& joints);
+// Molecules are what is bonded: first those of `base_atoms`, which their bases hold, then the
+// others in the order of their first atoms, which theirs do. Of two base atoms of one molecule the
+// first counts.
+TorsionBodies build_bodies(const Connectivity& connectivity, const Joints& joints,
+                           std::span<const std::uint32_t> base_atoms = {});
 
 }  // namespace palpa

@@ -9,10 +9,15 @@
 #include <vector>
 
 namespace palpa {
-
 namespace {
 
-// All terms but the plain pairs.
+void add_pairs(const NonbondedEnergy& pairs, EnergyTerms& energy) noexcept {
+    energy.lj += pairs.van_der_waals;
+    energy.coulomb += pairs.electrostatic;
+}
+
+}  // namespace
+
 EnergyTerms add_bonded_forces(const Topology& topology, const NonbondedSettings& settings,
                               std::span<const Vec3> positions, std::span<Vec3> forces) noexcept {
     PALPA_ASSERT(positions.size() == topology.size() && forces.size() == topology.size());
@@ -28,13 +33,6 @@ EnergyTerms add_bonded_forces(const Topology& topology, const NonbondedSettings&
     energy.coulomb14 = pairs14.electrostatic;
     return energy;
 }
-
-void add_pairs(const NonbondedEnergy& pairs, EnergyTerms& energy) noexcept {
-    energy.lj += pairs.van_der_waals;
-    energy.coulomb += pairs.electrostatic;
-}
-
-}  // namespace
 
 EnergyTerms add_forces(const Topology& topology, const NonbondedSettings& settings,
                        std::span<const Vec3> positions, std::span<Vec3> forces) noexcept {

@@ -2,11 +2,11 @@
 
 #include "core/assertion.h"
 #include "forces/pair_list.h"
+#include "math/curvature_memory.h"
 
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <utility>
 
 namespace palpa {
@@ -92,62 +92,6 @@ Vector find_compliance(const std::vector<Vec3>& forces, double largest_step) {
     return compliance;
 }
 
-// What the last steps say about the curvature.
-class Memory {
-public:
-    bool is_empty() const noexcept { return steps_.empty(); }
-
-    void clear() noexcept {
-        steps_.clear();
-        boldness_ = 1;
-    }
-
-    // A step s that lowered the forces by y. Steps along which the energy bends down say nothing
-    // about a minimum, but that the next may be longer.
-    void add(Vector s, Vector y) {
-        constexpr double least = 1e-8;
-        const double bend = s.dot(y);
-        if (!(bend > least * s.norm() * y.norm())) {
-            boldness_ *= 2;
-            return;
-        }
-        boldness_ = 1;
-        if (steps_.size() == most) steps_.pop_front();
-        steps_.push_back({std::move(s), std::move(y), 1.0 / bend});
-    }
-
-    // The two loops of algorithm 7.4: forces times the inverse of the estimated curvature.
-    Vector find_direction(const std::vector<Vec3>& forces, const Vector& compliance) const {
-        Vector d = flat(forces);
-        std::vector<double> along(steps_.size());
-        for (std::size_t i = steps_.size(); i-- > 0;) {
-            along[i] = steps_[i].inverse_bend * steps_[i].s.dot(d);
-            d -= along[i] * steps_[i].y;
-        }
-        d.array() *= compliance.array();
-        if (steps_.empty()) {
-            d *= boldness_;
-        } else {
-            const Vector& y = steps_.back().y;
-            d /= steps_.back().inverse_bend * (y.array().square() * compliance.array()).sum();
-        }
-        for (std::size_t i = 0; i < steps_.size(); ++i) {
-            d += (along[i] - steps_[i].inverse_bend * steps_[i].y.dot(d)) * steps_[i].s;
-        }
-        return d;
-    }
-
-private:
-    static constexpr std::size_t most = 8;
-
-    struct Step {
-        Vector s, y;          // Å, kcal/mol/Å
-        double inverse_bend;  // 1/(s·y)
-    };
-    std::deque<Step> steps_;
-    double boldness_ = 1;  // of steps without a memory
-};
-
 // A direction along which no atom moves farther than the largest step. Each atom's part is cut on
 // its own, so that one with far to go does not hold back the others; all are scaled alike where
 // that points farther down.
@@ -228,11 +172,14 @@ MinimiseReport minimise(const Topology& topology, const MinimiseSettings& settin
     report.restraint_before = here.restraint;
     if (on_step) on_step(0, here.energy());
 
-    Memory memory;
+    CurvatureMemory memory;
     measure_forces(here, restraints, report);
     while (report.rms_force > settings.force_tolerance && report.steps < settings.steps) {
         const Vector compliance = find_compliance(here.forces, settings.largest_step);
-        const Vector direction = bound_direction(memory.find_direction(here.forces, compliance),
+        const auto yield = [&](const Vector& forces) -> Vector {
+            return compliance.array() * forces.array();
+        };
+        const Vector direction = bound_direction(memory.find_direction(flat(here.forces), yield),
                                                  here.forces, settings.largest_step);
         if (!find_lower(landscape, here, direction, restraints, next)) {
             if (memory.is_empty()) {

@@ -5,7 +5,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace palpa {
@@ -25,5 +27,11 @@ struct Connectivity {
     std::vector<std::array<std::uint32_t, 4>> impropers;
     std::vector<std::array<std::uint32_t, 8>> cmaps;  // two dihedrals each
 };
+
+// Adds the atoms of one segment behind those of `to`, in their order, and the terms among them.
+// Returns a bond that leads out of the segment, if there is one; it and others are left out.
+std::optional<std::array<std::uint32_t, 2>> append_segment(const Connectivity& from,
+                                                           std::string_view segment,
+                                                           Connectivity& to);
 
 }  // namespace palpa

@@ -16,8 +16,20 @@
 namespace palpa {
 
 // Every choice of a scene file: its names stand in the order of the enumerators.
-enum class Motion { Fixed, AlongX, Translate };
-inline constexpr std::array<std::string_view, 3> motion_names{"fixed", "along-x", "translate"};
+enum class Motion { Fixed, AlongX, Translate, TranslateAndTurn, Free };
+inline constexpr std::array<std::string_view, 5> motion_names{"fixed", "along-x", "translate",
+                                                              "translate-and-turn", "free"};
+
+enum class Shape { Rigid, Flexible };
+inline constexpr std::array<std::string_view, 2> shape_names{"rigid", "flexible"};
+
+enum class PairPrecision { Double, Fast };
+inline constexpr std::array<std::string_view, 2> pair_precision_names{"double", "fast"};
+
+// In the order of statics' RelaxMethod.
+enum class StaticsMethod { QuasiStatic, LimitedMemory, InverseMass };
+inline constexpr std::array<std::string_view, 3> statics_method_names{
+    "quasi-static", "limited-memory", "inverse-mass"};
 
 enum class Stroke { Hold, InOut, Path };
 inline constexpr std::array<std::string_view, 3> stroke_names{"hold", "in-out", "path"};
@@ -55,11 +67,34 @@ struct MoleculeDescription {
     std::string segment;
     std::string reference_atom;  // that stands for the molecule's place: "OH2", or "25 CG"
     Motion motion = Motion::Fixed;
+    Shape shape = Shape::Rigid;
+};
+
+// Which bonds of flexible molecules turn.
+struct JointsDescription {
+    bool hydroxyl = true, thiol = true, ammonium = true;
+    bool methyl = false, amide = false, amide_nh2 = false, guanidinium_nh2 = false;
+    std::vector<std::string> turn, rigid, springs;  // bonds: "A 25 CB CG", "A 25 C 26 N"
+    std::optional<double> within_angstrom;          // of `around`; unset: everywhere
+    std::string around;                             // a molecule; empty: the one in the hand
+};
+
+// How flexible molecules come to rest.
+struct StaticsDescription {
+    StaticsMethod method = StaticsMethod::QuasiStatic;
+    std::int64_t steps = 1;  // in each period
+    double largest_move_angstrom = 0.05;
+    PairPrecision pairs = PairPrecision::Fast;
+    std::optional<double> cutoff_angstrom;  // unset: all pairs
+    double rest_kcal_per_mol = 0.05;
+    std::int64_t relax_steps = 4000;
 };
 
 struct GrabDescription {
     std::string molecule;       // that the hand moves
     std::string measured_from;  // molecule whose reference atom distances start at
+    std::string atom;           // "25 CA", or a residue "25": held by a spring; empty: no spring
+    double spring_kcal_per_mol_angstrom2 = 20;
 };
 
 struct HandDescription {
@@ -107,6 +142,8 @@ struct SceneDescription {
     std::string title, about;
     ForceFieldDescription force_field;
     std::vector<MoleculeDescription> molecules;  // in the order of the file
+    JointsDescription joints;
+    StaticsDescription statics;
     GrabDescription grab;
     HandDescription hand;
     DeviceDescription device;
@@ -122,6 +159,9 @@ struct SceneDescription {
 
     // The place of a field for messages: its own, or the file where the default holds.
     TextPlace place_of(std::string_view key) const;
+
+    // Whether something moves by itself: joints, a molecule that turns, one that is free.
+    bool has_statics() const;
 };
 
 }  // namespace palpa

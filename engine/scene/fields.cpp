@@ -50,9 +50,15 @@ void visit_molecule(FieldVisitor& v, MoleculeDescription& m) {
            m.reference_atom);
     choose(v,
            {.key = "motion",
-            .meaning = "what the molecule may do without turning: nothing, move along x, or move "
-                       "in space after it was relaxed on loading"},
+            .meaning = "what the hand may do with the molecule without turning it: nothing, move "
+                       "it along x, or in space after it was relaxed on loading; "
+                       "translate-and-turn: it turns by itself meanwhile, about its reference "
+                       "atom; free: it moves and turns by itself, no hand holds it"},
            motion_names, m.motion);
+    choose(v,
+           {.key = "shape",
+            .meaning = "whether its joints turn by themselves, those that [joints] names"},
+           shape_names, m.shape);
     v.leave_table();
 }
 
@@ -79,6 +85,86 @@ void visit_grab(FieldVisitor& v, GrabDescription& g) {
             .meaning = "name of the molecule whose reference atom distances are measured from",
             .required = true},
            g.measured_from);
+    v.text({.key = "atom",
+            .meaning = "atom of that molecule (\"25 CA\") or residue (\"25\", its centre of mass) "
+                       "that the hand pulls at by a spring; unset: it moves the whole molecule"},
+           g.atom);
+    v.real({.key = "spring_kcal_per_mol_angstrom2",
+            .meaning = "stiffness k of that spring, E = k x²/2",
+            .lowest = 1e-3,
+            .highest = 1e4},
+           g.spring_kcal_per_mol_angstrom2);
+    v.leave_table();
+}
+
+void visit_joints(FieldVisitor& v, JointsDescription& j) {
+    v.enter_table({.key = "joints",
+                   .meaning = "which bonds of flexible molecules turn, beside phi, psi and chi"});
+    v.flag({.key = "hydroxyl", .meaning = "X-OH"}, j.hydroxyl);
+    v.flag({.key = "thiol", .meaning = "X-SH"}, j.thiol);
+    v.flag({.key = "ammonium", .meaning = "X-NH3, and X-NH2 where X is no planar carbon"},
+           j.ammonium);
+    v.flag({.key = "methyl", .meaning = "X-CH3"}, j.methyl);
+    v.flag({.key = "amide", .meaning = "omega, and C-N of carbamates and ureas"}, j.amide);
+    v.flag({.key = "amide_nh2", .meaning = "C-NH2 of amides and on aromatic rings"}, j.amide_nh2);
+    v.flag({.key = "guanidinium_nh2", .meaning = "C-NH2 of guanidinium and amidinium"},
+           j.guanidinium_nh2);
+    v.texts({.key = "turn",
+             .meaning = "bonds that turn whatever the rules say, \"SEGMENT RESIDUE ATOM ATOM\", or "
+                        "\"SEGMENT RESIDUE ATOM RESIDUE ATOM\""},
+            j.turn);
+    v.texts({.key = "rigid", .meaning = "bonds that do not turn"}, j.rigid);
+    v.texts({.key = "springs",
+             .meaning = "bonds of rings that are opened, and held by their force field's terms "
+                        "alone, as disulphides are"},
+            j.springs);
+    v.optional_real({.key = "within_angstrom",
+                     .meaning = "only residues turn of which an atom is as near as this to "
+                                "`around` on loading; unset: all",
+                     .lowest = 0,
+                     .highest = 1e3},
+                    j.within_angstrom);
+    v.text({.key = "around", .meaning = "name of a molecule; unset: the one in the hand"},
+           j.around);
+    v.leave_table();
+}
+
+void visit_statics(FieldVisitor& v, StaticsDescription& s) {
+    v.enter_table({.key = "statics", .meaning = "how flexible molecules come to rest"});
+    choose(v,
+           {.key = "method",
+            .meaning = "the paper's step, or a minimiser: limited-memory BFGS with each joint on "
+                       "its own, or coupled by the mass matrix"},
+           statics_method_names, s.method);
+    v.integer({.key = "steps",
+               .meaning = "of the method, in each period of the simulation",
+               .lowest = 1,
+               .highest = 10000},
+              s.steps);
+    v.real({.key = "largest_move_angstrom",
+            .meaning = "that an atom may go in one step",
+            .lowest = 1e-4,
+            .highest = 1},
+           s.largest_move_angstrom);
+    choose(v,
+           {.key = "pairs",
+            .meaning = "all in double, or the non-bonded pairs in single precision, ten times "
+                       "faster"},
+           pair_precision_names, s.pairs);
+    v.optional_real({.key = "cutoff_angstrom",
+                     .meaning = "where forces end, switched off over the last 2 Å; unset: never",
+                     .lowest = 4,
+                     .highest = 1e3},
+                    s.cutoff_angstrom);
+    v.real({.key = "rest_kcal_per_mol",
+            .meaning = "on loading all is relaxed until the rms force along the coordinates "
+                       "(per radian and per Å) is below this",
+            .lowest = 1e-6,
+            .highest = 1e6},
+           s.rest_kcal_per_mol);
+    v.integer(
+        {.key = "relax_steps", .meaning = "steps for that, at most", .lowest = 0, .highest = 1e6},
+        s.relax_steps);
     v.leave_table();
 }
 
@@ -290,11 +376,17 @@ public:
         add(field, fmt::format("three numbers{}", range(field)),
             fmt::format("[{}]", fmt::join(value, ", ")));
     }
+    void flag(const Field& field, bool& value) override {
+        add(field, "true, false", fmt::format("{}", value));
+    }
     void integer(const Field& field, std::int64_t& value) override {
         add(field, fmt::format("whole number{}", range(field)), fmt::format("{}", value));
     }
     void text(const Field& field, std::string& value) override {
         add(field, "text", fmt::format("\"{}\"", value));
+    }
+    void texts(const Field& field, std::vector<std::string>& /*value*/) override {
+        add(field, "list of texts", "[]");
     }
     void choice(const Field& field, std::span<const std::string_view> names,
                 std::size_t& value) override {
@@ -336,6 +428,8 @@ void visit_scene(FieldVisitor& v, SceneDescription& scene) {
     v.text({.key = "about", .meaning = "what it shows, in a few sentences"}, scene.about);
     visit_force_field(v, scene.force_field);
     visit_molecules(v, scene.molecules);
+    visit_joints(v, scene.joints);
+    visit_statics(v, scene.statics);
     visit_grab(v, scene.grab);
     visit_hand(v, scene.hand);
     visit_device(v, scene.device);

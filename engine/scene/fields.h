@@ -39,8 +39,10 @@ public:
     virtual void real(const Field& field, double& value) = 0;
     virtual void optional_real(const Field& field, std::optional<double>& value) = 0;
     virtual void triple(const Field& field, std::array<double, 3>& value) = 0;
+    virtual void flag(const Field& field, bool& value) = 0;
     virtual void integer(const Field& field, std::int64_t& value) = 0;
     virtual void text(const Field& field, std::string& value) = 0;
+    virtual void texts(const Field& field, std::vector<std::string>& value) = 0;
     virtual void choice(const Field& field, std::span<const std::string_view> names,
                         std::size_t& value) = 0;
     virtual void file(const Field& field, std::filesystem::path& value) = 0;

@@ -187,6 +187,13 @@ public:
         std::copy(read.begin(), read.end(), value.begin());
     }
 
+    void flag(const Field& field, bool& value) override {
+        const toml::node* const node = find_value(field);
+        if (!node) return;
+        if (!node->is_boolean()) return problem(*node, expected(field, *node, "true or false"));
+        value = node->ref<bool>();
+    }
+
     void integer(const Field& field, std::int64_t& value) override {
         const toml::node* const node = find_value(field);
         if (!node) return;
@@ -206,6 +213,21 @@ public:
             return problem(*node, expected(field, *node, "text that is not empty"));
         }
         value = node->ref<std::string>();
+    }
+
+    void texts(const Field& field, std::vector<std::string>& value) override {
+        const toml::node* const node = find_value(field);
+        if (!node) return;
+        const toml::array* const list = node->as_array();
+        if (!list) return problem(*node, expected(field, *node, "a list of texts, [\"...\"]"));
+        value.clear();
+        for (const toml::node& entry : *list) {
+            if (!entry.is_string()) {
+                return problem(entry, fmt::format("an entry of '{}' is {}; expected text in quotes",
+                                                  full_key(field.key), kind_of(entry)));
+            }
+            value.push_back(entry.ref<std::string>());
+        }
     }
 
     void choice(const Field& field, std::span<const std::string_view> names,
@@ -352,41 +374,45 @@ private:
 
 // ---- what fields must be together ------------------------------------------------------------
 
-void check_grab(const SceneDescription& scene, Reader& reader) {
+std::string_view name_of(Motion motion) { return motion_names[static_cast<std::size_t>(motion)]; }
+
+// The molecule that a field names; null where the problem is told.
+const MoleculeDescription* find_named(const SceneDescription& scene, Reader& reader,
+                                      const std::string& key, const std::string& name) {
+    if (name.empty()) return nullptr;  // told already
     std::vector<std::string_view> names;
-    for (const MoleculeDescription& molecule : scene.molecules) names.emplace_back(molecule.name);
-    const auto check = [&](const std::string& key, const std::string& name, bool moves,
-                           const char* what) {
-        const auto found =
-            std::find_if(scene.molecules.begin(), scene.molecules.end(),
-                         [&](const MoleculeDescription& m) { return m.name == name; });
-        if (name.empty()) return false;  // told already
-        if (found == scene.molecules.end()) {
-            reader.problem(
-                reader.place_of_key(key),
-                fmt::format("'{}' is \"{}\", which is no molecule of this scene; "
-                            "expected one of {}{}",
-                            key, name, fmt::join(names, ", "), near_name_hint(name, names)));
-        } else if ((found->motion != Motion::Fixed) != moves) {
-            reader.problem(
-                reader.place_of_key(key),
-                fmt::format("'{}' is \"{}\", whose motion is \"{}\"; expected {}", key, name,
-                            motion_names[static_cast<std::size_t>(found->motion)], what));
-        } else {
-            return true;
-        }
-        return false;
-    };
-    check("grab.measured_from", scene.grab.measured_from, false, "a fixed molecule");
-    // Without the right molecule in hand, what the others do is no problem of its own.
-    if (!check("grab.molecule", scene.grab.molecule, true,
-               "a molecule that moves, along-x or translate")) {
-        return;
+    for (const MoleculeDescription& molecule : scene.molecules) {
+        if (molecule.name == name) return &molecule;
+        names.emplace_back(molecule.name);
     }
-    const auto grabbed =
-        std::find_if(scene.molecules.begin(), scene.molecules.end(),
-                     [&](const MoleculeDescription& m) { return m.name == scene.grab.molecule; });
-    const bool along_x = grabbed->motion == Motion::AlongX;
+    reader.problem(reader.place_of_key(key),
+                   fmt::format("'{}' is \"{}\", which is no molecule of this scene; "
+                               "expected one of {}{}",
+                               key, name, fmt::join(names, ", "), near_name_hint(name, names)));
+    return nullptr;
+}
+
+// Whether the hand can do something with the molecule.
+bool check_grabbed(const SceneDescription& scene, const MoleculeDescription& grabbed,
+                   Reader& reader) {
+    const bool by_spring = !scene.grab.atom.empty();
+    const bool yields = grabbed.motion == Motion::Free ||
+                        (grabbed.motion == Motion::Fixed && grabbed.shape == Shape::Flexible);
+    const bool is_moved = grabbed.motion == Motion::AlongX || grabbed.motion == Motion::Translate ||
+                          grabbed.motion == Motion::TranslateAndTurn;
+    if (by_spring ? yields : is_moved) return true;
+    reader.problem(
+        reader.place_of_key("grab.molecule"),
+        fmt::format("'grab.molecule' is \"{}\", whose motion is \"{}\"; expected {}",
+                    scene.grab.molecule, name_of(grabbed.motion),
+                    by_spring ? "a free molecule, or one that is fixed and flexible: the hand "
+                                "pulls at it by a spring (grab.atom)"
+                              : "a molecule that moves, along-x, translate or "
+                                "translate-and-turn"));
+    return false;
+}
+
+void check_start(const SceneDescription& scene, bool along_x, Reader& reader) {
     const bool has_offset = scene.hand.start_offset_angstrom != std::array<double, 3>{};
     if (along_x && has_offset) {
         reader.problem(reader.place_of_key("hand.start_offset_angstrom"),
@@ -398,14 +424,42 @@ void check_grab(const SceneDescription& scene, Reader& reader) {
                        "'hand.start_angstrom' is for a molecule that moves along x; expected "
                        "hand.start_offset_angstrom");
     }
+}
+
+void check_grab(const SceneDescription& scene, Reader& reader) {
+    const MoleculeDescription* const origin =
+        find_named(scene, reader, "grab.measured_from", scene.grab.measured_from);
+    if (origin && origin->motion != Motion::Fixed) {
+        reader.problem(
+            reader.place_of_key("grab.measured_from"),
+            fmt::format("'grab.measured_from' is \"{}\", whose motion is \"{}\"; expected a "
+                        "fixed molecule",
+                        scene.grab.measured_from, name_of(origin->motion)));
+    }
+    // Without the right molecule in hand, what the others do is no problem of its own.
+    const MoleculeDescription* const grabbed =
+        find_named(scene, reader, "grab.molecule", scene.grab.molecule);
+    if (!grabbed || !check_grabbed(scene, *grabbed, reader)) return;
+    check_start(scene, grabbed->motion == Motion::AlongX, reader);
     for (const MoleculeDescription& molecule : scene.molecules) {
-        if (molecule.motion != Motion::Fixed && molecule.name != scene.grab.molecule) {
-            const std::string key = "molecules." + molecule.name + ".motion";
+        const std::string key = "molecules." + molecule.name + ".motion";
+        const bool by_itself = molecule.motion == Motion::Fixed || molecule.motion == Motion::Free;
+        if (!by_itself && &molecule != grabbed) {
+            reader.problem(
+                reader.place_of_key(key),
+                fmt::format("'{}' is \"{}\", but the hand moves only grab.molecule; expected "
+                            "fixed or free",
+                            key, name_of(molecule.motion)));
+        }
+        if (molecule.motion == Motion::AlongX && scene.has_statics()) {
             reader.problem(reader.place_of_key(key),
-                           fmt::format("'{}' is \"{}\", but only grab.molecule moves", key,
-                                       motion_names[static_cast<std::size_t>(molecule.motion)]));
+                           fmt::format("'{}' is \"along-x\" beside something that moves by "
+                                       "itself; expected translate or translate-and-turn",
+                                       key));
         }
     }
+    if (!scene.joints.around.empty())
+        find_named(scene, reader, "joints.around", scene.joints.around);
 }
 
 void check_ranges(const SceneDescription& scene, Reader& reader) {

@@ -59,10 +59,16 @@ public:
         add(field, fmt::format("[{}, {}, {}]", format_real(value[0]), format_real(value[1]),
                                format_real(value[2])));
     }
+    void flag(const Field& field, bool& value) override { add(field, fmt::format("{}", value)); }
     void integer(const Field& field, std::int64_t& value) override {
         add(field, fmt::format("{}", value));
     }
     void text(const Field& field, std::string& value) override { add(field, in_quotes(value)); }
+    void texts(const Field& field, std::vector<std::string>& value) override {
+        std::vector<std::string> texts;
+        for (const std::string& text : value) texts.push_back(in_quotes(text));
+        add(field, fmt::format("[{}]", fmt::join(texts, ", ")));
+    }
     void choice(const Field& field, std::span<const std::string_view> names,
                 std::size_t& value) override {
         add(field, in_quotes(names[value]));

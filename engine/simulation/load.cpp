@@ -1,6 +1,8 @@
 // Once per scene: files to atoms, atoms to entities, the grabbed molecule to its start.
 #include "charmm/assign.h"
+#include "charmm/build_topology.h"
 #include "charmm/force_field.h"
+#include "charmm/generate.h"
 #include "core/load_error.h"
 #include "core/text.h"
 #include "core/units.h"
@@ -90,11 +92,48 @@ Entity add_molecule(const MoleculeDescription& molecule, const ForceField& force
     const Entity entity = simulation.world.create();
     simulation.world.set(entity, Molecule{molecule.name, range,
                                           find_reference_atom(molecule, simulation.atoms, range)});
-    if (molecule.motion == Motion::AlongX) simulation.world.set(entity, Guide{});
-    if (molecule.motion == Motion::Translate) {
-        simulation.world.set(entity, Guide{.freedom = 3, .projector = Mat3::Identity()});
-    }
     return entity;
+}
+
+// Atoms and terms of all molecules, in the order of the table.
+Connectivity build_scene_connectivity(const std::vector<const MoleculeDescription*>& molecules,
+                                      const ForceField& force_field, Files& files) {
+    Connectivity all;
+    for (const MoleculeDescription* const molecule : molecules) {
+        const bool has_topology = !molecule->topology.empty();
+        const Connectivity& from =
+            has_topology ? find_or_read(files.connectivities, molecule->topology, read_psf)
+                         : find_or_read(files.connectivities, molecule->structure,
+                                        [&](const std::filesystem::path& path) {
+                                            return build_connectivity(force_field,
+                                                                      files.structures.at(path));
+                                        });
+        const auto out = append_segment(from, molecule->segment, all);
+        if (!out) continue;
+        throw LoadError(
+            {from.file},
+            fmt::format("atoms {} and {} are bonded, across segments; expected "
+                        "molecules that are not bonded to others, where any moves by "
+                        "itself",
+                        to_string(from.names[(*out)[0]]), to_string(from.names[(*out)[1]])));
+    }
+    return all;
+}
+
+void load_flexible(const SceneDescription& scene, const ForceField& force_field, Files& files,
+                   const std::vector<const MoleculeDescription*>& molecules,
+                   const std::vector<Entity>& entities, const RelaxProgressFunction& on_relax,
+                   Simulation& simulation) {
+    const Connectivity connectivity = build_scene_connectivity(molecules, force_field, files);
+    std::vector<FlexiblePart> parts;
+    for (std::size_t i = 0; i < molecules.size(); ++i) {
+        const Molecule& molecule = *simulation.world.find<Molecule>(entities[i]);
+        parts.push_back({molecules[i], molecule.atoms, molecule.reference_atom});
+    }
+    simulation.flexible =
+        build_flexible(scene, connectivity, build_topology(connectivity, force_field),
+                       simulation.atoms.positions, parts, on_relax);
+    simulation.atoms.positions = simulation.flexible->state.positions;
 }
 
 std::vector<ReplacedPair> build_replaced_pairs(const ForceField& force_field,
@@ -118,16 +157,6 @@ std::vector<const MoleculeDescription*> grabbed_first(const SceneDescription& sc
         return m->name == scene.grab.molecule;
     });
     return order;
-}
-
-Vec3 centre_of_mass(const AtomTable& atoms, AtomRange range) {
-    Vec3 sum = Vec3::Zero();
-    double mass = 0;
-    for (std::uint32_t i = range.first; i < range.first + range.count; ++i) {
-        sum += atoms.mass[i] * atoms.positions[i];
-        mass += atoms.mass[i];
-    }
-    return mass > 0 ? Vec3(sum / mass) : atoms.positions[range.first];
 }
 
 void relax_grabbed(const SceneDescription& scene, const Molecule& grabbed, Simulation& simulation) {
@@ -166,14 +195,15 @@ void start_grabbed(const SceneDescription& scene, Simulation& simulation) {
     const Molecule& origin = *simulation.world.find<Molecule>(grab.measured_from);
     Guide& guide = *simulation.world.find<Guide>(grab.molecule);
     const bool on_line = guide.freedom == 1;
-    if (!on_line) relax_grabbed(scene, grabbed, simulation);
+    if (!on_line && !simulation.flexible) relax_grabbed(scene, grabbed, simulation);
 
-    const Vec3 reference = simulation.atoms.positions[grabbed.reference_atom];
+    simulation.anchor = simulation.atoms.positions[origin.reference_atom];
+    const Vec3 reference = simulation.flexible ? find_held(*simulation.flexible)
+                                               : simulation.atoms.positions[grabbed.reference_atom];
     for (std::uint32_t i = 0; i < grabbed.atoms.count; ++i) {
         simulation.grabbed_shape.push_back(simulation.atoms.positions[i] - reference);
     }
-    simulation.grabbed_centre = centre_of_mass(simulation.atoms, grabbed.atoms) - reference;
-    const Vec3 from_origin = reference - simulation.atoms.positions[origin.reference_atom];
+    const Vec3 from_origin = reference - simulation.anchor;
     if (!on_line) {
         const Vec3 offset(scene.hand.start_offset_angstrom.data());
         guide.line_origin = from_origin + Vec3(0, offset.y(), offset.z());
@@ -221,7 +251,7 @@ CouplingLaws build_coupling_laws(const CouplingDescription& c) {
     return {ConstantForceLaw{0}, constant_displacement};
 }
 
-Simulation load_simulation(const SceneDescription& scene) {
+Simulation load_simulation(const SceneDescription& scene, const RelaxProgressFunction& on_relax) {
     Simulation simulation(build_coupling_laws(scene.coupling));
     simulation.coulomb_constant = scene.force_field.coulomb_constant;
     simulation.period_s = scene.period_ms * 1e-3;
@@ -229,16 +259,35 @@ Simulation load_simulation(const SceneDescription& scene) {
     const ForceField force_field = read_force_field(scene.force_field.files);
     Files files;
     Grab grab;
-    for (const MoleculeDescription* const molecule : grabbed_first(scene)) {
+    const std::vector<const MoleculeDescription*> molecules = grabbed_first(scene);
+    std::vector<Entity> entities;
+    for (const MoleculeDescription* const molecule : molecules) {
         const Entity entity = add_molecule(*molecule, force_field, files, simulation);
         if (molecule->name == scene.grab.molecule) grab.molecule = entity;
         if (molecule->name == scene.grab.measured_from) grab.measured_from = entity;
+        entities.push_back(entity);
     }
     simulation.hand = simulation.world.create();
     simulation.world.set(simulation.hand, grab);
+    const bool on_line = molecules.front()->motion == Motion::AlongX;
+    simulation.world.set(grab.molecule,
+                         on_line ? Guide{} : Guide{.freedom = 3, .projector = Mat3::Identity()});
     simulation.replaced_pairs = build_replaced_pairs(force_field, simulation.atoms.type_names);
+    if (scene.has_statics()) {
+        load_flexible(scene, force_field, files, molecules, entities, on_relax, simulation);
+    }
     start_grabbed(scene, simulation);
     return simulation;
+}
+
+Vec3 centre_of_mass(const AtomTable& atoms, AtomRange range) noexcept {
+    Vec3 sum = Vec3::Zero();
+    double mass = 0;
+    for (std::uint32_t i = range.first; i < range.first + range.count; ++i) {
+        sum += atoms.mass[i] * atoms.positions[i];
+        mass += atoms.mass[i];
+    }
+    return mass > 0 ? Vec3(sum / mass) : atoms.positions[range.first];
 }
 
 FieldPoints grabbed_points(const Simulation& simulation) noexcept {

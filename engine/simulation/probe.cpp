@@ -46,7 +46,12 @@ double bisect(const Simulation& simulation, double level, double inside, double 
 
 }  // namespace
 
+bool moves_in_space(const Simulation& simulation) noexcept {
+    return grabbed_guide(simulation).freedom == 3;
+}
+
 Vec3 grabbed_place(const Simulation& simulation) noexcept {
+    if (simulation.flexible) return find_held(*simulation.flexible);
     const Grab* const grab = simulation.world.find<Grab>(simulation.hand);
     const Molecule* const grabbed = simulation.world.find<Molecule>(grab->molecule);
     return simulation.atoms.positions[grabbed->reference_atom];
@@ -54,10 +59,14 @@ Vec3 grabbed_place(const Simulation& simulation) noexcept {
 
 void place_grabbed(Simulation& simulation, const Vec3& place) noexcept {
     const Grab* const grab = simulation.world.find<Grab>(simulation.hand);
-    const Molecule* const origin = simulation.world.find<Molecule>(grab->measured_from);
     const Molecule* const grabbed = simulation.world.find<Molecule>(grab->molecule);
     simulation.world.find<Guide>(grab->molecule)->place = place;
-    const Vec3 reference = simulation.atoms.positions[origin->reference_atom] + place;
+    const Vec3 reference = simulation.anchor + place;
+    if (simulation.flexible) {
+        move_held(*simulation.flexible, reference - find_held(*simulation.flexible));
+        simulation.atoms.positions = simulation.flexible->state.positions;
+        return;
+    }
     for (std::size_t i = 0; i < simulation.grabbed_shape.size(); ++i) {
         simulation.atoms.positions[grabbed->atoms.first + i] =
             reference + simulation.grabbed_shape[i];
@@ -79,13 +88,11 @@ FieldSum field_on_grabbed(const Simulation& simulation) noexcept {
 }
 
 FieldSum field_on_grabbed_at(const Simulation& simulation, double distance) {
-    const Grab& grab = *simulation.world.find<Grab>(simulation.hand);
-    const Molecule& origin = *simulation.world.find<Molecule>(grab.measured_from);
-    const Vec3 reference =
-        simulation.atoms.positions[origin.reference_atom] + place_on_line(simulation, distance);
-    std::vector<Vec3> positions;
-    for (const Vec3& offset : simulation.grabbed_shape) positions.push_back(reference + offset);
+    const Vec3 by =
+        simulation.anchor + place_on_line(simulation, distance) - grabbed_place(simulation);
     FieldPoints moved = grabbed_points(simulation);
+    std::vector<Vec3> positions(moved.positions.begin(), moved.positions.end());
+    for (Vec3& position : positions) position += by;
     moved.positions = positions;
     return evaluate_pair_field(moved, environment_points(simulation), pair_rule(simulation));
 }

@@ -14,7 +14,11 @@ struct LineForce {
     double stiffness = 0;  // kcal/mol/Å^2, -d(force)/d(distance)
 };
 
-// Where the grabbed molecule's reference atom is (Å, in the world).
+// Whether the hand moves the grabbed molecule in space, not along a line.
+bool moves_in_space(const Simulation& simulation) noexcept;
+
+// Where the grabbed molecule's reference atom is, or the hand's end of the spring that holds it (Å,
+// in the world).
 Vec3 grabbed_place(const Simulation& simulation) noexcept;
 
 // Puts the grabbed molecule's reference atom at that place (Å) from its counterpart's, or at that

@@ -7,6 +7,7 @@
 #include "math/vec.h"
 #include "molecule/atoms.h"
 #include "scene/description.h"
+#include "simulation/flexible.h"
 #include "simulation/relax.h"
 
 #include <optional>
@@ -24,23 +25,30 @@ struct Simulation {
     double coulomb_constant = 0;               // kcal Å/mol/e^2
     std::vector<ReplacedPair> replaced_pairs;  // of types in the table
     double period_s = 0;                       // declared
-    std::vector<Vec3> grabbed_shape;     // Å, the grabbed molecule's atoms from its reference atom
-    Vec3 grabbed_centre = Vec3::Zero();  // Å, its centre of mass from its reference atom
-    std::optional<RelaxReport> relaxed;  // how the grabbed molecule came to rest, if it did
+    Vec3 anchor = Vec3::Zero();          // Å, where places of the grabbed molecule are told from
+    std::vector<Vec3> grabbed_shape;     // Å, the grabbed molecule's atoms from its reference atom,
+                                         // where it is rigid
+    std::optional<RelaxReport> relaxed;  // how the rigid grabbed molecule came to rest, if it did
     Entity hand;                         // has a Grab
 
     // written by every step
     World world;
-    AtomTable atoms;  // positions only
+    AtomTable atoms;                   // positions only
+    std::optional<Flexible> flexible;  // where something moves by itself
 };
 
 // The laws that a scene's mode asks for.
 CouplingLaws build_coupling_laws(const CouplingDescription& coupling);
 
 // Reads everything the scene names, relaxes a grabbed molecule that moves in space as a rigid body,
-// until less than 20 pN pull at it, and puts the grabbed molecule at its start. Throws LoadError
-// with the place of what is wrong.
-Simulation load_simulation(const SceneDescription& scene);
+// until less than 20 pN pull at it, or everything that moves by itself as the scene's [statics]
+// say, and puts the grabbed molecule at its start. Throws LoadError with the place of what is
+// wrong.
+Simulation load_simulation(const SceneDescription& scene,
+                           const RelaxProgressFunction& on_relax = {});
+
+// By mass; of massless atoms the first's place.
+Vec3 centre_of_mass(const AtomTable& atoms, AtomRange range) noexcept;
 
 // The grabbed molecule and all other atoms, as the pair kernel wants them.
 FieldPoints grabbed_points(const Simulation& simulation) noexcept;

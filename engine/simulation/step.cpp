@@ -34,25 +34,46 @@ double extreme_stiffness(const Guide& guide, const Mat3& stiffness) noexcept {
     return std::abs(lowest) > std::abs(highest) ? lowest : highest;
 }
 
+// What pulls at the hand, in engine units.
+struct Pull {
+    Vec3 force, torque;
+    double stiffness, energy;
+};
+
+// A hand on a spring feels the spring; one that moves a molecule, what all others do to it, with
+// the stiffness that it would have if they stayed where they are.
+Pull find_pull(const Simulation& simulation, const Grab& grab, const Guide& guide) noexcept {
+    if (simulation.flexible && simulation.flexible->state.tether) {
+        const Flexible& flexible = *simulation.flexible;
+        const Tether& tether = *flexible.state.tether;
+        const Vec3 away = find_tethered(flexible.model, flexible.state) - tether.place;
+        return {tether.k * away, Vec3::Zero(), tether.k, flexible.state.energy()};
+    }
+    const FieldSum field = field_on_grabbed(simulation);
+    const Vec3 centre =
+        centre_of_mass(simulation.atoms, simulation.world.find<Molecule>(grab.molecule)->atoms);
+    return {field.force, field.torque_about(centre), extreme_stiffness(guide, field.stiffness),
+            field.energy()};
+}
+
 }  // namespace
 
 TouchModel build_touch_model(const Simulation& simulation, const HandPose& hand) noexcept {
     const Grab* const grab = simulation.world.find<Grab>(simulation.hand);
     const Guide* const guide = simulation.world.find<Guide>(grab->molecule);
-    const FieldSum field = field_on_grabbed(simulation);
-    const Vec3 centre = grabbed_points(simulation).positions[0] - simulation.grabbed_shape[0] +
-                        simulation.grabbed_centre;
+    const Pull pull = find_pull(simulation, *grab, *guide);
     TouchModel touch;
     touch.time_s = hand.time_s;
     touch.molecule_angstrom = guide->place;
-    touch.force_newton = guide->projector * field.force * units::newton_per_kcal_per_mol_angstrom;
-    touch.torque_newton_metre = field.torque_about(centre) * units::joule_per_kcal_per_mol;
-    touch.stiffness_N_per_m = extreme_stiffness(*guide, field.stiffness) *
-                              units::newton_per_metre_per_kcal_per_mol_angstrom2;
+    touch.force_newton = guide->projector * pull.force * units::newton_per_kcal_per_mol_angstrom;
+    touch.torque_newton_metre = pull.torque * units::joule_per_kcal_per_mol;
+    touch.stiffness_N_per_m = pull.stiffness * units::newton_per_metre_per_kcal_per_mol_angstrom2;
     touch.displacement_gain =
         displacement_gain(simulation.laws.displacement, touch.force_newton.stableNorm());
-    touch.potential_kcal_per_mol = field.energy();
+    touch.potential_kcal_per_mol = pull.energy;
     touch.active_freedom = guide->freedom;
+    if (simulation.flexible)
+        touch.active_freedom += static_cast<int>(simulation.flexible->model.coordinates);
     touch.period_s = simulation.period_s;
     return touch;
 }
@@ -69,15 +90,24 @@ StepReport step_simulation(Simulation& simulation, const HandPose& hand,
     const Vec3 before = guide->place;
     const Vec3 place = before + move.by;
     grab->travel_m = hand.travel_m;
-    if (!place.allFinite()) return {felt, 0, false};
-
-    place_grabbed(simulation, place);
-    StepReport report{build_touch_model(simulation, hand), move.by.stableNorm(), true};
-    report.touch.displacement_gain = move.displacement_gain;
-    if (!report.touch.force_newton.allFinite()) {
-        place_grabbed(simulation, before);
+    StepReport report;
+    if (!place.allFinite()) {
+        report.touch = felt;
         report.finite = false;
+        return report;
     }
+
+    report.move = move.by.stableNorm();
+    place_grabbed(simulation, place);
+    if (simulation.flexible) {
+        report.settled = step_flexible(*simulation.flexible);
+        simulation.atoms.positions = simulation.flexible->state.positions;
+        report.finite = report.settled->is_finite;
+    }
+    report.touch = build_touch_model(simulation, hand);
+    report.touch.displacement_gain = move.displacement_gain;
+    report.finite = report.finite && report.touch.force_newton.allFinite();
+    if (!report.finite) place_grabbed(simulation, before);
     return report;
 }
 

@@ -3,13 +3,16 @@
 #include "haptics/exchange.h"
 #include "simulation/simulation.h"
 
+#include <optional>
+
 namespace palpa {
 
 // What a step found. A step that is not finite has moved nothing; its touch model says what was not
 // finite, so that the servo stops, unless it was the hand's pose.
 struct [[nodiscard]] StepReport {
-    TouchModel touch;  // for the hand, one period later
-    double move = 0;   // Å, how far the grabbed molecule went
+    TouchModel touch;                     // for the hand, one period later
+    double move = 0;                      // Å, how far the hand moved what it holds
+    std::optional<SettleReport> settled;  // what moved by itself
     bool finite = true;
 };
 

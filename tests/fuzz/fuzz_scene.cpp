@@ -49,6 +49,8 @@ public:
     void triple(const Field& field, std::array<double, 3>& value) override {
         for (double& number : value) real(field, number);
     }
+    void flag(const Field& /*field*/, bool& /*value*/) override {}
+    void texts(const Field& /*field*/, std::vector<std::string>& /*value*/) override {}
     void integer(const Field& field, std::int64_t& value) override {
         auto real_value = static_cast<double>(value);
         real(field, real_value);

@@ -48,7 +48,10 @@ TEST_CASE("odd values survive being written and read, to the last bit", "[scene]
     scene.molecules[0].segment = " FIX ";
     scene.molecules[1].name = "";
     scene.molecules[1].segment = "#";
-    scene.grab = {"x", scene.molecules[0].name};
+    scene.grab = {"x", scene.molecules[0].name, "", 0.1 + 0.2};
+    scene.joints.methyl = true;
+    scene.joints.turn = {"A 1 \"C\" N", ""};
+    scene.statics.cutoff_angstrom = 0.1 + 12;
     scene.molecules[1].name = "x";
     scene.hand.grip = 5;
     scene.hand.stroke = Stroke::Path;
@@ -80,6 +83,10 @@ TEST_CASE("odd values survive being written and read, to the last bit", "[scene]
     CHECK(back.molecules[0].name == scene.molecules[0].name);
     CHECK(back.molecules[0].segment == " FIX ");
     CHECK(back.molecules[1].motion == Motion::AlongX);
+    CHECK(back.grab.spring_kcal_per_mol_angstrom2 == 0.1 + 0.2);
+    CHECK(back.joints.methyl);
+    CHECK(back.joints.turn == scene.joints.turn);
+    CHECK(back.statics.cutoff_angstrom == scene.statics.cutoff_angstrom);
     CHECK(back.hand.start_angstrom == scene.hand.start_angstrom);
     CHECK(std::signbit(back.hand.kick_N_s));
     CHECK(back.hand.release_s == scene.hand.release_s);
@@ -102,6 +109,8 @@ TEST_CASE("every field is written, under its full key", "[scene][write]") {
     scene.hand.start_angstrom = 3;
     scene.lesson = {{"STEP", "text", "task", LessonQuantity::Force, 1.0, 2.0, 0.5}};
     scene.hand.release_s = 4;
+    scene.joints.within_angstrom = 8;
+    scene.statics.cutoff_angstrom = 12;
     for (MoleculeDescription& molecule : scene.molecules) molecule.topology = folder / "dimer.psf";
 
     const std::string text = formatted(scene);

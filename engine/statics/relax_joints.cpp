@@ -1,0 +1,178 @@
+#include "statics/relax_joints.h"
+
+#include "math/curvature_memory.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace palpa {
+namespace {
+
+double rms_of(const Coordinates& values) {
+    return values.size() == 0
+               ? 0
+               : std::sqrt(values.squaredNorm() / static_cast<double>(values.size()));
+}
+
+// How much each coordinate yields alone: the inverse of the sum of squared lever arms of the atoms
+// that it moves, as if each atom were held by a spring of 1 kcal/mol/Å^2.
+Coordinates find_compliance(const TorsionModel& model, const TorsionState& state) {
+    // Of the atoms behind each joint, how many there are, where they are, and their squares.
+    struct Moments {
+        double count = 0;
+        Vec3 sum = Vec3::Zero();
+        Mat3 squares = Mat3::Zero();
+    };
+    const std::vector<Body>& bodies = model.tree.bodies.bodies;
+    std::vector<Moments> moments(bodies.size());
+    for (std::size_t i = 0; i < state.positions.size(); ++i) {
+        Moments& own = moments[model.tree.bodies.body_of[i]];
+        const Vec3& x = state.positions[i];
+        own.count += 1;
+        own.sum += x;
+        own.squares += x * x.transpose();
+    }
+    const auto about = [](const Moments& m, const Vec3& point) -> Mat3 {
+        const Mat3 s = m.squares - m.sum * point.transpose() - point * m.sum.transpose() +
+                       m.count * point * point.transpose();
+        return s.trace() * Mat3::Identity() - s;
+    };
+    Coordinates compliance(model.coordinates);
+    for (std::size_t b = bodies.size(); b-- > 0;) {
+        const Moments& own = moments[b];
+        if (model.tree.bodies.is_base(b)) {
+            const std::uint32_t molecule = model.tree.molecule_of[b];
+            const Eigen::Index at = model.coordinate_of_base[molecule];
+            if (at < 0) continue;
+            compliance.segment<3>(at) =
+                about(own, state.pivots[molecule]).diagonal().cwiseMax(1).cwiseInverse();
+            if (model.bases[molecule].freedom == BaseFreedom::Free)
+                compliance.segment<3>(at + 3).setConstant(1 / own.count);
+            continue;
+        }
+        const auto [j, k] = bodies[b].axis;
+        const Vec3 axis = (state.positions[k] - state.positions[j]).normalized();
+        const double arms = axis.dot(about(own, state.positions[k]) * axis);
+        compliance[model.coordinate_of_body[b]] = 1 / std::max(arms, 1.0);
+        Moments& parent = moments[bodies[b].parent];
+        parent.count += own.count;
+        parent.sum += own.sum;
+        parent.squares += own.squares;
+    }
+    return compliance;
+}
+
+// Limited-memory BFGS from where the state is.
+class Descent {
+public:
+    Descent(const TorsionModel& model, const RelaxSettings& settings, TorsionState& state,
+            QuasiStatics& statics)
+        : model_(model), settings_(settings), state_(state), statics_(statics) {}
+
+    // Whether there was a step that lowers the energy.
+    bool step() {
+        while (true) {
+            if (find_lower(find_direction())) return true;
+            if (memory_.is_empty()) return false;
+            memory_.clear();
+        }
+    }
+
+private:
+    Coordinates find_direction() {
+        const bool has_masses = settings_.method == RelaxMethod::InverseMass;
+        if (!has_masses) compliance_ = find_compliance(model_, state_);
+        return memory_.find_direction(
+            state_.coordinate_forces, [&](const Coordinates& forces) -> Coordinates {
+                if (!has_masses) return compliance_.array() * forces.array();
+                Coordinates accelerations;
+                multiply_by_inverse_mass(model_, state_, forces, statics_.assembly, accelerations);
+                return accelerations;
+            });
+    }
+
+    // In shorter and shorter steps, until the energy falls as far as the slope lets one hope
+    // (Armijo's condition).
+    bool find_lower(Coordinates move) {
+        constexpr int tries = 25;
+        constexpr double share = 1e-4;
+        if (!move.allFinite() || !(state_.coordinate_forces.dot(move) > 0)) return false;
+        TorsionState& trial = statics_.trial;
+        for (int i = 0; i < tries; ++i) {
+            place_within(model_, state_, settings_.largest_move, move, trial);
+            update_forces(model_, settings_.step.forces, statics_.memory, trial);
+            update_coordinate_forces(model_, trial);
+            const double slope = state_.coordinate_forces.dot(move);  // by which the energy falls
+            const double change = trial.energy() - state_.energy();
+            const bool falls =
+                std::isfinite(change) && is_lower(settings_.step.forces, state_, trial, move);
+            if (falls && (settings_.step.forces.fast || change <= -share * slope)) {
+                memory_.add(move, state_.coordinate_forces - trial.coordinate_forces);
+                take_over(trial, state_);
+                return true;
+            }
+            // To the minimum of the parabola through both energies and the slope, within bounds.
+            const double best = 0.5 * slope / (change + slope);
+            move *= std::isfinite(best) ? std::clamp(best, 0.1, 0.5) : 0.1;
+        }
+        return false;
+    }
+
+    const TorsionModel& model_;
+    const RelaxSettings& settings_;
+    TorsionState& state_;
+    QuasiStatics& statics_;
+    CurvatureMemory memory_;
+    Coordinates compliance_;
+};
+
+}  // namespace
+
+JointRelaxReport relax_joints(const TorsionModel& model, const RelaxSettings& settings,
+                              TorsionState& state, QuasiStatics& statics,
+                              const std::function<bool(const RelaxProgress&)>& on_step) {
+    const std::vector<Vec3> start = state.positions;
+    const std::size_t evaluations = statics.memory.evaluations;
+    update_forces(model, settings.step.forces, statics.memory, state);
+    update_coordinate_forces(model, state);
+    JointRelaxReport report;
+    report.energy_before = state.energy();
+    Descent descent(model, settings, state, statics);
+    int refused = 0;
+    while (true) {
+        report.rms_force = rms_of(state.coordinate_forces);
+        if (!std::isfinite(report.rms_force) || !std::isfinite(state.energy())) {
+            report.end = RelaxEnd::NotFinite;
+            break;
+        }
+        if (report.rms_force <= settings.force_tolerance) {
+            report.end = RelaxEnd::Converged;
+            break;
+        }
+        if (on_step && !on_step({report.steps, state.energy(), report.rms_force})) break;
+        if (report.steps >= settings.steps) break;
+
+        if (settings.method == RelaxMethod::QuasiStatic) {
+            const QuasiStaticReport step = step_quasi_static(model, settings.step, state, statics);
+            refused = step.is_taken ? 0 : refused + 1;
+            constexpr int patience = 40;
+            if (refused > patience || !step.is_finite) {
+                report.end = step.is_finite ? RelaxEnd::Stuck : RelaxEnd::NotFinite;
+                break;
+            }
+            if (!step.is_taken) continue;
+            update_coordinate_forces(model, state);
+        } else if (!descent.step()) {
+            report.end = RelaxEnd::Stuck;
+            break;
+        }
+        ++report.steps;
+    }
+    report.energy_after = state.energy();
+    report.evaluations = statics.memory.evaluations - evaluations;
+    report.largest_move = find_largest_move(start, state.positions);
+    return report;
+}
+
+}  // namespace palpa

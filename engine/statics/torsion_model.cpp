@@ -1,0 +1,90 @@
+#include "statics/torsion_model.h"
+
+#include "core/assertion.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace palpa {
+namespace {
+
+// Tells whether atoms keep their distances whatever turns. Both atoms of a joint's bond lie on its
+// axis and so are rigid in both bodies.
+class RigidSets {
+public:
+    explicit RigidSets(const TorsionBodies& bodies) : bodies_(bodies) {}
+
+    template <std::size_t Count>
+    bool is_rigid(const std::array<std::uint32_t, Count>& atoms) const {
+        return std::ranges::any_of(atoms, [&](std::uint32_t candidate) {
+            const std::uint32_t body = bodies_.body_of[candidate];
+            return std::ranges::all_of(atoms,
+                                       [&](std::uint32_t atom) { return is_in(body, atom); });
+        });
+    }
+
+private:
+    bool is_in(std::uint32_t body, std::uint32_t atom) const {
+        const std::uint32_t own = bodies_.body_of[atom];
+        if (own == body) return true;
+        if (!bodies_.is_base(body) && bodies_.bodies[body].axis[0] == atom) return true;
+        return bodies_.bodies[own].parent == body && bodies_.bodies[own].axis[1] == atom;
+    }
+
+    const TorsionBodies& bodies_;
+};
+
+void keep_moving_terms(const TorsionBodies& bodies, Topology& topology) {
+    const RigidSets sets(bodies);
+    std::erase_if(topology.bonds,
+                  [&](const Bond& t) { return sets.is_rigid(std::array{t.a, t.b}); });
+    std::erase_if(topology.angles,
+                  [&](const Angle& t) { return sets.is_rigid(std::array{t.a, t.b, t.c}); });
+    std::erase_if(topology.urey_bradleys,
+                  [&](const UreyBradley& t) { return sets.is_rigid(std::array{t.a, t.c}); });
+    std::erase_if(topology.dihedrals,
+                  [&](const Dihedral& t) { return sets.is_rigid(std::array{t.a, t.b, t.c, t.d}); });
+    std::erase_if(topology.impropers,
+                  [&](const Improper& t) { return sets.is_rigid(std::array{t.a, t.b, t.c, t.d}); });
+    std::erase_if(topology.cmap_terms,
+                  [&](const CmapTerm& t) { return sets.is_rigid(t.phi) && sets.is_rigid(t.psi); });
+    std::erase_if(topology.exclusions.pairs14,
+                  [&](const std::array<std::uint32_t, 2>& pair) { return sets.is_rigid(pair); });
+}
+
+}  // namespace
+
+TorsionModel build_torsion_model(const TorsionBodies& bodies, std::vector<double> masses,
+                                 std::vector<Vec3> positions, const Topology& topology,
+                                 std::vector<MoleculeBase> bases) {
+    PALPA_ASSERT(masses.size() == topology.size() && positions.size() == topology.size());
+    PALPA_ASSERT(bodies.body_of.size() == topology.size() && bases.size() == bodies.molecules());
+    TorsionModel model;
+    model.tree = build_assembly_tree(bodies, masses, positions);
+    model.molecule_masses.assign(bases.size(), 0);
+    for (std::size_t i = 0; i < masses.size(); ++i) {
+        model.molecule_masses[model.tree.molecule_of[bodies.body_of[i]]] += masses[i];
+    }
+    model.masses = std::move(masses);
+    model.reference = std::move(positions);
+    model.bases = std::move(bases);
+    model.fast_atoms = build_fast_atoms(topology);
+    model.topology = topology;
+    keep_moving_terms(bodies, model.topology);
+
+    for (std::size_t body = 0; body < bodies.bodies.size(); ++body) {
+        const bool is_base = bodies.is_base(body);
+        model.coordinate_of_body.push_back(is_base ? -1 : model.coordinates);
+        model.coordinates += is_base ? 0 : 1;
+    }
+    for (const MoleculeBase& base : model.bases) {
+        const bool is_held = base.freedom == BaseFreedom::Held;
+        model.coordinate_of_base.push_back(is_held ? -1 : model.coordinates);
+        if (base.freedom == BaseFreedom::Turning) model.coordinates += 3;
+        if (base.freedom == BaseFreedom::Free) model.coordinates += 6;
+    }
+    return model;
+}
+
+}  // namespace palpa

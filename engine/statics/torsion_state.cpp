@@ -1,0 +1,205 @@
+#include "statics/torsion_state.h"
+
+#include "core/assertion.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace palpa {
+namespace {
+
+std::span<const Body> bodies_of(const TorsionModel& model) { return model.tree.bodies.bodies; }
+
+RigidMotion motion_of_base(const TorsionState& state, std::size_t molecule) {
+    return {state.turns[molecule].toRotationMatrix(), state.shifts[molecule]};
+}
+
+// After the positions.
+void update_pivots(const TorsionModel& model, TorsionState& state) noexcept {
+    std::vector<Vec3>& pivots = state.pivots;
+    std::ranges::fill(pivots, Vec3::Zero());
+    for (std::size_t i = 0; i < state.positions.size(); ++i) {
+        const std::uint32_t molecule = model.tree.molecule_of[model.tree.bodies.body_of[i]];
+        pivots[molecule] += model.masses[i] * state.positions[i];
+    }
+    for (std::size_t m = 0; m < pivots.size(); ++m) {
+        const MoleculeBase& base = model.bases[m];
+        pivots[m] = base.freedom == BaseFreedom::Free ? Vec3(pivots[m] / model.molecule_masses[m])
+                                                      : state.positions[base.pivot];
+    }
+}
+
+// Turns a base about its pivot (rad, along the axis of `turn`), then displaces it.
+void move_base(std::size_t molecule, const Vec3& turn, const Vec3& by, TorsionState& state) {
+    const double angle = turn.norm();
+    if (angle > 0) {
+        const Eigen::Quaterniond rotation(Eigen::AngleAxisd(angle, turn / angle));
+        const Vec3& pivot = state.pivots[molecule];
+        state.turns[molecule] = (rotation * state.turns[molecule]).normalized();
+        state.shifts[molecule] = pivot + rotation * (state.shifts[molecule] - pivot);
+    }
+    state.shifts[molecule] += by;
+}
+
+double mass_of(const TorsionModel& model, const std::vector<std::uint32_t>& atoms) {
+    double mass = 0;
+    for (const std::uint32_t atom : atoms) mass += model.masses[atom];
+    return mass;
+}
+
+EnergyTerms add_model_forces(const TorsionModel& model, const ForceSettings& settings,
+                             ForceMemory& memory, TorsionState& state) {
+    const Topology& topology = model.topology;
+    if (settings.fast) {
+        EnergyTerms terms =
+            add_bonded_forces(topology, settings.nonbonded, state.positions, state.forces);
+        const NonbondedEnergy pairs = add_fast_nonbonded_forces(
+            topology, model.fast_atoms, settings.nonbonded, settings.skin, state.positions,
+            memory.fast_pairs, state.forces, PairResult::ForcesAndEnergies, settings.threads);
+        terms.lj = pairs.van_der_waals;
+        terms.coulomb = pairs.electrostatic;
+        return terms;
+    }
+    if (!has_end(settings.nonbonded))
+        return add_forces(topology, settings.nonbonded, state.positions, state.forces);
+    if (memory.list.positions.empty() || is_outdated(memory.list, state.positions)) {
+        memory.list = build_pair_list(topology.exclusions, settings.nonbonded.cutoff, settings.skin,
+                                      state.positions, {}, std::move(memory.list));
+    }
+    return add_forces(topology, settings.nonbonded, memory.list, state.positions, state.forces,
+                      settings.threads);
+}
+
+}  // namespace
+
+TorsionState build_torsion_state(const TorsionModel& model) {
+    const std::size_t bodies = bodies_of(model).size(), molecules = model.bases.size();
+    TorsionState state;
+    state.angles.assign(bodies, 0);
+    state.turns.assign(molecules, Eigen::Quaterniond::Identity());
+    state.shifts.assign(molecules, Vec3::Zero());
+    state.motions.assign(bodies, {});
+    state.positions = model.reference;
+    state.pivots.assign(molecules, Vec3::Zero());
+    state.forces.assign(model.reference.size(), Vec3::Zero());
+    state.wrenches.assign(bodies, Vec6::Zero());
+    state.coordinate_forces = Coordinates::Zero(model.coordinates);
+    update_positions(model, state);
+    return state;
+}
+
+void update_positions(const TorsionModel& model, TorsionState& state) noexcept {
+    const std::span<const Body> bodies = bodies_of(model);
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        if (model.tree.bodies.is_base(b)) {
+            state.motions[b] = motion_of_base(state, model.tree.molecule_of[b]);
+            continue;
+        }
+        const RigidMotion& parent = state.motions[bodies[b].parent];
+        state.motions[b] = parent;
+        if (state.angles[b] == 0) continue;
+        const auto [j, k] = bodies[b].axis;
+        const Vec3 axis = (model.reference[k] - model.reference[j]).normalized();
+        state.motions[b] = parent * turn_about(model.reference[k], axis, state.angles[b]);
+    }
+    for (std::size_t i = 0; i < state.positions.size(); ++i) {
+        state.positions[i] = state.motions[model.tree.bodies.body_of[i]] * model.reference[i];
+    }
+    update_pivots(model, state);
+}
+
+void update_forces(const TorsionModel& model, const ForceSettings& settings, ForceMemory& memory,
+                   TorsionState& state) {
+    std::ranges::fill(state.forces, Vec3::Zero());
+    state.terms = add_model_forces(model, settings, memory, state);
+    state.tether_energy = 0;
+    if (state.tether) {
+        const Vec3 away = find_tethered(model, state) - state.tether->place;
+        state.tether_energy = 0.5 * state.tether->k * away.squaredNorm();
+        const double mass = mass_of(model, state.tether->atoms);
+        for (const std::uint32_t atom : state.tether->atoms) {
+            state.forces[atom] -= model.masses[atom] / mass * state.tether->k * away;
+        }
+    }
+    ++memory.evaluations;
+}
+
+void update_coordinate_forces(const TorsionModel& model, TorsionState& state) noexcept {
+    const std::span<const Body> bodies = bodies_of(model);
+    std::ranges::fill(state.wrenches, Vec6::Zero());
+    for (std::size_t i = 0; i < state.positions.size(); ++i) {
+        Vec6& wrench = state.wrenches[model.tree.bodies.body_of[i]];
+        wrench.head<3>() += state.positions[i].cross(state.forces[i]);
+        wrench.tail<3>() += state.forces[i];
+    }
+    const auto torque_about = [](const Vec6& wrench, const Vec3& point) -> Vec3 {
+        return wrench.head<3>() - point.cross(wrench.tail<3>());
+    };
+    for (std::size_t b = bodies.size(); b-- > 0;) {
+        const Vec6& wrench = state.wrenches[b];
+        if (model.tree.bodies.is_base(b)) {
+            const std::uint32_t molecule = model.tree.molecule_of[b];
+            const Eigen::Index first = model.coordinate_of_base[molecule];
+            if (first < 0) continue;
+            state.coordinate_forces.segment<3>(first) =
+                torque_about(wrench, state.pivots[molecule]);
+            if (model.bases[molecule].freedom == BaseFreedom::Free)
+                state.coordinate_forces.segment<3>(first + 3) = wrench.tail<3>();
+            continue;
+        }
+        const auto [j, k] = bodies[b].axis;
+        const Vec3 axis = (state.positions[k] - state.positions[j]).normalized();
+        state.coordinate_forces[model.coordinate_of_body[b]] =
+            axis.dot(torque_about(wrench, state.positions[k]));
+        state.wrenches[bodies[b].parent] += wrench;
+    }
+}
+
+void add_move(const TorsionModel& model, const Coordinates& move, TorsionState& state) noexcept {
+    PALPA_ASSERT(move.size() == model.coordinates);
+    for (std::size_t b = 0; b < state.angles.size(); ++b) {
+        if (model.coordinate_of_body[b] >= 0) state.angles[b] += move[model.coordinate_of_body[b]];
+    }
+    for (std::size_t m = 0; m < state.turns.size(); ++m) {
+        const Eigen::Index first = model.coordinate_of_base[m];
+        if (first < 0) continue;
+        const bool is_free = model.bases[m].freedom == BaseFreedom::Free;
+        move_base(m, move.segment<3>(first),
+                  is_free ? Vec3(move.segment<3>(first + 3)) : Vec3::Zero(), state);
+    }
+    update_positions(model, state);
+}
+
+void shift_base(const TorsionModel& model, std::size_t molecule, const Vec3& by,
+                TorsionState& state) noexcept {
+    state.shifts[molecule] += by;
+    update_positions(model, state);
+}
+
+Vec3 find_tethered(const TorsionModel& model, const TorsionState& state) noexcept {
+    Vec3 sum = Vec3::Zero();
+    for (const std::uint32_t atom : state.tether->atoms) {
+        sum += model.masses[atom] * state.positions[atom];
+    }
+    return sum / mass_of(model, state.tether->atoms);
+}
+
+void copy_coordinates(const TorsionState& from, TorsionState& to) noexcept {
+    to.angles = from.angles;
+    to.turns = from.turns;
+    to.shifts = from.shifts;
+    to.tether = from.tether;
+    to.motions = from.motions;
+    to.positions = from.positions;
+    to.pivots = from.pivots;
+}
+
+void take_over(TorsionState& from, TorsionState& to) noexcept {
+    copy_coordinates(from, to);
+    to.terms = from.terms;
+    to.tether_energy = from.tether_energy;
+    std::swap(to.forces, from.forces);
+    std::swap(to.coordinate_forces, from.coordinate_forces);
+}
+
+}  // namespace palpa

@@ -1,0 +1,25 @@
+// palpa relax: brings the flexible molecules of a scene to rest and writes where they are then.
+#pragma once
+#include "simulation/flexible.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace palpa {
+
+struct RelaxOptions {
+    std::filesystem::path scene;
+    std::optional<std::filesystem::path> coordinates;  // to write
+    std::vector<std::string> settings;
+    bool json = false;
+};
+
+// Throws LoadError on bad input. Returns the exit code: 1 where the molecules did not come to rest.
+int relax_command(const RelaxOptions& options);
+
+// Shows, where a person watches, how far a way to rest has got.
+RelaxProgressFunction show_relaxing();
+
+}  // namespace palpa
