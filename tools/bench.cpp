@@ -33,12 +33,6 @@
 namespace palpa {
 namespace {
 
-double quantile(std::vector<double> samples, double share) {
-    std::sort(samples.begin(), samples.end());
-    return samples[static_cast<std::size_t>(
-        std::lround(share * static_cast<double>(samples.size() - 1)))];
-}
-
 std::string machine_name() {
     std::string model = "unknown processor";
     std::ifstream processors("/proc/cpuinfo");  // Linux alone has it
@@ -52,7 +46,6 @@ std::string machine_name() {
 
 // One simulation step, while the hand sweeps back and forth over 10 mm.
 BenchRow bench_step(const std::string& scene_name, Simulation simulation) {
-    constexpr int batches = 101;
     // Steps too short for the clock are timed together.
     const int batch = moves_in_space(simulation) ? 1 : 200;
     BenchRow row{
@@ -60,15 +53,12 @@ BenchRow bench_step(const std::string& scene_name, Simulation simulation) {
     TouchModel felt = build_touch_model(simulation, {});
     HandPose hand;
     int tick = 0;
-    for (int sample = 0; sample < batches; ++sample) {
-        row.samples.push_back(seconds_of([&] {
-                                  for (int i = 0; i < batch; ++i, ++tick) {
-                                      hand.travel_m.x() = 0.005 * std::sin(0.01 * tick);
-                                      felt = step_simulation(simulation, hand, felt).touch;
-                                  }
-                              }) *
-                              1e6 / batch);
-    }
+    row.samples = sample(101, 1e6 / batch, [&] {
+        for (int i = 0; i < batch; ++i, ++tick) {
+            hand.travel_m.x() = 0.005 * std::sin(0.01 * tick);
+            felt = step_simulation(simulation, hand, felt).touch;
+        }
+    });
     double worst = 0;
     constexpr double h = 1e-4;
     const double nearest = moves_in_space(simulation) ? -0.5 : 2.4,
@@ -109,25 +99,11 @@ BenchRow bench_lockstep(const std::string& scene_name, SceneDescription scene) {
     return row;
 }
 
-BenchRow bench_load(const std::string& scene_name, const std::filesystem::path& path,
-                    const std::vector<std::string>& settings) {
-    BenchRow row{"load/" + scene_name, {}, "ms", {}, "", ""};
-    for (int run = 0; run < 21; ++run) {
-        row.samples.push_back(1e3 * seconds_of([&] {
-                                  const Simulation simulation =
-                                      load_simulation(read_scene(path, settings));
-                              }));
-    }
-    return row;
-}
-
 // `read` returns what stands beside the time: how much was read.
 template <class Read>
 BenchRow bench_read(const std::string& name, const Read& read) {
-    BenchRow row{"load/" + name, {}, "ms", {}, "", ""};
-    for (int run = 0; run < 21; ++run) {
-        row.samples.push_back(1e3 * seconds_of([&] { row.reference = read(); }));
-    }
+    BenchRow row{"load/" + name, {}, "ms"};
+    row.samples = sample(21, 1e3, [&] { row.reference = read(); });
     return row;
 }
 
@@ -157,16 +133,10 @@ void bench_render(const std::string& scene_name, const Simulation& simulation,
         frame_all(camera, frame, 16.0F / 9);
         frame.camera = frame_camera(camera, frame);
         const auto time = [&](const char* what, const auto& draw) {
-            BenchRow row{fmt::format("render/{}/{}x{}/ball-and-stick{}", scene_name, size.width,
-                                     size.height, what),
-                         {},
-                         "ms",
-                         {},
-                         "",
-                         ""};
             for (int i = 0; i < warm_up; ++i) draw();
-            for (int i = 0; i < frames; ++i) row.samples.push_back(1e3 * seconds_of(draw));
-            rows.push_back(row);
+            rows.push_back({fmt::format("render/{}/{}x{}/ball-and-stick{}", scene_name, size.width,
+                                        size.height, what),
+                            sample(frames, 1e3, draw), "ms"});
         };
         time("", [&] {
             gpu.submit([&](VkCommandBuffer commands) { renderer.record(commands, frame, size); });
@@ -212,7 +182,10 @@ int bench_command(const BenchOptions& options) {
             bench_tree(name, load_simulation(scene).atoms, rows);
             continue;
         }
-        rows.push_back(bench_load(name, path, options.settings));
+        rows.push_back(bench_read(name, [&] {
+            load_simulation(read_scene(path, options.settings));
+            return std::string();
+        }));
         rows.push_back(bench_step(name, load_simulation(scene)));
         rows.push_back(bench_lockstep(name, scene));
     }

@@ -74,22 +74,17 @@ double worst_force(std::span<const Vec3> forces, std::span<const Vec3> twin) {
     return worst;
 }
 
+// In µs, at least 21 times and for 0.3 s.
 template <class Work>
-std::vector<double> sample(const Work& work, double seconds) {
+std::vector<double> sample_long(const Work& work) {
     for (int i = 0; i < 3; ++i) work();
     std::vector<double> samples;
     double sum = 0;
-    while (samples.size() < 21 || sum < seconds) {
+    while (samples.size() < 21 || sum < 0.3) {
         samples.push_back(1e6 * seconds_of(work));
         sum += 1e-6 * samples.back();
     }
     return samples;
-}
-
-double median(std::vector<double> samples) {
-    const auto middle = samples.begin() + static_cast<std::ptrdiff_t>(samples.size() / 2);
-    std::nth_element(samples.begin(), middle, samples.end());
-    return *middle;
 }
 
 // How many pairs the sum is about.
@@ -111,7 +106,7 @@ std::size_t count_pairs(const System& system, const NonbondedSettings& settings)
 std::string rate_of(std::size_t pairs, const std::vector<double>& samples) {
     return fmt::format("the twin in double; {:.3g} M pairs, {:.0f} M/s",
                        1e-6 * static_cast<double>(pairs),
-                       static_cast<double>(pairs) / median(samples));
+                       static_cast<double>(pairs) / quantile(samples, 0.5));
 }
 
 struct Case {
@@ -139,7 +134,7 @@ void bench_large(const System& system, const Case& which, std::vector<BenchRow>&
                 };
                 add();
                 const double error = worst_force(forces, twin);
-                const std::vector<double> samples = sample(add, 0.3);
+                const std::vector<double> samples = sample_long(add);
                 rows.push_back(
                     {fmt::format("kernel/{}/{}/{}/{}/threads={}", system.name, which.name,
                                  result == PairResult::Forces ? "forces" : "energies", kind,
@@ -151,12 +146,10 @@ void bench_large(const System& system, const Case& which, std::vector<BenchRow>&
     use_processor_kind(list_processor_kinds().front());
     if (!has_end(which.settings)) return;
     rows.push_back({fmt::format("kernel/{}/{}/list", system.name, which.name),
-                    sample(
-                        [&] {
-                            build_cluster_list(system.positions, atoms.left_out,
-                                               which.settings.cutoff, skin);
-                        },
-                        0.3),
+                    sample_long([&] {
+                        build_cluster_list(system.positions, atoms.left_out, which.settings.cutoff,
+                                           skin);
+                    }),
                     "us",
                     {},
                     "",
@@ -177,7 +170,7 @@ void bench_bonded(const System& system, std::vector<BenchRow>& rows) {
         add_nonbonded14_forces(topology, {}, system.positions, forces);
     };
     rows.push_back({fmt::format("kernel/{}/bonded-and-1-4", system.name),
-                    sample(add, 0.3),
+                    sample_long(add),
                     "us",
                     {},
                     "",
@@ -229,7 +222,7 @@ void bench_small(const System& system, std::vector<BenchRow>& rows) {
         use_processor_kind(kind);
         FieldSum sum;
         const auto evaluate = [&] { sum = evaluate_frozen_field(field, moving.positions); };
-        const std::vector<double> samples = sample(evaluate, 0.3);
+        const std::vector<double> samples = sample_long(evaluate);
         const double error =
             std::max((sum.force - twin.force).norm() / twin.force.norm(),
                      (sum.stiffness - twin.stiffness).norm() / twin.stiffness.norm());
@@ -238,7 +231,7 @@ void bench_small(const System& system, std::vector<BenchRow>& rows) {
     }
     use_processor_kind(list_processor_kinds().front());
     rows.push_back({name + "/double",
-                    sample([&] { evaluate_pair_field(moving.view(), frozen.view(), rule); }, 0.3),
+                    sample_long([&] { evaluate_pair_field(moving.view(), frozen.view(), rule); }),
                     "us",
                     {},
                     "",

@@ -7,15 +7,12 @@
 #include "assembly/selection.h"
 
 #include <fmt/format.h>
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <random>
 
 namespace palpa {
 namespace {
-
-constexpr int runs = 41;
 
 struct TreeBench {
     AssemblyTree tree;
@@ -55,9 +52,7 @@ double metric_error(const TreeBench& bench) {
 
 void add_rows(const std::string& name, TreeBench& bench, std::vector<BenchRow>& rows) {
     const auto time = [&](const char* what, const auto& work) {
-        BenchRow row{name + what, {}, "us", {}, "", ""};
-        for (int run = 0; run < runs; ++run) row.samples.push_back(1e6 * seconds_of(work));
-        rows.push_back(row);
+        rows.push_back({name + what, sample(41, 1e6, work), "us"});
     };
     AssemblyState& state = bench.state;
     time("/bodies", [&] { update_bodies(bench.tree, bench.positions, bench.forces, state); });
@@ -105,11 +100,6 @@ Connectivity polymer_of(std::size_t joints, std::vector<Vec3>& positions) {
     return result;
 }
 
-double median(std::vector<double> samples) {
-    std::ranges::nth_element(samples, samples.begin() + runs / 2);
-    return samples[runs / 2];
-}
-
 }  // namespace
 
 void bench_tree(const std::string& scene_name, const AtomTable& atoms,
@@ -140,7 +130,7 @@ void bench_polymers(std::vector<BenchRow>& rows) {
         TreeBench bench = build_tree_bench(polymer, positions, {});
         add_rows(fmt::format("tree/polymer/joints={}", joints), bench, rows);
         const double log_joints = std::log(static_cast<double>(joints));
-        const double log_time = std::log(median((rows.end() - 3)->samples));
+        const double log_time = std::log(quantile((rows.end() - 3)->samples, 0.5));
         n += 1;
         x += log_joints;
         y += log_time;

@@ -13,6 +13,7 @@
 #include "molecule/coincident_atoms.h"
 #include "molecule/element.h"
 #include "molecule/match_atoms.h"
+#include "tools/choice.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -38,28 +39,17 @@ constexpr std::array<std::string_view, 2> method_names{"all-pairs", "cutoff"};
 constexpr double coincident_distance = 0.1;
 constexpr std::size_t most_warnings = 8;
 
-std::size_t find_choice(const char* option, const std::string& value,
-                        std::span<const std::string_view> names) {
-    const auto found = std::find(names.begin(), names.end(), value);
-    if (found == names.end()) {
-        throw LoadError({fmt::format("{} {}", option, value)},
-                        fmt::format("expected one of {}{}", fmt::join(names, ", "),
-                                    near_name_hint(value, names)));
-    }
-    return static_cast<std::size_t>(found - names.begin());
-}
-
 NonbondedSettings build_settings(const EnergyOptions& options) {
     NonbondedSettings settings = options.nonbonded;
-    if (find_choice("--method", options.method, method_names) == 1) {
+    if (choice_called("--method", options.method, method_names) == 1) {
         settings.cutoff = options.cutoff.value_or(settings.cutoff);
         settings.switch_from = options.switch_from.value_or(settings.switch_from);
         settings.electrostatics = static_cast<ElectrostaticCutoff>(
-            1 + find_choice("--electrostatics", options.electrostatics.value_or("fshift"),
-                            electrostatic_names));
+            1 + choice_called("--electrostatics", options.electrostatics.value_or("fshift"),
+                              electrostatic_names));
         settings.van_der_waals = static_cast<VanDerWaalsCutoff>(
-            1 + find_choice("--van-der-waals", options.van_der_waals.value_or("switch"),
-                            van_der_waals_names));
+            1 + choice_called("--van-der-waals", options.van_der_waals.value_or("switch"),
+                              van_der_waals_names));
     } else if (options.cutoff || options.switch_from || options.electrostatics ||
                options.van_der_waals) {
         throw LoadError({"--method " + options.method},

@@ -17,6 +17,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -76,6 +77,11 @@ void add_size_option(CLI::App& command, const std::string& option, std::uint32_t
             height = static_cast<std::uint32_t>(*high);
         },
         fmt::format("WIDTHxHEIGHT in pixels, {}x{} unless given", width, height));
+}
+
+void add_toppar_option(CLI::App& command, std::vector<std::filesystem::path>& toppar) {
+    command.add_option("--toppar", toppar, "CHARMM topology, parameter and stream files, in order")
+        ->required();
 }
 
 void add_run(CLI::App& program, palpa::RunOptions& options) {
@@ -182,10 +188,7 @@ void add_energy(CLI::App& program, palpa::EnergyOptions& options) {
     energy.add_option("system", options.system, "PSF, or a structure that has all its atoms")
         ->required();
     energy.add_option("--coordinates", options.coordinates, "of a PSF: .crd, .pdb or .cif");
-    energy
-        .add_option("--toppar", options.toppar,
-                    "CHARMM topology, parameter and stream files, in order")
-        ->required();
+    add_toppar_option(energy, options.toppar);
     energy.add_option("--method", options.method, "all-pairs, or cutoff (all-pairs unless given)");
     energy
         .add_option("--coulomb-constant", options.nonbonded.coulomb_constant,
@@ -212,10 +215,7 @@ void add_prepare(CLI::App& program, palpa::PrepareOptions& options) {
     CLI::App& prepare = *program.add_subcommand(
         "prepare", "Complete and type a structure: hydrogens, patches, topology, a report");
     prepare.add_option("structure", options.structure, ".pdb, .ent, .cif or .crd")->required();
-    prepare
-        .add_option("--toppar", options.toppar,
-                    "CHARMM topology, parameter and stream files, in order")
-        ->required();
+    add_toppar_option(prepare, options.toppar);
     prepare
         .add_option("-o,--output", options.folder,
                     "folder for system.psf, .pdb, .crd, .prm, report.txt and scene.toml")

@@ -7,6 +7,7 @@
 #include "scene/read_scene.h"
 #include "session/run_headless.h"
 #include "simulation/components.h"
+#include "tools/choice.h"
 #include "tools/run.h"
 
 #include <fmt/format.h>
@@ -21,18 +22,6 @@
 
 namespace palpa {
 namespace {
-
-// Which of the names an option has.
-std::size_t choice_called(const std::string& option, const std::string& name,
-                          std::span<const std::string_view> names) {
-    const auto found = std::find(names.begin(), names.end(), name);
-    if (found == names.end()) {
-        throw LoadError({fmt::format("{} {}", option, name)},
-                        fmt::format("expected one of {}{}", fmt::join(names, ", "),
-                                    near_name_hint(name, names)));
-    }
-    return static_cast<std::size_t>(found - names.begin());
-}
 
 // The molecule's atoms among the spheres.
 std::span<const SphereShape> shapes_of(Simulation& simulation, const FrameScene& frame,

@@ -117,7 +117,11 @@ void print_summary(const SceneDescription& scene, const Summary& s) {
         fmt::print("  ripple      too short a run to tell\n");
     } else {
         fmt::print("  ripple      {:.3f} N rms above 3 Hz towards the end", s.ripple->rms);
-        if (s.ripple->rms > 0.02) fmt::print(", at {:.1f} Hz", s.ripple->hertz);
+        // What is slower is the stroke, of which the measure keeps a part.
+        if (s.ripple->rms > 0.02) {
+            fmt::print("{}at {:.1f} Hz", s.ripple->hertz < 3 ? ", the stroke itself " : ", ",
+                       s.ripple->hertz);
+        }
         fmt::print("\n");
     }
     fmt::print("  net work    {:+.4f} J on the hand\n", s.net_work_J);

@@ -3,16 +3,51 @@
 #include "core/load_error.h"
 
 #include <cerrno>
+#include <deque>
 #include <fstream>
 #include <sstream>
 #include <system_error>
-#include <vector>
 
 namespace palpa {
 namespace {
 
 // The reason of the last failed call, in the system's words.
 std::string last_reason() { return std::generic_category().message(errno); }
+
+// Replaces the content of `file`, which may be a draft of `path`: errors tell the latter.
+void write_to(const std::filesystem::path& file, const std::filesystem::path& path,
+              std::string_view text) {
+    errno = 0;
+    std::ofstream stream(file, std::ios::binary | std::ios::trunc);
+    stream.write(text.data(), static_cast<std::streamsize>(text.size()));
+    stream.close();
+    if (!stream) throw LoadError({path.string()}, "cannot be written: " + last_reason());
+}
+
+// A whole file beside the one that it will replace; gone unless moved there.
+class Draft {
+public:
+    explicit Draft(const std::filesystem::path& path) : path_(path), draft_(path) {
+        draft_ += ".draft";
+    }
+    Draft(const Draft&) = delete;
+    Draft& operator=(const Draft&) = delete;
+    ~Draft() {
+        std::error_code ignored;
+        std::filesystem::remove(draft_, ignored);
+    }
+
+    void write(std::string_view text) const { write_to(draft_, path_, text); }
+
+    void move() const {
+        std::error_code error;
+        std::filesystem::rename(draft_, path_, error);
+        if (error) throw LoadError({path_.string()}, "cannot be written: " + error.message());
+    }
+
+private:
+    std::filesystem::path path_, draft_;
+};
 
 }  // namespace
 
@@ -36,55 +71,24 @@ std::string read_text_file(const std::filesystem::path& path) {
 void write_text_file(const std::filesystem::path& path, std::string_view text) {
     std::error_code error;
     // A device or a pipe is written into; a draft moved there would take its place.
-    const bool is_special =
-        std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error);
-    std::filesystem::path draft = path;
-    if (!is_special) draft += ".draft";
-    errno = 0;
-    std::ofstream file(draft, std::ios::binary | std::ios::trunc);
-    file.write(text.data(), static_cast<std::streamsize>(text.size()));
-    file.close();
-    if (!file) {
-        const std::string reason = last_reason();
-        std::error_code ignored;
-        if (!is_special) std::filesystem::remove(draft, ignored);
-        throw LoadError({path.string()}, "cannot be written: " + reason);
+    if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)) {
+        return write_to(path, path, text);
     }
-    if (is_special) return;
-    std::filesystem::rename(draft, path, error);
-    if (error) {
-        std::error_code ignored;
-        std::filesystem::remove(draft, ignored);
-        throw LoadError({path.string()}, "cannot be written: " + error.message());
-    }
+    const Draft draft(path);
+    draft.write(text);
+    draft.move();
 }
 
 void write_text_files(std::span<const TextFile> files) {
-    std::vector<std::filesystem::path> drafts;
-    const auto remove_drafts = [&] {
-        std::error_code ignored;
-        for (const auto& draft : drafts) std::filesystem::remove(draft, ignored);
-    };
-    try {
-        for (const TextFile& file : files) {
-            if (std::filesystem::is_directory(file.path)) {
-                throw LoadError({file.path.string()}, "is a folder; expected a file, or nothing");
-            }
-            std::filesystem::path draft = file.path;
-            draft += ".whole";
-            drafts.push_back(draft);
-            write_text_file(draft, file.text);
+    std::deque<Draft> drafts;  // which cannot be moved
+    for (const TextFile& file : files) {
+        std::error_code error;
+        if (std::filesystem::is_directory(file.path, error)) {
+            throw LoadError({file.path.string()}, "is a folder; expected a file, or nothing");
         }
-        for (std::size_t i = 0; i < files.size(); ++i) {
-            std::filesystem::rename(drafts[i], files[i].path);
-        }
-    } catch (const std::filesystem::filesystem_error& error) {
-        remove_drafts();
-        throw LoadError({error.path1().string()}, "cannot be written: " + error.code().message());
-    } catch (const LoadError&) {
-        remove_drafts();
-        throw;
+        drafts.emplace_back(file.path).write(file.text);
     }
+    for (const Draft& draft : drafts) draft.move();
 }
 
 }  // namespace palpa

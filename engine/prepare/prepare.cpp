@@ -173,7 +173,7 @@ void relax_system(PreparedSystem& system, std::span<const std::uint8_t> is_built
     for (std::size_t i = 0; i < count; ++i) {
         is_hydrogen[i] = element_of(system.structure, i) == "H" ? 1 : 0;
     }
-    const RelaxReport relaxed =
+    const ClashReport relaxed =
         relax(system.topology, is_built, is_hydrogen, system.structure.positions,
               [&](double share) { progress("relaxing clashes", share); });
     constexpr std::string_view heading = "Relaxation";

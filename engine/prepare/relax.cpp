@@ -72,10 +72,10 @@ std::optional<Contact> find_closest_contact(const Topology& topology,
     return closest;
 }
 
-RelaxReport relax(const Topology& topology, std::span<const std::uint8_t> is_built,
+ClashReport relax(const Topology& topology, std::span<const std::uint8_t> is_built,
                   std::span<const std::uint8_t> is_hydrogen, std::vector<Vec3>& positions,
                   const std::function<void(double share)>& progress) {
-    RelaxReport report;
+    ClashReport report;
     report.before = find_energy(topology, positions);
     report.closest_before = find_closest_contact(topology, positions);
     const std::vector<Vec3> given = positions;

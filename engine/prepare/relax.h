@@ -19,7 +19,8 @@ struct Contact {
     double distance = 0;  // Å
 };
 
-struct RelaxReport {
+// How clashes went.
+struct ClashReport {
     EnergyTerms before, after;  // kcal/mol, dielectric 4 r, to 9 Å
     std::size_t steps = 0;
     double rms_force = 0;  // at the end, kcal/mol/Å
@@ -31,7 +32,7 @@ struct RelaxReport {
 // where the file has them. Energies fall from step to step (forces/minimise.h). `is_built`: an
 // entry per atom. Steps are limited by size: up to 300 each for systems below 27,000 atoms, 50 at
 // least.
-RelaxReport relax(const Topology& topology, std::span<const std::uint8_t> is_built,
+ClashReport relax(const Topology& topology, std::span<const std::uint8_t> is_built,
                   std::span<const std::uint8_t> is_hydrogen, std::vector<Vec3>& positions,
                   const std::function<void(double share)>& progress);
 

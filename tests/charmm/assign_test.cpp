@@ -1,7 +1,9 @@
 #include "charmm/assign.h"
 
 #include "formats/crd.h"
+#include "tests/support/force_field_of.h"
 #include "tests/support/load_error_of.h"
+#include "tests/support/structure_of.h"
 
 #include <array>
 #include <catch2/catch.hpp>
@@ -39,25 +41,15 @@ SOD 0.0 -0.0469 1.41075
 CLA 0.0 -0.150 2.27
 )";
 
-ForceField parsed(const std::string& text) {
-    ForceField force_field;
-    parse_force_field(text + "END\n", "a.str", force_field);
-    return force_field;
-}
+ForceField parsed(const std::string& text) { return test::force_field_of(text + "END\n", "a.str"); }
 
 ForceField water_with(const std::string& more = "") {
     return parsed(std::string(water_and_ions) + more + "END\n");
 }
 
-// A structure as if read from s.crd, atoms on lines 4, 5, ...; names are {segment, residue, number,
-// atom}, the x coordinate counts the atoms.
+// Behind the three lines that CHARMM's coordinates begin with.
 Structure structure_of(const std::vector<AtomName>& names) {
-    Structure structure{.file = "s.crd", .names = names, .positions = {}, .lines = {}};
-    for (std::size_t i = 0; i < names.size(); ++i) {
-        structure.positions.emplace_back(static_cast<double>(i), 0, 0);
-        structure.lines.push_back(i + 4);
-    }
-    return structure;
+    return test::structure_of(names, "s.crd", 4);
 }
 
 const std::vector<AtomName> two_waters{{"A", "TIP3", "1", "OH2"}, {"A", "TIP3", "1", "H1"},

@@ -1,5 +1,6 @@
 #include "charmm/build_topology.h"
 
+#include "tests/support/force_field_of.h"
 #include "tests/support/load_error_of.h"
 
 #include <fmt/format.h>
@@ -11,15 +12,15 @@
 #include <vector>
 
 using namespace palpa;
+using test::force_field_of;
 using test::load_error_of;
 
 namespace {
 
 // Atom types A, B, C, D with numbers 1 to 4, bonds and angles, and `more` parameters.
 ForceField force_field_with(const std::string& more) {
-    ForceField force_field;
-    parse_force_field("MASS 1 A 12.0 C\nMASS 2 B 12.0 C\nMASS 3 C 12.0 C\nMASS 4 D 12.0 C\n",
-                      "a.rtf", force_field);
+    ForceField force_field =
+        force_field_of("MASS 1 A 12.0 C\nMASS 2 B 12.0 C\nMASS 3 C 12.0 C\nMASS 4 D 12.0 C\n");
     parse_force_field(
         "NONBONDED\nA 0.0 -0.1 2.0 0.0 -0.4 1.5\nB 0.0 -0.1 2.0\nC 0.0 -0.1 2.0\nD 0.0 -0.1 2.0\n"
         "BONDS\nB A 100.0 1.5\nB C 100.0 1.5\nD C 100.0 1.5\n" +
@@ -219,16 +220,14 @@ TEST_CASE("unknown types, bonded and non-bonded numbers and maps are told in one
 }
 
 TEST_CASE("a topology alone has no parameters", "[charmm][topology]") {
-    ForceField force_field;
-    parse_force_field("MASS 1 A 12.0 C\nMASS 2 B 12.0 C\n", "a.rtf", force_field);
+    const ForceField force_field = force_field_of("MASS 1 A 12.0 C\nMASS 2 B 12.0 C\n");
 
     CHECK(load_error_of([&] { build_topology(chain_of({"A", "B"}), force_field); }) ==
           "s.psf:1: no NONBONDED parameters in a.rtf; expected a parameter file (.prm) beside the "
           "topology");
     CHECK(load_error_of([&] { build_topology(chain_of({"A", "B"}), {}); }) ==
           "s.psf:1: no atom types in ; expected a file with MASS lines");
-    ForceField unnumbered;
-    parse_force_field("MASS -1 A 12.0 C\n", "a.rtf", unnumbered);
+    const ForceField unnumbered = force_field_of("MASS -1 A 12.0 C\n");
     CHECK(load_error_of([&] { build_topology(chain_of({"56", "2"}), unnumbered); }) ==
           "s.psf:1: atom types are numbers here, and no MASS line in a.rtf has one; expected the "
           "topology file that numbers them");

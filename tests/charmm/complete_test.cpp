@@ -1,8 +1,10 @@
 #include "charmm/complete.h"
 
 #include "formats/crd.h"
+#include "tests/support/force_field_of.h"
 #include "tests/support/load_error_of.h"
 #include "tests/support/native_case.h"
+#include "tests/support/structure_of.h"
 
 #include <algorithm>
 #include <array>
@@ -20,7 +22,9 @@
 #include <vector>
 
 using namespace palpa;
+using test::force_field_of;
 using test::load_error_of;
+using test::structure_of;
 
 namespace {
 
@@ -48,21 +52,7 @@ IC 1A 1B 2A 2B 1.0 90.0 45.0 90.0 2.0
 END
 )";
 
-ForceField bead_force_field() {
-    ForceField force_field;
-    parse_force_field(beads, "a.rtf", force_field);
-    return force_field;
-}
-
-// At (i, 0, 0) on lines 1, 2, ...
-Structure structure_of(const std::vector<AtomName>& names) {
-    Structure structure{.file = "s.pdb", .names = names, .positions = {}, .lines = {}};
-    for (std::size_t i = 0; i < names.size(); ++i) {
-        structure.positions.emplace_back(static_cast<double>(i), 0, 0);
-        structure.lines.push_back(i + 1);
-    }
-    return structure;
-}
+ForceField bead_force_field() { return force_field_of(beads); }
 
 std::vector<std::string> names_of(const Structure& structure) {
     std::vector<std::string> names;
@@ -119,9 +109,8 @@ TEST_CASE("a whole structure stays as it is", "[charmm][complete]") {
 }
 
 TEST_CASE("an atom whose own name begins with a sign is its residue's", "[charmm][complete]") {
-    ForceField force_field;
-    parse_force_field("MASS 1 T 1.0 H\nRESI A 0.0\nATOM X T 0.0\nATOM +Y T 0.0\nEND\n", "a.rtf",
-                      force_field);
+    const ForceField force_field =
+        force_field_of("MASS 1 T 1.0 H\nRESI A 0.0\nATOM X T 0.0\nATOM +Y T 0.0\nEND\n");
 
     const CompletedStructure completed =
         add_missing_atoms(force_field, structure_of({{"P", "A", "1", "X"}}));

@@ -1,5 +1,6 @@
 #include "charmm/force_field.h"
 
+#include "tests/support/force_field_of.h"
 #include "tests/support/load_error_of.h"
 #include "tests/support/temporary_folder.h"
 
@@ -92,9 +93,7 @@ return
 )";
 
 ForceField parsed(std::string_view text) {
-    ForceField force_field;
-    parse_force_field(fmt::format("{}\nEND\n", text), "a.str", force_field);
-    return force_field;
+    return test::force_field_of(fmt::format("{}\nEND\n", text), "a.str");
 }
 
 std::string error_of(std::string_view text) {
@@ -445,10 +444,7 @@ TEST_CASE("a misspelt line or section has a hint", "[charmm][force_field]") {
 TEST_CASE("a file that ends inside a residue or a section is told as cut",
           "[charmm][force_field]") {
     const auto error = [](std::string_view text) {
-        return load_error_of([&] {
-            ForceField force_field;
-            parse_force_field(text, "a.str", force_field);
-        });
+        return load_error_of([&] { test::force_field_of(text, "a.str"); });
     };
 
     CHECK(error("MASS -1 OT 16.0\nRESI A 0.0\nATOM O OT 0.0\n") ==

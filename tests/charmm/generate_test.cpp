@@ -1,6 +1,8 @@
 #include "charmm/generate.h"
 
+#include "tests/support/force_field_of.h"
 #include "tests/support/load_error_of.h"
+#include "tests/support/structure_of.h"
 
 #include <algorithm>
 #include <array>
@@ -15,6 +17,7 @@
 using namespace palpa;
 using Catch::Contains;
 using Catch::StartsWith;
+using test::force_field_of;
 using test::load_error_of;
 
 namespace {
@@ -81,19 +84,12 @@ BOND 1SG 2SG
 END
 )";
 
-ForceField bead_force_field() {
-    ForceField force_field;
-    parse_force_field(beads, "a.rtf", force_field);
-    return force_field;
-}
+ForceField bead_force_field() { return force_field_of(beads); }
 
-// "segment residue number atom", all at the origin unless placed, on lines 1, 2, ...
+// All at the origin unless placed: bonds that are no matter of a test are short.
 Structure structure_of(const std::vector<AtomName>& names) {
-    Structure structure{.file = "s.pdb", .names = names, .positions = {}, .lines = {}};
-    for (std::size_t i = 0; i < names.size(); ++i) {
-        structure.positions.emplace_back(Vec3::Zero());
-        structure.lines.push_back(i + 1);
-    }
+    Structure structure = test::structure_of(names);
+    for (Vec3& position : structure.positions) position.setZero();
     return structure;
 }
 
@@ -363,8 +359,7 @@ TEST_CASE("a bond over a gap is told with both atoms", "[charmm][generate]") {
 }
 
 TEST_CASE("parameters alone hold no residues", "[charmm][generate]") {
-    ForceField force_field;
-    parse_force_field("BONDS\nA B 1.0 1.0\nEND\n", "a.prm", force_field);
+    const ForceField force_field = force_field_of("BONDS\nA B 1.0 1.0\nEND\n", "a.prm");
 
     CHECK(load_error_of([&] { build_connectivity(force_field, structure_of(chain)); }) ==
           "s.pdb:1: no residues in a.prm; expected a topology file (.rtf) beside the parameters");

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <vector>
 
 using namespace palpa;
 using Catch::StartsWith;
@@ -73,6 +74,37 @@ TEST_CASE("a failed write tells why, harms nothing and leaves nothing behind", "
                    StartsWith(path.string() + ": cannot be written: "));
         CHECK(read_text_file(path / "inside") == "kept");
         CHECK(files_in(folder.path()) == 1);
+    }
+}
+
+TEST_CASE("several files are all written, or none of them", "[core][files]") {
+    const test::TemporaryFolder folder;
+    const fs::path first = folder.add_file("first", "old"), second = folder.path() / "second";
+
+    SECTION("all") {
+        write_text_files(std::vector<TextFile>{{first, "1"}, {second, "2"}});
+        CHECK(read_text_file(first) == "1");
+        CHECK(read_text_file(second) == "2");
+        CHECK(files_in(folder.path()) == 2);
+    }
+    SECTION("none, as the last one's folder is not there") {
+        const fs::path missing = folder.path() / "missing" / "third";
+        CHECK_THAT(load_error_of([&] {
+                       write_text_files(
+                           std::vector<TextFile>{{first, "1"}, {second, "2"}, {missing, "3"}});
+                   }),
+                   StartsWith(missing.string() + ": cannot be written: "));
+        CHECK(read_text_file(first) == "old");
+        CHECK(files_in(folder.path()) == 1);
+    }
+    SECTION("none, as the last one is a folder") {
+        fs::create_directory(second);
+        CHECK_THAT(load_error_of([&] {
+                       write_text_files(std::vector<TextFile>{{first, "1"}, {second, "2"}});
+                   }),
+                   StartsWith(second.string() + ": is a folder"));
+        CHECK(read_text_file(first) == "old");
+        CHECK(files_in(folder.path()) == 2);
     }
 }
 

@@ -1,6 +1,7 @@
 #include "molecule/match_atoms.h"
 
 #include "tests/support/load_error_of.h"
+#include "tests/support/structure_of.h"
 
 #include <fmt/format.h>
 #include <catch2/catch.hpp>
@@ -22,14 +23,7 @@ Connectivity connectivity_of(const std::vector<AtomName>& names) {
 }
 
 Structure structure_of(const std::vector<AtomName>& names) {
-    Structure structure;
-    structure.file = "b.crd";
-    structure.names = names;
-    for (std::size_t i = 0; i < names.size(); ++i) {
-        structure.positions.emplace_back(static_cast<double>(i), 0, 0);
-        structure.lines.push_back(i + 1);
-    }
-    return structure;
+    return test::structure_of(names, "b.crd");
 }
 
 }  // namespace

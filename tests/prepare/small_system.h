@@ -2,6 +2,7 @@
 #pragma once
 #include "charmm/force_field.h"
 #include "molecule/atoms.h"
+#include "tests/support/force_field_of.h"
 
 #include <string>
 #include <string_view>
@@ -134,11 +135,7 @@ BOND 1SG 2SG
 end
 )";
 
-inline ForceField small_force_field() {
-    ForceField force_field;
-    parse_force_field(small_topology, "small.str", force_field);
-    return force_field;
-}
+inline ForceField small_force_field() { return force_field_of(small_topology, "small.str"); }
 
 // Atoms in the order in which they are written, one line each.
 class StructureWriter {
