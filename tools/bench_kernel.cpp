@@ -135,7 +135,7 @@ void bench_large(const System& system, const Case& which, std::vector<BenchRow>&
                 std::vector<Vec3> forces(n, Vec3::Zero());
                 const auto add = [&] {
                     add_fast_nonbonded_forces(system.topology, atoms, which.settings, skin,
-                                              system.positions, pairs, forces, result, threads);
+                                              system.positions, pairs, forces, result, {threads});
                 };
                 add();
                 const double error = worst_force(forces, twin);
