@@ -2,6 +2,7 @@
 #include "forces/fast_nonbonded.h"
 
 #include "field/processor.h"
+#include "forces/force_field.h"
 #include "forces/pair_law.h"
 #include "tests/support/check_forces.h"
 #include "tests/support/reference_case.h"
@@ -152,18 +153,51 @@ void check_positions(const Topology& topology, const FastAtoms& atoms,
     use_processor_kind(kinds.front());
 }
 
+// All terms, against another program's energies and forces.
+void check_frame(const Topology& topology, const FastForceField& fast,
+                 const test::ReferenceFrame& frame, Worst& worst) {
+    const NonbondedSettings settings{.coulomb_constant = test::reference_coulomb_constant};
+    const Expected expected{{frame.energy.at("lj"), frame.energy.at("coulomb")},
+                            sum_magnitudes(topology, settings, frame.positions),
+                            frame.forces,
+                            rms_of(frame.forces)};
+    double others = 0, largest = 0;
+    for (const auto& [term, energy] : frame.energy) {
+        if (term == "lj" || term == "coulomb" || term == "total") continue;
+        others += energy;
+        largest = std::max(largest, std::abs(energy));
+    }
+    for (const std::string& kind : list_processor_kinds()) {
+        for (const std::size_t threads : {1U, 2U}) {
+            INFO(kind << ", " << threads << " threads");
+            use_processor_kind(kind);
+            FastPairs pairs;
+            std::vector<Vec3> forces(topology.size(), Vec3::Zero());
+            const EnergyTerms energy =
+                add_fast_forces(topology, fast, settings, skin, frame.positions, pairs, forces,
+                                PairResult::ForcesAndEnergies, threads);
+            check_against(expected, {energy.lj, energy.coulomb}, forces, worst);
+            CHECK(std::abs(energy.total() - energy.lj - energy.coulomb - others) <= 1e-9 * largest);
+        }
+    }
+    use_processor_kind(list_processor_kinds().front());
+}
+
 void check_case(const fs::path& folder, const std::string& name, const std::string& frames) {
     INFO(name << " " << frames);
     const test::ReferenceCase reference = test::read_reference_case(folder / (name + ".ff.json"));
     const FastAtoms atoms = build_fast_atoms(reference.topology);
-    Worst worst;
+    const FastForceField fast = build_fast_force_field(reference.topology);
+    Worst worst, worst_held;
     for (const auto& frame :
          test::read_reference_frames(folder / fmt::format("{}.{}.json", name, frames))) {
         INFO(frame.name);
         check_positions(reference.topology, atoms, frame.positions, list_processor_kinds(), worst);
+        check_frame(reference.topology, fast, frame, worst_held);
     }
-    fmt::print("{} {}: van der Waals {:.2g}, electrostatic {:.2g}, force {:.2g}\n", name, frames,
-               worst.van_der_waals, worst.electrostatic, worst.force);
+    fmt::print(
+        "{} {}: van der Waals {:.2g}, electrostatic {:.2g}, force {:.2g}; held force {:.2g}\n",
+        name, frames, worst.van_der_waals, worst.electrostatic, worst.force, worst_held.force);
 }
 
 // Ions without a bond; two types have NBFIX numbers together.
@@ -183,14 +217,14 @@ Topology build_salt(std::size_t count) {
 
 }  // namespace
 
-TEST_CASE("single precision agrees with the twin on small reference cases",
+TEST_CASE("single precision agrees with the twin and the held forces of small cases",
           "[forces][fast]") {
     const fs::path folder(PALPA_TEST_DATA);
     check_case(folder, "ala_dipeptide", "frames");
     check_case(folder, "tetra_aera_c36m", "frames");
 }
 
-TEST_CASE("single precision agrees with the twin on every reference case",
+TEST_CASE("single precision agrees with the twin and the held forces of every case",
           "[forces][fast][slow]") {
     const auto folder = test::find_shared_data("reference");
     if (!folder) return;
