@@ -4,10 +4,8 @@
 #include "charmm/force_field.h"
 #include "core/load_error.h"
 #include "field/frozen_field.h"
+#include "field/peak.h"
 #include "field/processor.h"
-#include "forces/bonded.h"
-#include "forces/cmap.h"
-#include "forces/fast_nonbonded.h"
 #include "forces/force_field.h"
 #include "formats/psf.h"
 #include "formats/structure.h"
@@ -18,6 +16,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <numeric>
 #include <random>
 #include <span>
@@ -74,13 +73,13 @@ double worst_force(std::span<const Vec3> forces, std::span<const Vec3> twin) {
     return worst;
 }
 
-// In µs, at least 21 times and for 0.3 s.
+// In µs, at least 21 times and for so long.
 template <class Work>
-std::vector<double> sample_long(const Work& work) {
+std::vector<double> sample_long(const Work& work, double seconds = 0.3) {
     for (int i = 0; i < 3; ++i) work();
     std::vector<double> samples;
     double sum = 0;
-    while (samples.size() < 21 || sum < 0.3) {
+    while (samples.size() < 21 || sum < seconds) {
         samples.push_back(1e6 * seconds_of(work));
         sum += 1e-6 * samples.back();
     }
@@ -103,20 +102,51 @@ std::size_t count_pairs(const System& system, const NonbondedSettings& settings)
     return count;
 }
 
-std::string rate_of(std::size_t pairs, const std::vector<double>& samples) {
-    return fmt::format("the twin in double; {:.3g} M pairs, {:.0f} M/s",
-                       1e-6 * static_cast<double>(pairs),
-                       static_cast<double>(pairs) / quantile(samples, 0.5));
+// The rate at which one core multiplies and adds in single precision, Gflop/s, by kind of
+// processor: what it can do at most.
+using Peaks = std::map<std::string, double>;
+
+Peaks measure_peaks(std::vector<BenchRow>& rows) {
+    Peaks peaks;
+    for (const std::string& kind : list_processor_kinds()) {
+        use_processor_kind(kind);
+        PeakRun run;
+        BenchRow row{"kernel/peak/" + kind, {}, "Gflop/s", {}, "", "products and sums, one core"};
+        for (const double us : sample_long([&] { run = run_multiply_adds(20000); }, 0.1))
+            row.samples.push_back(1e-3 * run.operations / us);
+        peaks[kind] = *std::max_element(row.samples.begin(), row.samples.end());
+        rows.push_back(row);
+    }
+    use_processor_kind(list_processor_kinds().front());
+    return peaks;
+}
+
+// What a row says of its pairs: how many, how fast, and which share of the peak of all threads
+// their operations are. Pairs that are looked at and lie beyond a cutoff do not count.
+struct PairWork {
+    std::size_t pairs = 0;
+    double operations =
+        0;            // of one pair: products, sums, minima and roots as the kernels have them
+    double peak = 0;  // Gflop/s of all threads
+};
+
+std::string rate_of(const PairWork& work, const std::vector<double>& samples) {
+    const double per_us = static_cast<double>(work.pairs) / quantile(samples, 0.5);
+    return fmt::format("the twin in double; {:.3g} M pairs, {:.0f} M/s, {:.0f} % of peak",
+                       1e-6 * static_cast<double>(work.pairs), per_us,
+                       100 * 1e-3 * per_us * work.operations / work.peak);
 }
 
 struct Case {
     const char* name;
     NonbondedSettings settings;
+    double operations, operations_with_energy;  // as in `PairWork`
 };
 
 constexpr double skin = 1;  // Å
 
-void bench_large(const System& system, const Case& which, std::vector<BenchRow>& rows) {
+void bench_large(const System& system, const Case& which, const Peaks& peaks,
+                 std::vector<BenchRow>& rows) {
     const std::size_t n = system.positions.size();
     const FastAtoms atoms = build_fast_atoms(system.topology);
     const std::size_t pair_count = count_pairs(system, which.settings);
@@ -130,7 +160,7 @@ void bench_large(const System& system, const Case& which, std::vector<BenchRow>&
                 std::vector<Vec3> forces(n, Vec3::Zero());
                 const auto add = [&] {
                     add_fast_nonbonded_forces(system.topology, atoms, which.settings, skin,
-                                              system.positions, pairs, forces, result, threads);
+                                              system.positions, pairs, forces, result, {threads});
                 };
                 add();
                 const double error = worst_force(forces, twin);
@@ -139,7 +169,12 @@ void bench_large(const System& system, const Case& which, std::vector<BenchRow>&
                     {fmt::format("kernel/{}/{}/{}/{}/threads={}", system.name, which.name,
                                  result == PairResult::Forces ? "forces" : "energies", kind,
                                  threads),
-                     samples, "us", error, "of max(own, rms) force", rate_of(pair_count, samples)});
+                     samples, "us", error, "of max(own, rms) force",
+                     rate_of({pair_count,
+                              result == PairResult::Forces ? which.operations
+                                                           : which.operations_with_energy,
+                              static_cast<double>(threads) * peaks.at(kind)},
+                             samples)});
             }
         }
     }
@@ -156,25 +191,31 @@ void bench_large(const System& system, const Case& which, std::vector<BenchRow>&
                     fmt::format("built anew when an atom has moved {} Å", skin / 2)});
 }
 
-// All terms but the pairs of the kernel, in double.
-void bench_bonded(const System& system, std::vector<BenchRow>& rows) {
-    std::vector<Vec3> forces(system.positions.size(), Vec3::Zero());
-    const Topology& topology = system.topology;
-    const auto add = [&] {
-        add_bond_forces(topology.bonds, system.positions, forces);
-        add_angle_forces(topology.angles, system.positions, forces);
-        add_urey_bradley_forces(topology.urey_bradleys, system.positions, forces);
-        add_dihedral_forces(topology.dihedrals, system.positions, forces);
-        add_improper_forces(topology.impropers, system.positions, forces);
-        add_cmap_forces(topology.cmap_terms, topology.cmap_maps, system.positions, forces);
-        add_nonbonded14_forces(topology, {}, system.positions, forces);
-    };
-    rows.push_back({fmt::format("kernel/{}/bonded-and-1-4", system.name),
-                    sample_long(add),
-                    "us",
-                    {},
-                    "",
-                    "in double"});
+// Pairs, bonded terms and pairs three bonds apart.
+void bench_all_terms(const System& system, const Case& which, std::vector<BenchRow>& rows) {
+    const std::size_t n = system.positions.size();
+    if (system.topology.bonds.empty()) return;
+    const FastForceField fast = build_fast_force_field(system.topology);
+    std::vector<Vec3> twin(n, Vec3::Zero());
+    add_forces(system.topology, which.settings, system.positions, twin);
+    for (const std::string& kind : list_processor_kinds()) {
+        use_processor_kind(kind);
+        for (const std::size_t threads : {1U, 2U}) {
+            FastPairs pairs;
+            std::vector<Vec3> forces(n, Vec3::Zero());
+            const auto add = [&] {
+                add_fast_forces(system.topology, fast, which.settings, skin, system.positions,
+                                pairs, forces, PairResult::ForcesAndEnergies, threads);
+            };
+            add();
+            const double error = worst_force(forces, twin);
+            rows.push_back({fmt::format("kernel/{}/{}/all-terms/{}/threads={}", system.name,
+                                        which.name, kind, threads),
+                            sample_long(add), "us", error, "of max(own, rms) force",
+                            "the twins in double; with energies"});
+        }
+    }
+    use_processor_kind(list_processor_kinds().front());
 }
 
 // Points of the system by index, as the field takes them.
@@ -196,7 +237,7 @@ Points pick(const System& system, const FastAtoms& atoms, std::span<const std::u
 }
 
 // The last 130 atoms, an inhibitor's, in the field of the 1,000 nearest others.
-void bench_small(const System& system, std::vector<BenchRow>& rows) {
+void bench_small(const System& system, const Peaks& peaks, std::vector<BenchRow>& rows) {
     constexpr std::size_t group_size = 130, environment_size = 1000;
     const std::size_t n = system.positions.size();
     if (n < group_size + environment_size) return;
@@ -227,7 +268,8 @@ void bench_small(const System& system, std::vector<BenchRow>& rows) {
             std::max((sum.force - twin.force).norm() / twin.force.norm(),
                      (sum.stiffness - twin.stiffness).norm() / twin.stiffness.norm());
         rows.push_back({fmt::format("{}/{}", name, kind), samples, "us", error,
-                        "of force or stiffness", rate_of(group_size * environment_size, samples)});
+                        "of force or stiffness",
+                        rate_of({group_size * environment_size, 69, peaks.at(kind)}, samples)});
     }
     use_processor_kind(list_processor_kinds().front());
     rows.push_back({name + "/double",
@@ -239,13 +281,18 @@ void bench_small(const System& system, std::vector<BenchRow>& rows) {
 }
 
 void bench_system(const System& system, std::vector<BenchRow>& rows) {
-    const Case all_pairs{"all-pairs", {}};
+    const Peaks peaks = measure_peaks(rows);
+    const Case all_pairs{"all-pairs", {}, 39, 43};
     const Case force_switch{"force-switch=12",
                             {.electrostatics = ElectrostaticCutoff::ForceSwitch,
-                             .van_der_waals = VanDerWaalsCutoff::ForceSwitch}};
-    for (const Case& which : {all_pairs, force_switch}) bench_large(system, which, rows);
-    bench_bonded(system, rows);
-    bench_small(system, rows);
+                             .van_der_waals = VanDerWaalsCutoff::ForceSwitch},
+                            58,
+                            86};
+    for (const Case& which : {all_pairs, force_switch}) {
+        bench_large(system, which, peaks, rows);
+        bench_all_terms(system, which, rows);
+    }
+    bench_small(system, peaks, rows);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// What one thread of field/pair_kernel.cpp is asked for, by the part of it that is compiled once of
-// the parts that are compiled for each kind of processor.
+// What one thread does of a sum over a list of clusters (field/pair_kernel.h), by code that is
+// compiled for each kind of processor.
 #pragma once
 #include "field/pair_kernel.h"
 
@@ -22,5 +22,8 @@ struct JobSum {
     double van_der_waals = 0, electrostatic = 0;
     float nearest2 = std::numeric_limits<float>::infinity();  // Å^2
 };
+
+// Adds to the forces of the clusters and returns the energies, on the processor at hand.
+JobSum run_pair_job(const PairJob& job);
 
 }  // namespace palpa

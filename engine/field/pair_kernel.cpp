@@ -5,489 +5,16 @@
 #include "field/pair_job.h"
 
 #include <algorithm>
-#include <bit>
+#include <array>
 #include <cmath>
-#include <cstring>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <thread>
+#include <utility>
 
-// From here on once for each kind of processor.
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "field/pair_kernel.cpp"
-#include <hwy/foreach_target.h>  // before highway.h
-
-#include "field/pair_kernel-inl.h"
-
-HWY_BEFORE_NAMESPACE();
-namespace palpa::HWY_NAMESPACE {
-namespace {
-
-// A pair's force is (a/r^2 + b) d with d the vector between the atoms; energies are added up.
-struct Terms {
-    V a, b, van_der_waals, electrostatic;
-};
-
-// S and its slope S'/r, with y = (r^2 - m^2)/(c^2 - m^2), not below 0:
-//   S = 1 - y^2 (3 - 2y),  S'/r = -12 y (1 - y)/(c^2 - m^2)
-struct Switching {
-    explicit HWY_INLINE Switching(const PairScheme& scheme) {
-        const double c2 = scheme.cutoff * scheme.cutoff;
-        const double m2 = scheme.switch_from * scheme.switch_from;
-        scale = all(1 / (c2 - m2));
-        offset = all(-m2 / (c2 - m2));
-        slope_scale = all(-12 / (c2 - m2));
-    }
-    HWY_INLINE V place(V r2) const {
-        return hn::Max(hn::MulAdd(r2, scale, offset), hn::Zero(floats));
-    }
-    HWY_INLINE V value(V y) const {
-        return hn::NegMulAdd(hn::Mul(y, y), hn::NegMulAdd(y, all(2), all(3)), all(1));
-    }
-    HWY_INLINE V slope(V y) const { return hn::Mul(slope_scale, hn::NegMulAdd(y, y, y)); }
-
-    V scale, offset, slope_scale;
-};
-
-// The forms of forces/pair_law.h, put so that no two large numbers cancel in single precision.
-template <ElectrostaticCutoff End>
-class Electrostatics {
-public:
-    explicit HWY_INLINE Electrostatics(const PairScheme& scheme) : switching_(scheme) {
-        const double c = scheme.cutoff, m = scheme.switch_from, width = c * c - m * m;
-        inverse_c_ = all(1 / c);
-        inverse_c2_ = all(1 / (c * c));
-        if constexpr (End == ElectrostaticCutoff::ForceSwitch) {
-            // The energy before m is U moved by C0; after it, by x = r - m > 0,
-            //   C0 + 1/r + integral over (1 - S)/r^2 = C0 + 1/r + x^3 p(x)/r
-            const double width3 = width * width * width;
-            m_ = all(m);
-            p0_ = all(4 * m * width / width3);
-            p1_ = all((width - 4 * m * m) / width3);
-            p2_ = all(-2.4 * m / width3);
-            p3_ = all(-0.4 / width3);
-            const double x = c - m;
-            shift_ = all(
-                -(1 + x * x * x / width3 *
-                          (4 * m * width + x * (width - 4 * m * m + x * (-2.4 * m - 0.4 * x)))) /
-                c);
-        }
-    }
-
-    template <bool WithEnergy>
-    HWY_INLINE void add(V r2, V inverse_r, V charges, Terms& terms) const {
-        const V u = hn::Mul(charges, inverse_r);
-        if constexpr (End == ElectrostaticCutoff::None) {
-            terms.a = hn::Add(terms.a, u);
-            if constexpr (WithEnergy) terms.electrostatic = hn::Add(terms.electrostatic, u);
-        } else if constexpr (End == ElectrostaticCutoff::Switch) {
-            const V y = switching_.place(r2);
-            const V energy = hn::Mul(u, switching_.value(y));
-            terms.a = hn::Add(terms.a, energy);
-            terms.b = hn::NegMulAdd(u, switching_.slope(y), terms.b);
-            if constexpr (WithEnergy) terms.electrostatic = hn::Add(terms.electrostatic, energy);
-        } else if constexpr (End == ElectrostaticCutoff::Shift) {
-            const V left = hn::NegMulAdd(r2, inverse_c2_, all(1));
-            const V once = hn::Mul(u, left), energy = hn::Mul(once, left);
-            terms.a = hn::Add(terms.a, energy);
-            terms.b = hn::MulAdd(hn::Mul(once, all(4)), inverse_c2_, terms.b);
-            if constexpr (WithEnergy) terms.electrostatic = hn::Add(terms.electrostatic, energy);
-        } else if constexpr (End == ElectrostaticCutoff::ForceShift) {
-            terms.a = hn::Add(terms.a, u);
-            terms.b = hn::NegMulAdd(u, inverse_c2_, terms.b);
-            if constexpr (WithEnergy) {
-                const V left = hn::NegMulAdd(hn::Mul(r2, inverse_r), inverse_c_, all(1));
-                terms.electrostatic = hn::MulAdd(hn::Mul(u, left), left, terms.electrostatic);
-            }
-        } else {
-            terms.a = hn::MulAdd(u, switching_.value(switching_.place(r2)), terms.a);
-            if constexpr (WithEnergy) {
-                const V x = hn::Max(hn::MulSub(r2, inverse_r, m_), hn::Zero(floats));
-                const V x3 = hn::Mul(hn::Mul(x, x), x);
-                const V p = hn::MulAdd(hn::MulAdd(hn::MulAdd(p3_, x, p2_), x, p1_), x, p0_);
-                terms.electrostatic =
-                    hn::Add(terms.electrostatic,
-                            hn::MulAdd(u, hn::MulAdd(x3, p, all(1)), hn::Mul(charges, shift_)));
-            }
-        }
-    }
-
-private:
-    Switching switching_;
-    V inverse_c_, inverse_c2_;
-    V m_ = hn::Zero(floats), p0_ = m_, p1_ = m_, p2_ = m_, p3_ = m_, shift_ = m_;
-};
-
-// Of 12 times the depth of the well.
-template <VanDerWaalsCutoff End>
-class VanDerWaals {
-public:
-    explicit HWY_INLINE VanDerWaals(const PairScheme& scheme) : switching_(scheme) {
-        const double c3 = std::pow(scheme.cutoff, 3), m3 = std::pow(scheme.switch_from, 3);
-        k12_ = all(c3 * c3 / (c3 * c3 - m3 * m3));
-        k12_end_ = all(1 / (c3 * c3 - m3 * m3));
-        k6_ = all(c3 / (c3 - m3));
-        k6_end_ = all(1 / (c3 - m3));
-        inverse_c6_ = all(1 / (c3 * c3));
-        inverse_c3_ = all(1 / c3);
-        inverse_m6_ = all(1 / (m3 * m3));
-        inverse_m3_ = all(1 / m3);
-    }
-
-    // Sets a and b.
-    template <bool WithEnergy>
-    HWY_INLINE void set(V r2, V inverse_r, V inverse_r2, V epsilon12, V rmin, Terms& terms) const {
-        if constexpr (End == VanDerWaalsCutoff::ForceSwitch) {
-            set_force_switched<WithEnergy>(inverse_r, inverse_r2, epsilon12, rmin, terms);
-            return;
-        }
-        const V s = hn::Mul(rmin, inverse_r), s2 = hn::Mul(s, s);
-        const V s6 = hn::Mul(hn::Mul(s2, s2), s2), well = hn::Mul(epsilon12, s6);
-        terms.a = hn::MulSub(well, s6, well);
-        terms.b = hn::Zero(floats);
-        if constexpr (End == VanDerWaalsCutoff::Switch) {
-            const V y = switching_.place(r2), value = switching_.value(y);
-            const V energy = hn::Mul(well, hn::Sub(s6, all(2)));
-            terms.a = hn::Mul(terms.a, value);
-            terms.b = hn::Mul(hn::Mul(energy, all(-1.0 / 12)), switching_.slope(y));
-            if constexpr (WithEnergy)
-                terms.van_der_waals = hn::MulAdd(energy, value, terms.van_der_waals);
-        } else if constexpr (WithEnergy) {
-            terms.van_der_waals = hn::MulAdd(well, hn::Sub(s6, all(2)), terms.van_der_waals);
-        }
-    }
-
-private:
-    // With u = r^-6 and v = r^-3: p = u before m and k12 (u - c^-6) after it, the smaller of the
-    // two everywhere; q the same of v. The energy is A (p u - min(p, m^-6) c^-6) and so on.
-    template <bool WithEnergy>
-    HWY_INLINE void set_force_switched(V inverse_r, V inverse_r2, V epsilon12, V rmin,
-                                       Terms& terms) const {
-        const V v = hn::Mul(inverse_r2, inverse_r), u = hn::Mul(v, v);
-        const V rmin2 = hn::Mul(rmin, rmin), rmin6 = hn::Mul(hn::Mul(rmin2, rmin2), rmin2);
-        const V p = hn::Min(u, hn::MulSub(k12_, u, k12_end_));
-        const V q = hn::Min(v, hn::MulSub(k6_, v, k6_end_));
-        const V pu = hn::Mul(p, u), qv = hn::Mul(q, v), well = hn::Mul(epsilon12, rmin6);
-        terms.a = hn::Mul(well, hn::MulSub(rmin6, pu, qv));
-        terms.b = hn::Zero(floats);
-        if constexpr (WithEnergy) {
-            const V repulsion = hn::NegMulAdd(hn::Min(p, inverse_m6_), inverse_c6_, pu);
-            const V attraction = hn::NegMulAdd(hn::Min(q, inverse_m3_), inverse_c3_, qv);
-            terms.van_der_waals =
-                hn::MulAdd(well, hn::MulSub(rmin6, repulsion, hn::Add(attraction, attraction)),
-                           terms.van_der_waals);
-        }
-    }
-
-    Switching switching_;
-    V k12_, k12_end_, k6_, k6_end_, inverse_c6_, inverse_c3_, inverse_m6_, inverse_m3_;
-};
-
-// The atoms of one cluster, which a row of pairs each is about.
-struct Rows {
-    alignas(64) float x[cluster_size], y[cluster_size], z[cluster_size];  // Å, from the centre
-    alignas(64) float charge[cluster_size];     // times the Coulomb constant
-    alignas(64) float epsilon12[cluster_size];  // 12 sqrt(epsilon)
-    alignas(64) float half_rmin[cluster_size];
-    // The forces on them, of some hundred columns, side by side.
-    alignas(64) float fx[cluster_size][lane_count], fy[cluster_size][lane_count],
-        fz[cluster_size][lane_count];
-};
-
-// As many atoms as there are lanes: some of one cluster, or two clusters.
-HWY_INLINE V load_columns(const ClusterAtoms::Column& first,
-                          [[maybe_unused]] const ClusterAtoms::Column& second, std::size_t column) {
-#if HWY_MAX_BYTES == 64
-    const HalfFloats half;
-    return hn::Combine(floats, hn::Load(half, second.data()), hn::Load(half, first.data()));
-#else
-    return hn::Load(floats, first.data() + column);
-#endif
-}
-
-HWY_INLINE void subtract(W force, double* sums) {
-    hn::Store(hn::Sub(hn::Load(doubles, sums), force), doubles, sums);
-}
-
-// Takes from the forces on the columns what their rows got.
-HWY_INLINE void subtract_from_columns(V force, std::array<double, cluster_size>& first,
-                                      std::array<double, cluster_size>& second,
-                                      std::size_t column) {
-    subtract(lower_half(force), first.data() + column);
-    if constexpr (lane_count > cluster_size) {
-        subtract(upper_half(force), second.data());
-    } else if constexpr (lane_count > 1) {
-        subtract(upper_half(force), first.data() + column + lane_count / 2);
-    }
-}
-
-HWY_INLINE void add_to(V v, float* sums) {
-    hn::Store(hn::Add(hn::Load(floats, sums), v), floats, sums);
-}
-
-// Pairs of a row that count.
-HWY_INLINE M load_mask(std::uint64_t first, std::uint64_t second, std::uint32_t row,
-                       std::size_t column) {
-    std::uint8_t bits[8] = {};
-    const std::uint64_t of_first = first >> (8 * row) & 0xff;
-    if constexpr (lane_count > cluster_size) {
-        bits[0] = static_cast<std::uint8_t>(of_first);
-        bits[1] = static_cast<std::uint8_t>(second >> (8 * row));
-    } else {
-        bits[0] = static_cast<std::uint8_t>(of_first >> column);
-    }
-    return hn::LoadMaskBits(floats, bits);
-}
-
-template <ElectrostaticCutoff ElectrostaticEnd, VanDerWaalsCutoff VanDerWaalsEnd, bool WithEnergy>
-class Kernel {
-public:
-    explicit HWY_INLINE Kernel(const PairJob& job)
-        : list_(*job.list),
-          atoms_(job.atoms),
-          forces_(job.forces),
-          coulomb_(static_cast<float>(job.scheme->coulomb)),
-          electrostatics_(*job.scheme),
-          van_der_waals_(*job.scheme),
-          cutoff2_(all(job.scheme->cutoff * job.scheme->cutoff)),
-          nearest2_(all(std::numeric_limits<float>::infinity())),
-          lj_sum_(hn::Zero(doubles)),
-          coulomb_sum_(lj_sum_) {}
-
-    JobSum sum(std::size_t begin, std::size_t end) {
-        for (std::size_t c = begin; c < end; ++c) sum_cluster(c);
-        return {sum_of(lj_sum_) / 12, sum_of(coulomb_sum_),
-                hn::GetLane(hn::MinOfLanes(floats, nearest2_))};
-    }
-
-private:
-    static constexpr std::size_t step = lane_count > cluster_size ? 2 : 1;
-    // Tiles between two sums of energies in double, which are of eight rows each; and how many such
-    // stretches between two of the forces on a row.
-    static constexpr std::size_t most_tiles = 16 * step;
-    static constexpr std::size_t most_stretches = 8;
-
-    // Of a few hundred pairs; kept in registers.
-    struct Sums {
-        V nearest2, van_der_waals, electrostatic;
-    };
-
-    HWY_INLINE void sum_cluster(std::size_t c) {
-        load_rows(c);
-        // Copies: stores to memory cannot change them.
-        const Electrostatics<ElectrostaticEnd> electrostatics = electrostatics_;
-        const VanDerWaals<VanDerWaalsEnd> van_der_waals = van_der_waals_;
-        Sums sums{nearest2_, hn::Zero(floats), hn::Zero(floats)};
-        std::size_t stretches = 0;
-        for (std::size_t t = list_.first_plain[c]; t < list_.first_plain[c + 1];) {
-            const std::size_t end = std::min(t + most_tiles, list_.first_plain[c + 1]);
-            for (; t < end; t += step) {
-                const ClusterTile& first = list_.plain[t];
-                const ClusterTile& second = list_.plain[t + step - 1];
-                sum_tile<false>(electrostatics, van_der_waals, sums, first.cluster, second.cluster,
-                                first.rows | second.rows, 0, 0);
-            }
-            flush_energies(sums);
-            if (++stretches % most_stretches == 0) flush_rows(c);
-        }
-        for (std::size_t t = list_.first_masked[c]; t < list_.first_masked[c + 1];) {
-            const std::size_t end = std::min(t + most_tiles, list_.first_masked[c + 1]);
-            for (; t < end; t += step) {
-                const MaskedTile& first = list_.masked[t];
-                const MaskedTile& second = list_.masked[t + step - 1];
-                sum_tile<true>(electrostatics, van_der_waals, sums, first.cluster, second.cluster,
-                               rows_of(first.pairs | second.pairs), first.pairs, second.pairs);
-            }
-            flush_energies(sums);
-            if (++stretches % most_stretches == 0) flush_rows(c);
-        }
-        flush_rows(c);
-        nearest2_ = sums.nearest2;
-    }
-
-    static HWY_INLINE std::uint32_t rows_of(std::uint64_t pairs) {
-        pairs |= pairs >> 4;
-        pairs |= pairs >> 2;
-        pairs |= pairs >> 1;
-        pairs &= 0x0101010101010101U;
-        return static_cast<std::uint32_t>(pairs * 0x0102040810204080U >> 56);
-    }
-
-    HWY_INLINE void load_rows(std::size_t c) {
-        const ClusterAtoms& atoms = atoms_[c];
-        for (std::size_t k = 0; k < 3; ++k) centre_[k] = atoms.high[k][0];
-        for (std::size_t r = 0; r < cluster_size; ++r) {
-            rows_.x[r] = (atoms.high[0][r] - centre_[0]) + atoms.low[0][r];
-            rows_.y[r] = (atoms.high[1][r] - centre_[1]) + atoms.low[1][r];
-            rows_.z[r] = (atoms.high[2][r] - centre_[2]) + atoms.low[2][r];
-            rows_.charge[r] = coulomb_ * atoms.charge[r];
-            rows_.epsilon12[r] = 12 * atoms.sqrt_epsilon[r];
-            rows_.half_rmin[r] = atoms.half_rmin[r];
-        }
-        clear_row_forces();
-    }
-
-    HWY_INLINE void clear_row_forces() {
-        for (std::size_t r = 0; r < cluster_size; ++r) {
-            hn::Store(hn::Zero(floats), floats, rows_.fx[r]);
-            hn::Store(hn::Zero(floats), floats, rows_.fy[r]);
-            hn::Store(hn::Zero(floats), floats, rows_.fz[r]);
-        }
-    }
-
-    // Move sums in single precision to those in double.
-    HWY_INLINE void flush_rows(std::size_t c) {
-        ClusterForces& forces = forces_[c];
-        for (std::size_t r = 0; r < cluster_size; ++r) {
-            forces.on[0][r] += sum_of(hn::Load(floats, rows_.fx[r]));
-            forces.on[1][r] += sum_of(hn::Load(floats, rows_.fy[r]));
-            forces.on[2][r] += sum_of(hn::Load(floats, rows_.fz[r]));
-        }
-        clear_row_forces();
-    }
-
-    HWY_INLINE void flush_energies(Sums& sums) {
-        if constexpr (WithEnergy) {
-            lj_sum_ = hn::Add(
-                lj_sum_, hn::Add(lower_half(sums.van_der_waals), upper_half(sums.van_der_waals)));
-            coulomb_sum_ = hn::Add(coulomb_sum_, hn::Add(lower_half(sums.electrostatic),
-                                                         upper_half(sums.electrostatic)));
-            sums.van_der_waals = hn::Zero(floats);
-            sums.electrostatic = hn::Zero(floats);
-        }
-    }
-
-    template <bool IsMasked>
-    HWY_INLINE void sum_tile(const Electrostatics<ElectrostaticEnd>& electrostatics,
-                             const VanDerWaals<VanDerWaalsEnd>& van_der_waals, Sums& sums,
-                             std::uint32_t first, std::uint32_t second, std::uint32_t rows,
-                             std::uint64_t first_pairs, std::uint64_t second_pairs) {
-        const ClusterAtoms& a = atoms_[first];
-        const ClusterAtoms& b = atoms_[second];
-        for (std::size_t column = 0; column < cluster_size; column += lane_count) {
-            const auto place = [&](std::size_t k) HWY_ATTR {
-                return hn::Add(hn::Sub(load_columns(a.high[k], b.high[k], column),
-                                       hn::Set(floats, centre_[k])),
-                               load_columns(a.low[k], b.low[k], column));
-            };
-            const V x = place(0), y = place(1), z = place(2);
-            const V charge = load_columns(a.charge, b.charge, column);
-            const V sqrt_epsilon = load_columns(a.sqrt_epsilon, b.sqrt_epsilon, column);
-            const V half_rmin = load_columns(a.half_rmin, b.half_rmin, column);
-            V fx = hn::Zero(floats), fy = fx, fz = fx;
-            for (std::uint32_t left = rows; left != 0; left &= left - 1) {
-                const auto r = static_cast<std::uint32_t>(std::countr_zero(left));
-                const V dx = hn::Sub(hn::Set(floats, rows_.x[r]), x);
-                const V dy = hn::Sub(hn::Set(floats, rows_.y[r]), y);
-                const V dz = hn::Sub(hn::Set(floats, rows_.z[r]), z);
-                const V distance2 = hn::MulAdd(dz, dz, hn::MulAdd(dy, dy, hn::Mul(dx, dx)));
-                V charges = hn::Mul(hn::Set(floats, rows_.charge[r]), charge);
-                V epsilon12 = hn::Mul(hn::Set(floats, rows_.epsilon12[r]), sqrt_epsilon);
-                const V rmin = hn::Add(hn::Set(floats, rows_.half_rmin[r]), half_rmin);
-                V counted2 = distance2;
-                M counts = hn::Lt(distance2, cutoff2_);
-                if constexpr (IsMasked) {
-                    const M pairs = load_mask(first_pairs, second_pairs, r, column);
-                    counted2 = hn::IfThenElse(pairs, distance2, all(1e30));
-                    counts = hn::And(counts, pairs);
-                    if constexpr (!electrostatics_end) charges = hn::IfThenElseZero(pairs, charges);
-                    if constexpr (!van_der_waals_ends)
-                        epsilon12 = hn::IfThenElseZero(pairs, epsilon12);
-                }
-                if constexpr (electrostatics_end) charges = hn::IfThenElseZero(counts, charges);
-                if constexpr (van_der_waals_ends) epsilon12 = hn::IfThenElseZero(counts, epsilon12);
-                sums.nearest2 = hn::Min(sums.nearest2, counted2);
-                // A pair that does not count may be at one place.
-                const V r2 = IsMasked ? hn::Max(distance2, all(1e-2)) : distance2;
-                const V inverse_r = inverse_root(r2), inverse_r2 = hn::Mul(inverse_r, inverse_r);
-                Terms terms{hn::Zero(floats), hn::Zero(floats), sums.van_der_waals,
-                            sums.electrostatic};
-                van_der_waals.template set<WithEnergy>(r2, inverse_r, inverse_r2, epsilon12, rmin,
-                                                       terms);
-                electrostatics.template add<WithEnergy>(r2, inverse_r, charges, terms);
-                sums.van_der_waals = terms.van_der_waals;
-                sums.electrostatic = terms.electrostatic;
-                const V gradient = hn::MulAdd(terms.a, inverse_r2, terms.b);
-                const V px = hn::Mul(gradient, dx);
-                const V py = hn::Mul(gradient, dy);
-                const V pz = hn::Mul(gradient, dz);
-                fx = hn::Add(fx, px);
-                fy = hn::Add(fy, py);
-                fz = hn::Add(fz, pz);
-                add_to(px, rows_.fx[r]);
-                add_to(py, rows_.fy[r]);
-                add_to(pz, rows_.fz[r]);
-            }
-            ClusterForces& on_a = forces_[first];
-            ClusterForces& on_b = forces_[second];
-            subtract_from_columns(fx, on_a.on[0], on_b.on[0], column);
-            subtract_from_columns(fy, on_a.on[1], on_b.on[1], column);
-            subtract_from_columns(fz, on_a.on[2], on_b.on[2], column);
-        }
-    }
-
-    static constexpr bool electrostatics_end = ElectrostaticEnd != ElectrostaticCutoff::None;
-    static constexpr bool van_der_waals_ends = VanDerWaalsEnd != VanDerWaalsCutoff::None;
-
-    const ClusterList& list_;
-    const ClusterAtoms* atoms_;
-    ClusterForces* forces_;
-    float coulomb_;
-    Electrostatics<ElectrostaticEnd> electrostatics_;
-    VanDerWaals<VanDerWaalsEnd> van_der_waals_;
-    V cutoff2_;
-    std::array<float, 3> centre_{};
-    Rows rows_;
-    V nearest2_;
-    W lj_sum_, coulomb_sum_;  // the first times 12
-};
-
-template <ElectrostaticCutoff ElectrostaticEnd, VanDerWaalsCutoff VanDerWaalsEnd>
-JobSum sum_with_scheme(const PairJob& job) {
-    if (job.with_energies)
-        return Kernel<ElectrostaticEnd, VanDerWaalsEnd, true>(job).sum(job.begin, job.end);
-    return Kernel<ElectrostaticEnd, VanDerWaalsEnd, false>(job).sum(job.begin, job.end);
-}
-
-template <ElectrostaticCutoff ElectrostaticEnd>
-JobSum sum_with_electrostatics(const PairJob& job) {
-    using enum VanDerWaalsCutoff;
-    switch (job.scheme->van_der_waals) {
-        case Switch:
-            return sum_with_scheme<ElectrostaticEnd, Switch>(job);
-        case ForceSwitch:
-            return sum_with_scheme<ElectrostaticEnd, ForceSwitch>(job);
-        case None:
-            break;
-    }
-    return sum_with_scheme<ElectrostaticEnd, None>(job);
-}
-
-JobSum sum_job(const PairJob& job) {
-    using enum ElectrostaticCutoff;
-    switch (job.scheme->electrostatics) {
-        case Switch:
-            return sum_with_electrostatics<Switch>(job);
-        case Shift:
-            return sum_with_electrostatics<Shift>(job);
-        case ForceShift:
-            return sum_with_electrostatics<ForceShift>(job);
-        case ForceSwitch:
-            return sum_with_electrostatics<ForceSwitch>(job);
-        case None:
-            break;
-    }
-    return sum_with_electrostatics<None>(job);
-}
-
-}  // namespace
-}  // namespace palpa::HWY_NAMESPACE
-HWY_AFTER_NAMESPACE();
-
-#if HWY_ONCE
 namespace palpa {
 namespace {
-
-HWY_EXPORT(sum_job);
 
 // Whether all are near enough to the origin.
 bool place_atoms(const ClusterList& list, std::span<const Vec3> positions,
@@ -511,12 +38,18 @@ bool place_atoms(const ClusterList& list, std::span<const Vec3> positions,
     return fits;
 }
 
-// Clusters whose first tile is at a share of all tiles.
-std::size_t cluster_at(const ClusterList& list, std::size_t part, std::size_t parts) noexcept {
+// The first cluster of a thread's share: all tiles and what the first thread does besides, in equal
+// parts.
+std::size_t first_cluster(const ClusterList& list, const PairThreads& threads,
+                          std::size_t thread) noexcept {
+    if (thread == 0) return 0;
+    if (thread == threads.count) return list.clusters();
     const auto tiles_before = [&](std::size_t c) {
         return list.first_plain[c] + list.first_masked[c];
     };
-    const std::size_t wanted = tiles_before(list.clusters()) * part / parts;
+    const std::size_t besides = threads.beside_tiles;
+    const std::size_t before = (tiles_before(list.clusters()) + besides) * thread / threads.count;
+    const std::size_t wanted = before - std::min(before, besides);
     std::size_t low = 0, high = list.clusters();
     while (low < high) {
         const std::size_t middle = (low + high) / 2;
@@ -526,7 +59,7 @@ std::size_t cluster_at(const ClusterList& list, std::size_t part, std::size_t pa
             high = middle;
         }
     }
-    return part == parts ? list.clusters() : low;
+    return low;
 }
 
 void add_cluster_forces(const ClusterList& list, const PairWorkspace& workspace,
@@ -577,22 +110,26 @@ PairWorkspace build_pair_workspace(const ClusterList& list, const PairParameters
 PairKernelSum add_cluster_pair_forces(const ClusterList& list, const PairScheme& scheme,
                                       std::span<const Vec3> positions, PairWorkspace& workspace,
                                       std::span<Vec3> forces, PairResult result,
-                                      std::size_t threads) {
-    PALPA_ASSERT(threads > 0 && workspace.atoms.size() == list.clusters() + 1);
+                                      const PairThreads& threads) {
+    PALPA_ASSERT(threads.count > 0 && workspace.atoms.size() == list.clusters() + 1);
+    PALPA_ASSERT(
+        !(scheme.distance_dielectric && scheme.electrostatics == ElectrostaticCutoff::ForceShift));
     PALPA_ASSERT(!is_outdated(list, positions) && forces.size() == positions.size());
-    if (!place_atoms(list, positions, workspace)) return {};
-    if (workspace.forces.size() < threads) workspace.forces.resize(threads);
-    std::vector<JobSum> sums(threads);
+    const bool fits = place_atoms(list, positions, workspace);
+    std::vector<JobSum> sums(threads.count);
+    if (workspace.forces.size() < threads.count) workspace.forces.resize(threads.count);
     const auto run = [&](std::size_t t) {
+        if (!fits) return;
         workspace.forces[t].assign(list.clusters() + 1, {});
-        sums[t] = HWY_DYNAMIC_DISPATCH(sum_job)(
-            {&list, &scheme, workspace.atoms.data(), workspace.forces[t].data(),
-             cluster_at(list, t, threads), cluster_at(list, t + 1, threads),
-             result == PairResult::ForcesAndEnergies});
+        sums[t] =
+            run_pair_job({&list, &scheme, workspace.atoms.data(), workspace.forces[t].data(),
+                          first_cluster(list, threads, t), first_cluster(list, threads, t + 1),
+                          result == PairResult::ForcesAndEnergies});
     };
     {
         std::vector<std::jthread> helpers;
-        for (std::size_t t = 1; t < threads; ++t) helpers.emplace_back([&run, t] { run(t); });
+        for (std::size_t t = 1; t < threads.count; ++t) helpers.emplace_back([&run, t] { run(t); });
+        if (threads.beside) threads.beside();
         run(0);
     }
     PairKernelSum sum;
@@ -603,11 +140,10 @@ PairKernelSum add_cluster_pair_forces(const ClusterList& list, const PairScheme&
         nearest2 = std::min(nearest2, part.nearest2);
     }
     constexpr double nearest = nearest_single_precision;
-    if (!(nearest2 > nearest * nearest)) return {};
-    add_cluster_forces(list, workspace, threads, forces);
+    if (!fits || !(nearest2 > nearest * nearest)) return {};
+    add_cluster_forces(list, workspace, threads.count, forces);
     sum.is_sound = true;
     return sum;
 }
 
 }  // namespace palpa
-#endif  // HWY_ONCE

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -17,6 +18,8 @@ namespace palpa {
 // What all pairs have in common.
 struct PairScheme {
     double coulomb = 0;  // C/eps, kcal Å/mol/e^2
+    // A dielectric of eps r: E = C q q'/(eps r^2). Not with ForceShift.
+    bool distance_dielectric = false;
     ElectrostaticCutoff electrostatics = ElectrostaticCutoff::None;
     VanDerWaalsCutoff van_der_waals = VanDerWaalsCutoff::None;
     double switch_from = 10;  // m, Å
@@ -71,11 +74,19 @@ inline constexpr double farthest_single_precision = 8000;  // Å
 
 enum class PairResult { Forces, ForcesAndEnergies };
 
+// How many threads share a sum. Those beyond the first are started at each call; std::system_error
+// where there are none.
+struct PairThreads {
+    std::size_t count = 1;
+    // What the calling thread does first, while the others have begun with the pairs, and how many
+    // tiles take as long. Called once, whether the sum is sound or not.
+    std::function<void()> beside = nullptr;
+    std::size_t beside_tiles = 0;
+};
+
 // Adds the forces (kcal/mol/Å, one entry per atom) of all pairs of a list that is not outdated and
 // whose cutoff is at least the scheme's. Pairs are in single precision, sums over more than a
-// thousand of them in double. Repeats to the bit with the same list, processor and number of
-// threads. Threads beyond the first are started at each call; std::system_error where there are
-// none.
+// thousand of them in double. Repeats to the bit with the same list, processor and threads.
 //
 // Against the twin: forces within 2e-5 of the larger of the atom's own and the rms force, the
 // energy within 1e-6 of the sum of all pairs' repulsion, attraction and electrostatic energy, each
@@ -83,6 +94,6 @@ enum class PairResult { Forces, ForcesAndEnergies };
 PairKernelSum add_cluster_pair_forces(const ClusterList& list, const PairScheme& scheme,
                                       std::span<const Vec3> positions, PairWorkspace& workspace,
                                       std::span<Vec3> forces, PairResult result,
-                                      std::size_t threads = 1);
+                                      const PairThreads& threads = {});
 
 }  // namespace palpa

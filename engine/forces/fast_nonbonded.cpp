@@ -77,14 +77,15 @@ NonbondedEnergy add_fast_nonbonded_forces(const Topology& topology, const FastAt
                                           const NonbondedSettings& settings, double skin,
                                           std::span<const Vec3> positions, FastPairs& pairs,
                                           std::span<Vec3> forces, PairResult result,
-                                          std::size_t threads) {
+                                          const PairThreads& threads) {
     PALPA_ASSERT(!find_problem(settings));
     PALPA_ASSERT(positions.size() == topology.size() && forces.size() == topology.size());
-    if (settings.distance_dielectric)
-        return add_nonbonded_forces(topology, settings, positions, forces);
     update_list(topology, atoms, settings, skin, positions, pairs);
     const PairScheme scheme{settings.coulomb_constant / settings.dielectric,
-                            settings.electrostatics, settings.van_der_waals, settings.switch_from,
+                            settings.distance_dielectric,
+                            settings.electrostatics,
+                            settings.van_der_waals,
+                            settings.switch_from,
                             settings.cutoff};
     const PairKernelSum sum = add_cluster_pair_forces(pairs.list, scheme, positions,
                                                       pairs.workspace, forces, result, threads);

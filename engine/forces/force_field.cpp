@@ -75,4 +75,33 @@ EnergyTerms add_forces(const Topology& topology, const NonbondedSettings& settin
     return energy;
 }
 
+FastForceField build_fast_force_field(const Topology& topology) {
+    return {build_fast_atoms(topology), build_fast_bonded(topology)};
+}
+
+EnergyTerms add_fast_forces(const Topology& topology, const FastForceField& fast,
+                            const NonbondedSettings& settings, double skin,
+                            std::span<const Vec3> positions, FastPairs& pairs,
+                            std::span<Vec3> forces, PairResult result, std::size_t threads) {
+    EnergyTerms energy;
+    const auto add_others = [&] {
+        const BondedEnergy bonded = add_fast_bonded_forces(fast.bonded, positions, forces);
+        energy.bond = bonded.bond;
+        energy.angle = bonded.angle;
+        energy.urey_bradley = bonded.urey_bradley;
+        energy.dihedral = bonded.dihedral;
+        energy.improper = bonded.improper;
+        energy.cmap = add_cmap_forces(topology.cmap_terms, topology.cmap_maps, positions, forces);
+        const NonbondedEnergy pairs14 =
+            add_nonbonded14_forces(topology, settings, positions, forces);
+        energy.lj14 = pairs14.van_der_waals;
+        energy.coulomb14 = pairs14.electrostatic;
+    };
+    // The other terms of a protein's atom take about as long as two tiles of pairs.
+    add_pairs(add_fast_nonbonded_forces(topology, fast.atoms, settings, skin, positions, pairs,
+                                        forces, result, {threads, add_others, 2 * topology.size()}),
+              energy);
+    return energy;
+}
+
 }  // namespace palpa

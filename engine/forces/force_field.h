@@ -1,6 +1,8 @@
 // The whole force field of a topology: energy term by term, and the force on every atom.
 #pragma once
 #include "charmm/topology.h"
+#include "forces/fast_bonded.h"
+#include "forces/fast_nonbonded.h"
 #include "forces/nonbonded.h"
 #include "forces/pair_list.h"
 #include "math/vec.h"
@@ -44,5 +46,20 @@ EnergyTerms add_forces(const Topology& topology, const NonbondedSettings& settin
 EnergyTerms add_forces(const Topology& topology, const NonbondedSettings& settings,
                        const PairList& list, std::span<const Vec3> positions,
                        std::span<Vec3> forces, std::size_t threads = 1);
+
+// What the fast way needs of a topology; constant after building.
+struct FastForceField {
+    FastAtoms atoms;
+    FastBonded bonded;
+};
+
+FastForceField build_fast_force_field(const Topology& topology);
+
+// The same as fast as the processor at hand can: pairs as `add_fast_nonbonded_forces` says, the
+// other terms in double. Without the energies of plain pairs unless asked for.
+EnergyTerms add_fast_forces(const Topology& topology, const FastForceField& fast,
+                            const NonbondedSettings& settings, double skin,
+                            std::span<const Vec3> positions, FastPairs& pairs,
+                            std::span<Vec3> forces, PairResult result, std::size_t threads = 1);
 
 }  // namespace palpa

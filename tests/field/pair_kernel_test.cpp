@@ -51,7 +51,7 @@ Result evaluate(const Gas& gas, const ClusterList& list, const PairScheme& schem
     PairWorkspace workspace =
         build_pair_workspace(list, {gas.charge, gas.sqrt_epsilon, gas.half_rmin});
     result.sum = add_cluster_pair_forces(list, scheme, gas.positions, workspace, result.forces,
-                                         PairResult::ForcesAndEnergies, threads);
+                                         PairResult::ForcesAndEnergies, {threads});
     return result;
 }
 
@@ -60,8 +60,9 @@ Result evaluate_all(const Gas& gas) {
                     {.coulomb = units::charmm_coulomb_constant});
 }
 
-constexpr PairScheme force_switch{units::charmm_coulomb_constant, ElectrostaticCutoff::ForceSwitch,
-                                  VanDerWaalsCutoff::ForceSwitch, 5, 6};
+constexpr PairScheme force_switch{
+    units::charmm_coulomb_constant, false, ElectrostaticCutoff::ForceSwitch,
+    VanDerWaalsCutoff::ForceSwitch, 5,     6};
 
 }  // namespace
 

@@ -1,5 +1,6 @@
 #include "forces/bonded.h"
 
+#include "forces/fast_bonded.h"
 #include "tests/support/check_forces.h"
 
 #include <array>
@@ -22,6 +23,17 @@ const std::array dihedrals{Dihedral{0, 1, 2, 3, 1, 0.8, 0}, Dihedral{0, 1, 2, 3,
                            Dihedral{0, 1, 2, 3, 6, 0.3, 0.4}};
 const std::array impropers{Improper{1, 0, 2, 3, 120, 0}, Improper{3, 2, 1, 0, 45, 0.6}};
 
+// Many terms at a time, of one kind.
+template <class Terms>
+double add_fast(std::vector<Terms> Topology::* kind, std::span<const Terms> terms,
+                std::span<const Vec3> positions, std::span<Vec3> forces) {
+    Topology topology;
+    (topology.*kind).assign(terms.begin(), terms.end());
+    const BondedEnergy energy =
+        add_fast_bonded_forces(build_fast_bonded(topology), positions, forces);
+    return energy.bond + energy.angle + energy.urey_bradley + energy.dihedral + energy.improper;
+}
+
 // Every kind of term by name, so that all can be put to the same test.
 struct Kind {
     const char* name;
@@ -34,6 +46,14 @@ const std::array kinds = std::to_array<Kind>({
     {"straight angle", [](auto x, auto f) { return add_angle_forces(straight_angle, x, f); }},
     {"dihedral", [](auto x, auto f) { return add_dihedral_forces(dihedrals, x, f); }},
     {"improper", [](auto x, auto f) { return add_improper_forces(impropers, x, f); }},
+    {"fast bond", [](auto x, auto f) { return add_fast<Bond>(&Topology::bonds, bonds, x, f); }},
+    {"fast angle", [](auto x, auto f) { return add_fast<Angle>(&Topology::angles, angles, x, f); }},
+    {"fast straight angle",
+     [](auto x, auto f) { return add_fast<Angle>(&Topology::angles, straight_angle, x, f); }},
+    {"fast dihedral",
+     [](auto x, auto f) { return add_fast<Dihedral>(&Topology::dihedrals, dihedrals, x, f); }},
+    {"fast improper",
+     [](auto x, auto f) { return add_fast<Improper>(&Topology::impropers, impropers, x, f); }},
 });
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "forces/fast_nonbonded.h"
 
 #include "field/processor.h"
+#include "forces/force_field.h"
 #include "forces/pair_law.h"
 #include "tests/support/check_forces.h"
 #include "tests/support/reference_case.h"
@@ -34,9 +35,13 @@ std::vector<NonbondedSettings> all_schemes() {
           Electrostatics::ForceShift, Electrostatics::ForceSwitch}) {
         for (const auto van_der_waals :
              {VanDerWaals::None, VanDerWaals::Switch, VanDerWaals::ForceSwitch}) {
-            schemes.push_back({.coulomb_constant = test::reference_coulomb_constant,
-                               .electrostatics = electrostatics,
-                               .van_der_waals = van_der_waals});
+            for (const bool distance_dielectric : {false, true}) {
+                if (distance_dielectric && electrostatics == Electrostatics::ForceShift) continue;
+                schemes.push_back({.coulomb_constant = test::reference_coulomb_constant,
+                                   .distance_dielectric = distance_dielectric,
+                                   .electrostatics = electrostatics,
+                                   .van_der_waals = van_der_waals});
+            }
         }
     }
     return schemes;
@@ -74,14 +79,18 @@ NonbondedEnergy sum_magnitudes(const Topology& topology, const NonbondedSettings
     });
 }
 
+double rms_of(const std::vector<Vec3>& forces) {
+    double sum = 0;
+    for (const Vec3& force : forces) sum += force.squaredNorm();
+    return std::sqrt(sum / static_cast<double>(forces.size()));
+}
+
 Expected expect(const Topology& topology, const NonbondedSettings& settings,
                 std::span<const Vec3> positions) {
     Expected expected{{}, sum_magnitudes(topology, settings, positions), {}};
     expected.forces.assign(topology.size(), Vec3::Zero());
     expected.energy = add_nonbonded_forces(topology, settings, positions, expected.forces);
-    double sum = 0;
-    for (const Vec3& force : expected.forces) sum += force.squaredNorm();
-    expected.rms_force = std::sqrt(sum / static_cast<double>(topology.size()));
+    expected.rms_force = rms_of(expected.forces);
     return expected;
 }
 
@@ -124,9 +133,10 @@ void check_positions(const Topology& topology, const FastAtoms& atoms,
     for (const NonbondedSettings& settings : all_schemes()) {
         const Expected expected = expect(topology, settings, positions);
         for (const std::string& kind : kinds) {
-            INFO(fmt::format("electrostatics {}, van der Waals {}, {}",
+            INFO(fmt::format("electrostatics {}, van der Waals {}, dielectric {}, {}",
                              static_cast<int>(settings.electrostatics),
-                             static_cast<int>(settings.van_der_waals), kind));
+                             static_cast<int>(settings.van_der_waals),
+                             settings.distance_dielectric ? "eps r" : "eps", kind));
             use_processor_kind(kind);
             FastPairs pairs;
             std::vector<Vec3> forces(topology.size(), Vec3::Zero());
@@ -136,25 +146,58 @@ void check_positions(const Topology& topology, const FastAtoms& atoms,
             check_against(expected, energy, forces, worst);
             std::vector<Vec3> forces_alone(topology.size(), Vec3::Zero());
             add_fast_nonbonded_forces(topology, atoms, settings, skin, positions, pairs,
-                                      forces_alone, PairResult::Forces, 2);
+                                      forces_alone, PairResult::Forces, {2});
             check_against(expected, energy, forces_alone, worst);
         }
     }
     use_processor_kind(kinds.front());
 }
 
+// All terms, against another program's energies and forces.
+void check_frame(const Topology& topology, const FastForceField& fast,
+                 const test::ReferenceFrame& frame, Worst& worst) {
+    const NonbondedSettings settings{.coulomb_constant = test::reference_coulomb_constant};
+    const Expected expected{{frame.energy.at("lj"), frame.energy.at("coulomb")},
+                            sum_magnitudes(topology, settings, frame.positions),
+                            frame.forces,
+                            rms_of(frame.forces)};
+    double others = 0, largest = 0;
+    for (const auto& [term, energy] : frame.energy) {
+        if (term == "lj" || term == "coulomb" || term == "total") continue;
+        others += energy;
+        largest = std::max(largest, std::abs(energy));
+    }
+    for (const std::string& kind : list_processor_kinds()) {
+        for (const std::size_t threads : {1U, 2U}) {
+            INFO(kind << ", " << threads << " threads");
+            use_processor_kind(kind);
+            FastPairs pairs;
+            std::vector<Vec3> forces(topology.size(), Vec3::Zero());
+            const EnergyTerms energy =
+                add_fast_forces(topology, fast, settings, skin, frame.positions, pairs, forces,
+                                PairResult::ForcesAndEnergies, threads);
+            check_against(expected, {energy.lj, energy.coulomb}, forces, worst);
+            CHECK(std::abs(energy.total() - energy.lj - energy.coulomb - others) <= 1e-9 * largest);
+        }
+    }
+    use_processor_kind(list_processor_kinds().front());
+}
+
 void check_case(const fs::path& folder, const std::string& name, const std::string& frames) {
     INFO(name << " " << frames);
     const test::ReferenceCase reference = test::read_reference_case(folder / (name + ".ff.json"));
     const FastAtoms atoms = build_fast_atoms(reference.topology);
-    Worst worst;
+    const FastForceField fast = build_fast_force_field(reference.topology);
+    Worst worst, worst_held;
     for (const auto& frame :
          test::read_reference_frames(folder / fmt::format("{}.{}.json", name, frames))) {
         INFO(frame.name);
         check_positions(reference.topology, atoms, frame.positions, list_processor_kinds(), worst);
+        check_frame(reference.topology, fast, frame, worst_held);
     }
-    fmt::print("{} {}: van der Waals {:.2g}, electrostatic {:.2g}, force {:.2g}\n", name, frames,
-               worst.van_der_waals, worst.electrostatic, worst.force);
+    fmt::print(
+        "{} {}: van der Waals {:.2g}, electrostatic {:.2g}, force {:.2g}; held force {:.2g}\n",
+        name, frames, worst.van_der_waals, worst.electrostatic, worst.force, worst_held.force);
 }
 
 // Ions without a bond; two types have NBFIX numbers together.
@@ -174,13 +217,15 @@ Topology build_salt(std::size_t count) {
 
 }  // namespace
 
-TEST_CASE("single precision agrees with the twin on small reference cases", "[forces][fast]") {
+TEST_CASE("single precision agrees with the twin and the held forces of small cases",
+          "[forces][fast]") {
     const fs::path folder(PALPA_TEST_DATA);
     check_case(folder, "ala_dipeptide", "frames");
     check_case(folder, "tetra_aera_c36m", "frames");
 }
 
-TEST_CASE("single precision agrees with the twin on every reference case", "[forces][fast][slow]") {
+TEST_CASE("single precision agrees with the twin and the held forces of every case",
+          "[forces][fast][slow]") {
     const auto folder = test::find_shared_data("reference");
     if (!folder) return;
     check_case(*folder, "water_dimer_charmm", "frames");
@@ -243,8 +288,7 @@ TEST_CASE("what single precision cannot do is the twin's to the bit", "[forces][
     const Topology topology = build_salt(30);
     std::mt19937 random(6);
     std::vector<Vec3> positions = test::random_positions(random, 30, 9, 2.5);
-    NonbondedSettings settings;
-    SECTION("a dielectric that grows with the distance") { settings.distance_dielectric = true; }
+    const NonbondedSettings settings;
     SECTION("two atoms at one place") { positions[2] = positions[1]; }
     SECTION("an atom far off") { positions[2].z() = 1e7; }
 

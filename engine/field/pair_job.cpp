@@ -1,0 +1,545 @@
+#include "field/pair_job.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+// From here on once for each kind of processor.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "field/pair_job.cpp"
+#include <hwy/foreach_target.h>  // before highway.h
+
+#include "field/pair_kernel-inl.h"
+
+#include <hwy/contrib/math/math-inl.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace palpa::HWY_NAMESPACE {
+namespace {
+
+// A pair's force is (a/r^2 + b) d with d the vector between the atoms; energies are added up.
+struct Terms {
+    V a, b, van_der_waals, electrostatic;
+};
+
+// S and its slope S'/r, with y = (r^2 - m^2)/(c^2 - m^2), not below 0:
+//   S = 1 - y^2 (3 - 2y),  S'/r = -12 y (1 - y)/(c^2 - m^2)
+struct Switching {
+    explicit HWY_INLINE Switching(const PairScheme& scheme) {
+        const double c2 = scheme.cutoff * scheme.cutoff;
+        const double m2 = scheme.switch_from * scheme.switch_from;
+        scale = all(1 / (c2 - m2));
+        offset = all(-m2 / (c2 - m2));
+        slope_scale = all(-12 / (c2 - m2));
+    }
+    HWY_INLINE V place(V r2) const {
+        return hn::Max(hn::MulAdd(r2, scale, offset), hn::Zero(floats));
+    }
+    HWY_INLINE V value(V y) const {
+        return hn::NegMulAdd(hn::Mul(y, y), hn::NegMulAdd(y, all(2), all(3)), all(1));
+    }
+    HWY_INLINE V slope(V y) const { return hn::Mul(slope_scale, hn::NegMulAdd(y, y, y)); }
+
+    V scale, offset, slope_scale;
+};
+
+// The forms of forces/pair_law.h, put so that no two large numbers cancel in single precision.
+template <ElectrostaticCutoff End, bool DistanceDielectric>
+class Electrostatics {
+public:
+    static constexpr bool ends = End != ElectrostaticCutoff::None;
+
+    explicit HWY_INLINE Electrostatics(const PairScheme& scheme) : switching_(scheme) {
+        const double c = scheme.cutoff, m = scheme.switch_from, width = c * c - m * m;
+        inverse_c_ = all(1 / c);
+        inverse_c2_ = all(1 / (c * c));
+        if constexpr (End == ElectrostaticCutoff::ForceSwitch && DistanceDielectric) {
+            // The same with t = max(r/m, 1)^2 and w = c^2 - m^2:
+            //   C0 + 1/r^2 + integral over (1 - S) 2/r^3, which is
+            //   C0 + 1/r^2 + p0 (t - 1) + p1 (t - 1)^2 + p2 ln t + p3 (1 - 1/t)
+            const double m2 = m * m, scale = m2 / (width * width), beta = 2 * m2 / width;
+            const double alpha = 3 + beta, t = c * c / m2;
+            const double p0 = scale * (alpha + beta), p1 = -scale * beta / 2;
+            const double p2 = -scale * (2 * alpha + beta), p3 = scale * alpha;
+            p0_ = all(p0);
+            p1_ = all(p1);
+            p2_ = all(p2);
+            p3_ = all(p3);
+            m_ = all(1 / m2);
+            shift_ = all(-(1 / (c * c) + (t - 1) * (p0 + p1 * (t - 1)) + p2 * std::log(t) +
+                           p3 * (1 - 1 / t)));
+        } else if constexpr (End == ElectrostaticCutoff::ForceSwitch) {
+            // The energy before m is U moved by C0; after it, by x = r - m > 0,
+            //   C0 + 1/r + integral over (1 - S)/r^2 = C0 + 1/r + x^3 p(x)/r
+            const double width3 = width * width * width;
+            m_ = all(m);
+            p0_ = all(4 * m * width / width3);
+            p1_ = all((width - 4 * m * m) / width3);
+            p2_ = all(-2.4 * m / width3);
+            p3_ = all(-0.4 / width3);
+            const double x = c - m;
+            shift_ = all(
+                -(1 + x * x * x / width3 *
+                          (4 * m * width + x * (width - 4 * m * m + x * (-2.4 * m - 0.4 * x)))) /
+                c);
+        }
+    }
+
+    template <bool WithEnergy>
+    HWY_INLINE void add(V r2, V inverse_r, V inverse_r2, V charges, Terms& terms) const {
+        const V unit = DistanceDielectric ? inverse_r2 : inverse_r;
+        const V u = hn::Mul(charges, unit);
+        if constexpr (End == ElectrostaticCutoff::None) {
+            terms.a = hn::MulAdd(steepness(charges), unit, terms.a);
+            if constexpr (WithEnergy)
+                terms.electrostatic = hn::MulAdd(charges, unit, terms.electrostatic);
+        } else if constexpr (End == ElectrostaticCutoff::Switch) {
+            const V y = switching_.place(r2);
+            const V energy = hn::Mul(u, switching_.value(y));
+            terms.a = hn::Add(terms.a, steepness(energy));
+            terms.b = hn::NegMulAdd(u, switching_.slope(y), terms.b);
+            if constexpr (WithEnergy) terms.electrostatic = hn::Add(terms.electrostatic, energy);
+        } else if constexpr (End == ElectrostaticCutoff::Shift) {
+            const V left = hn::NegMulAdd(r2, inverse_c2_, all(1));
+            const V once = hn::Mul(u, left), energy = hn::Mul(once, left);
+            terms.a = hn::Add(terms.a, steepness(energy));
+            terms.b = hn::MulAdd(hn::Mul(once, all(4)), inverse_c2_, terms.b);
+            if constexpr (WithEnergy) terms.electrostatic = hn::Add(terms.electrostatic, energy);
+        } else if constexpr (End == ElectrostaticCutoff::ForceShift) {
+            terms.a = hn::Add(terms.a, u);
+            terms.b = hn::NegMulAdd(u, inverse_c2_, terms.b);
+            if constexpr (WithEnergy) {
+                const V left = hn::NegMulAdd(hn::Mul(r2, inverse_r), inverse_c_, all(1));
+                terms.electrostatic = hn::MulAdd(hn::Mul(u, left), left, terms.electrostatic);
+            }
+        } else {
+            terms.a = hn::MulAdd(steepness(u), switching_.value(switching_.place(r2)), terms.a);
+            if constexpr (WithEnergy) {
+                const V end = DistanceDielectric
+                                  ? hn::MulAdd(charges, hn::Add(after_m_of_distance(r2), shift_), u)
+                                  : hn::MulAdd(u, after_m(r2, inverse_r), hn::Mul(charges, shift_));
+                terms.electrostatic = hn::Add(terms.electrostatic, end);
+            }
+        }
+    }
+
+private:
+    // -r U'/U.
+    static HWY_INLINE V steepness(V u) { return DistanceDielectric ? hn::Add(u, u) : u; }
+
+    // 1 + x^3 p(x)
+    HWY_INLINE V after_m(V r2, V inverse_r) const {
+        const V x = hn::Max(hn::MulSub(r2, inverse_r, m_), hn::Zero(floats));
+        const V x3 = hn::Mul(hn::Mul(x, x), x);
+        const V p = hn::MulAdd(hn::MulAdd(hn::MulAdd(p3_, x, p2_), x, p1_), x, p0_);
+        return hn::MulAdd(x3, p, all(1));
+    }
+
+    // The integral, of m_ = 1/m^2.
+    HWY_INLINE V after_m_of_distance(V r2) const {
+        const V t = hn::Max(hn::Mul(r2, m_), all(1)), more = hn::Sub(t, all(1));
+        const V inverse_t = hn::Div(all(1), t);
+        const V powers = hn::Mul(more, hn::MulAdd(p1_, more, p0_));
+        return hn::MulAdd(p2_, hn::Log(floats, t),
+                          hn::MulAdd(hn::Mul(p3_, more), inverse_t, powers));
+    }
+
+    Switching switching_;
+    V inverse_c_, inverse_c2_;
+    V m_ = hn::Zero(floats), p0_ = m_, p1_ = m_, p2_ = m_, p3_ = m_, shift_ = m_;
+};
+
+// Of 12 times the depth of the well.
+template <VanDerWaalsCutoff End>
+class VanDerWaals {
+public:
+    static constexpr bool ends = End != VanDerWaalsCutoff::None;
+
+    explicit HWY_INLINE VanDerWaals(const PairScheme& scheme) : switching_(scheme) {
+        const double c3 = std::pow(scheme.cutoff, 3), m3 = std::pow(scheme.switch_from, 3);
+        k12_ = all(c3 * c3 / (c3 * c3 - m3 * m3));
+        k12_end_ = all(1 / (c3 * c3 - m3 * m3));
+        k6_ = all(c3 / (c3 - m3));
+        k6_end_ = all(1 / (c3 - m3));
+        inverse_c6_ = all(1 / (c3 * c3));
+        inverse_c3_ = all(1 / c3);
+        inverse_m6_ = all(1 / (m3 * m3));
+        inverse_m3_ = all(1 / m3);
+    }
+
+    // Sets a and b.
+    template <bool WithEnergy>
+    HWY_INLINE void set(V r2, V inverse_r, V inverse_r2, V epsilon12, V rmin, Terms& terms) const {
+        if constexpr (End == VanDerWaalsCutoff::ForceSwitch) {
+            set_force_switched<WithEnergy>(inverse_r, inverse_r2, epsilon12, rmin, terms);
+            return;
+        }
+        const V s = hn::Mul(rmin, inverse_r), s2 = hn::Mul(s, s);
+        const V s6 = hn::Mul(hn::Mul(s2, s2), s2), well = hn::Mul(epsilon12, s6);
+        terms.a = hn::MulSub(well, s6, well);
+        terms.b = hn::Zero(floats);
+        if constexpr (End == VanDerWaalsCutoff::Switch) {
+            const V y = switching_.place(r2), value = switching_.value(y);
+            const V energy = hn::Mul(well, hn::Sub(s6, all(2)));
+            terms.a = hn::Mul(terms.a, value);
+            terms.b = hn::Mul(hn::Mul(energy, all(-1.0 / 12)), switching_.slope(y));
+            if constexpr (WithEnergy)
+                terms.van_der_waals = hn::MulAdd(energy, value, terms.van_der_waals);
+        } else if constexpr (WithEnergy) {
+            terms.van_der_waals = hn::MulAdd(well, hn::Sub(s6, all(2)), terms.van_der_waals);
+        }
+    }
+
+private:
+    // With u = r^-6 and v = r^-3: p = u before m and k12 (u - c^-6) after it, the smaller of the
+    // two everywhere; q the same of v. The energy is A (p u - min(p, m^-6) c^-6) and so on.
+    template <bool WithEnergy>
+    HWY_INLINE void set_force_switched(V inverse_r, V inverse_r2, V epsilon12, V rmin,
+                                       Terms& terms) const {
+        const V v = hn::Mul(inverse_r2, inverse_r), u = hn::Mul(v, v);
+        const V rmin2 = hn::Mul(rmin, rmin), rmin6 = hn::Mul(hn::Mul(rmin2, rmin2), rmin2);
+        const V p = hn::Min(u, hn::MulSub(k12_, u, k12_end_));
+        const V q = hn::Min(v, hn::MulSub(k6_, v, k6_end_));
+        const V pu = hn::Mul(p, u), qv = hn::Mul(q, v), well = hn::Mul(epsilon12, rmin6);
+        terms.a = hn::Mul(well, hn::MulSub(rmin6, pu, qv));
+        terms.b = hn::Zero(floats);
+        if constexpr (WithEnergy) {
+            const V repulsion = hn::NegMulAdd(hn::Min(p, inverse_m6_), inverse_c6_, pu);
+            const V attraction = hn::NegMulAdd(hn::Min(q, inverse_m3_), inverse_c3_, qv);
+            terms.van_der_waals =
+                hn::MulAdd(well, hn::MulSub(rmin6, repulsion, hn::Add(attraction, attraction)),
+                           terms.van_der_waals);
+        }
+    }
+
+    Switching switching_;
+    V k12_, k12_end_, k6_, k6_end_, inverse_c6_, inverse_c3_, inverse_m6_, inverse_m3_;
+};
+
+// The atoms of one cluster, which a row of pairs each is about.
+struct Rows {
+    alignas(64) float x[cluster_size], y[cluster_size], z[cluster_size];  // Å, from the centre
+    alignas(64) float charge[cluster_size];     // times the Coulomb constant
+    alignas(64) float epsilon12[cluster_size];  // 12 sqrt(epsilon)
+    alignas(64) float half_rmin[cluster_size];
+    // The forces on them, of some hundred columns, side by side.
+    alignas(64) float fx[cluster_size][lane_count], fy[cluster_size][lane_count],
+        fz[cluster_size][lane_count];
+};
+
+// As many atoms as there are lanes: some of one cluster, or two clusters.
+HWY_INLINE V load_columns(const ClusterAtoms::Column& first,
+                          [[maybe_unused]] const ClusterAtoms::Column& second, std::size_t column) {
+#if HWY_MAX_BYTES == 64
+    const HalfFloats half;
+    return hn::Combine(floats, hn::Load(half, second.data()), hn::Load(half, first.data()));
+#else
+    return hn::Load(floats, first.data() + column);
+#endif
+}
+
+HWY_INLINE void subtract(W force, double* sums) {
+    hn::Store(hn::Sub(hn::Load(doubles, sums), force), doubles, sums);
+}
+
+// Takes from the forces on the columns what their rows got.
+HWY_INLINE void subtract_from_columns(V force, std::array<double, cluster_size>& first,
+                                      std::array<double, cluster_size>& second,
+                                      std::size_t column) {
+    subtract(lower_half(force), first.data() + column);
+    if constexpr (lane_count > cluster_size) {
+        subtract(upper_half(force), second.data());
+    } else if constexpr (lane_count > 1) {
+        subtract(upper_half(force), first.data() + column + lane_count / 2);
+    }
+}
+
+// Adds gradient times distance to the force on a column and to that on a row.
+HWY_INLINE void add_force(V gradient, V distance, V& on_column, float* on_row) {
+#if HWY_NATIVE_FMA
+    on_column = hn::MulAdd(gradient, distance, on_column);
+    hn::Store(hn::MulAdd(gradient, distance, hn::Load(floats, on_row)), floats, on_row);
+#else
+    const V force = hn::Mul(gradient, distance);
+    on_column = hn::Add(on_column, force);
+    hn::Store(hn::Add(hn::Load(floats, on_row), force), floats, on_row);
+#endif
+}
+
+// Pairs of a row that count.
+HWY_INLINE M load_mask(std::uint64_t first, std::uint64_t second, std::uint32_t row,
+                       std::size_t column) {
+    std::uint8_t bits[8] = {};
+    const std::uint64_t of_first = first >> (8 * row) & 0xff;
+    if constexpr (lane_count > cluster_size) {
+        bits[0] = static_cast<std::uint8_t>(of_first);
+        bits[1] = static_cast<std::uint8_t>(second >> (8 * row));
+    } else {
+        bits[0] = static_cast<std::uint8_t>(of_first >> column);
+    }
+    return hn::LoadMaskBits(floats, bits);
+}
+
+template <class Electrostatics, class VanDerWaals, bool WithEnergy>
+class Kernel {
+public:
+    explicit HWY_INLINE Kernel(const PairJob& job)
+        : list_(*job.list),
+          atoms_(job.atoms),
+          forces_(job.forces),
+          coulomb_(static_cast<float>(job.scheme->coulomb)),
+          electrostatics_(*job.scheme),
+          van_der_waals_(*job.scheme),
+          cutoff2_(all(job.scheme->cutoff * job.scheme->cutoff)),
+          nearest2_(all(std::numeric_limits<float>::infinity())),
+          lj_sum_(hn::Zero(doubles)),
+          coulomb_sum_(lj_sum_) {}
+
+    JobSum sum(std::size_t begin, std::size_t end) {
+        for (std::size_t c = begin; c < end; ++c) sum_cluster(c);
+        return {sum_of(lj_sum_) / 12, sum_of(coulomb_sum_),
+                hn::GetLane(hn::MinOfLanes(floats, nearest2_))};
+    }
+
+private:
+    static constexpr std::size_t step = lane_count > cluster_size ? 2 : 1;
+    // Tiles between two sums of energies in double, which are of eight rows each; and how many such
+    // stretches between two of the forces on a row.
+    static constexpr std::size_t most_tiles = 16 * step;
+    static constexpr std::size_t most_stretches = 8;
+
+    // Of a few hundred pairs; kept in registers.
+    struct Sums {
+        V nearest2, van_der_waals, electrostatic;
+    };
+
+    HWY_INLINE void sum_cluster(std::size_t c) {
+        load_rows(c);
+        // Copies: stores to memory cannot change them.
+        const Electrostatics electrostatics = electrostatics_;
+        const VanDerWaals van_der_waals = van_der_waals_;
+        Sums sums{nearest2_, hn::Zero(floats), hn::Zero(floats)};
+        std::size_t stretches = 0;
+        for (std::size_t t = list_.first_plain[c]; t < list_.first_plain[c + 1];) {
+            const std::size_t end = std::min(t + most_tiles, list_.first_plain[c + 1]);
+            for (; t < end; t += step) {
+                const ClusterTile& first = list_.plain[t];
+                const ClusterTile& second = list_.plain[t + step - 1];
+                sum_tile<false>(electrostatics, van_der_waals, sums, first.cluster, second.cluster,
+                                first.rows | second.rows, 0, 0);
+            }
+            flush_energies(sums);
+            if (++stretches % most_stretches == 0) flush_rows(c);
+        }
+        for (std::size_t t = list_.first_masked[c]; t < list_.first_masked[c + 1];) {
+            const std::size_t end = std::min(t + most_tiles, list_.first_masked[c + 1]);
+            for (; t < end; t += step) {
+                const MaskedTile& first = list_.masked[t];
+                const MaskedTile& second = list_.masked[t + step - 1];
+                sum_tile<true>(electrostatics, van_der_waals, sums, first.cluster, second.cluster,
+                               rows_of(first.pairs | second.pairs), first.pairs, second.pairs);
+            }
+            flush_energies(sums);
+            if (++stretches % most_stretches == 0) flush_rows(c);
+        }
+        flush_rows(c);
+        nearest2_ = sums.nearest2;
+    }
+
+    static HWY_INLINE std::uint32_t rows_of(std::uint64_t pairs) {
+        pairs |= pairs >> 4;
+        pairs |= pairs >> 2;
+        pairs |= pairs >> 1;
+        pairs &= 0x0101010101010101U;
+        return static_cast<std::uint32_t>(pairs * 0x0102040810204080U >> 56);
+    }
+
+    HWY_INLINE void load_rows(std::size_t c) {
+        const ClusterAtoms& atoms = atoms_[c];
+        for (std::size_t k = 0; k < 3; ++k) centre_[k] = atoms.high[k][0];
+        for (std::size_t r = 0; r < cluster_size; ++r) {
+            rows_.x[r] = (atoms.high[0][r] - centre_[0]) + atoms.low[0][r];
+            rows_.y[r] = (atoms.high[1][r] - centre_[1]) + atoms.low[1][r];
+            rows_.z[r] = (atoms.high[2][r] - centre_[2]) + atoms.low[2][r];
+            rows_.charge[r] = coulomb_ * atoms.charge[r];
+            rows_.epsilon12[r] = 12 * atoms.sqrt_epsilon[r];
+            rows_.half_rmin[r] = atoms.half_rmin[r];
+        }
+        clear_row_forces();
+    }
+
+    HWY_INLINE void clear_row_forces() {
+        for (std::size_t r = 0; r < cluster_size; ++r) {
+            hn::Store(hn::Zero(floats), floats, rows_.fx[r]);
+            hn::Store(hn::Zero(floats), floats, rows_.fy[r]);
+            hn::Store(hn::Zero(floats), floats, rows_.fz[r]);
+        }
+    }
+
+    // Move sums in single precision to those in double.
+    HWY_INLINE void flush_rows(std::size_t c) {
+        ClusterForces& forces = forces_[c];
+        for (std::size_t r = 0; r < cluster_size; ++r) {
+            forces.on[0][r] += sum_of(hn::Load(floats, rows_.fx[r]));
+            forces.on[1][r] += sum_of(hn::Load(floats, rows_.fy[r]));
+            forces.on[2][r] += sum_of(hn::Load(floats, rows_.fz[r]));
+        }
+        clear_row_forces();
+    }
+
+    HWY_INLINE void flush_energies(Sums& sums) {
+        if constexpr (WithEnergy) {
+            lj_sum_ = hn::Add(
+                lj_sum_, hn::Add(lower_half(sums.van_der_waals), upper_half(sums.van_der_waals)));
+            coulomb_sum_ = hn::Add(coulomb_sum_, hn::Add(lower_half(sums.electrostatic),
+                                                         upper_half(sums.electrostatic)));
+            sums.van_der_waals = hn::Zero(floats);
+            sums.electrostatic = hn::Zero(floats);
+        }
+    }
+
+    template <bool IsMasked>
+    HWY_INLINE void sum_tile(const Electrostatics& electrostatics, const VanDerWaals& van_der_waals,
+                             Sums& sums, std::uint32_t first, std::uint32_t second,
+                             std::uint32_t rows, std::uint64_t first_pairs,
+                             std::uint64_t second_pairs) {
+        const ClusterAtoms& a = atoms_[first];
+        const ClusterAtoms& b = atoms_[second];
+        for (std::size_t column = 0; column < cluster_size; column += lane_count) {
+            const auto place = [&](std::size_t k) HWY_ATTR {
+                return hn::Add(hn::Sub(load_columns(a.high[k], b.high[k], column),
+                                       hn::Set(floats, centre_[k])),
+                               load_columns(a.low[k], b.low[k], column));
+            };
+            const V x = place(0), y = place(1), z = place(2);
+            const V charge = load_columns(a.charge, b.charge, column);
+            const V sqrt_epsilon = load_columns(a.sqrt_epsilon, b.sqrt_epsilon, column);
+            const V half_rmin = load_columns(a.half_rmin, b.half_rmin, column);
+            V fx = hn::Zero(floats), fy = fx, fz = fx;
+            for (std::uint32_t left = rows; left != 0; left &= left - 1) {
+                const auto r = static_cast<std::uint32_t>(std::countr_zero(left));
+                const V dx = hn::Sub(hn::Set(floats, rows_.x[r]), x);
+                const V dy = hn::Sub(hn::Set(floats, rows_.y[r]), y);
+                const V dz = hn::Sub(hn::Set(floats, rows_.z[r]), z);
+                const V distance2 = hn::MulAdd(dz, dz, hn::MulAdd(dy, dy, hn::Mul(dx, dx)));
+                V charges = hn::Mul(hn::Set(floats, rows_.charge[r]), charge);
+                V epsilon12 = hn::Mul(hn::Set(floats, rows_.epsilon12[r]), sqrt_epsilon);
+                const V rmin = hn::Add(hn::Set(floats, rows_.half_rmin[r]), half_rmin);
+                V counted2 = distance2;
+                M counts = hn::Lt(distance2, cutoff2_);
+                if constexpr (IsMasked) {
+                    const M pairs = load_mask(first_pairs, second_pairs, r, column);
+                    counted2 = hn::IfThenElse(pairs, distance2, all(1e30));
+                    counts = hn::And(counts, pairs);
+                    if constexpr (!electrostatics_end) charges = hn::IfThenElseZero(pairs, charges);
+                    if constexpr (!van_der_waals_ends)
+                        epsilon12 = hn::IfThenElseZero(pairs, epsilon12);
+                }
+                if constexpr (electrostatics_end) charges = hn::IfThenElseZero(counts, charges);
+                if constexpr (van_der_waals_ends) epsilon12 = hn::IfThenElseZero(counts, epsilon12);
+                sums.nearest2 = hn::Min(sums.nearest2, counted2);
+                // A pair that does not count may be at one place.
+                const V r2 = IsMasked ? hn::Max(distance2, all(1e-2)) : distance2;
+                const V inverse_r = inverse_root(r2), inverse_r2 = hn::Mul(inverse_r, inverse_r);
+                Terms terms{hn::Zero(floats), hn::Zero(floats), sums.van_der_waals,
+                            sums.electrostatic};
+                van_der_waals.template set<WithEnergy>(r2, inverse_r, inverse_r2, epsilon12, rmin,
+                                                       terms);
+                electrostatics.template add<WithEnergy>(r2, inverse_r, inverse_r2, charges, terms);
+                sums.van_der_waals = terms.van_der_waals;
+                sums.electrostatic = terms.electrostatic;
+                const V gradient = hn::MulAdd(terms.a, inverse_r2, terms.b);
+                add_force(gradient, dx, fx, rows_.fx[r]);
+                add_force(gradient, dy, fy, rows_.fy[r]);
+                add_force(gradient, dz, fz, rows_.fz[r]);
+            }
+            ClusterForces& on_a = forces_[first];
+            ClusterForces& on_b = forces_[second];
+            subtract_from_columns(fx, on_a.on[0], on_b.on[0], column);
+            subtract_from_columns(fy, on_a.on[1], on_b.on[1], column);
+            subtract_from_columns(fz, on_a.on[2], on_b.on[2], column);
+        }
+    }
+
+    static constexpr bool electrostatics_end = Electrostatics::ends;
+    static constexpr bool van_der_waals_ends = VanDerWaals::ends;
+
+    const ClusterList& list_;
+    const ClusterAtoms* atoms_;
+    ClusterForces* forces_;
+    float coulomb_;
+    Electrostatics electrostatics_;
+    VanDerWaals van_der_waals_;
+    V cutoff2_;
+    std::array<float, 3> centre_{};
+    Rows rows_;
+    V nearest2_;
+    W lj_sum_, coulomb_sum_;  // the first times 12
+};
+
+template <class Electrostatics, class VanDerWaals>
+JobSum sum_with_laws(const PairJob& job) {
+    if (job.with_energies)
+        return Kernel<Electrostatics, VanDerWaals, true>(job).sum(job.begin, job.end);
+    return Kernel<Electrostatics, VanDerWaals, false>(job).sum(job.begin, job.end);
+}
+
+template <ElectrostaticCutoff End, VanDerWaalsCutoff VanDerWaalsEnd>
+JobSum sum_with_dielectric(const PairJob& job) {
+    if constexpr (End != ElectrostaticCutoff::ForceShift) {
+        // Rare: without code of its own for forces alone.
+        if (job.scheme->distance_dielectric)
+            return Kernel<Electrostatics<End, true>, VanDerWaals<VanDerWaalsEnd>, true>(job).sum(
+                job.begin, job.end);
+    }
+    return sum_with_laws<Electrostatics<End, false>, VanDerWaals<VanDerWaalsEnd>>(job);
+}
+
+template <ElectrostaticCutoff ElectrostaticEnd>
+JobSum sum_with_electrostatics(const PairJob& job) {
+    using enum VanDerWaalsCutoff;
+    switch (job.scheme->van_der_waals) {
+        case Switch:
+            return sum_with_dielectric<ElectrostaticEnd, Switch>(job);
+        case ForceSwitch:
+            return sum_with_dielectric<ElectrostaticEnd, ForceSwitch>(job);
+        case None:
+            break;
+    }
+    return sum_with_dielectric<ElectrostaticEnd, None>(job);
+}
+
+JobSum sum_job(const PairJob& job) {
+    using enum ElectrostaticCutoff;
+    switch (job.scheme->electrostatics) {
+        case Switch:
+            return sum_with_electrostatics<Switch>(job);
+        case Shift:
+            return sum_with_electrostatics<Shift>(job);
+        case ForceShift:
+            return sum_with_electrostatics<ForceShift>(job);
+        case ForceSwitch:
+            return sum_with_electrostatics<ForceSwitch>(job);
+        case None:
+            break;
+    }
+    return sum_with_electrostatics<None>(job);
+}
+
+}  // namespace
+}  // namespace palpa::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace palpa {
+
+HWY_EXPORT(sum_job);
+
+JobSum run_pair_job(const PairJob& job) { return HWY_DYNAMIC_DISPATCH(sum_job)(job); }
+
+}  // namespace palpa
+#endif  // HWY_ONCE
