@@ -15,6 +15,7 @@
 #include "simulation/step.h"
 #include "tools/bench_kernel.h"
 #include "tools/bench_row.h"
+#include "tools/bench_statics.h"
 #include "tools/bench_tree.h"
 #include "tools/run.h"
 #include "view/build_frame.h"
@@ -176,6 +177,10 @@ int bench_command(const BenchOptions& options) {
         }
         if (options.render) {
             bench_render(name, load_simulation(scene), rows);
+            continue;
+        }
+        if (options.statics) {
+            bench_statics(name, scene, rows);
             continue;
         }
         if (options.tree) {

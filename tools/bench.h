@@ -14,6 +14,7 @@ struct BenchOptions {
     bool render = false;  // pictures, instead of loading and steps
     bool kernel = false;  // the kernels of pairs alone, likewise; needs no scene
     bool tree = false;    // passes over the assembly trees, likewise
+    bool statics = false;  // ways to rest of flexible scenes, likewise
     bool json = false;
 };
 

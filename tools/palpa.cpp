@@ -155,6 +155,13 @@ void add_bench(CLI::App& program, palpa::BenchOptions& options) {
                   "time joint accelerations of the scenes' molecules and of polymers, instead")
         ->excludes("--render")
         ->excludes("--kernel");
+    bench
+        .add_flag("--statics", options.statics,
+                  "time ways to rest of flexible scenes, and steps with joints in a region, instead")
+        ->excludes("--render")
+        ->excludes("--kernel")
+        ->excludes("--tree")
+        ->needs("scenes");
     bench.add_flag("--json", options.json, "print JSON");
     add_set_option(bench, options.settings);
 }

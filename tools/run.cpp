@@ -127,6 +127,14 @@ void print_summary(const SceneDescription& scene, const Summary& s) {
     fmt::print("  net work    {:+.4f} J on the hand\n", s.net_work_J);
     fmt::print("  molecule    {:.3f} Å at the closest, {:.3f} Å at the end\n", s.closest_angstrom,
                s.last_angstrom);
+    if (s.journey) {
+        const Journey& j = *s.journey;
+        fmt::print(
+            "  journey     centre of mass up to {:.2f} Å from its start, heavy atoms {:.2f} Å "
+            "from all others there;\n              {:.2f} Å at the closest; at the end {:.2f} Å "
+            "rms from where they started\n",
+            j.farthest, j.clearance, j.closest, j.last_rmsd);
+    }
     fmt::print("  clamped     {:.1f} % of the time\n", 100 * s.clamped_share);
     fmt::print("  step        {:.2f} µs median, {:.2f} µs p99 of {} steps\n", s.step_median_us,
                s.step_p99_us, s.steps);

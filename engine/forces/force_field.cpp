@@ -16,8 +16,7 @@ void add_pairs(const NonbondedEnergy& pairs, EnergyTerms& energy) noexcept {
     energy.coulomb += pairs.electrostatic;
 }
 
-}  // namespace
-
+// All terms but the plain pairs.
 EnergyTerms add_bonded_forces(const Topology& topology, const NonbondedSettings& settings,
                               std::span<const Vec3> positions, std::span<Vec3> forces) noexcept {
     PALPA_ASSERT(positions.size() == topology.size() && forces.size() == topology.size());
@@ -33,6 +32,8 @@ EnergyTerms add_bonded_forces(const Topology& topology, const NonbondedSettings&
     energy.coulomb14 = pairs14.electrostatic;
     return energy;
 }
+
+}  // namespace
 
 EnergyTerms add_forces(const Topology& topology, const NonbondedSettings& settings,
                        std::span<const Vec3> positions, std::span<Vec3> forces) noexcept {

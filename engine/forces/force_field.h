@@ -31,10 +31,6 @@ struct EnergyTerms {
     }
 };
 
-// Adds the forces of all terms but the plain pairs.
-EnergyTerms add_bonded_forces(const Topology& topology, const NonbondedSettings& settings,
-                              std::span<const Vec3> positions, std::span<Vec3> forces) noexcept;
-
 // Adds all forces (kcal/mol/Å) to `forces`, one entry per atom, in a fixed order: a repeated call
 // gives the same bits. Finite wherever the atoms are; each term says in its header how.
 EnergyTerms add_forces(const Topology& topology, const NonbondedSettings& settings,

@@ -166,6 +166,12 @@ std::string format_summary(const SceneDescription& scene, const Summary& summary
     json["largest_repulsion_N"] = summary.largest_repulsion_N;
     json["closest_angstrom"] = summary.closest_angstrom;
     json["last_angstrom"] = summary.last_angstrom;
+    if (summary.journey) {
+        json["farthest_angstrom"] = summary.journey->farthest;
+        json["clearance_angstrom"] = summary.journey->clearance;
+        json["closest_atoms_angstrom"] = summary.journey->closest;
+        json["last_rmsd_angstrom"] = summary.journey->last_rmsd;
+    }
     json["clamped_share"] = summary.clamped_share;
     json["stopped"] = summary.stopped;
     json["overruns"] = summary.overruns;

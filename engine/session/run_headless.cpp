@@ -128,12 +128,15 @@ Summary run_headless(const SceneDescription& scene, Simulation& simulation, Devi
     const auto ticks_per_step =
         static_cast<std::uint64_t>(std::lround(simulation.period_s / tick_s));
     Statistics statistics(tick_s);
+    std::optional<JourneyLog> journey;
+    if (simulation.flexible) journey.emplace(simulation);
 
     const auto step = [&](const HandPose& hand, const TouchModel& felt) {
         const auto begin = std::chrono::steady_clock::now();
         const StepReport report = step_simulation(simulation, hand, felt);
         const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
         statistics.add_step(took.count(), report.finite);
+        if (journey) journey->add(simulation);
         return report.touch;
     };
     std::uint64_t done = 0, drawn = 0;
@@ -156,6 +159,12 @@ Summary run_headless(const SceneDescription& scene, Simulation& simulation, Devi
     if (progress) progress(1);
     Summary summary = statistics.summary();
     summary.warnings = warnings;
+    if (journey) {
+        // Where molecules make room for each other, one may well be on either side of another.
+        constexpr double on_top = 1;  // Å
+        summary.journey = journey->journey();
+        summary.went_through = summary.journey->closest < on_top;
+    }
     warn_of_outcome(summary);
     if (recording) recording->finish(summary);
     return summary;

@@ -1,6 +1,7 @@
 // What is worth knowing of a run, gathered tick by tick.
 #pragma once
 #include "haptics/servo.h"
+#include "session/journey.h"
 #include "session/ripple.h"
 
 #include <cstdint>
@@ -24,6 +25,7 @@ struct Summary {
     double clamped_share = 0;                    // of the time
     bool stopped = false;                        // a force was not finite
     std::uint64_t overruns = 0;                  // servo ticks that came too late; none in lockstep
+    std::optional<Journey> journey;              // in space, where something moves by itself
     std::vector<std::string> warnings;
 };
 

@@ -69,9 +69,9 @@ TorsionModel build_torsion_model(const TorsionBodies& bodies, std::vector<double
     model.masses = std::move(masses);
     model.reference = std::move(positions);
     model.bases = std::move(bases);
-    model.fast_atoms = build_fast_atoms(topology);
     model.topology = topology;
     keep_moving_terms(bodies, model.topology);
+    model.fast = build_fast_force_field(model.topology);
 
     for (std::size_t body = 0; body < bodies.bodies.size(); ++body) {
         const bool is_base = bodies.is_base(body);

@@ -2,7 +2,7 @@
 #pragma once
 #include "assembly/tree.h"
 #include "charmm/topology.h"
-#include "forces/fast_nonbonded.h"
+#include "forces/force_field.h"
 #include "math/vec.h"
 
 #include <Eigen/Core>
@@ -42,7 +42,7 @@ struct TorsionModel {
     // All atoms and exclusions. Of bonded terms and pairs three bonds apart only those that change:
     // a term whose atoms all stay in one body has a constant energy and no force on any joint.
     Topology topology;
-    FastAtoms fast_atoms;
+    FastForceField fast;
 
     // Where the coordinates of bodies and bases begin.
     std::vector<Eigen::Index> coordinate_of_body;  // -1 for bases

@@ -51,14 +51,9 @@ EnergyTerms add_model_forces(const TorsionModel& model, const ForceSettings& set
                              ForceMemory& memory, TorsionState& state) {
     const Topology& topology = model.topology;
     if (settings.fast) {
-        EnergyTerms terms =
-            add_bonded_forces(topology, settings.nonbonded, state.positions, state.forces);
-        const NonbondedEnergy pairs = add_fast_nonbonded_forces(
-            topology, model.fast_atoms, settings.nonbonded, settings.skin, state.positions,
-            memory.fast_pairs, state.forces, PairResult::ForcesAndEnergies, settings.threads);
-        terms.lj = pairs.van_der_waals;
-        terms.coulomb = pairs.electrostatic;
-        return terms;
+        return add_fast_forces(topology, model.fast, settings.nonbonded, settings.skin,
+                               state.positions, memory.fast_pairs, state.forces,
+                               PairResult::ForcesAndEnergies, settings.threads);
     }
     if (!has_end(settings.nonbonded))
         return add_forces(topology, settings.nonbonded, state.positions, state.forces);

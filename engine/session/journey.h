@@ -1,0 +1,33 @@
+// How far the molecule in the hand went from where it started, and how it came back.
+#pragma once
+#include "simulation/simulation.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace palpa {
+
+// Å; heavy atoms are all but hydrogens.
+struct Journey {
+    double farthest = 0;   // of the centre of mass from its start
+    double clearance = 0;  // then: between heavy atoms of it and of all others
+    double closest = 0;    // the smallest such distance of the whole way
+    double last_rmsd = 0;  // of its heavy atoms at the end from their start
+};
+
+// Of a molecule that the hand moves in space.
+class JourneyLog {
+public:
+    explicit JourneyLog(const Simulation& start);
+
+    void add(const Simulation& simulation);
+    const Journey& journey() const noexcept { return journey_; }
+
+private:
+    std::vector<std::size_t> heavy_, other_heavy_;
+    std::vector<Vec3> start_;  // of `heavy_`
+    Vec3 start_centre_ = Vec3::Zero();
+    Journey journey_;
+};
+
+}  // namespace palpa

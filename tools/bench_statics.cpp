@@ -1,0 +1,109 @@
+#include "tools/bench_statics.h"
+
+#include "core/load_error.h"
+#include "simulation/probe.h"
+#include "simulation/simulation.h"
+#include "simulation/step.h"
+
+#include <fmt/format.h>
+#include <array>
+#include <cstddef>
+#include <optional>
+
+namespace palpa {
+namespace {
+
+constexpr std::array levels{30.0, 10.0, 3.0, 1.0};  // kcal/mol per radian and Å
+constexpr double shift = 0.3;                        // Å, of the molecule in hand
+constexpr std::size_t most_steps = 3000;
+
+void bench_method(const std::string& scene_name, const Simulation& start, RelaxMethod method,
+                  std::vector<BenchRow>& rows) {
+    Flexible flexible = *start.flexible;
+    move_held(flexible, Vec3(shift, 0, 0));
+    RelaxSettings settings;
+    settings.method = method;
+    settings.step.forces = flexible.settings.step.forces;
+    settings.steps = most_steps;
+    settings.force_tolerance = levels.back();
+    const std::string_view name = statics_method_names[static_cast<std::size_t>(method)];
+    std::size_t level = 0;
+    const std::size_t before = flexible.statics.memory.evaluations;
+    const auto begin = std::chrono::steady_clock::now();
+    const auto seconds = [&] {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    };
+    const auto reached = [&](std::size_t steps, double energy, double rms) {
+        for (; level < levels.size() && rms <= levels[level]; ++level) {
+            rows.push_back({fmt::format("statics/{}/{}/rms={}", scene_name, name, levels[level]),
+                            {1e3 * seconds()},
+                            "ms",
+                            {},
+                            "",
+                            fmt::format("{} steps, {} evaluations, {:.2f} kcal/mol", steps,
+                                        flexible.statics.memory.evaluations - before, energy)});
+        }
+    };
+    const JointRelaxReport report = relax_joints(
+        flexible.model, settings, flexible.state, flexible.statics,
+        [&](const RelaxProgress& progress) {
+            reached(progress.step, progress.energy, progress.rms_force);
+            return true;
+        });
+    reached(report.steps, report.energy_after, report.rms_force);
+    if (level == levels.size()) return;
+    rows.push_back({fmt::format("statics/{}/{}/end", scene_name, name),
+                    {1e3 * seconds()},
+                    "ms",
+                    {},
+                    "",
+                    fmt::format("not further than rms={:.3g} in {} steps, {} evaluations, {:.2f} "
+                                "kcal/mol",
+                                report.rms_force, report.steps, report.evaluations,
+                                report.energy_after)});
+}
+
+void bench_region(const std::string& scene_name, SceneDescription scene,
+                  std::optional<double> within, std::vector<BenchRow>& rows) {
+    scene.joints.within_angstrom = within;
+    scene.statics.method = StaticsMethod::QuasiStatic;
+    scene.statics.steps = 1;
+    scene.statics.relax_steps = 0;
+    Simulation simulation = load_simulation(scene);
+    TouchModel felt = build_touch_model(simulation, {});
+    HandPose hand;
+    constexpr int runs = 21;
+    rows.push_back({fmt::format("statics/{}/step/within={}", scene_name,
+                                within ? fmt::format("{}", *within) : "all"),
+                    sample(runs, 1e3,
+                           [&] {
+                               hand.travel_m.x() += 1e-6;
+                               felt = step_simulation(simulation, hand, felt).touch;
+                           }),
+                    "ms",
+                    {},
+                    "",
+                    fmt::format("{} joints", simulation.flexible->joints)});
+}
+
+}  // namespace
+
+void bench_statics(const std::string& scene_name, const SceneDescription& scene,
+                   std::vector<BenchRow>& rows) {
+    if (!scene.has_statics()) {
+        throw LoadError({scene.file.string()},
+                        "nothing moves by itself here; expected a flexible scene, as "
+                        "scenes/hiv/flexible.toml");
+    }
+    const Simulation start = load_simulation(scene);
+    for (const RelaxMethod method :
+         {RelaxMethod::QuasiStatic, RelaxMethod::LimitedMemory, RelaxMethod::InverseMass}) {
+        bench_method(scene_name, start, method, rows);
+    }
+    for (const std::optional<double> within :
+         {std::optional(4.0), std::optional(8.0), std::optional(12.0), std::optional<double>()}) {
+        bench_region(scene_name, scene, within, rows);
+    }
+}
+
+}  // namespace palpa
