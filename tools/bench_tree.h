@@ -9,7 +9,8 @@
 namespace palpa {
 
 // Rows tree/SCENE/joints=N: with the joints that turn by rule, and with those that have all rotors
-// of hydrogens too. Forces are random; times do not depend on them.
+// of hydrogens too; of all joints, and of the forty that are chosen. Bases are fixed. Forces are
+// random; times do not depend on them.
 void bench_tree(const std::string& scene_name, const AtomTable& atoms, std::vector<BenchRow>& rows);
 
 // Rows tree/polymer/joints=N of chains of CH2 up to 20000, and the exponent of the growth.

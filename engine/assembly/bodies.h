@@ -30,7 +30,7 @@ struct TorsionBodies {
     bool is_base(std::size_t body) const noexcept { return bodies[body].parent == no_body; }
     std::size_t molecules() const noexcept;
     std::size_t joints() const noexcept { return bodies.size() - molecules(); }
-    // With all bases free; a base that is fixed or guided has six less.
+    // With all bases free.
     std::size_t degrees_of_freedom() const noexcept { return joints() + 6 * molecules(); }
 };
 

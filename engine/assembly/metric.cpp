@@ -2,13 +2,21 @@
 
 #include "assembly/parts.h"
 
+#include <algorithm>
 #include <array>
 
 namespace palpa {
 namespace {
 
-double weight_of(const JointInertia& joint, MetricWeight weight) {
-    return weight == MetricWeight::Inertia && joint.D > 0 ? 1 / joint.D : 1;
+double factor_of(const MetricWeights& weights, std::uint32_t body) {
+    return weights.factors.empty() ? 1 : weights.factors[body];
+}
+
+// Of the joint of an opened part; one that is rigid has no gain that counts.
+double weight_of(const JointInertia& joint, std::uint32_t link, const MetricWeights& weights) {
+    if (!(joint.D > 0)) return 0;
+    const double inertia = weights.weight == MetricWeight::Inertia ? 1 / joint.D : 1;
+    return inertia * factor_of(weights, link);
 }
 
 // Both parts' forms at their joined handles, +-W u, and the joint's own square, as forms of
@@ -26,7 +34,7 @@ struct FormOfJoint {
 //     p_i    = p_i of the side + s_i (2 M_i beta + L_i r)
 //     eta    = eta_A + eta_B + beta^T K beta + r^T beta
 void join_metric(const AssemblyTree& tree, const AssemblyNode& node, const AssemblyState& state,
-                 MetricWeight weight, AccelerationMetric& metric) {
+                 const MetricWeights& weights, AccelerationMetric& metric) {
     const JointInertia& joint = state.joints[node.part];
     const std::array sides = sides_of(tree, node);
     const std::array<PartInertia, 2> parts{PartInertia(tree, state, *sides[0].node),
@@ -41,7 +49,7 @@ void join_metric(const AssemblyTree& tree, const AssemblyNode& node, const Assem
     };
 
     FormOfJoint form;
-    form.K = weight_of(joint, weight) * joint.gain * joint.gain.transpose();
+    form.K = weight_of(joint, node.link, weights) * joint.gain * joint.gain.transpose();
     form.r.setZero();
     double eta = 0;
     for (const Side& side : sides) {
@@ -83,6 +91,29 @@ void join_metric(const AssemblyTree& tree, const AssemblyNode& node, const Assem
     }
 }
 
+// The components that the guide prescribes have nothing to do with what the base is worth.
+double base_metric(const AssemblyTree& tree, const AssemblyState& state, std::size_t molecule,
+                   const MetricWeights& weights) {
+    const BaseGuide guide = state.guides[molecule].guide;
+    const std::uint32_t base = tree.bases[molecule];
+    if (state.is_active[base] == 0 || guide == BaseGuide::Whole) return 0;
+    const AssemblyNode& root = tree.nodes[tree.roots[molecule]];
+    const PartInertia part(tree, state, root);
+    Vec6 a = find_base_motion(tree, state, molecule, part).acceleration;
+    if (guide == BaseGuide::Point) {
+        // About the point at which it is guided, which does not count, the base only turns.
+        const Vec3 arm = arm_of_guide(tree, state, molecule), turn = a.head<3>();
+        a << turn, -turn.cross(arm);
+    }
+    const double factor = factor_of(weights, base);
+    if (weights.weight == MetricWeight::Inertia) {
+        return factor * a.dot(push_for(tree, molecule, part.phi(0, 0), a));
+    }
+    if (guide == BaseGuide::Point) return factor * a.head<3>().squaredNorm();
+    const double radius = std::max(state.gyration[molecule], 1.0);
+    return factor * (a.head<3>().squaredNorm() + a.tail<3>().squaredNorm() / (radius * radius));
+}
+
 }  // namespace
 
 AccelerationMetric build_acceleration_metric(const AssemblyTree& tree) {
@@ -90,13 +121,17 @@ AccelerationMetric build_acceleration_metric(const AssemblyTree& tree) {
     metric.psi.assign(tree.pairs, Mat6::Zero());
     metric.p.assign(tree.handles, Vec6::Zero());
     metric.eta.assign(tree.parts, 0);
+    metric.bases.assign(tree.bases.size(), 0);
     return metric;
 }
 
-void update_metric(const AssemblyTree& tree, const AssemblyState& state, MetricWeight weight,
-                   AccelerationMetric& metric) noexcept {
+void update_metric(const AssemblyTree& tree, const AssemblyState& state,
+                   const MetricWeights& weights, AccelerationMetric& metric) noexcept {
     for (const AssemblyNode& node : tree.nodes) {
-        if (!node.is_leaf()) join_metric(tree, node, state, weight, metric);
+        if (!node.is_leaf()) join_metric(tree, node, state, weights, metric);
+    }
+    for (std::size_t i = 0; i < tree.bases.size(); ++i) {
+        metric.bases[i] = base_metric(tree, state, i, weights);
     }
 }
 

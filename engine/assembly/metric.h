@@ -3,14 +3,28 @@
 #include "assembly/passes.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace palpa {
 
-// What the square of a joint's acceleration counts.
+// What the square of a joint's acceleration counts, and what that of a base.
 enum class MetricWeight : std::uint8_t {
-    Plain,    // 1, as in the paper
-    Inertia,  // the inertia that a torque on the joint meets with all others open, amu Å^2
+    // 1, as in the paper. Of a base angular components count 1 and linear ones 1 / radius of
+    // gyration squared (of a molecule, at least 1 Å).
+    Plain,
+    // The inertia that a torque on the joint meets in the two parts that it joins, by themselves
+    // and
+    // with their joints open, amu Å^2: large parts count more than small ones, whose cuts follow
+    // from the tree. Of a base a^T I a with the inertia I that a push on it meets.
+    Inertia,
+};
+
+struct MetricWeights {
+    MetricWeight weight = MetricWeight::Plain;
+    // By which each body's joint or base counts more or less besides, 0 or more; none for all 1.
+    // With large ones for what is near to the hand, joints there wake first.
+    std::span<const double> factors;
 };
 
 // The weighted sum of squared joint accelerations in a part is a quadratic form of the forces on
@@ -20,15 +34,18 @@ struct AccelerationMetric {
     std::vector<Mat6> psi;    // of pairs of handles
     std::vector<Vec6> p;      // of handles
     std::vector<double> eta;  // of parts
+    // Of each molecule: the weighted square of its base's acceleration with everything active, of
+    // the components that its guide leaves. 0 if none is left.
+    std::vector<double> bases;
 };
 
 AccelerationMetric build_acceleration_metric(const AssemblyTree& tree);
 
-// From the leaves to the roots, after upward_pass. Joints that are not active count nothing.
-void update_metric(const AssemblyTree& tree, const AssemblyState& state, MetricWeight weight,
-                   AccelerationMetric& metric) noexcept;
+// From the leaves to the roots, after upward_pass. What is not active counts nothing.
+void update_metric(const AssemblyTree& tree, const AssemblyState& state,
+                   const MetricWeights& weights, AccelerationMetric& metric) noexcept;
 
-// Of one part, from the forces on its handles that the state holds.
+// Of the joints in one part, from the forces on its handles that the state holds.
 double find_metric(const AssemblyTree& tree, const AssemblyState& state,
                    const AccelerationMetric& metric, std::uint32_t node) noexcept;
 

@@ -4,8 +4,24 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 namespace palpa {
+
+// The stages of update_bodies: mass, centre and inertia; torque and force about the centre; where
+// links to the ground and seams are, from the bodies.
+void update_inertia(const AssemblyTree& tree, std::uint32_t body, std::span<const Vec3> positions,
+                    BodyState& state) noexcept;
+void update_wrench(const AssemblyTree& tree, std::uint32_t body, std::span<const Vec3> positions,
+                   std::span<const Vec3> forces, BodyState& state) noexcept;
+void update_links(const AssemblyTree& tree, AssemblyState& state) noexcept;
+
+// From the ground's point to the one at which the base is guided.
+inline Vec3 arm_of_guide(const AssemblyTree& tree, const AssemblyState& state,
+                         std::size_t molecule) noexcept {
+    const Vec3& ground = state.points[tree.bases[molecule]];
+    return state.guides[molecule].point.value_or(ground) - ground;
+}
 
 inline bool is_seam(const AssemblyTree& tree, std::uint32_t link) noexcept {
     return link >= tree.bodies.bodies.size();
@@ -31,6 +47,19 @@ private:
     const Mat6* phi_ = leaf_phi_.data();
     const Vec6* b_ = leaf_b_.data();
 };
+
+// At the point of the ground.
+struct BaseMotion {
+    Vec6 acceleration, force;  // what pushes it, if it is held or guided
+};
+
+BaseMotion find_base_motion(const AssemblyTree& tree, const AssemblyState& state,
+                            std::size_t molecule, const PartInertia& root) noexcept;
+
+// The push on the base of a molecule that makes it accelerate so, from nothing. An ion or a
+// molecule whose atoms are in line cannot be turned in every direction.
+Vec6 push_for(const AssemblyTree& tree, std::size_t molecule, const Mat6& phi,
+              const Vec6& acceleration) noexcept;
 
 // One of the two parts of a joined one. The handle that is joined is its last.
 struct Side {

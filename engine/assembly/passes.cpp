@@ -22,41 +22,6 @@ Mat3 pseudo_inverse(const Mat3& inertia) {
     return result;
 }
 
-BodyState body_state(const AssemblyTree& tree, std::uint32_t body, std::span<const Vec3> positions,
-                     std::span<const Vec3> forces) {
-    const auto shares =
-        std::span(tree.shares)
-            .subspan(tree.first_share[body], tree.first_share[body + 1] - tree.first_share[body]);
-    BodyState result;
-    double mass = 0;
-    result.centre.setZero();
-    for (const AtomShare& share : shares) {
-        mass += share.mass;
-        result.centre += share.mass * positions[share.atom];
-    }
-    result.centre /= mass;
-    result.mass = mass;
-
-    // I = sum of m (r^2 - r r^T)
-    Mat3 spread = Mat3::Zero();
-    for (const AtomShare& share : shares) {
-        const Vec3 arm = positions[share.atom] - result.centre;
-        spread += share.mass * arm * arm.transpose();
-    }
-    const Mat3 inertia = spread.trace() * Mat3::Identity() - spread;
-    result.inverse_inertia =
-        tree.is_linear[body] != 0 ? pseudo_inverse(inertia) : Mat3(inertia.inverse());
-
-    result.force.setZero();
-    result.torque.setZero();
-    for (std::uint32_t i = tree.first_atom[body]; i < tree.first_atom[body + 1]; ++i) {
-        const std::uint32_t atom = tree.atoms[i];
-        result.force += forces[atom];
-        result.torque += (positions[atom] - result.centre).cross(forces[atom]);
-    }
-    return result;
-}
-
 // phi_ij of a rigid body: a force F and a torque n at r_j from its centre turn it by
 // alpha = I^-1 (n + r_j x F), and the point at r_i has the acceleration F / m + alpha x r_i.
 Mat6 rigid_phi(const BodyState& body, const Vec3& r_i, const Vec3& r_j) {
@@ -69,10 +34,11 @@ Mat6 rigid_phi(const BodyState& body, const Vec3& r_i, const Vec3& r_j) {
     return phi;
 }
 
-// At the centre of mass of the molecule.
-void place_ground(const AssemblyTree& tree, AssemblyState& state) {
+// The centres of mass of the molecules, and how far their mass is from there.
+void place_grounds(const AssemblyTree& tree, AssemblyState& state) {
     for (const std::uint32_t base : tree.bases) state.points[base].setZero();
     std::ranges::fill(state.molecule_mass, 0);
+    std::ranges::fill(state.gyration, 0);
     for (std::size_t b = 0; b < state.bodies.size(); ++b) {
         const std::uint32_t molecule = tree.molecule_of[b];
         state.points[tree.bases[molecule]] += state.bodies[b].mass * state.bodies[b].centre;
@@ -80,6 +46,15 @@ void place_ground(const AssemblyTree& tree, AssemblyState& state) {
     }
     for (std::size_t i = 0; i < tree.bases.size(); ++i) {
         state.points[tree.bases[i]] /= state.molecule_mass[i];
+    }
+    for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+        const std::uint32_t molecule = tree.molecule_of[b];
+        const Vec3 arm = state.bodies[b].centre - state.points[tree.bases[molecule]];
+        state.gyration[molecule] +=
+            state.bodies[b].spread + state.bodies[b].mass * arm.squaredNorm();
+    }
+    for (std::size_t i = 0; i < tree.bases.size(); ++i) {
+        state.gyration[i] = std::sqrt(state.gyration[i] / state.molecule_mass[i]);
     }
 }
 
@@ -182,7 +157,66 @@ Vec6 open_acceleration(const AssemblyTree& tree, const AssemblyState& state,
     return acceleration;
 }
 
+// What pushes a base that is guided at a point and turns about that: a force there alone, which
+// gives the point the acceleration that it has to have.
+Vec6 force_at_point(const Mat6& phi, const Vec6& b, const Vec3& arm, const Vec3& acceleration) {
+    Eigen::Matrix<double, 3, 6> motion;  // of the point, from that of the ground's
+    motion << -cross_matrix(arm), Mat3::Identity();
+    const Mat3 inverse_mass = motion * phi * motion.transpose();
+    return motion.transpose() * inverse_mass.llt().solve(acceleration - motion * b);
+}
+
 }  // namespace
+
+void update_inertia(const AssemblyTree& tree, std::uint32_t body, std::span<const Vec3> positions,
+                    BodyState& state) noexcept {
+    const auto shares =
+        std::span(tree.shares)
+            .subspan(tree.first_share[body], tree.first_share[body + 1] - tree.first_share[body]);
+    double mass = 0;
+    Vec3 moment = Vec3::Zero();
+    for (const AtomShare& share : shares) {
+        mass += share.mass;
+        moment += share.mass * positions[share.atom];
+    }
+    state.centre = moment / mass;
+    state.mass = mass;
+
+    // I = sum of m (r^2 - r r^T)
+    Mat3 spread = Mat3::Zero();
+    for (const AtomShare& share : shares) {
+        const Vec3 arm = positions[share.atom] - state.centre;
+        spread += share.mass * arm * arm.transpose();
+    }
+    state.spread = spread.trace();
+    const Mat3 inertia = state.spread * Mat3::Identity() - spread;
+    state.inverse_inertia =
+        tree.is_linear[body] != 0 ? pseudo_inverse(inertia) : Mat3(inertia.inverse());
+}
+
+void update_wrench(const AssemblyTree& tree, std::uint32_t body, std::span<const Vec3> positions,
+                   std::span<const Vec3> forces, BodyState& state) noexcept {
+    Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
+    for (std::uint32_t i = tree.first_atom[body]; i < tree.first_atom[body + 1]; ++i) {
+        const std::uint32_t atom = tree.atoms[i];
+        force += forces[atom];
+        torque += (positions[atom] - state.centre).cross(forces[atom]);
+    }
+    state.force = force;
+    state.torque = torque;
+}
+
+void update_links(const AssemblyTree& tree, AssemblyState& state) noexcept {
+    place_grounds(tree, state);
+    if (tree.links == tree.bodies.bodies.size()) return;
+    for (const AssemblyNode& node : tree.nodes) {
+        if (!node.is_leaf() || tree.copies[node.body] == 1) continue;
+        for (std::uint32_t i = 0; i < node.handles; ++i) {
+            if (!is_seam(tree, node.links[i])) continue;
+            state.points[node.links[i]] = state.bodies[node.body].centre;
+        }
+    }
+}
 
 // Of a copy of a body: an n-th of its mass and of its forces.
 PartInertia::PartInertia(const AssemblyTree& tree, const AssemblyState& state,
@@ -209,9 +243,10 @@ AssemblyState build_assembly_state(const AssemblyTree& tree) {
     const std::size_t bodies = tree.bodies.bodies.size(), molecules = tree.roots.size();
     AssemblyState state;
     state.is_active.assign(bodies, 1);
-    state.held_acceleration.assign(molecules, Vec6::Zero());
+    state.guides.assign(molecules, {});
     state.bodies.resize(bodies);
     state.molecule_mass.assign(molecules, 0);
+    state.gyration.assign(molecules, 0);
     state.points.assign(tree.links, Vec3::Zero());
     state.axes.assign(bodies, Vec3::Zero());
     state.phi.assign(tree.pairs, Mat6::Zero());
@@ -229,20 +264,14 @@ void update_bodies(const AssemblyTree& tree, std::span<const Vec3> positions,
     PALPA_ASSERT(positions.size() == tree.atoms.size() && forces.size() == tree.atoms.size());
     const std::span<const Body> bodies = tree.bodies.bodies;
     for (std::uint32_t b = 0; b < bodies.size(); ++b) {
-        state.bodies[b] = body_state(tree, b, positions, forces);
+        update_inertia(tree, b, positions, state.bodies[b]);
+        update_wrench(tree, b, positions, forces, state.bodies[b]);
         if (tree.bodies.is_base(b)) continue;
         const auto [j, k] = bodies[b].axis;
         state.points[b] = positions[k];
         state.axes[b] = (positions[k] - positions[j]).normalized();
     }
-    place_ground(tree, state);
-    for (const AssemblyNode& node : tree.nodes) {
-        if (!node.is_leaf() || tree.copies[node.body] == 1) continue;
-        for (std::uint32_t i = 0; i < node.handles; ++i) {
-            if (!is_seam(tree, node.links[i])) continue;
-            state.points[node.links[i]] = state.bodies[node.body].centre;
-        }
-    }
+    update_links(tree, state);
 }
 
 void upward_pass(const AssemblyTree& tree, AssemblyState& state) noexcept {
@@ -251,18 +280,36 @@ void upward_pass(const AssemblyTree& tree, AssemblyState& state) noexcept {
     }
 }
 
+Vec6 push_for(const AssemblyTree& tree, std::size_t molecule, const Mat6& phi,
+              const Vec6& acceleration) noexcept {
+    if (tree.is_linear[tree.bases[molecule]] == 0) return phi.llt().solve(acceleration);
+    return Eigen::CompleteOrthogonalDecomposition<Mat6>(phi).solve(acceleration);
+}
+
+BaseMotion find_base_motion(const AssemblyTree& tree, const AssemblyState& state,
+                            std::size_t molecule, const PartInertia& root) noexcept {
+    const auto& [guide, acceleration, point] = state.guides[molecule];
+    const Mat6& phi = root.phi(0, 0);
+    const Vec6& b = root.b(0);
+    Vec6 f = Vec6::Zero();
+    if (guide == BaseGuide::Whole || state.is_active[tree.bases[molecule]] == 0) {
+        Vec6 wanted = Vec6::Zero();
+        if (guide == BaseGuide::Whole) wanted = acceleration;
+        if (guide == BaseGuide::Point) wanted.tail<3>() = acceleration.tail<3>();
+        f = push_for(tree, molecule, phi, wanted - b);
+    } else if (guide == BaseGuide::Point) {
+        f = force_at_point(phi, b, arm_of_guide(tree, state, molecule), acceleration.tail<3>());
+    }
+    return {phi * f + b, f};
+}
+
 void update_base(const AssemblyTree& tree, std::size_t molecule, AssemblyState& state) noexcept {
     const AssemblyNode& root = tree.nodes[tree.roots[molecule]];
-    const PartInertia part(tree, state, root);
-    Vec6 f = Vec6::Zero();
-    if (state.is_active[tree.bases[molecule]] == 0) {
-        // An ion or a molecule whose atoms are in line cannot be turned in every direction.
-        f = Eigen::CompleteOrthogonalDecomposition<Mat6>(part.phi(0, 0))
-                .solve(state.held_acceleration[molecule] - part.b(0));
-    }
-    state.base_force[molecule] = f;
-    state.base_acceleration[molecule] = part.phi(0, 0) * f + part.b(0);
-    if (!root.is_leaf()) state.f[root.first_handle] = f;
+    const auto [acceleration, force] =
+        find_base_motion(tree, state, molecule, PartInertia(tree, state, root));
+    state.base_acceleration[molecule] = acceleration;
+    state.base_force[molecule] = force;
+    if (!root.is_leaf()) state.f[root.first_handle] = force;
 }
 
 void separate(const AssemblyTree& tree, std::size_t number, AssemblyState& state) noexcept {

@@ -8,7 +8,9 @@
 #include "assembly/tree.h"
 #include "math/spatial.h"
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -30,8 +32,30 @@ struct BodyState {
     double mass;           // amu
     Vec3 centre;           // of mass, Å
     Mat3 inverse_inertia;  // about the centre, 1/(amu Å^2)
+    double spread;         // sum of m r^2 about the centre, amu Å^2
     Vec3 torque;           // about the centre, kcal/mol
     Vec3 force;            // kcal/mol/Å
+};
+
+// What a guide prescribes of a base.
+enum class BaseGuide : std::uint8_t {
+    None,   // nothing
+    Point,  // how a point of the base accelerates; it turns about that as it likes
+    Whole,  // everything; a fixed base is one that is held at rest
+};
+
+// That are left to a base.
+constexpr std::size_t degrees_of_freedom(BaseGuide guide) noexcept {
+    return guide == BaseGuide::None ? 6 : guide == BaseGuide::Point ? 3 : 0;
+}
+
+struct GuidedBase {
+    BaseGuide guide = BaseGuide::None;
+    // Of Point the linear part alone counts. What is not prescribed and may not move either has 0.
+    Vec6 acceleration = Vec6::Zero();  // taken at the point
+    // Of Point, Å, moves with the base; none for the molecule's centre of mass, where that of Whole
+    // always is.
+    std::optional<Vec3> point;
 };
 
 // Quantities of joined parts: those of handles stand at AssemblyNode::first_handle, those of pairs
@@ -40,17 +64,17 @@ struct BodyState {
 // vectors have the world's axes and are taken at the point of the handle's link. The unit of time
 // is AKMA's, in which kcal/mol is amu Å^2/time^2.
 struct AssemblyState {
-    // The caller writes what may move. One entry per body: its joint, or for a base its six degrees
-    // of freedom. What is not active stays rigid. All are active at first.
+    // The caller writes what may move. One entry per body: its joint, or for a base the degrees of
+    // freedom that its guide leaves. What is not active stays rigid. All are active at first.
     std::vector<std::uint8_t> is_active;
-    // And how a base accelerates that is not active: about the point of its molecule, 0 at first. A
-    // fixed base has 0, a guided one what its guide wants.
-    std::vector<Vec6> held_acceleration;  // of each molecule
+    // And what guides the bases; nothing at first.
+    std::vector<GuidedBase> guides;  // of each molecule
 
     // update_bodies. A joint's point is the atom at the end of its axis, the ground's the centre of
     // mass of its molecule, a seam's the centre of its body.
     std::vector<BodyState> bodies;
     std::vector<double> molecule_mass;  // amu
+    std::vector<double> gyration;       // radius of gyration of each molecule, Å
     std::vector<Vec3> points;           // of each link, Å
     std::vector<Vec3> axes;             // of each joint, length 1
 
@@ -63,7 +87,8 @@ struct AssemblyState {
     std::vector<Vec6> f;                     // on handles, from outside the part
     std::vector<double> joint_acceleration;  // of each body's joint, rad/time^2; 0 for bases
     std::vector<Vec6> base_acceleration;     // of each molecule, at the point of its ground link
-    std::vector<Vec6> base_force;            // of each molecule: what holds its base; 0 if free
+    // Of each molecule: what holds or guides its base, at the same point; 0 if free.
+    std::vector<Vec6> base_force;
 };
 
 constexpr std::uint32_t pair_number(std::uint32_t i, std::uint32_t j) noexcept {
@@ -77,11 +102,11 @@ AssemblyState build_assembly_state(const AssemblyTree& tree);
 void update_bodies(const AssemblyTree& tree, std::span<const Vec3> positions,
                    std::span<const Vec3> forces, AssemblyState& state) noexcept;
 
-// From the leaves to the roots: phi, b and the joints' inertias.
+// From the leaves to the roots: phi, b and the joints' inertias. Many rigid joints in a row cost
+// digits, since a part that is larger and larger is had from differences; hybrid.h sums it instead.
 void upward_pass(const AssemblyTree& tree, AssemblyState& state) noexcept;
 
-// At a root: a base that is active is pushed by nothing, another by what makes it accelerate as it
-// has to.
+// At a root: a base is pushed by what makes it accelerate as it has to, if it has to.
 void update_base(const AssemblyTree& tree, std::size_t molecule, AssemblyState& state) noexcept;
 
 // At a joined part whose handles have their forces: its joint's acceleration, and the forces on the

@@ -1,70 +1,142 @@
 #include "assembly/selection.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace palpa {
 namespace {
 
-bool is_less(const JointSelection::Part& a, const JointSelection::Part& b) {
+using Choice = JointSelection::Choice;
+
+bool is_less(const Choice& a, const Choice& b) {
+    if (a.priority != b.priority) return a.priority < b.priority;
     // Of equal ones the earlier node comes first, so that runs repeat.
-    return a.metric != b.metric ? a.metric < b.metric : a.node > b.node;
+    return a.node != b.node ? a.node > b.node : a.molecule > b.molecule;
 }
 
-void add_part(const AssemblyTree& tree, const AssemblyState& state,
-              const AccelerationMetric& metric, std::uint32_t node, JointSelection& selection) {
-    if (tree.nodes[node].is_leaf()) return;
-    // Rounding may leave a part at rest with less than nothing.
-    const double sum = std::max(0.0, find_metric(tree, state, metric, node));
-    selection.parts.push_back({sum, node});
-    std::ranges::push_heap(selection.parts, is_less);
-    selection.neglected += sum;
-}
+// One selection, while it is made. Nodes that were open the last time are marked by was_open, those
+// that are opened now by opens_now.
+class Selector {
+public:
+    Selector(const AssemblyTree& tree, const AccelerationMetric& metric,
+             const SelectionLimits& limits, AssemblyState& state, JointSelection& selection)
+        : tree_(tree), metric_(metric), limits_(limits), state_(state), selection_(selection) {}
 
-// Afresh, where little is left of much that was added and taken away.
-double sum_of_parts(const JointSelection& selection) {
-    double sum = 0;
-    for (const JointSelection::Part& part : selection.parts) sum += part.metric;
-    return sum;
-}
+    void add_molecule(std::uint32_t molecule) {
+        update_base(tree_, molecule, state_);
+        const std::uint32_t base = tree_.bases[molecule];
+        const bool was_chosen = selection_.is_active[base] != 0;
+        const bool may_move = state_.is_active[base] != 0;
+        const bool is_choice = may_move && base_freedom(molecule) > 0;
+        selection_.is_active[base] = may_move && !is_choice ? 1 : 0;
+        if (is_choice) add_choice(metric_.bases[molecule], no_node, molecule, was_chosen);
+        add_part(tree_.roots[molecule], molecule);
+    }
+
+    void choose_all() {
+        while (!selection_.choices.empty() &&
+               selection_.degrees_of_freedom < limits_.degrees_of_freedom) {
+            std::ranges::pop_heap(selection_.choices, is_less);
+            const Choice choice = selection_.choices.back();
+            selection_.choices.pop_back();
+            if (is_worth_it(choice)) {
+                take(choice);
+            } else {
+                passed_over_ += choice.metric;
+            }
+        }
+        // Afresh, where little is left of much that was added and taken away.
+        selection_.neglected = passed_over_;
+        for (const Choice& choice : selection_.choices) selection_.neglected += choice.metric;
+        for (std::uint8_t& marks : selection_.is_open) marks = marks >= opens_now ? was_open : 0;
+    }
+
+private:
+    static constexpr std::uint8_t was_open = 1, opens_now = 2;
+
+    std::size_t base_freedom(std::uint32_t molecule) const {
+        return degrees_of_freedom(state_.guides[molecule].guide);
+    }
+
+    std::size_t freedom_of(const Choice& choice) const {
+        if (choice.node == no_node) return base_freedom(choice.molecule);
+        return state_.joints[tree_.nodes[choice.node].part].D > 0 ? 1 : 0;
+    }
+
+    bool is_worth_it(const Choice& choice) const {
+        const bool was_chosen = choice.priority > choice.metric;
+        const double enough = limits_.neglected / (was_chosen ? limits_.advantage : 1);
+        if (limits_.neglected > 0 && selection_.neglected <= enough) return false;
+        return selection_.degrees_of_freedom + freedom_of(choice) <= limits_.degrees_of_freedom;
+    }
+
+    void take(const Choice& choice) {
+        const std::size_t freedom = freedom_of(choice);
+        selection_.neglected -= choice.metric;
+        selection_.degrees_of_freedom += freedom;
+        if (choice.node == no_node) {
+            selection_.is_active[tree_.bases[choice.molecule]] = 1;
+            return;
+        }
+        const AssemblyNode& node = tree_.nodes[choice.node];
+        separate(tree_, choice.node, state_);
+        if (freedom > 0) selection_.is_active[node.link] = 1;
+        selection_.is_open[choice.node] |= opens_now;
+        add_part(node.a, choice.molecule);
+        add_part(node.b, choice.molecule);
+    }
+
+    void add_part(std::uint32_t node, std::uint32_t molecule) {
+        if (tree_.nodes[node].is_leaf()) return;
+        add_choice(find_metric(tree_, state_, metric_, node), node, molecule,
+                   (selection_.is_open[node] & was_open) != 0);
+    }
+
+    void add_choice(double metric, std::uint32_t node, std::uint32_t molecule, bool was_chosen) {
+        // Rounding may leave a part at rest with less than nothing.
+        metric = std::max(0.0, metric);
+        const double priority = was_chosen ? limits_.advantage * metric : metric;
+        selection_.neglected += metric;
+        selection_.choices.push_back({priority, metric, node, molecule});
+        std::ranges::push_heap(selection_.choices, is_less);
+    }
+
+    const AssemblyTree& tree_;
+    const AccelerationMetric& metric_;
+    const SelectionLimits& limits_;
+    AssemblyState& state_;
+    JointSelection& selection_;
+    double passed_over_ = 0;
+};
 
 }  // namespace
+
+std::size_t degrees_of_freedom_within(double time_us, const StepCost& cost) noexcept {
+    const double count = std::floor((time_us - cost.fixed_us) / cost.each_us);
+    return count > 0 ? static_cast<std::size_t>(std::min(count, 1e9)) : 0;
+}
 
 JointSelection build_joint_selection(const AssemblyTree& tree) {
     JointSelection selection;
     selection.is_active.assign(tree.bodies.bodies.size(), 0);
-    selection.parts.reserve(tree.nodes.size());
+    selection.is_open.assign(tree.nodes.size(), 0);
+    selection.choices.reserve(tree.nodes.size() + tree.bases.size());
     return selection;
 }
 
 void select_joints(const AssemblyTree& tree, const AccelerationMetric& metric,
                    const SelectionLimits& limits, AssemblyState& state,
                    JointSelection& selection) noexcept {
-    selection.parts.clear();
-    selection.joints = 0;
+    selection.choices.clear();
+    selection.degrees_of_freedom = 0;
     selection.neglected = 0;
-    std::ranges::fill(selection.is_active, 0);
-    for (std::size_t molecule = 0; molecule < tree.roots.size(); ++molecule) {
-        update_base(tree, molecule, state);
-        selection.is_active[tree.bases[molecule]] = state.is_active[tree.bases[molecule]];
-        add_part(tree, state, metric, tree.roots[molecule], selection);
+    for (std::size_t b = 0; b < selection.is_active.size(); ++b) {
+        if (!tree.bodies.is_base(b)) selection.is_active[b] = 0;
     }
+    Selector selector(tree, metric, limits, state, selection);
+    for (std::uint32_t i = 0; i < tree.roots.size(); ++i) selector.add_molecule(i);
     selection.total = selection.neglected;
-    while (!selection.parts.empty() && selection.joints < limits.joints &&
-           selection.neglected > limits.neglected) {
-        const auto [sum, number] = selection.parts.front();
-        const AssemblyNode& node = tree.nodes[number];
-        std::ranges::pop_heap(selection.parts, is_less);
-        selection.parts.pop_back();
-        selection.neglected -= sum;
-        separate(tree, number, state);
-        if (state.joints[node.part].D > 0) {
-            selection.is_active[node.link] = 1;
-            ++selection.joints;
-        }
-        add_part(tree, state, metric, node.a, selection);
-        add_part(tree, state, metric, node.b, selection);
-    }
-    selection.neglected = sum_of_parts(selection);
+    selector.choose_all();
 }
 
 }  // namespace palpa

@@ -217,7 +217,7 @@ private:
 
     const LeafGraph& graph_;
     AssemblyTree& tree_;
-    std::vector<std::uint32_t> part_of_;  // the part that a leaf is in, for now
+    std::vector<std::uint32_t> part_of_;  // the part that a leaf is in so far
     std::vector<Below> below_;            // of each leaf
     std::uint32_t part_ = 0;              // the newest
 };

@@ -25,6 +25,15 @@ void read_accelerations(const TorsionModel& model, const AssemblyState& assembly
     }
 }
 
+// Where the points are that guided bases turn about.
+void guide_pivots(const TorsionModel& model, const TorsionState& state,
+                  AssemblyState& assembly) noexcept {
+    for (std::size_t m = 0; m < model.bases.size(); ++m) {
+        if (model.bases[m].freedom == BaseFreedom::Turning)
+            assembly.guides[m].point = state.pivots[m];
+    }
+}
+
 // The wrench that does along each coordinate what the forces say.
 void put_on_bodies(const TorsionModel& model, const TorsionState& state,
                    const Coordinates& coordinate_forces, AssemblyState& assembly) noexcept {
@@ -57,8 +66,9 @@ QuasiStatics build_quasi_statics(const TorsionModel& model) {
     QuasiStatics statics;
     statics.assembly = build_assembly_state(model.tree);
     for (std::size_t m = 0; m < model.bases.size(); ++m) {
-        statics.assembly.is_active[model.tree.bases[m]] =
-            model.bases[m].freedom == BaseFreedom::Free ? 1 : 0;
+        BaseGuide& guide = statics.assembly.guides[m].guide;
+        if (model.bases[m].freedom == BaseFreedom::Held) guide = BaseGuide::Whole;
+        if (model.bases[m].freedom == BaseFreedom::Turning) guide = BaseGuide::Point;
     }
     statics.trial = build_torsion_state(model);
     return statics;
@@ -66,6 +76,7 @@ QuasiStatics build_quasi_statics(const TorsionModel& model) {
 
 void update_coordinate_accelerations(const TorsionModel& model, const TorsionState& state,
                                      AssemblyState& assembly, Coordinates& accelerations) noexcept {
+    guide_pivots(model, state, assembly);
     update_accelerations(model.tree, state.positions, state.forces, assembly);
     read_accelerations(model, assembly, accelerations);
 }
@@ -73,6 +84,7 @@ void update_coordinate_accelerations(const TorsionModel& model, const TorsionSta
 void multiply_by_inverse_mass(const TorsionModel& model, const TorsionState& state,
                               const Coordinates& coordinate_forces, AssemblyState& assembly,
                               Coordinates& accelerations) noexcept {
+    guide_pivots(model, state, assembly);
     update_bodies(model.tree, state.positions, state.forces, assembly);
     put_on_bodies(model, state, coordinate_forces, assembly);
     upward_pass(model.tree, assembly);

@@ -1,9 +1,9 @@
 #include "assembly/passes.h"
 
-#include "tests/support/reference_case.h"
 #include "tests/support/shared_data.h"
-#include "tests/support/torsion_molecules.h"
+#include "tests/support/torsion_held.h"
 #include "tests/support/torsion_oracles.h"
+#include "tests/support/torsion_reference.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -23,28 +23,10 @@ using test::TorsionShape;
 
 namespace {
 
-Held all_free(const TorsionCase& c) {
-    return {std::vector<std::uint8_t>(c.bodies.bodies.size(), 1),
-            std::vector<Vec6>(c.bodies.molecules(), Vec6::Zero())};
-}
-
-// Some joints rigid, some bases fixed and some guided.
-Held some_held(const TorsionCase& c, std::uint32_t seed, double share) {
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<double> uniform(0, 1);
-    Held held = all_free(c);
-    for (std::uint8_t& is_active : held.is_active) is_active = uniform(random) > share ? 1 : 0;
-    for (Vec6& acceleration : held.acceleration) {
-        if (uniform(random) > 0.5) continue;
-        for (int i = 0; i < 6; ++i) acceleration[i] = uniform(random) - 0.5;
-    }
-    return held;
-}
-
 AssemblyState state_of(const TorsionCase& c, const AssemblyTree& tree, const Held& held) {
     AssemblyState state = build_assembly_state(tree);
     state.is_active = held.is_active;
-    state.held_acceleration = held.acceleration;
+    state.guides = held.guides;
     update_accelerations(tree, c.positions, c.forces, state);
     return state;
 }
@@ -53,65 +35,9 @@ AssemblyTree tree_of(const TorsionCase& c) {
     return build_assembly_tree(c.bodies, c.masses, c.positions);
 }
 
-double rms_of(const std::vector<double>& values) {
-    double sum = 0, count = 0;
-    for (const double value : values) {
-        sum += value * value;
-        count += value != 0 ? 1 : 0;
-    }
-    return std::sqrt(sum / std::max(count, 1.0));
-}
-
-// Largest difference of an acceleration, against the rms of the joints' or the molecule's base's
-// own; where nothing moves, against 1/AKMA^2, which the forces would cause.
-double worst_difference(const AssemblyState& state, const TorsionAccelerations& expected) {
-    const double rms = rms_of(expected.joints), scale = rms > 0 ? rms : 1;
-    double worst = 0;
-    for (std::size_t b = 0; b < expected.joints.size(); ++b) {
-        const double difference = std::abs(state.joint_acceleration[b] - expected.joints[b]);
-        worst = std::max(worst, difference / scale);
-    }
-    for (std::size_t m = 0; m < expected.bases.size(); ++m) {
-        const double difference = (state.base_acceleration[m] - expected.bases[m]).norm();
-        worst = std::max(worst, difference / std::max(scale, expected.bases[m].norm()));
-    }
-    return worst;
-}
-
 double worst_against_dense(const TorsionCase& c, const Held& held) {
     const AssemblyTree tree = tree_of(c);
-    return worst_difference(state_of(c, tree, held), test::dense_accelerations(c, held));
-}
-
-// The torsion tree of CASE.torsion.json with the forces of its frame.
-TorsionCase read_torsion_case(const std::filesystem::path& folder, const std::string& name) {
-    const nlohmann::json json = test::read_json(folder / (name + ".torsion.json"));
-    TorsionCase c;
-    const nlohmann::json force_field = test::read_json(folder / (name + ".ff.json"));
-    for (const auto& row : force_field["atoms"]["rows"]) {
-        c.masses.push_back(row[4]);
-    }
-    c.bodies.body_of.resize(c.masses.size());
-    for (const auto& body : json["bodies"]) {
-        for (const std::uint32_t atom : body["atoms"]) {
-            c.bodies.body_of[atom] = static_cast<std::uint32_t>(c.bodies.bodies.size());
-        }
-        c.bodies.bodies.push_back({});
-        if (body["parent"] < 0) continue;
-        c.bodies.bodies.back() = {body["parent"], {body["joint"][0], body["joint"][1]}};
-    }
-    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-        const std::string file = entry.path().filename().string();
-        if (!file.starts_with(name + ".") || file.ends_with(".ff.json") ||
-            file.ends_with(".torsion.json"))
-            continue;
-        for (const test::ReferenceFrame& frame : test::read_reference_frames(entry.path())) {
-            if (frame.name != json["frame"].get<std::string>()) continue;
-            c.positions = frame.positions;
-            c.forces = frame.forces;
-        }
-    }
-    return c;
+    return test::worst_difference(state_of(c, tree, held), test::dense_accelerations(c, held));
 }
 
 // rad/ps^2 of 1 kcal/mol / (amu Å^2)
@@ -145,11 +71,11 @@ TorsionAccelerations read_accelerations(const std::filesystem::path& folder,
 TEST_CASE("the two slow ways to accelerations agree with each other", "[assembly][passes]") {
     for (std::uint32_t seed = 0; seed < 5; ++seed) {
         const TorsionCase c = test::torsion_case(seed, 30, TorsionShape::Tree);
-        for (const Held& held : {all_free(c), some_held(c, seed, 0.5)}) {
+        for (const Held& held : {test::all_free(c), test::some_held(c, seed, 0.5)}) {
             const TorsionAccelerations a = test::dense_accelerations(c, held);
             const TorsionAccelerations b = test::recursive_accelerations(c, held);
             for (std::size_t i = 0; i < a.joints.size(); ++i) {
-                CHECK(a.joints[i] == Approx(b.joints[i]).margin(1e-12 * rms_of(a.joints)));
+                CHECK(a.joints[i] == Approx(b.joints[i]).margin(1e-12 * test::rms_of(a.joints)));
             }
             for (std::size_t i = 0; i < a.bases.size(); ++i) {
                 CHECK((a.bases[i] - b.bases[i]).norm() <= 1e-12 * (1 + a.bases[i].norm()));
@@ -167,9 +93,9 @@ TEST_CASE("small trees accelerate as the mass matrix of all joints says", "[asse
         INFO(bodies << " bodies, seed " << seed);
         for (const double share : {0.0, 0.1, 0.5, 0.9, 1.0}) {
             INFO("rigid " << share);
-            CHECK(worst_against_dense(c, some_held(c, seed, share)) <= 1e-9);
+            CHECK(worst_against_dense(c, test::some_held(c, seed, share)) <= 1e-9);
         }
-        CHECK(worst_against_dense(c, all_free(c)) <= 1e-9);
+        CHECK(worst_against_dense(c, test::all_free(c)) <= 1e-9);
     }
 }
 
@@ -180,8 +106,8 @@ TEST_CASE("molecules of one tree do not touch each other", "[assembly][passes]")
         for (const std::size_t bodies : {4, 1, 12, 2}) builder.add_molecule(bodies);
         const TorsionCase c = builder.take();
 
-        CHECK(worst_against_dense(c, all_free(c)) <= 1e-9);
-        CHECK(worst_against_dense(c, some_held(c, seed, 0.4)) <= 1e-9);
+        CHECK(worst_against_dense(c, test::all_free(c)) <= 1e-9);
+        CHECK(worst_against_dense(c, test::some_held(c, seed, 0.4)) <= 1e-9);
     }
 }
 
@@ -194,10 +120,10 @@ TEST_CASE("large trees accelerate as the recursion in long double says",
         const AssemblyTree tree = tree_of(c);
         INFO(bodies << " bodies of shape " << static_cast<int>(shape));
         for (const double share : {0.0, 0.5}) {
-            Held held = some_held(c, 2, share);
+            Held held = test::some_held(c, 2, share);
             held.is_active[0] = 1;
-            const double error =
-                worst_difference(state_of(c, tree, held), test::recursive_accelerations(c, held));
+            const double error = test::worst_difference(state_of(c, tree, held),
+                                                        test::recursive_accelerations(c, held));
             CHECK(error <= 1e-6);
         }
     }
@@ -207,16 +133,17 @@ TEST_CASE("proteins accelerate as Simbody and a dense solve say", "[assembly][pa
     const auto folder = test::find_shared_data("reference");
     if (!folder) return;
     for (const char* const name : {"ala_dipeptide", "ubiquitin", "hiv_tl3_c36m"}) {
-        const TorsionCase c = read_torsion_case(*folder, name);
+        const TorsionCase c = test::read_torsion_case(*folder, name);
         REQUIRE(!c.positions.empty());
         const AssemblyTree tree = tree_of(c);
-        const AssemblyState state = state_of(c, tree, all_free(c));
+        const AssemblyState state = state_of(c, tree, test::all_free(c));
         INFO(name);
 
-        const double error = worst_difference(state, read_accelerations(*folder, name, c));
+        const double error = test::worst_difference(state, read_accelerations(*folder, name, c));
         // To which Simbody and the file agree; the file has twelve digits.
         CHECK(error <= 1e-8);
-        const double exact = worst_difference(state, test::recursive_accelerations(c, all_free(c)));
+        const double exact =
+            test::worst_difference(state, test::recursive_accelerations(c, test::all_free(c)));
         CHECK(exact <= 1e-9);
         std::size_t joins = 0, handles = 0;
         for (const AssemblyNode& node : tree.nodes) {
@@ -241,16 +168,16 @@ TEST_CASE("ions and molecules in line move as far as they can", "[assembly][pass
     c.forces = {{23, 0, 46}, {0, 3, 0}, {0, 0, 0}, {4.4, -3, 4.4}};
     const AssemblyTree tree = tree_of(c);
 
-    const AssemblyState state = state_of(c, tree, all_free(c));
+    const AssemblyState state = state_of(c, tree, test::all_free(c));
 
     CHECK((state.base_acceleration[0] - (Vec6() << 0, 0, 0, 1, 0, 2).finished()).norm() < 1e-12);
     // Torque (0, -4.4, -6) by an inertia of 32; force (4.4, 0, 4.4) by a mass of 44.
     const Vec6 expected = (Vec6() << 0, -4.4 / 32, -6.0 / 32, 0.1, 0, 0.1).finished();
     CHECK((state.base_acceleration[1] - expected).norm() < 1e-12);
 
-    Held held = all_free(c);
-    held.is_active = {0, 0};
-    held.acceleration[1] = (Vec6() << 0, 1, 0, 0, 0, 1).finished();
+    Held held = test::all_free(c);
+    held.guides[0].guide = held.guides[1].guide = BaseGuide::Whole;
+    held.guides[1].acceleration = (Vec6() << 0, 1, 0, 0, 0, 1).finished();
     const AssemblyState guided = state_of(c, tree, held);
     CHECK((guided.base_force[0] - (Vec6() << 0, 0, 0, -23, 0, -46).finished()).norm() < 1e-9);
     const Vec6 push = (Vec6() << 0, 32 + 4.4, 6, -4.4, 0, 44 - 4.4).finished();
@@ -260,7 +187,7 @@ TEST_CASE("ions and molecules in line move as far as they can", "[assembly][pass
 TEST_CASE("what holds a base is what it takes to do so", "[assembly][passes]") {
     const TorsionCase c = test::torsion_case(3, 12, TorsionShape::Tree);
     const AssemblyTree tree = tree_of(c);
-    Held held = all_free(c);
+    Held held = test::all_free(c);
     held.is_active.assign(held.is_active.size(), 0);
 
     // All rigid and fixed: against all forces on atoms.

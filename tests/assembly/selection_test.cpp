@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstddef>
+#include <random>
 #include <vector>
 
 using namespace palpa;
@@ -31,44 +32,62 @@ Ready ready(std::uint32_t seed) {
     r.metric = build_acceleration_metric(r.tree);
     r.selection = build_joint_selection(r.tree);
     update_accelerations(r.tree, r.c.positions, r.c.forces, r.state);
-    update_metric(r.tree, r.state, MetricWeight::Plain, r.metric);
+    update_metric(r.tree, r.state, {}, r.metric);
     return r;
 }
 
+// As if there had been no selection before.
 void select(Ready& r, const SelectionLimits& limits) {
+    r.selection = build_joint_selection(r.tree);
     select_joints(r.tree, r.metric, limits, r.state, r.selection);
 }
 
+// What all joints and bases do that are chosen, or that are not.
 double sum_of_squares(const Ready& r, bool chosen) {
     double sum = 0;
     for (std::size_t b = 0; b < r.c.bodies.bodies.size(); ++b) {
         if ((r.selection.is_active[b] != 0) != chosen) continue;
         sum += r.state.joint_acceleration[b] * r.state.joint_acceleration[b];
+        if (r.c.bodies.is_base(b)) sum += r.metric.bases[r.tree.molecule_of[b]];
     }
     return sum;
 }
 
-std::size_t joints_chosen(const Ready& r) {
+std::size_t freedom_chosen(const Ready& r) {
     std::size_t count = 0;
     for (std::size_t b = 0; b < r.c.bodies.bodies.size(); ++b) {
-        if (!r.c.bodies.is_base(b) && r.selection.is_active[b] != 0) ++count;
+        if (r.selection.is_active[b] != 0) count += r.c.bodies.is_base(b) ? 6 : 1;
     }
     return count;
 }
 
+// With the metric and the selection of a step before still there.
+void select_again(Ready& r, const MetricWeights& weights, const SelectionLimits& limits) {
+    update_metric(r.tree, r.state, weights, r.metric);
+    select_joints(r.tree, r.metric, limits, r.state, r.selection);
+}
+
+std::vector<double> fluctuating(std::size_t bodies, std::mt19937& random) {
+    std::uniform_real_distribution<double> uniform(0.8, 1.2);
+    std::vector<double> factors;
+    for (std::size_t b = 0; b < bodies; ++b) factors.push_back(uniform(random));
+    return factors;
+}
+
 }  // namespace
 
-TEST_CASE("as many joints are chosen as were asked for", "[assembly][selection]") {
+TEST_CASE("as many degrees of freedom are chosen as were asked for", "[assembly][selection]") {
     for (std::uint32_t seed = 0; seed < 5; ++seed) {
         Ready r = ready(seed);
         const double all = sum_of_squares(r, false);
         double before = all * 1.0000001;
-        for (const std::size_t count : {0, 1, 2, 5, 20, 50, 63, 100}) {
-            INFO(count << " joints, seed " << seed);
-            select(r, {.joints = count});
+        for (const std::size_t count : {0, 1, 2, 5, 20, 50, 63, 75, 100}) {
+            INFO(count << " degrees of freedom, seed " << seed);
+            select(r, {.degrees_of_freedom = count});
 
-            CHECK(r.selection.joints == std::min<std::size_t>(count, 63));
-            CHECK(joints_chosen(r) == r.selection.joints);
+            // 63 joints and two free bases.
+            CHECK(r.selection.degrees_of_freedom == std::min<std::size_t>(count, 75));
+            CHECK(freedom_chosen(r) == r.selection.degrees_of_freedom);
             CHECK(r.selection.total == Approx(all));
             // What is neglected is what the others would do.
             CHECK(r.selection.neglected == Approx(sum_of_squares(r, false)).margin(1e-9 * all));
@@ -86,18 +105,28 @@ TEST_CASE("joints are chosen until little enough is neglected", "[assembly][sele
         select(r, {.neglected = share * all});
 
         CHECK(r.selection.neglected <= share * all);
-        CHECK(r.selection.joints < 63);
+        CHECK(r.selection.degrees_of_freedom < 75);
         CHECK(sum_of_squares(r, true) >= (1 - share) * all * (1 - 1e-9));
-        const std::size_t enough = r.selection.joints;
-        select(r, {.joints = enough - 1});
+        const std::size_t enough = r.selection.degrees_of_freedom;
+        select(r, {.degrees_of_freedom = enough - 1});
         CHECK(r.selection.neglected > share * all);
     }
+}
+
+TEST_CASE("a step's time allows so many degrees of freedom", "[assembly][selection]") {
+    const StepCost cost{12, 2.5};
+
+    CHECK(degrees_of_freedom_within(112, cost) == 40);
+    CHECK(degrees_of_freedom_within(114.4, cost) == 40);
+    CHECK(degrees_of_freedom_within(114.6, cost) == 41);
+    CHECK(degrees_of_freedom_within(12, cost) == 0);
+    CHECK(degrees_of_freedom_within(3, cost) == 0);
 }
 
 TEST_CASE("chosen joints are a connected region from the roots", "[assembly][selection]") {
     Ready r = ready(4);
 
-    select(r, {.joints = 17});
+    select(r, {.degrees_of_freedom = 17});
 
     for (std::size_t i = 0; i < r.tree.nodes.size(); ++i) {
         const AssemblyNode& node = r.tree.nodes[i];
@@ -109,15 +138,99 @@ TEST_CASE("chosen joints are a connected region from the roots", "[assembly][sel
     }
 }
 
-TEST_CASE("joints that were rigid are not chosen, and bases stay as they are",
-          "[assembly][selection]") {
+TEST_CASE("joints and bases that may not move are not chosen", "[assembly][selection]") {
     Ready r = ready(2);
     for (std::size_t b = 0; b < 40; ++b) r.state.is_active[b] = 0;
     update_accelerations(r.tree, r.c.positions, r.c.forces, r.state);
-    update_metric(r.tree, r.state, MetricWeight::Plain, r.metric);
+    update_metric(r.tree, r.state, {}, r.metric);
 
     select(r, {});
 
-    CHECK(r.selection.joints == 24);
+    CHECK(r.selection.degrees_of_freedom == 24 + 6);
     CHECK(r.selection.is_active == r.state.is_active);
+}
+
+TEST_CASE("a base counts as many degrees of freedom as its guide leaves", "[assembly][selection]") {
+    Ready r = ready(6);
+    // The first may only turn, the second has nothing to choose.
+    r.state.guides[0].guide = BaseGuide::Point;
+    r.state.guides[1].guide = BaseGuide::Whole;
+    update_accelerations(r.tree, r.c.positions, r.c.forces, r.state);
+    update_metric(r.tree, r.state, {}, r.metric);
+
+    select(r, {});
+    CHECK(r.selection.degrees_of_freedom == 63 + 3);
+    CHECK(r.selection.is_active == r.state.is_active);
+
+    // It takes part in the queue with what it does.
+    std::vector<double> factors(65, 1);
+    factors[r.tree.bases[0]] = 1e6;
+    r.selection = build_joint_selection(r.tree);
+    select_again(r, {MetricWeight::Plain, factors}, {.degrees_of_freedom = 3});
+    CHECK(r.selection.is_active[r.tree.bases[0]] == 1);
+    CHECK(std::ranges::count(r.selection.is_active, 1) == 2);
+    // What does not fit is passed over.
+    r.selection = build_joint_selection(r.tree);
+    select_again(r, {MetricWeight::Plain, factors}, {.degrees_of_freedom = 2});
+    CHECK(r.selection.is_active[r.tree.bases[0]] == 0);
+    CHECK(r.selection.degrees_of_freedom == 2);
+    CHECK(r.selection.neglected > r.metric.bases[0]);
+}
+
+TEST_CASE("factors wake joints where they are large", "[assembly][selection]") {
+    Ready r = ready(3);
+    std::vector<double> factors(65, 1e-9);
+    std::fill(factors.begin() + 40, factors.end(), 1);  // the second molecule
+
+    r.selection = build_joint_selection(r.tree);
+    select_again(r, {MetricWeight::Inertia, factors}, {.degrees_of_freedom = 20});
+
+    for (std::size_t b = 0; b < 40; ++b) CHECK(r.selection.is_active[b] == 0);
+}
+
+TEST_CASE("joints do not come and go while metrics fluctuate by 20 %", "[assembly][selection]") {
+    const bool is_by_number = GENERATE(true, false);
+    std::size_t flickers = 0;
+    for (std::uint32_t seed = 0; seed < 10; ++seed) {
+        Ready r = ready(seed);
+        std::mt19937 random(seed);
+        SelectionLimits limits;
+        if (is_by_number) limits.degrees_of_freedom = 20;
+        if (!is_by_number) limits.neglected = 0.1 * sum_of_squares(r, false);
+        select(r, limits);
+        const std::vector<std::uint8_t> chosen = r.selection.is_active;
+        for (int step = 0; step < 20; ++step) {
+            const std::vector<double> factors = fluctuating(65, random);
+            select_again(r, {MetricWeight::Plain, factors}, limits);
+            if (is_by_number) CHECK(r.selection.is_active == chosen);
+            // By tolerance more may be chosen when there is more, and stays.
+            for (std::size_t b = 0; b < 65; ++b) {
+                CHECK((chosen[b] == 0 || r.selection.is_active[b] != 0));
+            }
+
+            // Without an advantage they would come and go.
+            JointSelection fresh = build_joint_selection(r.tree);
+            select_joints(r.tree, r.metric, limits, r.state, fresh);
+            flickers += fresh.is_active != chosen ? 1 : 0;
+        }
+    }
+    CHECK(flickers > 0);
+}
+
+TEST_CASE("a real change is followed at once", "[assembly][selection]") {
+    Ready r = ready(5);
+    const SelectionLimits limits{.degrees_of_freedom = 20};
+    select(r, limits);
+    const std::vector<std::uint8_t> before = r.selection.is_active;
+    std::ranges::reverse(r.c.forces);
+    for (Vec3& force : r.c.forces) force *= 3;
+    update_accelerations(r.tree, r.c.positions, r.c.forces, r.state);
+
+    select_again(r, {}, limits);
+
+    CHECK(r.selection.is_active != before);
+    // Of what would be chosen afresh, all that does far more than the least that is chosen.
+    Ready fresh = r;
+    select(fresh, limits);
+    CHECK(r.selection.neglected <= limits.advantage * fresh.selection.neglected);
 }

@@ -2,8 +2,7 @@
 // long double: the mass matrix of all joints at once, and a recursion from the ends of the
 // branches.
 #pragma once
-#include "assembly/bodies.h"
-#include "math/spatial.h"
+#include "assembly/passes.h"
 #include "tests/support/torsion_molecules.h"
 
 #include <Eigen/Dense>
@@ -24,7 +23,7 @@ using LongMatrix = Eigen::Matrix<Long, Eigen::Dynamic, Eigen::Dynamic>;
 // What AssemblyState means by these names.
 struct Held {
     std::vector<std::uint8_t> is_active;  // of each body
-    std::vector<Vec6> acceleration;       // of each molecule, at its centre of mass
+    std::vector<GuidedBase> guides;       // of each molecule
 };
 
 struct TorsionAccelerations {
@@ -53,6 +52,35 @@ inline Molecules molecules_of(const TorsionCase& c) {
         mass[molecule] += c.masses[i];
     }
     for (std::size_t i = 0; i < mass.size(); ++i) result.centres[i] /= mass[i];
+    return result;
+}
+
+// What is prescribed of a base, and the point that it is prescribed of.
+struct Prescribed {
+    bool turn, shift;
+    Long6 acceleration;
+    Long3 point;
+};
+
+inline Prescribed prescribed(const Molecules& molecules, const Held& held, std::size_t molecule) {
+    const GuidedBase& base = held.guides[molecule];
+    const bool rests = held.is_active[molecules.bases[molecule]] == 0;
+    Prescribed result{rests || base.guide == BaseGuide::Whole,
+                      rests || base.guide != BaseGuide::None, Long6::Zero(),
+                      molecules.centres[molecule]};
+    if (base.guide != BaseGuide::None) result.acceleration = base.acceleration.cast<Long>();
+    if (base.guide == BaseGuide::Point) {
+        result.acceleration.head<3>().setZero();
+        if (base.point) result.point = base.point->cast<Long>();
+    }
+    return result;
+}
+
+// From one point of a rigid body to another.
+inline Long6 shifted(const Long6& acceleration, const Long3& from, const Long3& to) {
+    Long6 result = acceleration;
+    const Long3 turn = acceleration.head<3>();
+    result.tail<3>() += turn.cross(to - from);
     return result;
 }
 
@@ -90,12 +118,12 @@ inline TorsionAccelerations dense_accelerations(const TorsionCase& c, const Held
             add_column(b, [&](std::size_t i) { return cross(axis, i, point); });
             continue;
         }
-        const std::uint32_t molecule = molecules.of_body[b];
+        const Prescribed base = prescribed(molecules, held, molecules.of_body[b]);
         for (int k = 0; k < 6; ++k) {
-            const Long3 unit = Long3::Unit(k % 3), centre = molecules.centres[molecule];
-            add_column(b, [&](std::size_t i) { return k < 3 ? cross(unit, i, centre) : unit; });
-            if (held.is_active[b] != 0) continue;
-            given += Long(held.acceleration[molecule][k]) * columns.back();
+            const Long3 unit = Long3::Unit(k % 3);
+            add_column(b, [&](std::size_t i) { return k < 3 ? cross(unit, i, base.point) : unit; });
+            if (!(k < 3 ? base.turn : base.shift)) continue;
+            given += base.acceleration[k] * columns.back();
             columns.pop_back();
         }
     }
@@ -109,17 +137,24 @@ inline TorsionAccelerations dense_accelerations(const TorsionCase& c, const Held
     }
     const LongMatrix M = J.transpose() * mass.asDiagonal() * J;
     const LongVector right = J.transpose() * (force - mass.asDiagonal() * given);
-    TorsionAccelerations result{std::vector<double>(bodies, 0), held.acceleration};
-    if (columns.empty()) return result;
+    TorsionAccelerations result{std::vector<double>(bodies, 0), {}};
+    LongVector qdd;
     // A molecule in line has a direction in which nothing has inertia.
-    const LongVector qdd = Eigen::CompleteOrthogonalDecomposition<LongMatrix>(M).solve(right);
+    if (!columns.empty()) {
+        qdd = Eigen::CompleteOrthogonalDecomposition<LongMatrix>(M).solve(right);
+    }
     Eigen::Index next = 0;
     for (std::size_t b = 0; b < bodies; ++b) {
-        if (held.is_active[b] == 0) continue;
         if (c.bodies.is_base(b)) {
-            result.bases[molecules.of_body[b]] = qdd.segment<6>(next).cast<double>();
-            next += 6;
-        } else {
+            const std::uint32_t molecule = molecules.of_body[b];
+            const Prescribed base = prescribed(molecules, held, molecule);
+            Long6 a = base.acceleration;
+            for (int k = 0; k < 6; ++k) {
+                if (!(k < 3 ? base.turn : base.shift)) a[k] = qdd[next++];
+            }
+            result.bases.push_back(
+                shifted(a, base.point, molecules.centres[molecule]).cast<double>());
+        } else if (held.is_active[b] != 0) {
             result.joints[b] = static_cast<double>(qdd[next++]);
         }
     }
@@ -163,14 +198,28 @@ inline TorsionAccelerations recursive_accelerations(const TorsionCase& c, const 
         inertia[parent] -= U * U.transpose() / D;
         bias[parent] -= U * (S[b].dot(bias[b]) / D);
     }
-    TorsionAccelerations result{std::vector<double>(bodies, 0), held.acceleration};
+    TorsionAccelerations result{std::vector<double>(bodies, 0), {}};
     std::vector<Long6> a(bodies);
     for (std::size_t b = 0; b < bodies; ++b) {
         const std::uint32_t molecule = molecules.of_body[b];
         if (c.bodies.is_base(b)) {
-            a[b] = held.acceleration[molecule].cast<Long>();
-            if (held.is_active[b] != 0) a[b] = -inertia[b].ldlt().solve(bias[b]);
-            result.bases[molecule] = a[b].cast<double>();
+            const Prescribed base = prescribed(molecules, held, molecule);
+            const Long3& centre = molecules.centres[molecule];
+            // Inertia and bias as they are about the point, where what is prescribed is known.
+            LongMatrix66 to_centre;
+            for (int k = 0; k < 6; ++k) {
+                to_centre.col(k) = shifted(Long6::Unit(k), base.point, centre);
+            }
+            const LongMatrix66 I = to_centre.transpose() * inertia[b] * to_centre;
+            const Long6 p = to_centre.transpose() * bias[b];
+            Long6 motion = base.acceleration;
+            if (!base.turn && !base.shift) motion = -I.ldlt().solve(p);
+            if (!base.turn && base.shift) {
+                const Long3 push = p.head<3>() + I.topRightCorner<3, 3>() * motion.tail<3>();
+                motion.head<3>() = -I.topLeftCorner<3, 3>().ldlt().solve(push);
+            }
+            a[b] = to_centre * motion;
+            result.bases.push_back(a[b].cast<double>());
             continue;
         }
         a[b] = a[c.bodies.bodies[b].parent];
