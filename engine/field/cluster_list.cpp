@@ -1,6 +1,7 @@
 #include "field/cluster_list.h"
 
 #include "core/assertion.h"
+#include "field/near_rows.h"
 
 #include <algorithm>
 #include <cmath>
@@ -167,11 +168,6 @@ struct Box {
     }
 };
 
-// A cluster's atoms by coordinate; where there is none, nothing is near.
-struct Places {
-    std::array<double, cluster_size> x, y, z;
-};
-
 // The boxes of clusters and of ranges of clusters, halved again and again.
 class NeighbourFinder {
 public:
@@ -218,28 +214,13 @@ private:
             add_near(cluster, 2 * node + 2, middle, end, writer);
             return;
         }
-        const std::uint32_t rows = near_rows(places_[cluster], places_[begin]);
+        const std::uint32_t rows = find_near_rows(places_[cluster], places_[begin], reach2_);
         if (rows != 0) writer.add(static_cast<std::uint32_t>(begin), rows);
-    }
-
-    std::uint32_t near_rows(const Places& a, const Places& b) const noexcept {
-        std::uint32_t rows = 0;
-        for (std::size_t row = 0; row < cluster_size; ++row) {
-            std::uint32_t is_near = 0;
-            for (std::size_t column = 0; column < cluster_size; ++column) {
-                const double dx = a.x[row] - b.x[column];
-                const double dy = a.y[row] - b.y[column];
-                const double dz = a.z[row] - b.z[column];
-                is_near |= static_cast<std::uint32_t>(dx * dx + dy * dy + dz * dz < reach2_);
-            }
-            rows |= is_near << row;
-        }
-        return rows;
     }
 
     const ClusterList& list_;
     double reach2_;
-    std::vector<Places> places_;
+    std::vector<ClusterPlaces> places_;
     std::vector<Box> boxes_, ranges_;
 };
 

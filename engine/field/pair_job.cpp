@@ -15,8 +15,6 @@
 
 #include "field/pair_kernel-inl.h"
 
-#include <hwy/contrib/math/math-inl.h>
-
 HWY_BEFORE_NAMESPACE();
 namespace palpa::HWY_NAMESPACE {
 namespace {
@@ -57,22 +55,7 @@ public:
         const double c = scheme.cutoff, m = scheme.switch_from, width = c * c - m * m;
         inverse_c_ = all(1 / c);
         inverse_c2_ = all(1 / (c * c));
-        if constexpr (End == ElectrostaticCutoff::ForceSwitch && DistanceDielectric) {
-            // The same with t = max(r/m, 1)^2 and w = c^2 - m^2:
-            //   C0 + 1/r^2 + integral over (1 - S) 2/r^3, which is
-            //   C0 + 1/r^2 + p0 (t - 1) + p1 (t - 1)^2 + p2 ln t + p3 (1 - 1/t)
-            const double m2 = m * m, scale = m2 / (width * width), beta = 2 * m2 / width;
-            const double alpha = 3 + beta, t = c * c / m2;
-            const double p0 = scale * (alpha + beta), p1 = -scale * beta / 2;
-            const double p2 = -scale * (2 * alpha + beta), p3 = scale * alpha;
-            p0_ = all(p0);
-            p1_ = all(p1);
-            p2_ = all(p2);
-            p3_ = all(p3);
-            m_ = all(1 / m2);
-            shift_ = all(-(1 / (c * c) + (t - 1) * (p0 + p1 * (t - 1)) + p2 * std::log(t) +
-                           p3 * (1 - 1 / t)));
-        } else if constexpr (End == ElectrostaticCutoff::ForceSwitch) {
+        if constexpr (End == ElectrostaticCutoff::ForceSwitch) {
             // The energy before m is U moved by C0; after it, by x = r - m > 0,
             //   C0 + 1/r + integral over (1 - S)/r^2 = C0 + 1/r + x^3 p(x)/r
             const double width3 = width * width * width;
@@ -117,12 +100,11 @@ public:
                 terms.electrostatic = hn::MulAdd(hn::Mul(u, left), left, terms.electrostatic);
             }
         } else {
-            terms.a = hn::MulAdd(steepness(u), switching_.value(switching_.place(r2)), terms.a);
+            terms.a = hn::MulAdd(u, switching_.value(switching_.place(r2)), terms.a);
             if constexpr (WithEnergy) {
-                const V end = DistanceDielectric
-                                  ? hn::MulAdd(charges, hn::Add(after_m_of_distance(r2), shift_), u)
-                                  : hn::MulAdd(u, after_m(r2, inverse_r), hn::Mul(charges, shift_));
-                terms.electrostatic = hn::Add(terms.electrostatic, end);
+                terms.electrostatic =
+                    hn::Add(terms.electrostatic,
+                            hn::MulAdd(u, after_m(r2, inverse_r), hn::Mul(charges, shift_)));
             }
         }
     }
@@ -137,15 +119,6 @@ private:
         const V x3 = hn::Mul(hn::Mul(x, x), x);
         const V p = hn::MulAdd(hn::MulAdd(hn::MulAdd(p3_, x, p2_), x, p1_), x, p0_);
         return hn::MulAdd(x3, p, all(1));
-    }
-
-    // The integral, of m_ = 1/m^2.
-    HWY_INLINE V after_m_of_distance(V r2) const {
-        const V t = hn::Max(hn::Mul(r2, m_), all(1)), more = hn::Sub(t, all(1));
-        const V inverse_t = hn::Div(all(1), t);
-        const V powers = hn::Mul(more, hn::MulAdd(p1_, more, p0_));
-        return hn::MulAdd(p2_, hn::Log(floats, t),
-                          hn::MulAdd(hn::Mul(p3_, more), inverse_t, powers));
     }
 
     Switching switching_;
@@ -420,8 +393,7 @@ private:
             const V sqrt_epsilon = load_columns(a.sqrt_epsilon, b.sqrt_epsilon, column);
             const V half_rmin = load_columns(a.half_rmin, b.half_rmin, column);
             V fx = hn::Zero(floats), fy = fx, fz = fx;
-            for (std::uint32_t left = rows; left != 0; left &= left - 1) {
-                const auto r = static_cast<std::uint32_t>(std::countr_zero(left));
+            const auto add_row = [&](std::uint32_t r) HWY_ATTR __attribute__((always_inline)) {
                 const V dx = hn::Sub(hn::Set(floats, rows_.x[r]), x);
                 const V dy = hn::Sub(hn::Set(floats, rows_.y[r]), y);
                 const V dz = hn::Sub(hn::Set(floats, rows_.z[r]), z);
@@ -456,6 +428,14 @@ private:
                 add_force(gradient, dx, fx, rows_.fx[r]);
                 add_force(gradient, dy, fy, rows_.fy[r]);
                 add_force(gradient, dz, fz, rows_.fz[r]);
+            };
+            if (!IsMasked && rows == 0xff) {
+                // Most tiles: without looking for the next row.
+                HWY_UNROLL(8)
+                for (std::uint32_t r = 0; r < cluster_size; ++r) add_row(r);
+            } else {
+                for (std::uint32_t left = rows; left != 0; left &= left - 1)
+                    add_row(static_cast<std::uint32_t>(std::countr_zero(left)));
             }
             ClusterForces& on_a = forces_[first];
             ClusterForces& on_b = forces_[second];
@@ -490,7 +470,8 @@ JobSum sum_with_laws(const PairJob& job) {
 
 template <ElectrostaticCutoff End, VanDerWaalsCutoff VanDerWaalsEnd>
 JobSum sum_with_dielectric(const PairJob& job) {
-    if constexpr (End != ElectrostaticCutoff::ForceShift) {
+    if constexpr (End != ElectrostaticCutoff::ForceShift &&
+                  End != ElectrostaticCutoff::ForceSwitch) {
         // Rare: without code of its own for forces alone.
         if (job.scheme->distance_dielectric)
             return Kernel<Electrostatics<End, true>, VanDerWaals<VanDerWaalsEnd>, true>(job).sum(

@@ -112,8 +112,9 @@ PairKernelSum add_cluster_pair_forces(const ClusterList& list, const PairScheme&
                                       std::span<Vec3> forces, PairResult result,
                                       const PairThreads& threads) {
     PALPA_ASSERT(threads.count > 0 && workspace.atoms.size() == list.clusters() + 1);
-    PALPA_ASSERT(
-        !(scheme.distance_dielectric && scheme.electrostatics == ElectrostaticCutoff::ForceShift));
+    PALPA_ASSERT(!scheme.distance_dielectric ||
+                 (scheme.electrostatics != ElectrostaticCutoff::ForceShift &&
+                  scheme.electrostatics != ElectrostaticCutoff::ForceSwitch));
     PALPA_ASSERT(!is_outdated(list, positions) && forces.size() == positions.size());
     const bool fits = place_atoms(list, positions, workspace);
     std::vector<JobSum> sums(threads.count);

@@ -18,7 +18,7 @@ namespace palpa {
 // What all pairs have in common.
 struct PairScheme {
     double coulomb = 0;  // C/eps, kcal Å/mol/e^2
-    // A dielectric of eps r: E = C q q'/(eps r^2). Not with ForceShift.
+    // A dielectric of eps r: E = C q q'/(eps r^2). Not with ForceShift or ForceSwitch.
     bool distance_dielectric = false;
     ElectrostaticCutoff electrostatics = ElectrostaticCutoff::None;
     VanDerWaalsCutoff van_der_waals = VanDerWaalsCutoff::None;

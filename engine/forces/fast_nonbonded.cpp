@@ -80,6 +80,12 @@ NonbondedEnergy add_fast_nonbonded_forces(const Topology& topology, const FastAt
                                           const PairThreads& threads) {
     PALPA_ASSERT(!find_problem(settings));
     PALPA_ASSERT(positions.size() == topology.size() && forces.size() == topology.size());
+    // In single precision too little would be left of its energy between m and c.
+    if (settings.distance_dielectric &&
+        settings.electrostatics == ElectrostaticCutoff::ForceSwitch) {
+        if (threads.beside) threads.beside();
+        return add_nonbonded_forces(topology, settings, positions, forces);
+    }
     update_list(topology, atoms, settings, skin, positions, pairs);
     const PairScheme scheme{settings.coulomb_constant / settings.dielectric,
                             settings.distance_dielectric,

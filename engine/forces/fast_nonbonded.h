@@ -40,8 +40,9 @@ struct FastPairs {
 // does, and returns their energies, zero unless asked for. Settings must be sound. A list with a
 // cutoff holds pairs up to `skin` (Å) beyond it; `pairs`, empty before the first call and of one
 // topology and cutoff ever after, is built anew when outdated. Pairs with replaced numbers are
-// summed in double. So is everything where atoms are as close or as far apart as
-// field/pair_kernel.h says.
+// summed in double. So is everything where single precision does not do: switched forces of
+// a dielectric that grows with the distance; atoms as close or as far apart as field/pair_kernel.h
+// says.
 NonbondedEnergy add_fast_nonbonded_forces(const Topology& topology, const FastAtoms& atoms,
                                           const NonbondedSettings& settings, double skin,
                                           std::span<const Vec3> positions, FastPairs& pairs,

@@ -1,0 +1,20 @@
+// Which atoms of a cluster are near one of another's: what field/cluster_list.cpp asks most, by
+// code that is compiled for each kind of processor, with the same answer on all.
+#pragma once
+#include "field/cluster_list.h"
+
+#include <array>
+#include <cstdint>
+
+namespace palpa {
+
+// A cluster's atoms by coordinate, Å; where there is none, NaN: nothing is near.
+struct alignas(64) ClusterPlaces {
+    std::array<double, cluster_size> x, y, z;
+};
+
+// Bit r is set where row r of `a` is nearer than the root of `reach2` (Å^2) to an atom of `b`.
+std::uint32_t find_near_rows(const ClusterPlaces& a, const ClusterPlaces& b,
+                             double reach2) noexcept;
+
+}  // namespace palpa
