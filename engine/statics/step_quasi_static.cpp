@@ -1,5 +1,6 @@
 #include "statics/step_quasi_static.h"
 
+#include "assembly/parts.h"
 #include "core/assertion.h"
 
 #include <algorithm>
@@ -23,6 +24,33 @@ void read_accelerations(const TorsionModel& model, const AssemblyState& assembly
         if (model.bases[m].freedom == BaseFreedom::Free)
             accelerations.segment<3>(at + 3) = assembly.base_acceleration[m].tail<3>();
     }
+}
+
+// A base that only turns accelerates as the force on its pivot has it which keeps the pivot in
+// place. After upward_pass.
+void hold_pivots(const TorsionModel& model, const TorsionState& state,
+                 AssemblyState& assembly) noexcept {
+    for (std::size_t m = 0; m < model.bases.size(); ++m) {
+        if (model.bases[m].freedom != BaseFreedom::Turning) continue;
+        const PartInertia part(model.tree, assembly, model.tree.nodes[model.tree.roots[m]]);
+        // Of a force on the pivot, what it is about the centre of mass; transposed, of an
+        // acceleration there, what it is at the pivot.
+        Eigen::Matrix<double, 6, 3> at_pivot;
+        at_pivot << cross_matrix(state.pivots[m] - assembly.points[model.tree.bases[m]]),
+            Mat3::Identity();
+        const Mat3 yields = at_pivot.transpose() * part.phi(0, 0) * at_pivot;
+        const Vec3 force = -yields.llt().solve(at_pivot.transpose() * part.b(0));
+        assembly.held_acceleration[m] = part.phi(0, 0) * at_pivot * force + part.b(0);
+    }
+}
+
+// Of bodies that have their forces.
+void solve(const TorsionModel& model, const TorsionState& state, AssemblyState& assembly,
+           Coordinates& accelerations) noexcept {
+    upward_pass(model.tree, assembly);
+    hold_pivots(model, state, assembly);
+    downward_pass(model.tree, assembly);
+    read_accelerations(model, assembly, accelerations);
 }
 
 // The wrench that does along each coordinate what the forces say.
@@ -66,8 +94,8 @@ QuasiStatics build_quasi_statics(const TorsionModel& model) {
 
 void update_coordinate_accelerations(const TorsionModel& model, const TorsionState& state,
                                      AssemblyState& assembly, Coordinates& accelerations) noexcept {
-    update_accelerations(model.tree, state.positions, state.forces, assembly);
-    read_accelerations(model, assembly, accelerations);
+    update_bodies(model.tree, state.positions, state.forces, assembly);
+    solve(model, state, assembly, accelerations);
 }
 
 void multiply_by_inverse_mass(const TorsionModel& model, const TorsionState& state,
@@ -75,9 +103,7 @@ void multiply_by_inverse_mass(const TorsionModel& model, const TorsionState& sta
                               Coordinates& accelerations) noexcept {
     update_bodies(model.tree, state.positions, state.forces, assembly);
     put_on_bodies(model, state, coordinate_forces, assembly);
-    upward_pass(model.tree, assembly);
-    downward_pass(model.tree, assembly);
-    read_accelerations(model, assembly, accelerations);
+    solve(model, state, assembly, accelerations);
 }
 
 double find_largest_move(const std::vector<Vec3>& from, const std::vector<Vec3>& to) noexcept {
