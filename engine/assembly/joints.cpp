@@ -240,6 +240,8 @@ Joints build_joints(const Connectivity& connectivity, const JointRules& rules) {
     bonds.asked = find_overrides(connectivity, rules, problems);
     cut_loops(connectivity, chemistry, bonds, problems);
 
+    // Springs hang nothing on a bond that would turn.
+    const Neighbours left(connectivity.mass.size(), connectivity.bonds, bonds.is_cut);
     Joints result;
     for (std::uint32_t i = 0; i < connectivity.bonds.size(); ++i) {
         const auto [a, b] = connectivity.bonds[i];
@@ -248,7 +250,7 @@ Joints build_joints(const Connectivity& connectivity, const JointRules& rules) {
             continue;
         }
         const bool can_turn =
-            bonds.is_bridge[i] != 0 && chemistry.degree(a) > 1 && chemistry.degree(b) > 1;
+            bonds.is_bridge[i] != 0 && left.of(a).size() > 1 && left.of(b).size() > 1;
         if (!can_turn) {
             if (bonds.asked[i] == BondMotion::Turn) {
                 problems.push_back(fmt::format(

@@ -25,7 +25,7 @@ enum class JointKind : std::uint8_t {
 enum class BondMotion : std::uint8_t { Turn, Rigid, Spring };
 
 // What a scene says of one bond, whatever the rules say. `Turn` asks for a bridge with further
-// atoms at both ends, `Spring` for a bond of a ring, which is opened there.
+// atoms at both ends, springs not counted, `Spring` for a bond of a ring, which is opened there.
 struct JointOverride {
     std::array<std::uint32_t, 2> bond;  // atoms, either way round
     BondMotion motion;

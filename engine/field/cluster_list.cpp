@@ -101,7 +101,8 @@ std::vector<Gap> find_gaps(std::span<const std::uint32_t> atoms, std::size_t ato
 // Writes the tiles of one cluster after the other.
 class TileWriter {
 public:
-    TileWriter(std::span<const Gap> gaps, ClusterList& list) noexcept : gaps_(gaps), list_(list) {
+    TileWriter(std::span<const Gap> gaps, std::span<const std::uint32_t> groups, ClusterList& list)
+        : gaps_(gaps), groups_(find_groups(list, groups)), list_(list) {
         list_.plain.clear();
         list_.masked.clear();
         list_.first_plain.assign(1, 0);
@@ -111,6 +112,9 @@ public:
     // Clusters must rise. Rows are those that may be near.
     void add(std::uint32_t cluster, std::uint32_t rows) {
         const auto row_cluster = static_cast<std::uint32_t>(list_.first_plain.size() - 1);
+        if (!groups_.empty() && groups_[cluster] != mixed &&
+            groups_[cluster] == groups_[row_cluster])
+            return;
         while (next_ < gaps_.size() && std::tie(gaps_[next_].row_cluster, gaps_[next_].cluster) <
                                            std::tie(row_cluster, cluster)) {
             ++next_;
@@ -141,7 +145,25 @@ public:
     }
 
 private:
+    static constexpr std::uint32_t mixed = no_atom;
+
+    // What all atoms of each cluster have.
+    static std::vector<std::uint32_t> find_groups(const ClusterList& list,
+                                                  std::span<const std::uint32_t> groups) {
+        std::vector<std::uint32_t> result;
+        for (std::size_t c = 0; !groups.empty() && c < list.clusters(); ++c) {
+            const auto atoms = std::span(list.atoms).subspan(c * cluster_size, cluster_size);
+            std::uint32_t common = groups[atoms[0]];
+            for (const std::uint32_t atom : atoms) {
+                if (atom != no_atom && groups[atom] != common) common = mixed;
+            }
+            result.push_back(common);
+        }
+        return result;
+    }
+
     std::span<const Gap> gaps_;
+    std::vector<std::uint32_t> groups_;
     ClusterList& list_;
     std::size_t next_ = 0;
 };
@@ -227,12 +249,13 @@ private:
 }  // namespace
 
 ClusterList build_full_cluster_list(std::size_t atom_count,
-                                    std::span<const std::array<std::uint32_t, 2>> left_out) {
+                                    std::span<const std::array<std::uint32_t, 2>> left_out,
+                                    std::span<const std::uint32_t> groups) {
     ClusterList list;
     list.atoms.assign((clusters_of(atom_count) + 1) * cluster_size, no_atom);
     std::iota(list.atoms.begin(), list.atoms.begin() + static_cast<std::ptrdiff_t>(atom_count), 0U);
     const std::vector<Gap> gaps = find_gaps(list.atoms, atom_count, left_out);
-    TileWriter writer(gaps, list);
+    TileWriter writer(gaps, groups, list);
     for (std::uint32_t row_cluster = 0; row_cluster < list.clusters(); ++row_cluster) {
         const std::uint32_t rows = rows_of(list, row_cluster);
         for (std::uint32_t c = row_cluster; c < list.clusters(); ++c) writer.add(c, rows);
@@ -243,7 +266,8 @@ ClusterList build_full_cluster_list(std::size_t atom_count,
 
 ClusterList build_cluster_list(std::span<const Vec3> positions,
                                std::span<const std::array<std::uint32_t, 2>> left_out,
-                               double cutoff, double skin, ClusterList storage) {
+                               double cutoff, double skin, std::span<const std::uint32_t> groups,
+                               ClusterList storage) {
     PALPA_ASSERT(cutoff > 0 && skin >= 0 && std::isfinite(cutoff + skin));
     ClusterList list = std::move(storage);
     list.cutoff = cutoff;
@@ -251,13 +275,38 @@ ClusterList build_cluster_list(std::span<const Vec3> positions,
     list.positions.assign(positions.begin(), positions.end());
     list.atoms = sort_into_clusters(positions);
     const std::vector<Gap> gaps = find_gaps(list.atoms, positions.size(), left_out);
-    TileWriter writer(gaps, list);
+    TileWriter writer(gaps, groups, list);
     const NeighbourFinder finder(list, positions, cutoff + skin);
     for (std::uint32_t cluster = 0; cluster < list.clusters(); ++cluster) {
         finder.add_tiles(cluster, writer);
         writer.end_cluster();
     }
     return list;
+}
+
+std::vector<std::array<std::uint32_t, 2>> list_pairs(const ClusterList& list) {
+    std::vector<std::array<std::uint32_t, 2>> pairs;
+    const auto add = [&](std::size_t row_cluster, std::size_t cluster, std::uint64_t which) {
+        for (std::size_t bit = 0; bit < cluster_size * cluster_size; ++bit) {
+            const std::uint32_t a = list.atoms[row_cluster * cluster_size + bit / cluster_size];
+            const std::uint32_t b = list.atoms[cluster * cluster_size + bit % cluster_size];
+            if ((which >> bit & 1) != 0 && a != no_atom && b != no_atom) pairs.push_back({a, b});
+        }
+    };
+    for (std::size_t c = 0; c < list.clusters(); ++c) {
+        for (std::size_t i = list.first_plain[c]; i < list.first_plain[c + 1]; ++i) {
+            const ClusterTile& tile = list.plain[i];
+            std::uint64_t which = 0;
+            for (std::size_t row = 0; row < cluster_size; ++row) {
+                if ((tile.rows >> row & 1) != 0) which |= std::uint64_t{0xff} << (row * 8);
+            }
+            add(c, tile.cluster, which);
+        }
+        for (std::size_t i = list.first_masked[c]; i < list.first_masked[c + 1]; ++i) {
+            add(c, list.masked[i].cluster, list.masked[i].pairs);
+        }
+    }
+    return pairs;
 }
 
 bool is_outdated(const ClusterList& list, std::span<const Vec3> positions) noexcept {

@@ -49,15 +49,23 @@ struct ClusterList {
 };
 
 // All pairs, whatever the positions, but for those left out (each given once, either way round).
+// `groups` is empty or has a number for each atom: tiles whose atoms all have one number are left
+// out too, for those who do not ask what atoms of one rigid body do to each other.
 ClusterList build_full_cluster_list(std::size_t atom_count,
-                                    std::span<const std::array<std::uint32_t, 2>> left_out);
+                                    std::span<const std::array<std::uint32_t, 2>> left_out,
+                                    std::span<const std::uint32_t> groups = {});
 
 // The pairs nearer than cutoff + skin, and some more, but for those left out. Clusters are what is
 // left of halving the atoms again and again across their longest extent. The memory of `storage`,
 // an earlier list, is used again.
 ClusterList build_cluster_list(std::span<const Vec3> positions,
                                std::span<const std::array<std::uint32_t, 2>> left_out,
-                               double cutoff, double skin, ClusterList storage = {});
+                               double cutoff, double skin,
+                               std::span<const std::uint32_t> groups = {},
+                               ClusterList storage = {});
+
+// The pairs of all tiles, one by one.
+std::vector<std::array<std::uint32_t, 2>> list_pairs(const ClusterList& list);
 
 // Whether a pair that is not in the list may have come nearer than the cutoff: an atom has moved
 // more than half the skin, or is nowhere. Never for all pairs.

@@ -48,8 +48,8 @@ void update_list(const Topology& topology, const FastAtoms& atoms,
     const bool ends = has_end(settings);
     if (pairs.builds > 0 && !is_outdated(pairs.list, positions)) return;
     pairs.list = ends ? build_cluster_list(positions, atoms.left_out, settings.cutoff, skin,
-                                           std::move(pairs.list))
-                      : build_full_cluster_list(topology.size(), atoms.left_out);
+                                           atoms.groups, std::move(pairs.list))
+                      : build_full_cluster_list(topology.size(), atoms.left_out, atoms.groups);
     pairs.workspace =
         build_pair_workspace(pairs.list, {topology.charge, atoms.sqrt_epsilon, atoms.half_rmin},
                              std::move(pairs.workspace));
@@ -95,7 +95,14 @@ NonbondedEnergy add_fast_nonbonded_forces(const Topology& topology, const FastAt
                             settings.cutoff};
     const PairKernelSum sum = add_cluster_pair_forces(pairs.list, scheme, positions,
                                                       pairs.workspace, forces, result, threads);
-    if (!sum.is_sound) return add_nonbonded_forces(topology, settings, positions, forces);
+    if (!sum.is_sound) {
+        // The same pairs, so that energies can be compared with those of other positions.
+        if (atoms.groups.empty())
+            return add_nonbonded_forces(topology, settings, positions, forces);
+        std::vector<std::array<std::uint32_t, 2>> all = list_pairs(pairs.list);
+        all.insert(all.end(), atoms.replaced().begin(), atoms.replaced().end());
+        return add_pair_forces(topology, settings, all, positions, forces);
+    }
     const NonbondedEnergy replaced =
         add_pair_forces(topology, settings, atoms.replaced(), positions, forces);
     if (result == PairResult::Forces) return {};

@@ -21,6 +21,9 @@ struct FastAtoms {
     // are not combined from the two types' own (NBFIX), from `first_replaced` on.
     std::vector<std::array<std::uint32_t, 2>> left_out;
     std::size_t first_replaced = 0;
+    // Empty, or a number for each atom: of pairs with one number some are left out, whose energy is
+    // constant and whose forces are no one's concern. The caller's to write.
+    std::vector<std::uint32_t> groups;
 
     std::span<const std::array<std::uint32_t, 2>> replaced() const noexcept {
         return std::span(left_out).subspan(first_replaced);

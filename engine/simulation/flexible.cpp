@@ -257,6 +257,8 @@ Flexible build_flexible(const SceneDescription& scene, const Connectivity& conne
     const FlexiblePart& grabbed = parts.front();
     const bool is_moved = is_moved_by_hand(grabbed.description->motion);
     if (is_moved) check_one_piece(scene, bodies, grabbed);
+    std::optional<Tether> tether;
+    if (!scene.grab.atom.empty()) tether = read_tether(scene, connectivity, grabbed);
 
     // At first nobody holds anything.
     Flexible result;
@@ -286,8 +288,8 @@ Flexible build_flexible(const SceneDescription& scene, const Connectivity& conne
     result.statics = build_quasi_statics(result.model);
     result.joints = joints.joints.joints.size();
     result.joints_held = joints.held;
-    if (!scene.grab.atom.empty()) {
-        result.state.tether = read_tether(scene, connectivity, grabbed);
+    if (tether) {
+        result.state.tether = std::move(tether);
         result.state.tether->place = find_tethered(result.model, result.state);
     }
     update_forces(result.model, result.settings.step.forces, result.statics.memory, result.state);

@@ -53,7 +53,7 @@ void move_held(Flexible& flexible, const Vec3& by) noexcept;
 
 struct [[nodiscard]] SettleReport {
     double hand_work = 0;      // kcal/mol, by which moving what the hand holds raised the energy
-    double energy_change = 0;  // kcal/mol, by coming to rest: never above 0
+    double energy_change = 0;  // kcal/mol, by coming to rest: above 0 only by rounding
     double largest_move = 0;   // of any atom, Å
     std::size_t evaluations = 0;
     bool is_finite = true;  // else all is where the last step left it

@@ -111,7 +111,7 @@ Connectivity build_scene_connectivity(const std::vector<const MoleculeDescriptio
         const auto out = append_segment(from, molecule->segment, all);
         if (!out) continue;
         throw LoadError(
-            {from.file},
+            {from.file, from.lines[(*out)[0]]},
             fmt::format("atoms {} and {} are bonded, across segments; expected "
                         "molecules that are not bonded to others, where any moves by "
                         "itself",

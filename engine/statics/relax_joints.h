@@ -25,9 +25,9 @@ struct RelaxSettings {
 
 enum class RelaxEnd : std::uint8_t {
     Converged,  // the tolerance is reached
-    Steps,      // there were no more steps
+    Steps,      // there were no more steps, or `on_step` wanted none
     Stuck,      // nothing lowers the energy by more than rounding
-    NotFinite,  // where it started, or all around
+    NotFinite,  // energy or forces where it is
 };
 
 struct [[nodiscard]] JointRelaxReport {
@@ -45,8 +45,8 @@ struct RelaxProgress {
 };
 
 // Until nothing pulls at the coordinates by more than the tolerance. The energy never rises from
-// step to step. In the end the state has its positions, forces and coordinate forces. `on_step` may
-// be empty; where it returns false the way ends.
+// step to step, but by what fast pairs round. In the end the state has its positions, forces and
+// coordinate forces. `on_step` may be empty; where it returns false the way ends.
 JointRelaxReport relax_joints(const TorsionModel& model, const RelaxSettings& settings,
                               TorsionState& state, QuasiStatics& statics,
                               const std::function<bool(const RelaxProgress&)>& on_step = {});

@@ -38,7 +38,7 @@ struct [[nodiscard]] QuasiStaticReport {
 // (S. Redon et al., ACM Trans. Graph. 24, 936 (2005), for the dynamics; a step from rest is here
 // the whole of it.) In the end the state has its positions and forces, coordinate forces not.
 //
-// In double every step that is taken lowers the energy. Fast pairs round it; where the energy
+// In double no step that is taken raises the energy. Fast pairs round it; where the energy
 // changes by less than that, the forces at both ends tell whether it falls.
 QuasiStaticReport step_quasi_static(const TorsionModel& model, const QuasiStaticSettings& settings,
                                     TorsionState& state, QuasiStatics& statics);

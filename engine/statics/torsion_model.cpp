@@ -17,10 +17,13 @@ public:
 
     template <std::size_t Count>
     bool is_rigid(const std::array<std::uint32_t, Count>& atoms) const {
-        return std::ranges::any_of(atoms, [&](std::uint32_t candidate) {
-            const std::uint32_t body = bodies_.body_of[candidate];
+        const auto has_all = [&](std::uint32_t body) {
             return std::ranges::all_of(atoms,
                                        [&](std::uint32_t atom) { return is_in(body, atom); });
+        };
+        return std::ranges::any_of(atoms, [&](std::uint32_t atom) {
+            const std::uint32_t body = bodies_.body_of[atom], parent = bodies_.bodies[body].parent;
+            return has_all(body) || (parent != no_body && has_all(parent));
         });
     }
 
@@ -72,6 +75,7 @@ TorsionModel build_torsion_model(const TorsionBodies& bodies, std::vector<double
     model.topology = topology;
     keep_moving_terms(bodies, model.topology);
     model.fast = build_fast_force_field(model.topology);
+    model.fast.atoms.groups = bodies.body_of;
 
     for (std::size_t body = 0; body < bodies.bodies.size(); ++body) {
         const bool is_base = bodies.is_base(body);

@@ -205,10 +205,11 @@ TEST_CASE("a disulphide that closes a large ring becomes a spring", "[assembly][
     CHECK(build_joints(ring_of(8)).joints.empty());
     const Joints large = build_joints(ring_of(9));
     CHECK(large.springs == Bonds{{0, 1}});
-    CHECK(large.joints.size() == 8);
+    // Bonds to sulphur, whose other bond is cut, would turn nothing.
+    CHECK(large.joints.size() == 6);
     const TorsionBodies bodies = build_bodies(ring_of(9), large);
     CHECK(bodies.molecules() == 1);
-    CHECK(bodies.bodies.size() == 9);
+    CHECK(bodies.bodies.size() == 7);
     CHECK(bodies.springs == large.springs);
 }
 
@@ -226,7 +227,7 @@ TEST_CASE("of two disulphides between chains the second is a spring", "[assembly
 
     CHECK(joints.springs == Bonds{{20, 21}});
     CHECK(build_bodies(chains, joints).molecules() == 1);
-    CHECK(joints.joints.size() == bonds.size() - 1);
+    CHECK(joints.joints.size() == bonds.size() - 3);
 }
 
 TEST_CASE("a scene's word on a bond goes before the rules", "[assembly][joints]") {
@@ -288,4 +289,44 @@ TEST_CASE("bodies hang on their parents by the bonds that turn", "[assembly][bod
                                            static_cast<std::uint32_t>(b) + 1});
     }
     CHECK(bodies.is_base(4));
+}
+
+TEST_CASE("a base atom makes its body the base, and its molecule one of the first",
+          "[assembly][bodies]") {
+    // Butanol, water, an ion.
+    const Connectivity molecules =
+        with_hydrogens("CCCCOOF", {{0, 1}, {1, 2}, {2, 3}, {3, 4}}, {3, 2, 2, 2, 1, 2, 0});
+    const Joints joints = build_joints(molecules);
+    const auto bodies_with = [&](const std::vector<std::uint32_t>& base_atoms) {
+        return build_bodies(molecules, joints, base_atoms);
+    };
+    REQUIRE(joints.joints.size() == 3);
+
+    const TorsionBodies plain = bodies_with({});
+    CHECK(plain.body_of[0] == 0);
+    CHECK(plain.is_base(plain.body_of[0]));
+
+    // Water first, then the alcohol by its oxygen, whose carbon 0 comes too late; then the rest.
+    const TorsionBodies bodies = bodies_with({5, 4, 0});
+    CHECK(bodies.molecules() == 3);
+    CHECK(bodies.joints() == 3);
+    CHECK(bodies.body_of[5] == 0);
+    CHECK(bodies.body_of[4] == 1);
+    CHECK(bodies.is_base(1));
+    CHECK_FALSE(bodies.is_base(bodies.body_of[0]));
+    CHECK(bodies.is_base(bodies.body_of[6]));
+    CHECK(bodies.body_of[6] + 1 == bodies.bodies.size());
+    // Axes lead away from the base.
+    for (const Body& body : bodies.bodies) {
+        if (body.parent == no_body) continue;
+        CHECK(bodies.body_of[body.axis[0]] == body.parent);
+    }
+    CHECK(bodies.bodies[bodies.body_of[3]].axis == std::array<std::uint32_t, 2>{4, 3});
+    CHECK(bodies.bodies[bodies.body_of[1]].axis == std::array<std::uint32_t, 2>{2, 1});
+
+    // An atom in the middle: branches lead both ways.
+    const TorsionBodies middle = bodies_with({2});
+    CHECK(middle.body_of[2] == 0);
+    CHECK(middle.bodies[middle.body_of[1]].axis == std::array<std::uint32_t, 2>{2, 1});
+    CHECK(middle.bodies[middle.body_of[3]].axis == std::array<std::uint32_t, 2>{2, 3});
 }

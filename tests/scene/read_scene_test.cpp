@@ -300,9 +300,11 @@ TEST_CASE("fields that contradict each other are told at one of them", "[scene][
     CHECK_THAT(error_of(replaced(base, "\"moved\"", "\"move\"")),
                StartsWith(at(14, 12) + "'grab.molecule' is \"move\", which is no molecule") &&
                    Contains("did you mean 'moved'?") && !Contains("more problem"));
-    CHECK_THAT(error_of(base + "[molecules.third]\nstructure = \"dimer.crd\"\nsegment = \"FIX\"\n"
-                               "reference_atom = \"OH2\"\nmotion = \"along-x\"\n"),
-               StartsWith(at(21, 10) + "'molecules.third.motion' is \"along-x\", but only"));
+    CHECK_THAT(
+        error_of(base + "[molecules.third]\nstructure = \"dimer.crd\"\nsegment = \"FIX\"\n"
+                        "reference_atom = \"OH2\"\nmotion = \"along-x\"\n"),
+        StartsWith(at(21, 10) + "'molecules.third.motion' is \"along-x\", but the hand moves only "
+                                "grab.molecule; expected fixed or free"));
     CHECK_THAT(error_of(replaced(base, "\"fixed\"", "\"fixd\"")),
                StartsWith(at(15, 17) + "'grab.measured_from' is \"fixd\", which is no molecule") &&
                    Contains("expected one of fixed, moved; did you mean 'fixed'?"));
@@ -476,6 +478,141 @@ TEST_CASE("a setting is one line, and a table is no value", "[scene][settings]")
     CHECK_THAT(error_with("mode=6"), !Contains("did you mean"));
     CHECK_THAT(error_with("mode=2.0"), Contains("'coupling.mode' is 2.0; expected one of"));
     CHECK_THAT(error_with("seed=1e3"), Contains("'run.seed' is 1000.0; expected a whole number"));
+}
+
+TEST_CASE("joints, rest and a spring are read, and are as documented otherwise", "[scene][read]") {
+    const SceneDescription plain = parse_scene(base, file);
+    CHECK_FALSE(plain.has_statics());
+    CHECK(plain.molecules[1].shape == Shape::Rigid);
+    CHECK((plain.joints.hydroxyl && plain.joints.thiol && plain.joints.ammonium));
+    CHECK_FALSE((plain.joints.methyl || plain.joints.amide || plain.joints.amide_nh2 ||
+                 plain.joints.guanidinium_nh2));
+    CHECK_FALSE(plain.joints.within_angstrom.has_value());
+    CHECK(plain.statics.method == StaticsMethod::QuasiStatic);
+    CHECK(plain.statics.pairs == PairPrecision::Fast);
+    CHECK_FALSE(plain.statics.cutoff_angstrom.has_value());
+    CHECK(plain.grab.atom.empty());
+
+    const SceneDescription scene =
+        parse_scene(replaced(replaced(base, "measured_from = \"fixed\"",
+                                      "measured_from = \"fixed\"\natom = \"1 OH2\"\n"
+                                      "spring_kcal_per_mol_angstrom2 = 3.5"),
+                             "motion = \"along-x\"", "motion = \"free\"\nshape = \"flexible\"") +
+                        R"([joints]
+hydroxyl = false
+methyl = true
+turn = ["A 25 CB CG", "A 25 C 26 N"]
+rigid = []
+springs = ["A 3 SG 40 SG"]
+within_angstrom = 8
+around = "fixed"
+[statics]
+method = "inverse-mass"
+steps = 6
+largest_move_angstrom = 0.3
+pairs = "double"
+cutoff_angstrom = 12
+rest_kcal_per_mol = 0.5
+relax_steps = 0
+)",
+                    file);
+
+    CHECK(scene.has_statics());
+    CHECK(scene.molecules[1].motion == Motion::Free);
+    CHECK(scene.molecules[1].shape == Shape::Flexible);
+    CHECK(scene.grab.atom == "1 OH2");
+    CHECK(scene.grab.spring_kcal_per_mol_angstrom2 == 3.5);
+    CHECK_FALSE(scene.joints.hydroxyl);
+    CHECK(scene.joints.methyl);
+    CHECK(scene.joints.turn == std::vector<std::string>{"A 25 CB CG", "A 25 C 26 N"});
+    CHECK(scene.joints.rigid.empty());
+    CHECK(scene.joints.springs == std::vector<std::string>{"A 3 SG 40 SG"});
+    CHECK(scene.joints.within_angstrom == 8.0);
+    CHECK(scene.joints.around == "fixed");
+    CHECK(scene.statics.method == StaticsMethod::InverseMass);
+    CHECK(scene.statics.steps == 6);
+    CHECK(scene.statics.largest_move_angstrom == 0.3);
+    CHECK(scene.statics.pairs == PairPrecision::Double);
+    CHECK(scene.statics.cutoff_angstrom == 12.0);
+    CHECK(scene.statics.rest_kcal_per_mol == 0.5);
+    CHECK(scene.statics.relax_steps == 0);
+}
+
+TEST_CASE("whatever moves by itself makes a scene one of statics", "[scene][read]") {
+    const auto has_statics = [](const std::string& text) {
+        return parse_scene(text, file).has_statics();
+    };
+    const std::string in_space = replaced(base, "along-x", "translate");
+
+    CHECK_FALSE(has_statics(in_space));
+    CHECK(has_statics(replaced(in_space, "\"translate\"", "\"translate-and-turn\"")));
+    CHECK(has_statics(replaced(in_space, "\"translate\"", "\"translate\"\nshape = \"flexible\"")));
+    CHECK(has_statics(in_space + "[molecules.third]\nstructure = \"dimer.crd\"\nsegment = \"FIX\"\n"
+                                 "reference_atom = \"OH2\"\nmotion = \"free\"\n"));
+}
+
+TEST_CASE("flags and lists of texts are told apart from other values", "[scene][errors]") {
+    struct Row {
+        const char* line;
+        int column;
+        const char* what;
+    };
+    const auto row = GENERATE(values<Row>({
+        {"methyl = 1", 10, "'joints.methyl' is 1; expected true or false"},
+        {"methyl = \"true\"", 10, "'joints.methyl' is the text \"true\"; expected true or false"},
+        {"turn = \"A 1 C N\"", 8, "expected a list of texts"},
+        {"rigid = [\"A 1 C N\", 3]", 21, "an entry of 'joints.rigid' is"},
+        {"within_angstrom = -1", 19, "expected a number from 0 to 1000"},
+        {"around = \"fixt\"", 10, "'joints.around' is \"fixt\", which is no molecule"},
+        {"metyl = true", 1, "did you mean 'methyl'?"},
+    }));
+    INFO(row.line);
+
+    CHECK_THAT(error_of(base + "[joints]\n" + row.line + "\n"),
+               StartsWith(at(18, row.column)) && Contains(row.what));
+}
+
+TEST_CASE("a flag and a list can be set over a scene", "[scene][settings]") {
+    CHECK(with({"joints.methyl=true"}).joints.methyl);
+    CHECK(with({"joints.rigid=[\"A 1 C N\"]"}).joints.rigid == std::vector<std::string>{"A 1 C N"});
+    CHECK_THAT(error_of(base, {"joints.methyl=yes"}), Contains("expected true or false"));
+}
+
+TEST_CASE("what the hand holds, and how, must go together", "[scene][errors]") {
+    const std::string in_space = replaced(base, "along-x", "translate");
+    const auto by_spring = [](const std::string& text) {
+        return replaced(text, "measured_from = \"fixed\"",
+                        "measured_from = \"fixed\"\natom = \"1\"");
+    };
+
+    // A spring pulls at what yields; without one the molecule has to follow.
+    CHECK_THAT(
+        error_of(by_spring(in_space)),
+        StartsWith(at(14, 12) + "'grab.molecule' is \"moved\", whose motion is \"translate\"") &&
+            Contains("expected a free molecule, or one that is fixed and flexible"));
+    CHECK_THAT(error_of(by_spring(replaced(base, "along-x", "fixed"))),
+               StartsWith(at(14, 12)) && Contains("fixed and flexible"));
+    CHECK_THAT(
+        error_of(replaced(base, "along-x", "free")),
+        StartsWith(at(14, 12)) && Contains("expected a molecule that moves, along-x, translate or "
+                                           "translate-and-turn"));
+    CHECK(parse_scene(by_spring(replaced(base, "along-x", "free")), file).has_statics());
+    CHECK(parse_scene(by_spring(replaced(base, "\"along-x\"", "\"fixed\"\nshape = \"flexible\"")),
+                      file)
+              .has_statics());
+
+    // A molecule on a line has no place beside what moves by itself.
+    CHECK_THAT(
+        error_of(replaced(base, "\"along-x\"", "\"along-x\"\nshape = \"flexible\"")),
+        StartsWith(at(12, 10) + "'molecules.moved.motion' is \"along-x\" beside something") &&
+            Contains("expected translate or translate-and-turn"));
+    // Distances start at something that rests.
+    CHECK_THAT(error_of(replaced(in_space, "reference_atom = \"OH2\"\n",
+                                 "reference_atom = \"OH2\"\nmotion = \"free\"\n")),
+               Contains("'grab.measured_from' is \"fixed\", whose motion is \"free\"; expected a "
+                        "fixed molecule"));
+    CHECK_THAT(error_of(in_space + "[hand]\nstart_angstrom = 3\n"),
+               Contains("expected hand.start_offset_angstrom"));
 }
 
 TEST_CASE("a key of thousands of dots is refused before it is followed", "[scene][errors]") {

@@ -1,0 +1,489 @@
+#include "simulation/flexible.h"
+
+#include "charmm/generate.h"
+#include "core/units.h"
+#include "formats/crd.h"
+#include "formats/psf.h"
+#include "scene/read_scene.h"
+#include "simulation/components.h"
+#include "simulation/probe.h"
+#include "simulation/step.h"
+#include "tests/support/load_error_of.h"
+#include "tests/support/native_case.h"
+#include "tests/support/replaced.h"
+#include "tests/support/temporary_folder.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+using namespace palpa;
+using Catch::Contains;
+using test::load_error_of;
+
+namespace {
+
+constexpr std::uint32_t peptide_atoms = 62;
+
+// The tetrapeptide AERA twice, 11 Å apart.
+Structure two_peptides() {
+    const std::string path = PALPA_TEST_DATA "/tetra_aera_c36m";
+    Structure one = test::read_reference_atoms(path + ".ff.json").structure;
+    one.positions = test::read_reference_frames(path + ".frames.json")[0].positions;
+    Structure both;
+    for (const auto& [segment, by] : {std::pair{"PEPA", Vec3(0, 0, 0)}, {"PEPB", Vec3(11, 2, 1)}}) {
+        for (std::size_t i = 0; i < one.names.size(); ++i) {
+            both.names.push_back(one.names[i]);
+            both.names.back().segment = segment;
+            both.positions.emplace_back(one.positions[i] + by);
+            both.lines.push_back(i + 1);
+        }
+    }
+    return both;
+}
+
+const std::string scene_text = R"(title = "Two peptides"
+[force_field]
+files = [")" PALPA_TEST_DATA R"(/aera_c36m.rtf", ")" PALPA_TEST_DATA R"(/aera_c36m.prm"]
+[molecules.resting]
+structure = "both.crd"
+topology = "both.psf"
+segment = "PEPA"
+reference_atom = "2 CA"
+shape = "flexible"
+[molecules.held]
+structure = "both.crd"
+topology = "both.psf"
+segment = "PEPB"
+reference_atom = "3 CA"
+shape = "flexible"
+motion = "translate"
+[grab]
+molecule = "held"
+measured_from = "resting"
+[statics]
+pairs = "double"
+steps = 3
+[coupling]
+mode = "4"
+A_d = 0.25e9
+)";
+
+Connectivity connectivity_of(const Structure& structure) {
+    return build_connectivity(
+        test::read_charmm(PALPA_TEST_DATA, {"aera_c36m.rtf", "aera_c36m.prm"}), structure);
+}
+
+// A folder with the scene, as a scene file has it.
+class Peptides {
+public:
+    Peptides() : Peptides(two_peptides(), connectivity_of(two_peptides())) {}
+    Peptides(const Structure& structure, const Connectivity& connectivity) {
+        folder_.add_file("both.crd", format_crd(structure, "two peptides"));
+        folder_.add_file("both.psf", format_psf(connectivity, "two peptides"));
+        folder_.add_file("scene.toml", scene_text);
+    }
+
+    SceneDescription scene(const std::vector<std::string>& settings = {}) const {
+        return read_scene(folder_.path(), settings);
+    }
+    Simulation load(const std::vector<std::string>& settings = {}) const {
+        return load_simulation(scene(settings));
+    }
+    const test::TemporaryFolder& folder() const { return folder_; }
+
+private:
+    test::TemporaryFolder folder_;
+};
+
+const Peptides& peptides() {
+    static const Peptides scene;
+    return scene;
+}
+
+// A handle that travelled so that the molecule goes by that much.
+HandPose hand_at(const Vec3& angstrom) {
+    HandPose hand;
+    hand.travel_m = angstrom * 0.25e9 * 1e-10;
+    return hand;
+}
+
+std::size_t reference_of(const Simulation& simulation) {
+    const Grab& grab = *simulation.world.find<Grab>(simulation.hand);
+    return simulation.world.find<Molecule>(grab.molecule)->reference_atom;
+}
+
+Vec3 place_of(const Simulation& simulation) {
+    const Grab& grab = *simulation.world.find<Grab>(simulation.hand);
+    return simulation.world.find<Guide>(grab.molecule)->place;
+}
+
+const std::vector<std::string> methods{"quasi-static", "limited-memory", "inverse-mass"};
+const std::vector<std::string> by_spring{"molecules.held.motion=free", "grab.atom=\"4 CB\"",
+                                         "grab.spring_kcal_per_mol_angstrom2=7"};
+
+}  // namespace
+
+TEST_CASE("flexible molecules are at rest when the scene begins", "[simulation][flexible]") {
+    const Simulation simulation = peptides().load();
+    REQUIRE(simulation.flexible);
+    const Flexible& flexible = *simulation.flexible;
+
+    // Of each: ammonium and psi; phi, psi and chi 1 to 3; phi, psi and chi 1 to 5; phi, and psi of
+    // the carboxylate.
+    CHECK(flexible.joints == 2 * (2 + 5 + 7 + 2));
+    CHECK(flexible.joints_held == 0);
+    CHECK(flexible.model.coordinates == static_cast<Eigen::Index>(flexible.joints));
+    CHECK(flexible.relaxed.end == RelaxEnd::Converged);
+    CHECK(flexible.relaxed.rms_force <= 0.05);
+    CHECK(flexible.relaxed.energy_after < flexible.relaxed.energy_before);
+    CHECK(simulation.atoms.positions == flexible.state.positions);
+    CHECK(find_held(flexible) == simulation.atoms.positions[reference_of(simulation)]);
+    // The hand's own molecule came to rest as well; then the hand took its base.
+    CHECK(build_touch_model(simulation, {}).force_newton.norm() < 50e-12);
+}
+
+TEST_CASE("without joints to turn and bases to move a scene stays rigid",
+          "[simulation][flexible]") {
+    const Simulation simulation =
+        peptides().load({"molecules.held.shape=rigid", "molecules.resting.shape=rigid"});
+
+    CHECK_FALSE(simulation.flexible);
+    CHECK(simulation.relaxed);
+}
+
+TEST_CASE("while the hand rests the energy falls with every step", "[simulation][flexible]") {
+    const std::string method = GENERATE(from_range(methods));
+    INFO(method);
+    Simulation simulation =
+        peptides().load({"statics.method=" + method, "hand.start_offset_angstrom=[-1.5, 0, 0]"});
+    const Flexible& flexible = *simulation.flexible;
+    TouchModel felt = build_touch_model(simulation, {});
+    double energy = flexible.safe.energy(), fallen = 0;
+
+    for (int i = 0; i < 25; ++i) {
+        const Vec3 held = find_held(flexible);
+        const StepReport report = step_simulation(simulation, {}, felt);
+        REQUIRE(report.settled);
+        const SettleReport& settled = *report.settled;
+
+        CHECK(report.finite);
+        // What the start did to the energy shows in the first step.
+        if (i > 0) CHECK(std::abs(settled.hand_work) < 1e-9);
+        CHECK(settled.energy_change <= 0);
+        CHECK(flexible.state.energy() - energy ==
+              Approx(settled.hand_work + settled.energy_change).margin(1e-9));
+        CHECK(settled.evaluations > 0);
+        CHECK((find_held(flexible) - held).norm() < 1e-12);
+        energy = flexible.state.energy();
+        fallen -= settled.energy_change;
+        felt = report.touch;
+    }
+    CHECK(fallen > 0.01);
+}
+
+TEST_CASE("work of the hand and what is given up add to the change of energy",
+          "[simulation][flexible]") {
+    const std::string method = GENERATE(from_range(methods));
+    INFO(method);
+    std::vector<std::string> settings{"statics.method=" + method};
+    if (GENERATE(false, true)) settings.insert(settings.end(), by_spring.begin(), by_spring.end());
+    Simulation simulation = peptides().load(settings);
+    const Flexible& flexible = *simulation.flexible;
+    TouchModel felt = build_touch_model(simulation, {});
+    const double start = flexible.state.energy();
+    double sum = 0;
+
+    for (int i = 1; i <= 20; ++i) {
+        const StepReport report =
+            step_simulation(simulation, hand_at(Vec3(-0.1 * i, 0.03 * i, 0)), felt);
+        CHECK(report.settled->energy_change <= 0);
+        sum += report.settled->hand_work + report.settled->energy_change;
+        CHECK(flexible.state.energy() == Approx(start + sum).margin(1e-8));
+        felt = report.touch;
+    }
+    CHECK(std::abs(sum) > 0.1);
+}
+
+TEST_CASE("what the hand moves is the base, and nobody else", "[simulation][flexible]") {
+    Simulation simulation = peptides().load();
+    Flexible& flexible = *simulation.flexible;
+    const std::vector<Vec3> before = simulation.atoms.positions;
+    const Vec3 place = place_of(simulation), held = find_held(flexible);
+    const Vec3 by(-0.2, 0.1, 0.05);
+
+    move_held(flexible, by);
+    for (std::size_t i = 0; i < 2 * peptide_atoms; ++i) {
+        const Vec3 moved = flexible.state.positions[i] - before[i];
+        CHECK((moved - (i < peptide_atoms ? by : Vec3(Vec3::Zero()))).norm() < 1e-13);
+    }
+    move_held(flexible, -by);
+
+    const StepReport report =
+        step_simulation(simulation, hand_at(by), build_touch_model(simulation, {}));
+    CHECK(report.move == Approx(by.norm()));
+    CHECK((place_of(simulation) - place - by).norm() < 1e-12);
+    CHECK((find_held(flexible) - held - by).norm() < 1e-12);
+    // The base of the other one is fixed: so is its reference atom.
+    const Grab& grab = *simulation.world.find<Grab>(simulation.hand);
+    const std::size_t fixed = simulation.world.find<Molecule>(grab.measured_from)->reference_atom;
+    CHECK((simulation.atoms.positions[fixed] - before[fixed]).norm() < 1e-12);
+}
+
+TEST_CASE("a molecule that turns by itself does so about its reference atom",
+          "[simulation][flexible]") {
+    const std::string method = GENERATE(from_range(methods));
+    INFO(method);
+    Simulation simulation = peptides().load(
+        {"statics.method=" + method, "molecules.held.motion=translate-and-turn",
+         "molecules.held.shape=rigid", "molecules.resting.shape=rigid", "statics.steps=20"});
+    const Flexible& flexible = *simulation.flexible;
+    CHECK(flexible.joints == 0);
+    REQUIRE(flexible.model.coordinates == 3);
+    TouchModel felt = build_touch_model(simulation, {});
+    CHECK(felt.active_freedom == 6);
+
+    // The other end of the molecule comes too close, and gives way.
+    for (int i = 1; i <= 10; ++i) {
+        const StepReport report = step_simulation(simulation, hand_at({-0.3 * i, 0, 0}), felt);
+        CHECK((find_held(flexible) - simulation.anchor - place_of(simulation)).norm() < 1e-12);
+        CHECK(report.settled->energy_change <= 0);
+        felt = report.touch;
+    }
+    CHECK(Eigen::AngleAxisd(flexible.state.turns[flexible.grabbed]).angle() > 0.01);
+    CHECK(flexible.state.turns[1 - flexible.grabbed].isApprox(Eigen::Quaterniond::Identity()));
+}
+
+TEST_CASE("a spring pulls at the hand with k times its stretch", "[simulation][flexible]") {
+    std::vector<std::string> settings = by_spring;
+    const bool is_residue = GENERATE(false, true);
+    if (is_residue) settings[1] = "grab.atom=\"4\"";
+    Simulation simulation = peptides().load(settings);
+    const Flexible& flexible = *simulation.flexible;
+    // By hand, of residue 4 or its CB.
+    const auto tethered = [&] {
+        Vec3 sum = Vec3::Zero();
+        double mass = 0;
+        for (std::size_t i = 0; i < peptide_atoms; ++i) {
+            const AtomName& name = simulation.atoms.names[i];
+            if (name.number != "4" || (!is_residue && name.atom != "CB")) continue;
+            sum += simulation.atoms.mass[i] * simulation.atoms.positions[i];
+            mass += simulation.atoms.mass[i];
+        }
+        return Vec3(sum / mass);
+    };
+    CHECK(flexible.state.tether->atoms.size() == (is_residue ? 11 : 1));
+    CHECK((find_held(flexible) - tethered()).norm() < 1e-12);
+    const Vec3 start = tethered();
+    TouchModel felt = build_touch_model(simulation, {});
+    CHECK(felt.force_newton.norm() < 1e-20);
+    CHECK(felt.active_freedom == 3 + static_cast<int>(flexible.joints) + 6);
+
+    for (int i = 1; i <= 15; ++i) {
+        felt = step_simulation(simulation, hand_at({0.2 * i, 0, 0}), felt).touch;
+        const Vec3 stretch = tethered() - (start + Vec3(0.2 * i, 0, 0));
+        CHECK((felt.force_newton - 7 * stretch * units::newton_per_kcal_per_mol_angstrom).norm() <
+              1e-9 * felt.force_newton.norm());
+        CHECK(felt.force_newton.x() < 0);
+    }
+    CHECK(felt.stiffness_N_per_m == Approx(7 * units::newton_per_metre_per_kcal_per_mol_angstrom2));
+    CHECK(felt.potential_kcal_per_mol == Approx(flexible.state.energy()));
+    // It follows.
+    CHECK((tethered() - start).x() > 0.1);
+}
+
+TEST_CASE("joints outside of a region are held, and counted", "[simulation][flexible]") {
+    const Simulation everywhere = peptides().load();
+    const std::string around = GENERATE("", "resting");
+    const Simulation simulation =
+        peptides().load({"joints.within_angstrom=5", fmt::format("joints.around=\"{}\"", around)});
+    const Flexible& flexible = *simulation.flexible;
+
+    CHECK(flexible.joints_held > 0);
+    CHECK(flexible.joints > 0);
+    CHECK(flexible.joints + flexible.joints_held == everywhere.flexible->joints);
+    CHECK(flexible.model.tree.bodies.joints() == flexible.joints);
+    // Residues with an atom near one of that molecule in the file; its own all are.
+    const Structure file = two_peptides();
+    std::set<std::string> near;
+    for (std::size_t i = 0; i < file.names.size(); ++i) {
+        for (std::size_t j = 0; j < file.names.size(); ++j) {
+            if (file.names[j].segment != (around.empty() ? "PEPB" : "PEPA")) continue;
+            if ((file.positions[i] - file.positions[j]).norm() <= 5)
+                near.insert(file.names[i].segment + file.names[i].number);
+        }
+    }
+    const auto name_of = [&](std::uint32_t atom) {
+        return simulation.atoms.names[atom].segment + simulation.atoms.names[atom].number;
+    };
+    std::size_t joints = 0;
+    for (const Simulation* const each : {&everywhere, &simulation}) {
+        const TorsionBodies& bodies = each->flexible->model.tree.bodies;
+        for (const Body& body : bodies.bodies) {
+            if (body.parent == no_body) continue;
+            const bool is_near =
+                near.contains(name_of(body.axis[0])) && near.contains(name_of(body.axis[1]));
+            if (each == &simulation) CHECK(is_near);
+            if (each == &everywhere) joints += is_near ? 1 : 0;
+        }
+    }
+    CHECK(joints == flexible.joints);
+}
+
+TEST_CASE("only joints of flexible molecules turn, and those that the scene names",
+          "[simulation][flexible]") {
+    const auto joints_with = [](std::vector<std::string> settings) {
+        settings.emplace_back("statics.relax_steps=0");
+        return peptides().load(settings).flexible->joints;
+    };
+    const std::size_t one = joints_with({"molecules.resting.shape=rigid"});
+
+    CHECK(joints_with({}) == 2 * one);
+    CHECK(joints_with({"molecules.resting.shape=rigid", "joints.methyl=true"}) == one + 2);
+    CHECK(joints_with({"molecules.resting.shape=rigid", "joints.amide=true"}) == one + 3);
+    CHECK(joints_with({"joints.rigid=[\"PEPB 2 CA CB\"]"}) == 2 * one - 1);
+    CHECK(joints_with({"joints.turn=[\"PEPA 2 C 3 N\", \"PEPB 1 CA CB\"]"}) == 2 * one + 2);
+}
+
+TEST_CASE("runs repeat to the bit", "[simulation][flexible]") {
+    const std::string pairs = GENERATE("double", "fast");
+    const auto run = [&] {
+        Simulation simulation = peptides().load(
+            {"statics.pairs=" + pairs, "statics.method=inverse-mass", "statics.steps=4"});
+        TouchModel felt = build_touch_model(simulation, {});
+        for (int i = 1; i <= 10; ++i) {
+            felt = step_simulation(simulation, hand_at({-0.1 * i, 0, 0}), felt).touch;
+        }
+        return simulation.atoms.positions;
+    };
+
+    const std::vector<Vec3> first = run();
+    CHECK(first == run());
+}
+
+TEST_CASE("a hand that is nowhere changes nothing", "[simulation][flexible]") {
+    std::vector<std::string> settings;
+    if (GENERATE(false, true)) settings = by_spring;
+    Simulation simulation = peptides().load(settings);
+    TouchModel felt = build_touch_model(simulation, {});
+    felt = step_simulation(simulation, hand_at({-0.1, 0, 0}), felt).touch;
+    const TorsionState before = simulation.flexible->state;
+    const std::vector<Vec3> positions = simulation.atoms.positions;
+    const Vec3 place = place_of(simulation), held = find_held(*simulation.flexible);
+
+    const StepReport report = step_simulation(
+        simulation, hand_at({0, std::numeric_limits<double>::quiet_NaN(), 0}), felt);
+
+    CHECK_FALSE(report.finite);
+    CHECK(report.touch.force_newton == felt.force_newton);
+    CHECK(simulation.atoms.positions == positions);
+    CHECK(simulation.flexible->state.positions == before.positions);
+    CHECK(simulation.flexible->state.angles == before.angles);
+    CHECK(find_held(*simulation.flexible) == held);
+    CHECK(place_of(simulation) == place);
+    // And it can go on.
+    take_hold(simulation, hand_at({0, 0, 0}));
+    CHECK(step_simulation(simulation, hand_at({0.1, 0, 0}), felt).finite);
+}
+
+TEST_CASE("coordinates that are no numbers are not stepped into", "[simulation][flexible]") {
+    Simulation simulation = peptides().load();
+    Flexible& flexible = *simulation.flexible;
+    const TorsionState safe = flexible.safe;
+    move_held(flexible, Vec3(std::numeric_limits<double>::quiet_NaN(), 0, 0));
+
+    const SettleReport report = step_flexible(flexible);
+
+    CHECK_FALSE(report.is_finite);
+    CHECK(flexible.state.positions == safe.positions);
+    CHECK(flexible.state.energy() == safe.energy());
+}
+
+TEST_CASE("a scene is told which of its joints, atoms and springs are not there",
+          "[simulation][flexible][errors]") {
+    struct Row {
+        const char* table;
+        const char* line;
+        const char* what;
+    };
+    const auto row = GENERATE(values<Row>({
+        {"joints", "turn = [\"PEPB 2 CA CX\"]",
+         "\"PEPB 2 CA CX\" names atom 'CX' of residue 2 of segment 'PEPB', which is not there"},
+        {"joints", "rigid = [\"PEPC 2 C 3 N\"]", "segment 'PEPC', which is not"},
+        {"joints", "springs = [\"PEPB 2 CA\"]",
+         "\"PEPB 2 CA\" is no bond; expected \"A 25 CB CG\" or, between residues, \"A 25 C 26 N\""},
+        {nullptr, "atom = \"7 CA\"",
+         "'held' has no atom or residue \"7 CA\"; expected \"25 CA\" or \"25\""},
+        {nullptr, "atom = \"2 CA CB\"", "has no atom or residue"},
+        {nullptr, "atom = \" \"", "has no atom or residue"},
+    }));
+    INFO(row.line);
+    // A line of a table of its own, or behind what the hand holds.
+    const bool is_joint = row.table != nullptr;
+    const Peptides broken;
+    std::string text = scene_text;
+    if (is_joint) {
+        text += fmt::format("[{}]\n{}\n", row.table, row.line);
+    } else {
+        text = test::replaced(text, "motion = \"translate\"", "motion = \"free\"");
+        text = test::replaced(text, "[statics]\n", fmt::format("{}\n[statics]\n", row.line));
+    }
+    const std::filesystem::path file = broken.folder().add_file("scene.toml", text);
+    const auto line = 1 + std::count(text.data(), text.data() + text.find(row.line), '\n');
+
+    const std::string error = load_error_of([&] { load_simulation(broken.scene()); });
+
+    CHECK_THAT(error, Catch::StartsWith(fmt::format("{}:{}:", file.string(), line)));
+    CHECK_THAT(error, Contains(row.what));
+}
+
+TEST_CASE("molecules that are bonded across segments cannot move apart",
+          "[simulation][flexible][errors]") {
+    Structure structure = two_peptides();
+    Connectivity connectivity = connectivity_of(structure);
+    for (std::size_t i = 0; i < structure.names.size(); ++i) {
+        if (structure.names[i].segment != "PEPB" || structure.names[i].number != "4") continue;
+        structure.names[i].segment = "TAIL";
+    }
+    connectivity.names = structure.names;
+    const Peptides broken(structure, connectivity);
+
+    const std::string error = load_error_of([&] { load_simulation(broken.scene()); });
+
+    CHECK_THAT(error, Contains("both.psf:"));
+    CHECK_THAT(error, Contains("PEPB ARG 3 C and TAIL ALA 4 N are bonded, across segments"));
+    CHECK_THAT(error, Contains("expected molecules that are not bonded to others"));
+}
+
+TEST_CASE("a hand holds one molecule, not two under one name", "[simulation][flexible][errors]") {
+    Structure structure = two_peptides();
+    for (std::size_t i = 0; i < peptide_atoms; ++i) {
+        structure.names.push_back(structure.names[i]);
+        structure.names.back().segment = "PEPC";
+        structure.names.back().number = fmt::format("1{}", structure.names[i].number);
+        structure.positions.emplace_back(structure.positions[i] + Vec3(0, 30, 0));
+        structure.lines.push_back(structure.lines.size() + 1);
+    }
+    Connectivity connectivity = connectivity_of(structure);
+    // Two chains in one segment, as a PSF file may have them.
+    for (AtomName& name : structure.names) {
+        if (name.segment == "PEPC") name.segment = "PEPB";
+    }
+    connectivity.names = structure.names;
+    const Peptides broken(structure, connectivity);
+
+    CHECK_THAT(
+        load_error_of([&] { load_simulation(broken.scene()); }),
+        Contains("scene.toml:18:") && Contains("'held' is not all bonded together; expected"));
+    // A spring may hold one of them.
+    CHECK(load_simulation(broken.scene(by_spring)).flexible->model.bases.size() == 3);
+}

@@ -1,0 +1,140 @@
+"""palpa relax from outside: flexible molecules come to rest, and a scene can begin from there."""
+import json
+import os
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+PROGRAM = os.environ["PALPA_PROGRAM"]
+ROOT = Path(os.environ["PALPA_ROOT"])
+DATA = ROOT / "tests" / "data"
+REST = 0.05
+
+SCENE = f"""title = "Two peptides"
+[force_field]
+files = ["{DATA}/aera_c36m.rtf", "{DATA}/aera_c36m.prm"]
+[molecules.resting]
+structure = "both.crd"
+topology = "system.psf"
+segment = "PEPA"
+reference_atom = "2 CA"
+shape = "flexible"
+[molecules.held]
+structure = "both.crd"
+topology = "system.psf"
+segment = "PEPB"
+reference_atom = "3 CA"
+shape = "flexible"
+motion = "translate"
+[grab]
+molecule = "held"
+measured_from = "resting"
+[statics]
+pairs = "double"
+rest_kcal_per_mol = {REST}
+"""
+
+
+def write_peptides(path):
+    """The tetrapeptide AERA twice, 11 Å apart, as CHARMM coordinates; Å."""
+    atoms = json.loads((DATA / "tetra_aera_c36m.ff.json").read_text())["atoms"]["rows"]
+    frame = json.loads((DATA / "tetra_aera_c36m.frames.json").read_text())["frames"][0]["x"]
+    lines = ["* two peptides", "*", f"{2 * len(atoms):10d}  EXT"]
+    for copy, segment in enumerate(("PEPA", "PEPB")):
+        for row, place in zip(atoms, frame):
+            x, y, z = (10 * value + copy * by for value, by in zip(place, (11, 2, 1)))
+            lines.append(f"{len(lines) - 2:10d}{4 * copy + row[2]:10d}  {row[1]:<8s}  {row[0]:<8s}"
+                         f"{x:20.10f}{y:20.10f}{z:20.10f}  {segment:<8s}  {row[2]:<8d}{0:20.10f}")
+    path.write_text("\n".join(lines) + "\n")
+
+
+class Relax(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        write_peptides(self.folder / "both.crd")
+        prepared = self.palpa("prepare", self.folder / "both.crd", "--toppar",
+                              DATA / "aera_c36m.rtf", DATA / "aera_c36m.prm", "--no-relax",
+                              "-o", self.folder / "prepared")
+        self.assertEqual(prepared.returncode, 0, prepared.stderr)
+        (self.folder / "prepared" / "system.psf").rename(self.folder / "system.psf")
+        (self.folder / "scene.toml").write_text(SCENE)
+
+    def palpa(self, *arguments):
+        return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True,
+                              stdin=subprocess.DEVNULL)
+
+    def relax(self, *arguments, code=0):
+        result = self.palpa("relax", self.folder, *arguments)
+        self.assertEqual(result.returncode, code, result.stdout + result.stderr)
+        return result
+
+    def assert_bad_input(self, result, *expected):
+        self.assertEqual(result.returncode, 2, result.stdout + result.stderr)
+        self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
+        for text in expected:
+            self.assertIn(text, result.stderr)
+
+    def test_it_has_help(self):
+        self.assertIn("relax", self.palpa("--help").stdout)
+        result = self.palpa("relax", "--help")
+        self.assertEqual(result.returncode, 0)
+        self.assertIn("--output", result.stdout)
+        self.assert_bad_input(self.palpa("relax"), "palpa: ")
+
+    def test_molecules_come_to_rest_and_it_says_how(self):
+        text = self.relax().stdout
+        report = json.loads(self.relax("--json").stdout)
+        self.assertIn("32 joints", text)
+        self.assertIn("at rest", text)
+        self.assertEqual(report["joints"], 32)
+        self.assertEqual(report["end"], "at rest")
+        self.assertLess(report["energy_after"], report["energy_before"])
+        self.assertLessEqual(report["rms_force"], REST)
+        self.assertGreater(report["largest_move"], 0)
+        self.assertGreater(report["evaluations"], report["steps"])
+
+    def test_a_scene_begins_where_they_rest(self):
+        first = json.loads(self.relax("-o", self.folder / "rest.crd", "--json").stdout)
+        # Rounding of coordinates to ten decimals adds less than this to the rms force.
+        again = json.loads(self.relax("--json", "--set", "molecules.resting.structure=rest.crd",
+                                      "--set", "molecules.held.structure=rest.crd", "--set",
+                                      f"statics.rest_kcal_per_mol={REST * 1.0001}").stdout)
+        self.assertEqual(again["steps"], 0)
+        self.assertEqual(again["largest_move"], 0)
+        self.assertAlmostEqual(again["energy_before"], first["energy_after"], delta=1e-5)
+        self.assertAlmostEqual(again["rms_force"], first["rms_force"], delta=1e-4 * REST)
+        self.assertIn("Two peptides: relaxed", (self.folder / "rest.crd").read_text())
+
+    def test_the_same_command_writes_the_same_bytes(self):
+        for name in ("a.crd", "b.crd"):
+            self.relax("-o", self.folder / name)
+        self.assertEqual((self.folder / "a.crd").read_bytes(),
+                         (self.folder / "b.crd").read_bytes())
+
+    def test_what_is_not_at_rest_fails_and_says_so(self):
+        result = self.relax("--set", "statics.relax_steps=2", "-o", self.folder / "way.crd", code=1)
+        self.assertIn("not at rest", result.stdout)
+        self.assertTrue((self.folder / "way.crd").exists())
+        report = json.loads(self.relax("--json", "--set", "statics.relax_steps=2", code=1).stdout)
+        self.assertEqual(report["steps"], 2)
+        self.assertGreater(report["rms_force"], REST)
+
+    def test_a_rigid_scene_has_nothing_to_relax(self):
+        self.assert_bad_input(self.palpa("relax", ROOT / "scenes" / "water"), "scene.toml: ",
+                              "nothing moves by itself", 'shape = "flexible"')
+
+    def test_bad_input_is_told_with_file_and_line(self):
+        (self.folder / "scene.toml").write_text(SCENE + '[joints]\nturn = ["PEPA 2 CA CX"]\n')
+        line = SCENE.count("\n") + 2
+        self.assert_bad_input(self.palpa("relax", self.folder), f"scene.toml:{line}:", "'CX'")
+
+    def test_an_output_that_cannot_be_written_is_told(self):
+        self.assert_bad_input(self.palpa("relax", self.folder, "-o", self.folder / "no" / "x.crd"),
+                              "x.crd")
+
+
+if __name__ == "__main__":
+    unittest.main()
