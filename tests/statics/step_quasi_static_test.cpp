@@ -37,8 +37,8 @@ Pushed pushed(TorsionShape shape, BaseFreedom freedom, std::size_t bodies = 25) 
 // By the dense mass matrix in long double, of free bases or held ones.
 Coordinates dense_accelerations(const Pushed& p, BaseFreedom freedom) {
     const std::size_t bodies = p.moved.bodies.bodies.size();
-    test::Held held{std::vector<std::uint8_t>(bodies, 1), {Vec6::Zero()}};
-    held.is_active[0] = freedom == BaseFreedom::Free ? 1 : 0;
+    test::Held held{std::vector<std::uint8_t>(bodies, 1), {GuidedBase{}}};
+    if (freedom == BaseFreedom::Held) held.guides[0].guide = BaseGuide::Whole;
     const test::TorsionAccelerations found = test::dense_accelerations(p.moved, held);
     Coordinates result(p.model.coordinates);
     for (std::size_t b = 1; b < bodies; ++b) {
