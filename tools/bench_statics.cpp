@@ -63,9 +63,14 @@ void bench_method(const std::string& scene_name, const Simulation& start, RelaxM
                                 report.energy_after)});
 }
 
+// Joints within a distance only, and side chains alone: all that is not in the hand is fixed then.
 void bench_region(const std::string& scene_name, SceneDescription scene,
-                  std::optional<double> within, std::vector<BenchRow>& rows) {
+                  std::optional<double> within, bool side_chains, std::vector<BenchRow>& rows) {
     scene.joints.within_angstrom = within;
+    scene.joints.backbone = !side_chains;
+    for (MoleculeDescription& molecule : scene.molecules) {
+        if (side_chains && molecule.motion == Motion::Free) molecule.motion = Motion::Fixed;
+    }
     scene.statics.method = StaticsMethod::QuasiStatic;
     scene.statics.steps = 1;
     scene.statics.relax_steps = 0;
@@ -73,7 +78,8 @@ void bench_region(const std::string& scene_name, SceneDescription scene,
     TouchModel felt = build_touch_model(simulation, {});
     HandPose hand;
     constexpr int runs = 21;
-    rows.push_back({fmt::format("statics/{}/step/within={}", scene_name,
+    rows.push_back({fmt::format("statics/{}/step/{}within={}", scene_name,
+                                side_chains ? "side-chains/" : "",
                                 within ? fmt::format("{}", *within) : "all"),
                     sample(runs, 1e3,
                            [&] {
@@ -83,7 +89,7 @@ void bench_region(const std::string& scene_name, SceneDescription scene,
                     "ms",
                     {},
                     "",
-                    fmt::format("{} joints", simulation.flexible->joints)});
+                    fmt::format("{} joints, {} tiles", simulation.flexible->joints, simulation.flexible->statics.memory.fast_pairs.list.plain.size())});
 }
 
 }  // namespace
@@ -100,9 +106,11 @@ void bench_statics(const std::string& scene_name, const SceneDescription& scene,
          {RelaxMethod::QuasiStatic, RelaxMethod::LimitedMemory, RelaxMethod::InverseMass}) {
         bench_method(scene_name, start, method, rows);
     }
-    for (const std::optional<double> within :
-         {std::optional(4.0), std::optional(8.0), std::optional(12.0), std::optional<double>()}) {
-        bench_region(scene_name, scene, within, rows);
+    for (const bool side_chains : {false, true}) {
+        for (const std::optional<double> within :
+             {std::optional(4.0), std::optional(8.0), std::optional(12.0), std::optional<double>()}) {
+            bench_region(scene_name, scene, within, side_chains, rows);
+        }
     }
 }
 

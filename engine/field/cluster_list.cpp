@@ -253,7 +253,13 @@ ClusterList build_full_cluster_list(std::size_t atom_count,
                                     std::span<const std::uint32_t> groups) {
     ClusterList list;
     list.atoms.assign((clusters_of(atom_count) + 1) * cluster_size, no_atom);
-    std::iota(list.atoms.begin(), list.atoms.begin() + static_cast<std::ptrdiff_t>(atom_count), 0U);
+    const auto end = list.atoms.begin() + static_cast<std::ptrdiff_t>(atom_count);
+    std::iota(list.atoms.begin(), end, 0U);
+    if (!groups.empty()) {
+        std::stable_sort(list.atoms.begin(), end, [&](std::uint32_t a, std::uint32_t b) {
+            return groups[a] < groups[b];
+        });
+    }
     const std::vector<Gap> gaps = find_gaps(list.atoms, atom_count, left_out);
     TileWriter writer(gaps, groups, list);
     for (std::uint32_t row_cluster = 0; row_cluster < list.clusters(); ++row_cluster) {

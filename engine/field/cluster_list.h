@@ -50,7 +50,8 @@ struct ClusterList {
 
 // All pairs, whatever the positions, but for those left out (each given once, either way round).
 // `groups` is empty or has a number for each atom: tiles whose atoms all have one number are left
-// out too, for those who do not ask what atoms of one rigid body do to each other.
+// out too, for those who do not ask what atoms of one rigid body do to each other; such atoms stand
+// beside each other, then.
 ClusterList build_full_cluster_list(std::size_t atom_count,
                                     std::span<const std::array<std::uint32_t, 2>> left_out,
                                     std::span<const std::uint32_t> groups = {});

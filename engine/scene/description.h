@@ -72,6 +72,7 @@ struct MoleculeDescription {
 
 // Which bonds of flexible molecules turn.
 struct JointsDescription {
+    bool backbone = true;
     bool hydroxyl = true, thiol = true, ammonium = true;
     bool methyl = false, amide = false, amide_nh2 = false, guanidinium_nh2 = false;
     std::vector<std::string> turn, rigid, springs;  // bonds: "A 25 CB CG", "A 25 C 26 N"

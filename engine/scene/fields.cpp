@@ -99,7 +99,8 @@ void visit_grab(FieldVisitor& v, GrabDescription& g) {
 
 void visit_joints(FieldVisitor& v, JointsDescription& j) {
     v.enter_table({.key = "joints",
-                   .meaning = "which bonds of flexible molecules turn, beside phi, psi and chi"});
+                   .meaning = "which bonds of flexible molecules turn, beside chi and the like"});
+    v.flag({.key = "backbone", .meaning = "phi and psi, bonds N-CA and CA-C"}, j.backbone);
     v.flag({.key = "hydroxyl", .meaning = "X-OH"}, j.hydroxyl);
     v.flag({.key = "thiol", .meaning = "X-SH"}, j.thiol);
     v.flag({.key = "ammonium", .meaning = "X-NH3, and X-NH2 where X is no planar carbon"},

@@ -112,6 +112,12 @@ const FlexiblePart& part_named(std::span<const FlexiblePart> parts, std::string_
         parts, [&](const FlexiblePart& part) { return part.description->name == name; });
 }
 
+bool is_backbone(const Connectivity& connectivity, const Joint& joint) {
+    const std::string &a = connectivity.names[joint.bond[0]].atom,
+                      &b = connectivity.names[joint.bond[1]].atom;
+    return (a == "CA" && (b == "N" || b == "C")) || (b == "CA" && (a == "N" || a == "C"));
+}
+
 struct SceneJoints {
     Joints joints;
     std::size_t held = 0;
@@ -124,6 +130,10 @@ SceneJoints find_joints(const SceneDescription& scene, const Connectivity& conne
         if (part.description->shape == Shape::Flexible) mobility.allow(part.atoms);
     }
     SceneJoints result{build_joints(connectivity, read_rules(scene, connectivity)), 0};
+    if (!scene.joints.backbone) {
+        std::erase_if(result.joints.joints,
+                      [&](const Joint& joint) { return is_backbone(connectivity, joint); });
+    }
     const auto keep_mobile = [&] {
         std::erase_if(result.joints.joints,
                       [&](const Joint& joint) { return !mobility.has(joint.bond); });
@@ -197,6 +207,20 @@ void check_one_piece(const SceneDescription& scene, const TorsionBodies& bodies,
                         fmt::format("'{}' is not all bonded together; expected one molecule, or a "
                                     "free one held by a spring (grab.atom)",
                                     scene.grab.molecule));
+    }
+}
+
+// What bases that nothing moves do to each other is constant.
+void join_fixed(std::uint32_t grabbed, TorsionModel& model) {
+    const TorsionBodies& bodies = model.tree.bodies;
+    std::optional<std::uint32_t> first;
+    for (std::uint32_t i = 0; i < bodies.body_of.size(); ++i) {
+        const std::uint32_t body = bodies.body_of[i], molecule = model.tree.molecule_of[body];
+        if (!bodies.is_base(body) || molecule == grabbed ||
+            model.bases[molecule].freedom != BaseFreedom::Held)
+            continue;
+        if (!first) first = body;
+        model.fast.atoms.groups[i] = *first;
     }
 }
 
@@ -284,6 +308,7 @@ Flexible build_flexible(const SceneDescription& scene, const Connectivity& conne
 
     bases[result.grabbed] = held;
     result.model = build_torsion_model(bodies, connectivity.mass, rest.positions, topology, bases);
+    join_fixed(result.grabbed, result.model);
     result.state = build_torsion_state(result.model);
     result.statics = build_quasi_statics(result.model);
     result.joints = joints.joints.joints.size();

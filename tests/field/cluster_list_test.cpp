@@ -85,6 +85,49 @@ TEST_CASE("a full list has every pair once but for those left out", "[field][clu
     CHECK(count.size() == expected);
 }
 
+TEST_CASE("tiles of one group are left out, pairs between groups never", "[field][cluster]") {
+    constexpr std::uint32_t atoms = 120;
+    // Two groups shuffled among each other, and some of one atom each.
+    std::vector<std::uint32_t> groups;
+    for (std::uint32_t i = 0; i < atoms; ++i) groups.push_back(i % 3 == 2 ? 100 + i : i % 3);
+    const std::vector<Vec3> places = random_places(atoms, 5);
+    const bool ends = GENERATE(false, true);
+    INFO("with a cutoff: " << ends);
+
+    const ClusterList list =
+        ends ? build_cluster_list(places, chain_exclusions(atoms), 50, 1, groups)
+             : build_full_cluster_list(atoms, chain_exclusions(atoms), groups);
+    const auto count = count_pairs(list);
+
+    std::size_t within = 0, left_out = 0;
+    for (std::uint32_t i = 0; i < atoms; ++i) {
+        for (std::uint32_t j = i + 4; j < atoms; ++j) {
+            const auto found = count.find({i, j});
+            const int times = found == count.end() ? 0 : found->second;
+            if (groups[i] != groups[j]) REQUIRE(times == 1);
+            CHECK(times <= 1);
+            if (groups[i] == groups[j]) ++within;
+            if (times == 0) ++left_out;
+        }
+    }
+    CHECK(left_out <= within);
+    // Of all pairs they stand beside each other: no tile has atoms of the first group and others,
+    // but at its end.
+    if (!ends) CHECK(left_out > within / 2);
+}
+
+TEST_CASE("the pairs of a list are those of its tiles", "[field][cluster]") {
+    const std::vector<Vec3> places = random_places(77, 8);
+    const ClusterList list = build_cluster_list(places, chain_exclusions(77), 6, 1);
+
+    std::map<std::pair<std::uint32_t, std::uint32_t>, int> listed;
+    for (const auto& [a, b] : list_pairs(list)) ++listed[std::minmax(a, b)];
+
+    const auto count = count_pairs(list);
+    CHECK(listed.size() == count.size());
+    for (const auto& [pair, times] : count) CHECK(listed[pair] == times);
+}
+
 TEST_CASE("a list with a cutoff has every near pair once and none left out", "[field][cluster]") {
     constexpr std::uint32_t atoms = 333;
     const std::vector<Vec3> places = random_places(atoms, 12);
