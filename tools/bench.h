@@ -11,9 +11,9 @@ struct BenchOptions {
     std::vector<std::filesystem::path> structures;  // to time the reading of, each
     std::vector<std::filesystem::path> toppar;      // and of these CHARMM files, together
     std::vector<std::string> settings;
-    bool render = false;  // pictures, instead of loading and steps
-    bool kernel = false;  // the kernels of pairs alone, likewise; needs no scene
-    bool tree = false;    // passes over the assembly trees, likewise
+    bool render = false;   // pictures, instead of loading and steps
+    bool kernel = false;   // the kernels of pairs alone, likewise; needs no scene
+    bool tree = false;     // passes over the assembly trees, likewise
     bool statics = false;  // ways to rest of flexible scenes, likewise
     bool json = false;
 };

@@ -14,7 +14,7 @@ namespace palpa {
 namespace {
 
 constexpr std::array levels{30.0, 10.0, 3.0, 1.0};  // kcal/mol per radian and Å
-constexpr double shift = 0.3;                        // Å, of the molecule in hand
+constexpr double shift = 0.3;                       // Å, of the molecule in hand
 constexpr std::size_t most_steps = 3000;
 
 void bench_method(const std::string& scene_name, const Simulation& start, RelaxMethod method,
@@ -44,23 +44,23 @@ void bench_method(const std::string& scene_name, const Simulation& start, RelaxM
                                         flexible.statics.memory.evaluations - before, energy)});
         }
     };
-    const JointRelaxReport report = relax_joints(
-        flexible.model, settings, flexible.state, flexible.statics,
-        [&](const RelaxProgress& progress) {
-            reached(progress.step, progress.energy, progress.rms_force);
-            return true;
-        });
+    const JointRelaxReport report =
+        relax_joints(flexible.model, settings, flexible.state, flexible.statics,
+                     [&](const RelaxProgress& progress) {
+                         reached(progress.step, progress.energy, progress.rms_force);
+                         return true;
+                     });
     reached(report.steps, report.energy_after, report.rms_force);
     if (level == levels.size()) return;
-    rows.push_back({fmt::format("statics/{}/{}/end", scene_name, name),
-                    {1e3 * seconds()},
-                    "ms",
-                    {},
-                    "",
-                    fmt::format("not further than rms={:.3g} in {} steps, {} evaluations, {:.2f} "
-                                "kcal/mol",
-                                report.rms_force, report.steps, report.evaluations,
-                                report.energy_after)});
+    rows.push_back(
+        {fmt::format("statics/{}/{}/end", scene_name, name),
+         {1e3 * seconds()},
+         "ms",
+         {},
+         "",
+         fmt::format("not further than rms={:.3g} in {} steps, {} evaluations, {:.2f} "
+                     "kcal/mol",
+                     report.rms_force, report.steps, report.evaluations, report.energy_after)});
 }
 
 // Joints within a distance only, and side chains alone: all that is not in the hand is fixed then.
@@ -78,18 +78,19 @@ void bench_region(const std::string& scene_name, SceneDescription scene,
     TouchModel felt = build_touch_model(simulation, {});
     HandPose hand;
     constexpr int runs = 21;
-    rows.push_back({fmt::format("statics/{}/step/{}within={}", scene_name,
-                                side_chains ? "side-chains/" : "",
-                                within ? fmt::format("{}", *within) : "all"),
-                    sample(runs, 1e3,
-                           [&] {
-                               hand.travel_m.x() += 1e-6;
-                               felt = step_simulation(simulation, hand, felt).touch;
-                           }),
-                    "ms",
-                    {},
-                    "",
-                    fmt::format("{} joints, {} tiles", simulation.flexible->joints, simulation.flexible->statics.memory.fast_pairs.list.plain.size())});
+    rows.push_back(
+        {fmt::format("statics/{}/step/{}within={}", scene_name, side_chains ? "side-chains/" : "",
+                     within ? fmt::format("{}", *within) : "all"),
+         sample(runs, 1e3,
+                [&] {
+                    hand.travel_m.x() += 1e-6;
+                    felt = step_simulation(simulation, hand, felt).touch;
+                }),
+         "ms",
+         {},
+         "",
+         fmt::format("{} joints, {} tiles", simulation.flexible->joints,
+                     simulation.flexible->statics.memory.fast_pairs.list.plain.size())});
 }
 
 }  // namespace
@@ -107,8 +108,8 @@ void bench_statics(const std::string& scene_name, const SceneDescription& scene,
         bench_method(scene_name, start, method, rows);
     }
     for (const bool side_chains : {false, true}) {
-        for (const std::optional<double> within :
-             {std::optional(4.0), std::optional(8.0), std::optional(12.0), std::optional<double>()}) {
+        for (const std::optional<double> within : {std::optional(4.0), std::optional(8.0),
+                                                   std::optional(12.0), std::optional<double>()}) {
             bench_region(scene_name, scene, within, side_chains, rows);
         }
     }

@@ -156,8 +156,9 @@ void add_bench(CLI::App& program, palpa::BenchOptions& options) {
         ->excludes("--render")
         ->excludes("--kernel");
     bench
-        .add_flag("--statics", options.statics,
-                  "time ways to rest of flexible scenes, and steps with joints in a region, instead")
+        .add_flag(
+            "--statics", options.statics,
+            "time ways to rest of flexible scenes, and steps with joints in a region, instead")
         ->excludes("--render")
         ->excludes("--kernel")
         ->excludes("--tree")

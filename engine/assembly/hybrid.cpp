@@ -125,7 +125,8 @@ void move_clusters(const HybridTree& hybrid, std::span<const double> joint_turns
             const Vec3 turn = move.head<3>(), &ground = passes.points[c];
             const double angle = turn.norm();
             motion.rotation.setIdentity();
-            if (angle > 0) motion.rotation = Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
+            if (angle > 0)
+                motion.rotation = Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
             motion.translation = ground - motion.rotation * ground + move.tail<3>();
             std::optional<Vec3>& guided = passes.guides[molecule].point;
             if (guided) guided = motion.rotation * *guided + motion.translation;

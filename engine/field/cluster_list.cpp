@@ -256,9 +256,8 @@ ClusterList build_full_cluster_list(std::size_t atom_count,
     const auto end = list.atoms.begin() + static_cast<std::ptrdiff_t>(atom_count);
     std::iota(list.atoms.begin(), end, 0U);
     if (!groups.empty()) {
-        std::stable_sort(list.atoms.begin(), end, [&](std::uint32_t a, std::uint32_t b) {
-            return groups[a] < groups[b];
-        });
+        std::stable_sort(list.atoms.begin(), end,
+                         [&](std::uint32_t a, std::uint32_t b) { return groups[a] < groups[b]; });
     }
     const std::vector<Gap> gaps = find_gaps(list.atoms, atom_count, left_out);
     TileWriter writer(gaps, groups, list);
