@@ -52,7 +52,8 @@ RelaxProgressFunction show_relaxing() {
     return [](const RelaxProgress& progress) {
         constexpr std::size_t between = 20;
         if (progress.step % between == 0) {
-            fmt::print(stderr, "\rrelaxing: step {}, {:.3f} kcal/mol, rms force {:.3g}   ",
+            // Back to the left, so that what comes next is written over it.
+            fmt::print(stderr, "relaxing: step {}, {:.3f} kcal/mol, rms force {:.3g}   \r",
                        progress.step, progress.energy, progress.rms_force);
             std::fflush(stderr);
         }
@@ -69,7 +70,7 @@ int relax_command(const RelaxOptions& options) {
     }
     const RelaxProgressFunction progress = show_relaxing();
     const Simulation simulation = load_simulation(scene, progress);
-    if (progress) fmt::print(stderr, "\r{:70}\r", "");
+    if (progress) fmt::print(stderr, "{:70}\r", "");
     const Flexible& flexible = *simulation.flexible;
     if (options.coordinates) {
         Structure structure;

@@ -13,6 +13,7 @@
 #include "simulation/probe.h"
 #include "simulation/simulation.h"
 #include "simulation/step.h"
+#include "tools/relax.h"
 #include "tools/render.h"
 
 #include <fmt/format.h>
@@ -224,7 +225,7 @@ void print_scene_keys() {
 
 int run_command(const RunOptions& options) {
     const SceneDescription scene = read_scene(options.scene, options.settings);
-    Simulation simulation = load_simulation(scene);
+    Simulation simulation = load_simulation(scene, show_relaxing());
     const EmulatedOmniSettings settings = build_emulated_omni(scene, simulation);
     std::vector<std::string> warnings = list_warnings(scene, simulation, settings.script);
     if (options.check_only) {

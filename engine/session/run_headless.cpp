@@ -103,6 +103,13 @@ std::vector<std::string> list_warnings(const SceneDescription& scene, const Simu
                 relaxed_limit, scene.period_ms, stiffest.newton_per_metre));
         }
     }
+    if (simulation.flexible && simulation.flexible->relaxed.end != RelaxEnd::Converged) {
+        const JointRelaxReport& relaxed = simulation.flexible->relaxed;
+        warnings.push_back(fmt::format(
+            "not at rest at the start: an rms force of {:.3g} kcal/mol per radian and Å is left "
+            "after {} steps (statics.relax_steps, statics.rest_kcal_per_mol; palpa relax)",
+            relaxed.rms_force, relaxed.steps));
+    }
     const double last_move = script.path.empty() ? 0 : script.path.back().time_s;
     if (last_move > scene.seconds) {
         warnings.push_back(
