@@ -17,9 +17,8 @@ constexpr std::array levels{30.0, 10.0, 3.0, 1.0};  // kcal/mol per radian and Ã
 constexpr double shift = 0.3;                       // Ã…, of the molecule in hand
 constexpr std::size_t most_steps = 3000;
 
-void bench_method(const std::string& scene_name, const Simulation& start, RelaxMethod method,
+void bench_method(const std::string& scene_name, Flexible flexible, RelaxMethod method,
                   std::vector<BenchRow>& rows) {
-    Flexible flexible = *start.flexible;
     move_held(flexible, Vec3(shift, 0, 0));
     RelaxSettings settings;
     settings.method = method;
@@ -75,37 +74,39 @@ void bench_region(const std::string& scene_name, SceneDescription scene,
     scene.statics.steps = 1;
     scene.statics.relax_steps = 0;
     Simulation simulation = load_simulation(scene);
+    if (!simulation.flexible) return;
     TouchModel felt = build_touch_model(simulation, {});
     HandPose hand;
-    constexpr int runs = 21;
+    const Flexible& flexible = *simulation.flexible;
+    const std::string reference = fmt::format("{} joints, {} tiles", flexible.joints,
+                                              flexible.statics.memory.fast_pairs.list.plain.size());
+    const std::vector<double> samples = sample(21, 1e3, [&] {
+        hand.travel_m.x() += 1e-6;
+        felt = step_simulation(simulation, hand, felt).touch;
+    });
     rows.push_back(
         {fmt::format("statics/{}/step/{}within={}", scene_name, side_chains ? "side-chains/" : "",
                      within ? fmt::format("{}", *within) : "all"),
-         sample(runs, 1e3,
-                [&] {
-                    hand.travel_m.x() += 1e-6;
-                    felt = step_simulation(simulation, hand, felt).touch;
-                }),
+         samples,
          "ms",
          {},
          "",
-         fmt::format("{} joints, {} tiles", simulation.flexible->joints,
-                     simulation.flexible->statics.memory.fast_pairs.list.plain.size())});
+         reference});
 }
 
 }  // namespace
 
 void bench_statics(const std::string& scene_name, const SceneDescription& scene,
                    std::vector<BenchRow>& rows) {
-    if (!scene.has_statics()) {
+    const Simulation start = load_simulation(scene);
+    if (!start.flexible) {
         throw LoadError({scene.file.string()},
                         "nothing moves by itself here; expected a flexible scene, as "
                         "scenes/hiv/flexible.toml");
     }
-    const Simulation start = load_simulation(scene);
     for (const RelaxMethod method :
          {RelaxMethod::QuasiStatic, RelaxMethod::LimitedMemory, RelaxMethod::InverseMass}) {
-        bench_method(scene_name, start, method, rows);
+        bench_method(scene_name, *start.flexible, method, rows);
     }
     for (const bool side_chains : {false, true}) {
         for (const std::optional<double> within : {std::optional(4.0), std::optional(8.0),

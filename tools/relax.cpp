@@ -63,14 +63,14 @@ RelaxProgressFunction show_relaxing() {
 
 int relax_command(const RelaxOptions& options) {
     const SceneDescription scene = read_scene(options.scene, options.settings);
-    if (!scene.has_statics()) {
+    const RelaxProgressFunction progress = show_relaxing();
+    const Simulation simulation = load_simulation(scene, progress);
+    if (progress) fmt::print(stderr, "{:70}\r", "");
+    if (!simulation.flexible) {
         throw LoadError({scene.file.string()},
                         "nothing moves by itself here; expected a molecule with shape = "
                         "\"flexible\" or motion = \"free\"");
     }
-    const RelaxProgressFunction progress = show_relaxing();
-    const Simulation simulation = load_simulation(scene, progress);
-    if (progress) fmt::print(stderr, "{:70}\r", "");
     const Flexible& flexible = *simulation.flexible;
     if (options.coordinates) {
         Structure structure;

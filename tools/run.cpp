@@ -40,8 +40,7 @@ void show_progress(double share) {
 }
 
 // What moves by itself, and how it came to rest.
-void print_flexible(const Simulation& simulation) {
-    const Flexible& flexible = *simulation.flexible;
+void print_flexible(const Simulation& simulation, const Flexible& flexible) {
     const JointRelaxReport& r = flexible.relaxed;
     fmt::print("  freedom     {} degrees: {} joints, {} of bases; {} more of the hand\n",
                flexible.model.coordinates, flexible.joints,
@@ -63,7 +62,7 @@ void print_flexible(const Simulation& simulation) {
 void print_line(const SceneDescription& scene, const Simulation& simulation) {
     constexpr double nN = units::newton_per_kcal_per_mol_angstrom * 1e9;
     if (simulation.flexible) {
-        print_flexible(simulation);
+        print_flexible(simulation, *simulation.flexible);
     } else if (simulation.relaxed) {
         const RelaxReport& r = *simulation.relaxed;
         const TouchModel start = build_touch_model(simulation, {});

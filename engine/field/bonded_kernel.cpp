@@ -122,7 +122,7 @@ HWY_INLINE Torsion evaluate_torsion(const TorsionBlock& block, std::size_t t) {
     constexpr double guard = 0.005;  // torsion_guard
     const Vector F = load(block.F, t), G = load(block.G, t), H = load(block.H, t);
     const Vector A = cross(F, G), B = cross(H, G);
-    const V A2 = dot(A, A), B2 = dot(B, B), G2 = dot(G, G), length = hn::Sqrt(G2);
+    const V a2 = dot(A, A), b2 = dot(B, B), length2 = dot(G, G), length = hn::Sqrt(length2);
     const V x = dot(A, B), y = hn::Mul(length, dot(H, A));
     const V r2 = hn::MulAdd(y, y, hn::Mul(x, x));
     const auto is_turned = hn::Gt(r2, all(1e-200));
@@ -131,14 +131,16 @@ HWY_INLINE Torsion evaluate_torsion(const TorsionBlock& block, std::size_t t) {
     torsion.cosine = hn::IfThenElse(is_turned, hn::Mul(x, inverse_r), all(1));
     torsion.sine = hn::IfThenElseZero(is_turned, hn::Mul(y, inverse_r));
 
-    const V A2B2 = hn::Mul(A2, B2);
-    const auto has_planes = hn::And(hn::Gt(A2B2, all(1e-200)), hn::Gt(G2, hn::Zero(doubles)));
-    const V scale = hn::Min(all(1), hn::Mul(hn::Min(A2, B2), all(1 / (guard * guard))));
-    const V factor = hn::IfThenElseZero(has_planes, hn::Div(hn::Mul(length, scale), A2B2));
-    const V inverse_G2 = hn::IfThenElseZero(has_planes, hn::Div(all(1), G2));
-    torsion.of_F = scaled(hn::Neg(hn::Mul(factor, B2)), A);
-    torsion.of_H = scaled(hn::Mul(factor, A2), B);
-    const V along_F = hn::Mul(dot(F, G), inverse_G2), along_H = hn::Mul(dot(H, G), inverse_G2);
+    const V planes2 = hn::Mul(a2, b2);
+    const auto has_planes =
+        hn::And(hn::Gt(planes2, all(1e-200)), hn::Gt(length2, hn::Zero(doubles)));
+    const V scale = hn::Min(all(1), hn::Mul(hn::Min(a2, b2), all(1 / (guard * guard))));
+    const V factor = hn::IfThenElseZero(has_planes, hn::Div(hn::Mul(length, scale), planes2));
+    const V inverse_length2 = hn::IfThenElseZero(has_planes, hn::Div(all(1), length2));
+    torsion.of_F = scaled(hn::Neg(hn::Mul(factor, b2)), A);
+    torsion.of_H = scaled(hn::Mul(factor, a2), B);
+    const V along_F = hn::Mul(dot(F, G), inverse_length2),
+            along_H = hn::Mul(dot(H, G), inverse_length2);
     const auto of_G = [&](V of_F, V of_H) HWY_ATTR {
         return hn::Neg(hn::MulAdd(along_F, of_F, hn::Mul(along_H, of_H)));
     };

@@ -271,8 +271,7 @@ ClusterList build_full_cluster_list(std::size_t atom_count,
 
 ClusterList build_cluster_list(std::span<const Vec3> positions,
                                std::span<const std::array<std::uint32_t, 2>> left_out,
-                               double cutoff, double skin, std::span<const std::uint32_t> groups,
-                               ClusterList storage) {
+                               double cutoff, double skin, ClusterList storage) {
     PALPA_ASSERT(cutoff > 0 && skin >= 0 && std::isfinite(cutoff + skin));
     ClusterList list = std::move(storage);
     list.cutoff = cutoff;
@@ -280,7 +279,7 @@ ClusterList build_cluster_list(std::span<const Vec3> positions,
     list.positions.assign(positions.begin(), positions.end());
     list.atoms = sort_into_clusters(positions);
     const std::vector<Gap> gaps = find_gaps(list.atoms, positions.size(), left_out);
-    TileWriter writer(gaps, groups, list);
+    TileWriter writer(gaps, {}, list);
     const NeighbourFinder finder(list, positions, cutoff + skin);
     for (std::uint32_t cluster = 0; cluster < list.clusters(); ++cluster) {
         finder.add_tiles(cluster, writer);

@@ -61,9 +61,7 @@ ClusterList build_full_cluster_list(std::size_t atom_count,
 // an earlier list, is used again.
 ClusterList build_cluster_list(std::span<const Vec3> positions,
                                std::span<const std::array<std::uint32_t, 2>> left_out,
-                               double cutoff, double skin,
-                               std::span<const std::uint32_t> groups = {},
-                               ClusterList storage = {});
+                               double cutoff, double skin, ClusterList storage = {});
 
 // The pairs of all tiles, one by one.
 std::vector<std::array<std::uint32_t, 2>> list_pairs(const ClusterList& list);

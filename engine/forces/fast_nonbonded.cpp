@@ -48,7 +48,7 @@ void update_list(const Topology& topology, const FastAtoms& atoms,
     const bool ends = has_end(settings);
     if (pairs.builds > 0 && !is_outdated(pairs.list, positions)) return;
     pairs.list = ends ? build_cluster_list(positions, atoms.left_out, settings.cutoff, skin,
-                                           atoms.groups, std::move(pairs.list))
+                                           std::move(pairs.list))
                       : build_full_cluster_list(topology.size(), atoms.left_out, atoms.groups);
     pairs.workspace =
         build_pair_workspace(pairs.list, {topology.charge, atoms.sqrt_epsilon, atoms.half_rmin},

@@ -21,8 +21,10 @@ struct FastAtoms {
     // are not combined from the two types' own (NBFIX), from `first_replaced` on.
     std::vector<std::array<std::uint32_t, 2>> left_out;
     std::size_t first_replaced = 0;
-    // Empty, or a number for each atom: of pairs with one number some are left out, whose energy is
-    // constant and whose forces are no one's concern. The caller's to write.
+    // Empty, or a number for each atom: of pairs with one number some are left out of the sum over
+    // all pairs, always the same. Their energy is constant and their forces are no one's concern.
+    // Sums that end at a cutoff have all near pairs, since there clusters change. The caller's to
+    // write.
     std::vector<std::uint32_t> groups;
 
     std::span<const std::array<std::uint32_t, 2>> replaced() const noexcept {

@@ -41,6 +41,11 @@ double handle_travel(const Simulation& simulation, double near, double far) {
 
 HandScript plan_in_out(const SceneDescription& scene, const Simulation& simulation,
                        double half_width_m) {
+    if (!scene.grab.atom.empty()) {
+        throw LoadError(scene.place_of("hand.stroke"),
+                        "'hand.stroke' is \"in-out\" with a spring (grab.atom), for which there is "
+                        "no peak to go to; expected \"path\" or \"hold\"");
+    }
     const double start = grabbed_distance(simulation);
     const double peak_newton = scene.hand.peak_nN * 1e-9;
     const std::optional<double> innermost = repulsion_distance(

@@ -47,6 +47,13 @@ FeltStiffness stiffest_place(const SceneDescription& scene, const Simulation& si
     const Grab& grab = *simulation.world.find<Grab>(simulation.hand);
     const Guide& guide = *simulation.world.find<Guide>(grab.molecule);
     FeltStiffness stiffest;
+    if (simulation.flexible && simulation.flexible->state.tether) {
+        const double k = simulation.flexible->state.tether->k *
+                         units::newton_per_metre_per_kcal_per_mol_angstrom2;
+        return {force_gain(simulation.laws.force, 0) * k /
+                    displacement_gain(simulation.laws.displacement, 0),
+                grabbed_distance(simulation)};
+    }
     // False where the hand does not go: further in than its peak.
     const auto look_at = [&](double distance) {
         const FieldSum field = field_on_grabbed_at(simulation, distance);

@@ -129,14 +129,32 @@ SceneJoints find_joints(const SceneDescription& scene, const Connectivity& conne
     for (const FlexiblePart& part : parts) {
         if (part.description->shape == Shape::Flexible) mobility.allow(part.atoms);
     }
-    SceneJoints result{build_joints(connectivity, read_rules(scene, connectivity)), 0};
+    const JointRules rules = read_rules(scene, connectivity);
+    SceneJoints result{build_joints(connectivity, rules), 0};
+    // What the scene names turns whatever else it says, but for rigid molecules.
+    const auto is_named = [&](const Joint& joint) {
+        return std::ranges::any_of(rules.overrides, [&](const JointOverride& o) {
+            return o.motion == BondMotion::Turn &&
+                   std::minmax(o.bond[0], o.bond[1]) == std::minmax(joint.bond[0], joint.bond[1]);
+        });
+    };
     if (!scene.joints.backbone) {
-        std::erase_if(result.joints.joints,
-                      [&](const Joint& joint) { return is_backbone(connectivity, joint); });
+        std::erase_if(result.joints.joints, [&](const Joint& joint) {
+            return is_backbone(connectivity, joint) && !is_named(joint);
+        });
+    }
+    for (const JointOverride& o : rules.overrides) {
+        if (o.motion != BondMotion::Turn || mobility.has(o.bond)) continue;
+        throw LoadError(scene.place_of("joints.turn"),
+                        fmt::format("bond {} - {} is of a rigid molecule; expected shape = "
+                                    "\"flexible\" there",
+                                    to_string(connectivity.names[o.bond[0]]),
+                                    to_string(connectivity.names[o.bond[1]])));
     }
     const auto keep_mobile = [&] {
-        std::erase_if(result.joints.joints,
-                      [&](const Joint& joint) { return !mobility.has(joint.bond); });
+        std::erase_if(result.joints.joints, [&](const Joint& joint) {
+            return !mobility.has(joint.bond) && !is_named(joint);
+        });
         std::erase_if(result.joints.springs, [&](const std::array<std::uint32_t, 2>& bond) {
             return !mobility.has(bond);
         });
@@ -315,11 +333,17 @@ Flexible build_flexible(const SceneDescription& scene, const Connectivity& conne
     result.joints_held = joints.held;
     if (tether) {
         result.state.tether = std::move(tether);
-        result.state.tether->place = find_tethered(result.model, result.state);
+        result.state.tether->place =
+            find_tethered(result.model, *result.state.tether, result.state.positions);
     }
-    update_forces(result.model, result.settings.step.forces, result.statics.memory, result.state);
-    result.safe = result.state;
+    start_flexible(result);
     return result;
+}
+
+void start_flexible(Flexible& flexible) {
+    update_forces(flexible.model, flexible.settings.step.forces, flexible.statics.memory,
+                  flexible.state);
+    flexible.safe = flexible.state;
 }
 
 Vec3 find_held(const Flexible& flexible) noexcept {

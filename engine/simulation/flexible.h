@@ -45,6 +45,9 @@ Flexible build_flexible(const SceneDescription& scene, const Connectivity& conne
                         std::span<const FlexiblePart> parts,
                         const RelaxProgressFunction& on_relax = {});
 
+// Takes what the state is now as the start: forces, and where a step that fails goes back to.
+void start_flexible(Flexible& flexible);
+
 // Where the hand holds: the reference atom of a molecule that it moves, else the end of its spring.
 Vec3 find_held(const Flexible& flexible) noexcept;
 

@@ -124,6 +124,15 @@ void load_flexible(const SceneDescription& scene, const ForceField& force_field,
                    const std::vector<const MoleculeDescription*>& molecules,
                    const std::vector<Entity>& entities, const RelaxProgressFunction& on_relax,
                    Simulation& simulation) {
+    for (const MoleculeDescription* const a : molecules) {
+        for (const MoleculeDescription* const b : molecules) {
+            if (a == b || a->structure != b->structure || a->segment != b->segment) continue;
+            throw LoadError(scene.place_of("molecules." + b->name + ".segment"),
+                            fmt::format("'{}' and '{}' are the same atoms, segment '{}'; expected "
+                                        "each segment once, where anything moves by itself",
+                                        a->name, b->name, b->segment));
+        }
+    }
     const Connectivity connectivity = build_scene_connectivity(molecules, force_field, files);
     std::vector<FlexiblePart> parts;
     for (std::size_t i = 0; i < molecules.size(); ++i) {
@@ -208,6 +217,7 @@ void start_grabbed(const SceneDescription& scene, Simulation& simulation) {
         const Vec3 offset(scene.hand.start_offset_angstrom.data());
         guide.line_origin = from_origin + Vec3(0, offset.y(), offset.z());
         move_grabbed(simulation, offset.x());
+        if (simulation.flexible) start_flexible(*simulation.flexible);
         return;
     }
     if ((from_origin - from_origin.x() * Vec3::UnitX()).norm() > 1e-6) {

@@ -46,12 +46,24 @@ Pull find_pull(const Simulation& simulation, const Grab& grab, const Guide& guid
     if (simulation.flexible && simulation.flexible->state.tether) {
         const Flexible& flexible = *simulation.flexible;
         const Tether& tether = *flexible.state.tether;
-        const Vec3 away = find_tethered(flexible.model, flexible.state) - tether.place;
+        const Vec3 away =
+            find_tethered(flexible.model, tether, flexible.state.positions) - tether.place;
         return {tether.k * away, Vec3::Zero(), tether.k, flexible.state.energy()};
     }
-    const FieldSum field = field_on_grabbed(simulation);
-    const Vec3 centre =
-        centre_of_mass(simulation.atoms, simulation.world.find<Molecule>(grab.molecule)->atoms);
+    const AtomRange atoms = simulation.world.find<Molecule>(grab.molecule)->atoms;
+    FieldSum field = field_on_grabbed(simulation);
+    if (simulation.flexible) {
+        // As what moves by itself feels it, with its cutoff. What atoms of the molecule do to each
+        // other adds up to nothing.
+        const TorsionState& state = simulation.flexible->state;
+        field.force.setZero();
+        field.torque.setZero();
+        for (std::uint32_t i = atoms.first; i < atoms.first + atoms.count; ++i) {
+            field.force += state.forces[i];
+            field.torque += state.positions[i].cross(state.forces[i]);
+        }
+    }
+    const Vec3 centre = centre_of_mass(simulation.atoms, atoms);
     return {field.force, field.torque_about(centre), extreme_stiffness(guide, field.stiffness),
             field.energy()};
 }

@@ -105,16 +105,14 @@ double place_within(const TorsionModel& model, const TorsionState& from, double 
     // A joint that turns by more than that leaves the range in which atoms go straight.
     const double widest = move.size() == 0 ? 0 : move.cwiseAbs().maxCoeff();
     if (widest > 0.5) move *= 0.5 / widest;
-    constexpr int tries = 8;
-    double far = 0;
-    for (int i = 0; i < tries; ++i) {
+    constexpr int tries = 30;
+    for (int i = 0;; ++i) {
         copy_coordinates(from, trial);
         add_move(model, move, trial);
-        far = find_largest_move(from.positions, trial.positions);
-        if (!(far > largest_move)) break;
-        move *= 0.999 * largest_move / far;
+        const double far = find_largest_move(from.positions, trial.positions);
+        if (!(far > largest_move)) return far;
+        move *= i < tries ? 0.999 * largest_move / far : 0.0;
     }
-    return far;
 }
 
 bool is_lower(const ForceSettings& settings, const TorsionState& from, const TorsionState& to,
@@ -152,7 +150,8 @@ QuasiStaticReport step_quasi_static(const TorsionModel& model, const QuasiStatic
         statics.h *= settings.shrinkage;
         return report;
     }
-    statics.h *= settings.growth;
+    constexpr double longest_h = 10;  // AKMA time
+    if (wanted > 0) statics.h = std::min(longest_h, settings.growth * statics.h);
     take_over(statics.trial, state);
     return report;
 }

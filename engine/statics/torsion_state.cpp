@@ -109,7 +109,8 @@ void update_forces(const TorsionModel& model, const ForceSettings& settings, For
     state.terms = add_model_forces(model, settings, memory, state);
     state.tether_energy = 0;
     if (state.tether) {
-        const Vec3 away = find_tethered(model, state) - state.tether->place;
+        const Vec3 away =
+            find_tethered(model, *state.tether, state.positions) - state.tether->place;
         state.tether_energy = 0.5 * state.tether->k * away.squaredNorm();
         const double mass = mass_of(model, state.tether->atoms);
         for (const std::uint32_t atom : state.tether->atoms) {
@@ -171,12 +172,11 @@ void shift_base(const TorsionModel& model, std::size_t molecule, const Vec3& by,
     update_positions(model, state);
 }
 
-Vec3 find_tethered(const TorsionModel& model, const TorsionState& state) noexcept {
+Vec3 find_tethered(const TorsionModel& model, const Tether& tether,
+                   std::span<const Vec3> positions) noexcept {
     Vec3 sum = Vec3::Zero();
-    for (const std::uint32_t atom : state.tether->atoms) {
-        sum += model.masses[atom] * state.positions[atom];
-    }
-    return sum / mass_of(model, state.tether->atoms);
+    for (const std::uint32_t atom : tether.atoms) sum += model.masses[atom] * positions[atom];
+    return sum / mass_of(model, tether.atoms);
 }
 
 void copy_coordinates(const TorsionState& from, TorsionState& to) noexcept {

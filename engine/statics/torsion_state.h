@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace palpa {
@@ -80,7 +81,8 @@ void shift_base(const TorsionModel& model, std::size_t molecule, const Vec3& by,
                 TorsionState& state) noexcept;
 
 // The centre of mass of the tether's atoms, Å.
-Vec3 find_tethered(const TorsionModel& model, const TorsionState& state) noexcept;
+Vec3 find_tethered(const TorsionModel& model, const Tether& tether,
+                   std::span<const Vec3> positions) noexcept;
 
 // Puts the coordinates and positions of `from` into `to`, nothing else.
 void copy_coordinates(const TorsionState& from, TorsionState& to) noexcept;

@@ -263,7 +263,7 @@ TEST_CASE("a tether pulls at the centre of mass of its atoms", "[statics][state]
     update_forces(model, {}, memory, state);
 
     const Vec3 centre = 0.25 * c.positions[1] + 0.75 * c.positions[3];
-    CHECK((find_tethered(model, state) - centre).norm() < 1e-14);
+    CHECK((find_tethered(model, *state.tether, state.positions) - centre).norm() < 1e-14);
     CHECK(state.tether_energy == Approx(5 * (centre - place).squaredNorm()));
     CHECK(state.energy() == state.tether_energy);
     CHECK((state.forces[1] - 2.5 * (place - centre)).norm() < 1e-12);
