@@ -13,6 +13,7 @@
 #include "simulation/probe.h"
 #include "simulation/simulation.h"
 #include "simulation/step.h"
+#include "tools/bench_adaptive.h"
 #include "tools/bench_kernel.h"
 #include "tools/bench_row.h"
 #include "tools/bench_statics.h"
@@ -164,6 +165,7 @@ nlohmann::ordered_json as_json(const BenchRow& row) {
 
 int bench_command(const BenchOptions& options) {
     std::vector<BenchRow> rows;
+    std::string tables;
     bench_files(options, rows);
     if (options.kernel && options.scenes.empty()) bench_gas_kernels(rows);
     for (const std::filesystem::path& path : options.scenes) {
@@ -183,6 +185,11 @@ int bench_command(const BenchOptions& options) {
             bench_statics(name, scene, rows);
             continue;
         }
+        if (options.adaptive) {
+            const auto bench = options.spheres ? bench_spheres : bench_adaptive;
+            tables += bench(name, scene, options.adaptive_settings, rows);
+            continue;
+        }
         if (options.tree) {
             bench_tree(name, load_simulation(scene).atoms, rows);
             continue;
@@ -195,9 +202,14 @@ int bench_command(const BenchOptions& options) {
         rows.push_back(bench_lockstep(name, scene));
     }
     if (options.tree) bench_polymers(rows);
+    if (options.table) {
+        fmt::print("{}, commit {}\n\n{}", machine_name(), commit_name, tables);
+        return 0;
+    }
     nlohmann::ordered_json report{{"machine", machine_name()}, {"commit", commit_name}};
     report["rows"] = nlohmann::ordered_json::array();
     for (const BenchRow& row : rows) report["rows"].push_back(as_json(row));
+    if (!tables.empty()) report["table"] = tables;
     if (options.json) {
         fmt::print("{}\n", report.dump(2));
         return 0;

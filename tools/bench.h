@@ -1,5 +1,7 @@
 // palpa bench: speed against error of scenes, of kernels, and of reading files, on this machine.
 #pragma once
+#include "tools/bench_adaptive.h"
+
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -11,10 +13,14 @@ struct BenchOptions {
     std::vector<std::filesystem::path> structures;  // to time the reading of, each
     std::vector<std::filesystem::path> toppar;      // and of these CHARMM files, together
     std::vector<std::string> settings;
-    bool render = false;   // pictures, instead of loading and steps
-    bool kernel = false;   // the kernels of pairs alone, likewise; needs no scene
-    bool tree = false;     // passes over the assembly trees, likewise
-    bool statics = false;  // ways to rest of flexible scenes, likewise
+    bool render = false;    // pictures, instead of loading and steps
+    bool kernel = false;    // the kernels of pairs alone, likewise; needs no scene
+    bool tree = false;      // passes over the assembly trees, likewise
+    bool statics = false;   // ways to rest of flexible scenes, likewise
+    bool adaptive = false;  // few active joints in flexible scenes, likewise
+    bool spheres = false;   // with it: of spheres cut from the scenes' systems
+    bool table = false;     // with it: Markdown
+    AdaptiveBenchSettings adaptive_settings;
     bool json = false;
 };
 

@@ -137,7 +137,7 @@ void add_rows(const std::string& name, TreeBench& bench, std::vector<BenchRow>& 
         update_metric(bench.tree, state, counts, bench.metric);
         bench.selection = build_joint_selection(bench.tree);
         time(fmt::format("/select={}/{}", few, weight), [&] {
-            select_joints(bench.tree, bench.metric, {.degrees_of_freedom = few}, state,
+            select_joints(bench.tree, bench.metric, {}, {.degrees_of_freedom = few}, state,
                           bench.selection);
         });
         rows.back().reference =

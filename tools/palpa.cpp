@@ -131,6 +131,33 @@ void add_run(CLI::App& program, palpa::RunOptions& options) {
     add_set_option(run, settings);
 }
 
+void add_adaptive_options(CLI::App& bench, palpa::BenchOptions& options) {
+    CLI::Option* const adaptive =
+        bench
+            .add_flag("--adaptive", options.adaptive,
+                      "time steps of flexible scenes with few active joints, and say how wrong "
+                      "they are, instead")
+            ->excludes("--render")
+            ->excludes("--kernel")
+            ->excludes("--tree")
+            ->excludes("--statics")
+            ->needs("scenes");
+    bench
+        .add_flag("--spheres", options.spheres,
+                  "only time them, in spheres around the residue in hand")
+        ->needs(adaptive);
+    bench
+        .add_option("--poses", options.adaptive_settings.poses, "along the stroke, 3 unless given")
+        ->check(in_range(1, 1000))
+        ->needs(adaptive);
+    bench
+        .add_option("--stroke-steps", options.adaptive_settings.stroke_moves,
+                    "of the hand by 0.005 Å, half of them back; 200 unless given")
+        ->check(in_range(20, 1'000'000))
+        ->needs(adaptive);
+    bench.add_flag("--table", options.table, "print a table in Markdown")->needs(adaptive);
+}
+
 void add_bench(CLI::App& program, palpa::BenchOptions& options) {
     CLI::App& bench = *program.add_subcommand("bench", "Speed against error on this machine");
     bench.add_option("scenes", options.scenes, "scene folders or files");
@@ -163,6 +190,7 @@ void add_bench(CLI::App& program, palpa::BenchOptions& options) {
         ->excludes("--kernel")
         ->excludes("--tree")
         ->needs("scenes");
+    add_adaptive_options(bench, options);
     bench.add_flag("--json", options.json, "print JSON");
     add_set_option(bench, options.settings);
 }

@@ -2,6 +2,7 @@
 
 #include "core/files.h"
 #include "formats/crd.h"
+#include "molecule/coincident_atoms.h"
 #include "scene/read_scene.h"
 #include "simulation/simulation.h"
 
@@ -82,6 +83,10 @@ int relax_command(const RelaxOptions& options) {
                        fmt::format("{}: relaxed, {} joints, rms force {:.3g} "
                                    "kcal/mol per radian and angstrom",
                                    scene.title, flexible.joints, flexible.relaxed.rms_force)));
+    }
+    if (const auto closest = describe_coincident_atoms(
+            simulation.atoms.names, flexible.model.reference, nearest_single_precision)) {
+        fmt::print(stderr, "warning: atoms are on each other: {}\n", *closest);
     }
     options.json ? print_json(flexible) : print_report(flexible);
     return flexible.relaxed.end == RelaxEnd::Converged ? 0 : 1;

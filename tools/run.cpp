@@ -93,9 +93,13 @@ void print_line(const SceneDescription& scene, const Simulation& simulation) {
         fmt::print("  attraction  {:.3f} nN at {:.2f} Å, felt as {:.3f} N\n", strongest, where,
                    hand_force(simulation.laws.force, strongest * 1e-9));
     }
+    // A spring is pulled at; its molecule is not moved against others.
+    const bool on_spring = !scene.grab.atom.empty();
     if (const std::optional<double> wall =
-            repulsion_distance(simulation, scene.hand.peak_nN / nN,
-                               moves_in_space(simulation) ? grabbed_distance(simulation) : 30)) {
+            on_spring ? std::nullopt
+                      : repulsion_distance(
+                            simulation, scene.hand.peak_nN / nN,
+                            moves_in_space(simulation) ? grabbed_distance(simulation) : 30)) {
         fmt::print("  repulsion   {} nN at {:.3f} Å, felt as {:.3f} N\n", scene.hand.peak_nN, *wall,
                    hand_force(simulation.laws.force, scene.hand.peak_nN * 1e-9));
     }
@@ -134,6 +138,14 @@ void print_summary(const SceneDescription& scene, const Summary& s) {
             "from all others there;\n              {:.2f} Å at the closest; at the end {:.2f} Å "
             "rms from where they started\n",
             j.farthest, j.clearance, j.closest, j.last_rmsd);
+    }
+    if (s.activity) {
+        const Activity& a = *s.activity;
+        fmt::print(
+            "  active      {:.1f} degrees of freedom on average, chosen {} times; {:.1f} % of the "
+            "weighted\n              squares of accelerations neglected; {:.1f} % of steps within "
+            "the budget\n",
+            a.active, a.choices, 100 * a.neglected_share, 100 * a.within_budget);
     }
     fmt::print("  clamped     {:.1f} % of the time\n", 100 * s.clamped_share);
     fmt::print("  step        {:.2f} µs median, {:.2f} µs p99 of {} steps\n", s.step_median_us,

@@ -75,4 +75,13 @@ TorsionBodies build_bodies(const Connectivity& connectivity, const Joints& joint
     return result;
 }
 
+std::vector<std::uint32_t> molecules_of(const TorsionBodies& bodies) {
+    std::vector<std::uint32_t> molecules;
+    std::uint32_t count = 0;
+    for (const Body& body : bodies.bodies) {
+        molecules.push_back(body.parent == no_body ? count++ : molecules[body.parent]);
+    }
+    return molecules;
+}
+
 }  // namespace palpa

@@ -40,4 +40,7 @@ struct TorsionBodies {
 TorsionBodies build_bodies(const Connectivity& connectivity, const Joints& joints,
                            std::span<const std::uint32_t> base_atoms = {});
 
+// Which molecule each body is of. Molecules go in the order of their bases.
+std::vector<std::uint32_t> molecules_of(const TorsionBodies& bodies);
+
 }  // namespace palpa

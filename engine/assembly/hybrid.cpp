@@ -144,13 +144,24 @@ void move_clusters(const HybridTree& hybrid, std::span<const double> joint_turns
     }
 }
 
+std::span<const std::uint32_t> atoms_of(const HybridTree& hybrid, std::size_t cluster) noexcept {
+    const std::uint32_t first = hybrid.tree.first_atom[cluster];
+    return std::span(hybrid.tree.atoms).subspan(first, hybrid.tree.first_atom[cluster + 1] - first);
+}
+
+void update_positions(const HybridTree& hybrid, const HybridState& state, std::uint32_t cluster,
+                      std::span<Vec3> positions) noexcept {
+    const Mat3 turn = state.orientations[cluster].toRotationMatrix();
+    const std::span<const std::uint32_t> first = hybrid.tree.first_atom;
+    for (std::uint32_t i = first[cluster]; i < first[cluster + 1]; ++i) {
+        positions[hybrid.tree.atoms[i]] = state.centres[cluster] + turn * hybrid.places[i];
+    }
+}
+
 void update_positions(const HybridTree& hybrid, const HybridState& state,
                       std::span<Vec3> positions) noexcept {
-    for (std::size_t c = 0; c < hybrid.clusters.size(); ++c) {
-        const Mat3 turn = state.orientations[c].toRotationMatrix();
-        for (std::uint32_t i = hybrid.tree.first_atom[c]; i < hybrid.tree.first_atom[c + 1]; ++i) {
-            positions[hybrid.tree.atoms[i]] = state.centres[c] + turn * hybrid.places[i];
-        }
+    for (std::uint32_t c = 0; c < hybrid.clusters.size(); ++c) {
+        update_positions(hybrid, state, c, positions);
     }
 }
 

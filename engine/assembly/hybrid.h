@@ -72,6 +72,13 @@ void update_accelerations(const HybridTree& hybrid, HybridState& state) noexcept
 void move_clusters(const HybridTree& hybrid, std::span<const double> joint_turns,
                    std::span<const Vec6> base_moves, HybridState& state) noexcept;
 
+// Indices of a cluster's atoms.
+std::span<const std::uint32_t> atoms_of(const HybridTree& hybrid, std::size_t cluster) noexcept;
+
+// The places of one cluster's atoms.
+void update_positions(const HybridTree& hybrid, const HybridState& state, std::uint32_t cluster,
+                      std::span<Vec3> positions) noexcept;
+
 // The places of all atoms, from their clusters'.
 void update_positions(const HybridTree& hybrid, const HybridState& state,
                       std::span<Vec3> positions) noexcept;

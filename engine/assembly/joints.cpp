@@ -271,4 +271,10 @@ Joints build_joints(const Connectivity& connectivity, const JointRules& rules) {
     return result;
 }
 
+bool is_backbone(const Connectivity& connectivity,
+                 const std::array<std::uint32_t, 2>& bond) noexcept {
+    const std::string &a = connectivity.names[bond[0]].atom, &b = connectivity.names[bond[1]].atom;
+    return (a == "CA" && (b == "N" || b == "C")) || (b == "CA" && (a == "N" || a == "C"));
+}
+
 }  // namespace palpa

@@ -57,4 +57,8 @@ struct Joints {
 // bond): such a bond needs an override. Throws LoadError naming every override that cannot be met.
 Joints build_joints(const Connectivity& connectivity, const JointRules& rules = {});
 
+// Told by names: phi or psi of a protein.
+bool is_backbone(const Connectivity& connectivity,
+                 const std::array<std::uint32_t, 2>& bond) noexcept;
+
 }  // namespace palpa

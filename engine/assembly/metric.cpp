@@ -12,13 +12,6 @@ double factor_of(const MetricWeights& weights, std::uint32_t body) {
     return weights.factors.empty() ? 1 : weights.factors[body];
 }
 
-// Of the joint of an opened part; one that is rigid has no gain that counts.
-double weight_of(const JointInertia& joint, std::uint32_t link, const MetricWeights& weights) {
-    if (!(joint.D > 0)) return 0;
-    const double inertia = weights.weight == MetricWeight::Inertia ? 1 / joint.D : 1;
-    return inertia * factor_of(weights, link);
-}
-
 // Both parts' forms at their joined handles, +-W u, and the joint's own square, as forms of
 //     u = sum_j s_j L_j^T f_j + beta,   s = 1 in A and -1 in B, L_j = phi of handle and joined one,
 // as passes.cpp has it: u^T K u + r^T u.
@@ -49,7 +42,7 @@ void join_metric(const AssemblyTree& tree, const AssemblyNode& node, const Assem
     };
 
     FormOfJoint form;
-    form.K = weight_of(joint, node.link, weights) * joint.gain * joint.gain.transpose();
+    form.K = weight_of_joint(joint, node.link, weights) * joint.gain * joint.gain.transpose();
     form.r.setZero();
     double eta = 0;
     for (const Side& side : sides) {
@@ -115,6 +108,13 @@ double base_metric(const AssemblyTree& tree, const AssemblyState& state, std::si
 }
 
 }  // namespace
+
+double weight_of_joint(const JointInertia& joint, std::uint32_t link,
+                       const MetricWeights& weights) noexcept {
+    if (!(joint.D > 0)) return 0;
+    const double inertia = weights.weight == MetricWeight::Inertia ? 1 / joint.D : 1;
+    return inertia * factor_of(weights, link);
+}
 
 AccelerationMetric build_acceleration_metric(const AssemblyTree& tree) {
     AccelerationMetric metric;

@@ -45,6 +45,10 @@ AccelerationMetric build_acceleration_metric(const AssemblyTree& tree);
 void update_metric(const AssemblyTree& tree, const AssemblyState& state,
                    const MetricWeights& weights, AccelerationMetric& metric) noexcept;
 
+// What the square of a joint's acceleration counts; 0 of one that is rigid.
+double weight_of_joint(const JointInertia& joint, std::uint32_t link,
+                       const MetricWeights& weights) noexcept;
+
 // Of the joints in one part, from the forces on its handles that the state holds.
 double find_metric(const AssemblyTree& tree, const AssemblyState& state,
                    const AccelerationMetric& metric, std::uint32_t node) noexcept;

@@ -7,12 +7,118 @@ namespace palpa {
 namespace {
 
 using Choice = JointSelection::Choice;
+using Single = JointSelection::Single;
 
 bool is_less(const Choice& a, const Choice& b) {
     if (a.priority != b.priority) return a.priority < b.priority;
     // Of equal ones the earlier node comes first, so that runs repeat.
     return a.node != b.node ? a.node > b.node : a.molecule > b.molecule;
 }
+
+bool is_more(const Single& a, const Single& b) {
+    return a.priority != b.priority ? a.priority > b.priority : a.body < b.body;
+}
+
+// The joints and bases that count most by themselves, found from the roots.
+class SingleSelector {
+public:
+    SingleSelector(const AssemblyTree& tree, const AccelerationMetric& metric,
+                   const MetricWeights& weights, const SelectionLimits& limits,
+                   AssemblyState& state, JointSelection& selection)
+        : tree_(tree),
+          metric_(metric),
+          weights_(weights),
+          limits_(limits),
+          state_(state),
+          selection_(selection) {}
+
+    void add_molecule(std::uint32_t molecule) {
+        update_base(tree_, molecule, state_);
+        const std::uint32_t base = tree_.bases[molecule];
+        const auto freedom =
+            static_cast<std::uint32_t>(degrees_of_freedom(state_.guides[molecule].guide));
+        const bool may_move = state_.is_active[base] != 0;
+        selection_.is_active[base] = may_move && freedom == 0 ? 1 : 0;
+        if (may_move && freedom > 0) {
+            selection_.total += metric_.bases[molecule];
+            selection_.bases.push_back(single_of(base, freedom, metric_.bases[molecule]));
+        }
+        add_part(tree_.roots[molecule], molecule, true);
+    }
+
+    void choose_all() {
+        selection_.neglected = selection_.total;
+        while (!selection_.choices.empty() && !is_found()) {
+            std::ranges::pop_heap(selection_.choices, is_less);
+            const Choice choice = selection_.choices.back();
+            selection_.choices.pop_back();
+            open(choice);
+        }
+        std::vector<Single>& singles = selection_.singles;
+        singles.insert(singles.end(), selection_.bases.begin(), selection_.bases.end());
+        std::ranges::sort(singles, is_more);
+        for (const Single& single : singles) {
+            if (selection_.degrees_of_freedom + single.freedom > limits_.degrees_of_freedom)
+                continue;
+            if (limits_.neglected > 0 && selection_.neglected <= limits_.neglected) break;
+            selection_.is_active[single.body] = 1;
+            selection_.degrees_of_freedom += single.freedom;
+            selection_.neglected -= single.metric;
+        }
+        selection_.neglected = std::max(0.0, selection_.neglected);
+    }
+
+private:
+    // Whether nothing in the queue can count more than what is kept.
+    bool is_found() const {
+        if (selection_.singles.size() < limits_.degrees_of_freedom) return false;
+        if (selection_.singles.empty()) return true;
+        return limits_.advantage * selection_.choices.front().metric <=
+               selection_.singles.front().priority;
+    }
+
+    void open(const Choice& choice) {
+        const AssemblyNode& node = tree_.nodes[choice.node];
+        separate(tree_, choice.node, state_);
+        const JointInertia& joint = state_.joints[node.part];
+        if (joint.D > 0) {
+            const double acceleration = state_.joint_acceleration[node.link];
+            add_joint(node.link,
+                      weight_of_joint(joint, node.link, weights_) * acceleration * acceleration);
+        }
+        add_part(node.a, choice.molecule, false);
+        add_part(node.b, choice.molecule, false);
+    }
+
+    void add_part(std::uint32_t node, std::uint32_t molecule, bool is_root) {
+        if (tree_.nodes[node].is_leaf()) return;
+        const double metric = std::max(0.0, find_metric(tree_, state_, metric_, node));
+        if (is_root) selection_.total += metric;
+        selection_.choices.push_back({metric, metric, node, molecule});
+        std::ranges::push_heap(selection_.choices, is_less);
+    }
+
+    Single single_of(std::uint32_t body, std::uint32_t freedom, double metric) const {
+        const double advantage = selection_.was_active[body] != 0 ? limits_.advantage : 1;
+        return {advantage * metric / freedom, metric, body, freedom};
+    }
+
+    void add_joint(std::uint32_t body, double metric) {
+        std::vector<Single>& singles = selection_.singles;
+        singles.push_back(single_of(body, 1, metric));
+        std::ranges::push_heap(singles, is_more);
+        if (singles.size() <= limits_.degrees_of_freedom) return;
+        std::ranges::pop_heap(singles, is_more);
+        singles.pop_back();
+    }
+
+    const AssemblyTree& tree_;
+    const AccelerationMetric& metric_;
+    const MetricWeights& weights_;
+    const SelectionLimits& limits_;
+    AssemblyState& state_;
+    JointSelection& selection_;
+};
 
 // One selection, while it is made. Nodes that were open the last time are marked by was_open, those
 // that are opened now by opens_now.
@@ -125,13 +231,23 @@ JointSelection build_joint_selection(const AssemblyTree& tree) {
 }
 
 void select_joints(const AssemblyTree& tree, const AccelerationMetric& metric,
-                   const SelectionLimits& limits, AssemblyState& state,
-                   JointSelection& selection) noexcept {
+                   const MetricWeights& weights, const SelectionLimits& limits,
+                   AssemblyState& state, JointSelection& selection) noexcept {
     selection.choices.clear();
+    selection.singles.clear();
+    selection.bases.clear();
+    selection.was_active = selection.is_active;
     selection.degrees_of_freedom = 0;
     selection.neglected = 0;
+    selection.total = 0;
     for (std::size_t b = 0; b < selection.is_active.size(); ++b) {
         if (!tree.bodies.is_base(b)) selection.is_active[b] = 0;
+    }
+    if (limits.shape == SelectionShape::Single) {
+        SingleSelector selector(tree, metric, weights, limits, state, selection);
+        for (std::uint32_t i = 0; i < tree.roots.size(); ++i) selector.add_molecule(i);
+        selector.choose_all();
+        return;
     }
     Selector selector(tree, metric, limits, state, selection);
     for (std::uint32_t i = 0; i < tree.roots.size(); ++i) selector.add_molecule(i);

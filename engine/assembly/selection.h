@@ -9,9 +9,20 @@
 
 namespace palpa {
 
+enum class SelectionShape : std::uint8_t {
+    // As in the paper: whatever is opened is active, a connected region from the roots of the tree.
+    // To wake a joint far down wakes all that part it from the roots, which cut molecules in
+    // halves.
+    Region,
+    // Those alone that count most by themselves. Parts are opened to find them, and stay rigid
+    // else.
+    Single,
+};
+
 // Where to stop: when that many degrees of freedom are chosen, or when what is left is no more than
 // that. A joint is one; a base is those that its guide leaves, six if free, all or none of them.
 struct SelectionLimits {
+    SelectionShape shape = SelectionShape::Region;
     std::size_t degrees_of_freedom = std::numeric_limits<std::size_t>::max();
     double neglected = 0;  // of the metric's sum of squares
     // By which what was chosen the last time counts more, 1 or more, so that joints do not come and
@@ -45,6 +56,16 @@ struct JointSelection {
         std::uint32_t molecule;
     };
     std::vector<Choice> choices;
+
+    // A joint or a base that may be active by itself.
+    struct Single {
+        double priority, metric;  // for a degree of freedom, of all
+        std::uint32_t body;
+        std::uint32_t freedom;
+    };
+    std::vector<Single> singles;  // the best joints so far, a heap with the least in front
+    std::vector<Single> bases;
+    std::vector<std::uint8_t> was_active;
 };
 
 JointSelection build_joint_selection(const AssemblyTree& tree);
@@ -54,10 +75,14 @@ JointSelection build_joint_selection(const AssemblyTree& tree);
 // passed over. What is left in the queue is what is neglected: squares of the accelerations that
 // those joints and bases would have were everything active, no bound on an error of shape or force.
 //
+// Of single joints and bases those that count most for a degree of freedom are active. A part
+// counts as much as all its joints, so those that are left in the queue cannot have a larger one.
+//
 // The state must have been through upward_pass with everything active that may be chosen, and the
-// metric must be of that. Writes forces on handles and accelerations of the joints it opens.
+// metric must be of that, with the same weights. Writes forces on handles and accelerations of the
+// joints it opens.
 void select_joints(const AssemblyTree& tree, const AccelerationMetric& metric,
-                   const SelectionLimits& limits, AssemblyState& state,
-                   JointSelection& selection) noexcept;
+                   const MetricWeights& weights, const SelectionLimits& limits,
+                   AssemblyState& state, JointSelection& selection) noexcept;
 
 }  // namespace palpa

@@ -223,13 +223,9 @@ private:
 };
 
 void add_molecules(AssemblyTree& tree) {
+    tree.molecule_of = molecules_of(tree.bodies);
     for (std::uint32_t b = 0; b < tree.bodies.bodies.size(); ++b) {
-        if (tree.bodies.is_base(b)) {
-            tree.molecule_of.push_back(static_cast<std::uint32_t>(tree.bases.size()));
-            tree.bases.push_back(b);
-        } else {
-            tree.molecule_of.push_back(tree.molecule_of[tree.bodies.bodies[b].parent]);
-        }
+        if (tree.bodies.is_base(b)) tree.bases.push_back(b);
     }
 }
 

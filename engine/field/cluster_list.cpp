@@ -4,6 +4,7 @@
 #include "field/near_rows.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
 #include <tuple>
@@ -52,22 +53,18 @@ std::vector<std::uint32_t> sort_into_clusters(std::span<const Vec3> positions) {
     return atoms;
 }
 
-// Pairs that a tile leaves out.
-struct Gap {
-    std::uint32_t row_cluster, cluster;
-    std::uint64_t pairs;
-};
-
 // Sorted, one for each tile that leaves something out. Every tile of a cluster with itself does:
 // each pair counts once, and no atom acts on itself.
-std::vector<Gap> find_gaps(std::span<const std::uint32_t> atoms, std::size_t atom_count,
-                           std::span<const std::array<std::uint32_t, 2>> left_out) {
-    std::vector<std::uint32_t> place(atom_count);
-    for (std::uint32_t p = 0; p < atoms.size(); ++p) {
-        if (atoms[p] != no_atom) place[atoms[p]] = p;
+void find_gaps(std::size_t atom_count, std::span<const std::array<std::uint32_t, 2>> left_out,
+               ClusterList& list) {
+    std::vector<std::uint32_t>& place = list.memory.place_of;
+    place.resize(atom_count);
+    for (std::uint32_t p = 0; p < list.atoms.size(); ++p) {
+        if (list.atoms[p] != no_atom) place[list.atoms[p]] = p;
     }
-    std::vector<Gap> gaps;
-    gaps.reserve(left_out.size() + clusters_of(atom_count));
+    std::vector<TileGap>& gaps = list.memory.gaps;
+    gaps.clear();
+    gaps.reserve(left_out.size() + list.clusters());
     for (const auto& [a, b] : left_out) {
         const auto [low, high] = std::minmax(place[a], place[b]);
         gaps.push_back({low / 8, high / 8,
@@ -81,12 +78,12 @@ std::vector<Gap> find_gaps(std::span<const std::uint32_t> atoms, std::size_t ato
         }
         return pairs;
     }();
-    for (std::uint32_t c = 0; c < clusters_of(atom_count); ++c) gaps.push_back({c, c, lower_half});
-    std::sort(gaps.begin(), gaps.end(), [](const Gap& a, const Gap& b) {
+    for (std::uint32_t c = 0; c < list.clusters(); ++c) gaps.push_back({c, c, lower_half});
+    std::sort(gaps.begin(), gaps.end(), [](const TileGap& a, const TileGap& b) {
         return std::tie(a.row_cluster, a.cluster) < std::tie(b.row_cluster, b.cluster);
     });
     std::size_t count = 0;
-    for (const Gap& gap : gaps) {
+    for (const TileGap& gap : gaps) {
         if (count > 0 && gaps[count - 1].row_cluster == gap.row_cluster &&
             gaps[count - 1].cluster == gap.cluster) {
             gaps[count - 1].pairs |= gap.pairs;
@@ -95,78 +92,81 @@ std::vector<Gap> find_gaps(std::span<const std::uint32_t> atoms, std::size_t ato
         }
     }
     gaps.resize(count);
-    return gaps;
+    list.memory.first_gap.assign(list.clusters() + 1, 0);
+    for (const TileGap& gap : gaps) ++list.memory.first_gap[gap.row_cluster + 1];
+    std::partial_sum(list.memory.first_gap.begin(), list.memory.first_gap.end(),
+                     list.memory.first_gap.begin());
 }
 
-// Writes the tiles of one cluster after the other.
-class TileWriter {
+// Tiles with the same rows stand together: a wide processor takes them two at a time.
+bool stands_before(const ClusterTile& a, const ClusterTile& b) noexcept {
+    return std::pair(~a.rows, a.cluster) < std::pair(~b.rows, b.cluster);
+}
+
+bool stands_before(const MaskedTile& a, const MaskedTile& b) noexcept {
+    return a.cluster < b.cluster;
+}
+
+// The tiles of one cluster, sorted at the end.
+class TileRow {
 public:
-    TileWriter(std::span<const Gap> gaps, std::span<const std::uint32_t> groups, ClusterList& list)
-        : gaps_(gaps), groups_(find_groups(list, groups)), list_(list) {
-        list_.plain.clear();
-        list_.masked.clear();
-        list_.first_plain.assign(1, 0);
-        list_.first_masked.assign(1, 0);
+    TileRow(const ClusterList& list, std::size_t row_cluster, std::vector<ClusterTile>& plain,
+            std::vector<MaskedTile>& masked)
+        : plain_(plain), masked_(masked), first_plain_(plain.size()) {
+        const ClusterListMemory& memory = list.memory;
+        gaps_ = std::span(memory.gaps)
+                    .subspan(memory.first_gap[row_cluster],
+                             memory.first_gap[row_cluster + 1] - memory.first_gap[row_cluster]);
     }
 
     // Clusters must rise. Rows are those that may be near.
     void add(std::uint32_t cluster, std::uint32_t rows) {
-        const auto row_cluster = static_cast<std::uint32_t>(list_.first_plain.size() - 1);
-        if (!groups_.empty() && groups_[cluster] != mixed &&
-            groups_[cluster] == groups_[row_cluster])
-            return;
-        while (next_ < gaps_.size() && std::tie(gaps_[next_].row_cluster, gaps_[next_].cluster) <
-                                           std::tie(row_cluster, cluster)) {
-            ++next_;
-        }
-        if (next_ == gaps_.size() || gaps_[next_].row_cluster != row_cluster ||
-            gaps_[next_].cluster != cluster) {
-            list_.plain.push_back({cluster, rows});
+        while (!gaps_.empty() && gaps_.front().cluster < cluster) gaps_ = gaps_.subspan(1);
+        if (gaps_.empty() || gaps_.front().cluster != cluster) {
+            plain_.push_back({cluster, rows});
             return;
         }
-        std::uint64_t pairs = ~gaps_[next_].pairs;
+        std::uint64_t pairs = ~gaps_.front().pairs;
         for (std::size_t row = 0; row < cluster_size; ++row) {
             if (!(rows >> row & 1)) pairs &= ~(std::uint64_t{0xff} << (row * 8));
         }
-        if (pairs != 0) list_.masked.push_back({cluster, pairs});
+        if (pairs != 0) masked_.push_back({cluster, pairs});
     }
 
-    // Tiles with the same rows stand together: a wide processor takes them two at a time.
-    void end_cluster() {
-        const auto empty = static_cast<std::uint32_t>(list_.clusters());
-        std::sort(list_.plain.begin() + static_cast<std::ptrdiff_t>(list_.first_plain.back()),
-                  list_.plain.end(), [](const ClusterTile& a, const ClusterTile& b) {
-                      return std::pair(~a.rows, a.cluster) < std::pair(~b.rows, b.cluster);
-                  });
-        if (list_.plain.size() % 2 != 0) list_.plain.push_back({empty, 0});
-        if (list_.masked.size() % 2 != 0) list_.masked.push_back({empty, 0});
-        list_.first_plain.push_back(list_.plain.size());
-        list_.first_masked.push_back(list_.masked.size());
+    void sort() {
+        std::sort(plain_.begin() + static_cast<std::ptrdiff_t>(first_plain_), plain_.end(),
+                  [](const ClusterTile& a, const ClusterTile& b) { return stands_before(a, b); });
     }
 
 private:
-    static constexpr std::uint32_t mixed = no_atom;
-
-    // What all atoms of each cluster have.
-    static std::vector<std::uint32_t> find_groups(const ClusterList& list,
-                                                  std::span<const std::uint32_t> groups) {
-        std::vector<std::uint32_t> result;
-        for (std::size_t c = 0; !groups.empty() && c < list.clusters(); ++c) {
-            const auto atoms = std::span(list.atoms).subspan(c * cluster_size, cluster_size);
-            std::uint32_t common = groups[atoms[0]];
-            for (const std::uint32_t atom : atoms) {
-                if (atom != no_atom && groups[atom] != common) common = mixed;
-            }
-            result.push_back(common);
-        }
-        return result;
-    }
-
-    std::span<const Gap> gaps_;
-    std::vector<std::uint32_t> groups_;
-    ClusterList& list_;
-    std::size_t next_ = 0;
+    std::span<const TileGap> gaps_;
+    std::vector<ClusterTile>& plain_;
+    std::vector<MaskedTile>& masked_;
+    std::size_t first_plain_;
 };
+
+// Room for as many tiles and some that come with moves.
+std::size_t with_room(std::size_t tiles) noexcept { return (tiles + tiles / 8 + 3) / 2 * 2; }
+
+std::size_t made_even(std::size_t tiles) noexcept { return (tiles + 1) / 2 * 2; }
+
+void clear_tiles(ClusterList& list) {
+    list.plain.clear();
+    list.masked.clear();
+    list.first_plain.assign(1, 0);
+    list.first_masked.assign(1, 0);
+}
+
+// Ends the tiles of one cluster, the rest of them the empty cluster's.
+template <class RoomFor>
+void end_row(ClusterList& list, const RoomFor& room_for) {
+    const auto empty = static_cast<std::uint32_t>(list.clusters());
+    const std::size_t plain = list.first_plain.back(), masked = list.first_masked.back();
+    list.plain.resize(plain + room_for(list.plain.size() - plain), {empty, 0});
+    list.masked.resize(masked + room_for(list.masked.size() - masked), {empty, 0});
+    list.first_plain.push_back(list.plain.size());
+    list.first_masked.push_back(list.masked.size());
+}
 
 // Rows of a cluster that have an atom.
 std::uint32_t rows_of(const ClusterList& list, std::uint32_t cluster) noexcept {
@@ -177,74 +177,264 @@ std::uint32_t rows_of(const ClusterList& list, std::uint32_t cluster) noexcept {
     return rows;
 }
 
-struct Box {
-    Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
-    Vec3 high = -low;
+constexpr std::uint32_t mixed = no_atom;
 
-    void add(const Vec3& place) noexcept {
-        low = low.cwiseMin(place);
-        high = high.cwiseMax(place);
-    }
-    double distance2(const Box& other) const noexcept {
-        return (low - other.high).cwiseMax(other.low - high).cwiseMax(0).squaredNorm();
-    }
-};
-
-// The boxes of clusters and of ranges of clusters, halved again and again.
-class NeighbourFinder {
-public:
-    NeighbourFinder(const ClusterList& list, std::span<const Vec3> positions, double reach)
-        : list_(list), reach2_(reach * reach), places_(list.clusters()), boxes_(list.clusters()) {
-        constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
-        for (std::size_t c = 0; c < list.clusters(); ++c) {
-            for (std::size_t k = 0; k < cluster_size; ++k) {
-                const std::uint32_t atom = list.atoms[c * cluster_size + k];
-                const bool is_somewhere = atom != no_atom && positions[atom].allFinite();
-                const Vec3 place = is_somewhere ? positions[atom] : Vec3(Vec3::Constant(nowhere));
-                if (is_somewhere) boxes_[c].add(place);
-                places_[c].x[k] = place.x();
-                places_[c].y[k] = place.y();
-                places_[c].z[k] = place.z();
-            }
+// What all atoms of each cluster have.
+std::vector<std::uint32_t> find_groups(const ClusterList& list,
+                                       std::span<const std::uint32_t> groups) {
+    std::vector<std::uint32_t> result;
+    for (std::size_t c = 0; !groups.empty() && c < list.clusters(); ++c) {
+        const auto atoms = std::span(list.atoms).subspan(c * cluster_size, cluster_size);
+        std::uint32_t common = groups[atoms[0]];
+        for (const std::uint32_t atom : atoms) {
+            if (atom != no_atom && groups[atom] != common) common = mixed;
         }
-        ranges_.resize(4 * list.clusters());
-        if (list.clusters() > 0) build_range(0, 0, list.clusters());
+        result.push_back(common);
     }
+    return result;
+}
 
-    // Adds the tiles of a cluster with itself and those after it.
-    void add_tiles(std::uint32_t cluster, TileWriter& writer) const {
-        add_near(cluster, 0, 0, list_.clusters(), writer);
+double reach2_of(const ClusterList& list) noexcept {
+    return (list.cutoff + list.skin) * (list.cutoff + list.skin);
+}
+
+std::span<const std::uint32_t> atoms_of(const ClusterList& list, std::size_t cluster) noexcept {
+    return std::span(list.atoms).subspan(cluster * cluster_size, cluster_size);
+}
+
+// The square of how far an atom is from its place in the list; NaN where it is nowhere.
+double moved2(const ClusterList& list, std::span<const Vec3> positions,
+              std::uint32_t atom) noexcept {
+    return (positions[atom] - list.positions[atom]).squaredNorm();
+}
+
+bool has_moved(const ClusterList& list, std::span<const Vec3> positions, std::uint32_t cluster,
+               double most2) noexcept {
+    return std::ranges::any_of(atoms_of(list, cluster), [&](std::uint32_t atom) {
+        return atom != no_atom && !(moved2(list, positions, atom) <= most2);
+    });
+}
+
+// Beyond it pairs may be missing.
+double half_skin2(const ClusterList& list) noexcept { return 0.25 * list.skin * list.skin; }
+
+// Clusters that have moved so far are found again with those beyond half the skin.
+double renewed_from2(const ClusterList& list) noexcept { return 0.0625 * list.skin * list.skin; }
+
+// Finds tiles of clusters that have moved in place of those that a list has.
+class ListUpdate {
+public:
+    explicit ListUpdate(ClusterList& list) : list_(list), memory_(list.memory) {}
+
+    // Of the clusters `memory.moved`, rising.
+    void run(std::span<const Vec3> positions) {
+        for (const std::uint32_t cluster : memory_.moved) memory_.is_moved[cluster] = 1;
+        touch_present_rows();
+        for (const std::uint32_t cluster : memory_.moved) move(cluster, positions);
+        find_tiles();
+        sort_found();
+        write_rows();
+        for (const std::uint32_t cluster : memory_.moved) memory_.is_moved[cluster] = 0;
+        for (const std::uint32_t cluster : memory_.touched) {
+            memory_.is_touched[cluster] = 0;
+            memory_.slots[cluster] = 0;
+        }
     }
 
 private:
-    Box build_range(std::size_t node, std::size_t begin, std::size_t end) {
-        if (end - begin == 1) return ranges_[node] = boxes_[begin];
-        const std::size_t middle = (begin + end) / 2;
-        Box box = build_range(2 * node + 1, begin, middle);
-        const Box right = build_range(2 * node + 2, middle, end);
-        box.low = box.low.cwiseMin(right.low);
-        box.high = box.high.cwiseMax(right.high);
-        return ranges_[node] = box;
+    void touch(std::uint32_t row_cluster) {
+        if (memory_.is_touched[row_cluster] != 0) return;
+        memory_.is_touched[row_cluster] = 1;
+        memory_.touched.push_back(row_cluster);
     }
 
-    void add_near(std::uint32_t cluster, std::size_t node, std::size_t begin, std::size_t end,
-                  TileWriter& writer) const {
-        if (end <= cluster || ranges_[node].distance2(boxes_[cluster]) > reach2_) return;
-        if (end - begin > 1) {
-            const std::size_t middle = (begin + end) / 2;
-            add_near(cluster, 2 * node + 1, begin, middle, writer);
-            add_near(cluster, 2 * node + 2, middle, end, writer);
-            return;
+    // Rows that have a tile with a cluster that has moved, all of them and some more.
+    void touch_present_rows() {
+        memory_.touched.clear();
+        for (const std::uint32_t cluster : memory_.moved) {
+            memory_.tree.visit_near(cluster, 0, cluster + 1, reach2_,
+                                    [&](std::uint32_t other) { touch(other); });
         }
-        const std::uint32_t rows = find_near_rows(places_[cluster], places_[begin], reach2_);
-        if (rows != 0) writer.add(static_cast<std::uint32_t>(begin), rows);
     }
 
-    const ClusterList& list_;
-    double reach2_;
-    std::vector<ClusterPlaces> places_;
-    std::vector<Box> boxes_, ranges_;
+    void move(std::uint32_t cluster, std::span<const Vec3> positions) {
+        memory_.tree.move(list_.atoms, positions, cluster);
+        for (const std::uint32_t atom : atoms_of(list_, cluster)) {
+            if (atom != no_atom) list_.positions[atom] = positions[atom];
+        }
+    }
+
+    // Counts the tiles of each row in `slots`.
+    void find_tiles() {
+        memory_.found.clear();
+        const ClusterTree& tree = memory_.tree;
+        const auto add = [&](std::uint32_t row_cluster, std::uint32_t cluster) {
+            const std::uint32_t rows =
+                find_near_rows(tree.places(row_cluster), tree.places(cluster), reach2_);
+            if (rows == 0) return;
+            touch(row_cluster);
+            memory_.found.push_back({row_cluster, cluster, rows});
+            ++memory_.slots[row_cluster];
+        };
+        for (const std::uint32_t cluster : memory_.moved) {
+            tree.visit_near(cluster, 0, list_.clusters(), reach2_, [&](std::uint32_t other) {
+                if (other >= cluster) {
+                    add(cluster, other);
+                } else if (memory_.is_moved[other] == 0) {
+                    add(other, cluster);
+                }
+            });
+        }
+    }
+
+    // By row; in a row clusters rise, as they were found. `slots` tells the end of each row.
+    void sort_found() {
+        std::sort(memory_.touched.begin(), memory_.touched.end());
+        std::size_t end = 0;
+        for (const std::uint32_t row : memory_.touched)
+            end += std::exchange(memory_.slots[row], end);
+        memory_.sorted.resize(memory_.found.size());
+        for (const auto& tile : memory_.found)
+            memory_.sorted[memory_.slots[tile.row_cluster]++] = tile;
+    }
+
+    // How many tiles of a row stay and how many are new.
+    struct RowCounts {
+        std::size_t kept_plain, kept_masked, new_plain, new_masked;
+    };
+
+    void write_rows() {
+        std::vector<RowCounts> counts;
+        counts.reserve(memory_.touched.size());
+        bool fits = true;
+        std::size_t next = 0;
+        for (const std::uint32_t c : memory_.touched) {
+            const std::size_t plain = new_plain_.size(), masked = new_masked_.size();
+            TileRow row(list_, c, new_plain_, new_masked_);
+            for (; next < memory_.slots[c]; ++next)
+                row.add(memory_.sorted[next].cluster, memory_.sorted[next].rows);
+            row.sort();
+            const RowCounts count{drop(row_of(list_.plain, list_.first_plain, c), c),
+                                  drop(row_of(list_.masked, list_.first_masked, c), c),
+                                  new_plain_.size() - plain, new_masked_.size() - masked};
+            counts.push_back(count);
+            fits = fits && count.kept_plain + count.new_plain <= room(list_.first_plain, c) &&
+                   count.kept_masked + count.new_masked <= room(list_.first_masked, c);
+        }
+        if (!fits) {
+            make_room(counts, list_.plain, list_.first_plain,
+                      [](const RowCounts& count) { return count.kept_plain + count.new_plain; });
+            make_room(counts, list_.masked, list_.first_masked,
+                      [](const RowCounts& count) { return count.kept_masked + count.new_masked; });
+        }
+        std::span<const ClusterTile> new_plain = new_plain_;
+        std::span<const MaskedTile> new_masked = new_masked_;
+        for (const ClusterTile& tile : new_plain)
+            memory_.rows += static_cast<std::size_t>(std::popcount(tile.rows));
+        for (std::size_t i = 0; i < counts.size(); ++i) {
+            const std::uint32_t c = memory_.touched[i];
+            merge(row_of(list_.plain, list_.first_plain, c), counts[i].kept_plain,
+                  new_plain.first(counts[i].new_plain));
+            merge(row_of(list_.masked, list_.first_masked, c), counts[i].kept_masked,
+                  new_masked.first(counts[i].new_masked));
+            new_plain = new_plain.subspan(counts[i].new_plain);
+            new_masked = new_masked.subspan(counts[i].new_masked);
+        }
+    }
+
+    template <class Tile>
+    static std::span<Tile> row_of(std::vector<Tile>& tiles, const std::vector<std::size_t>& first,
+                                  std::size_t cluster) noexcept {
+        return std::span(tiles).subspan(first[cluster], room(first, cluster));
+    }
+
+    static std::size_t room(const std::vector<std::size_t>& first, std::size_t cluster) noexcept {
+        return first[cluster + 1] - first[cluster];
+    }
+
+    static bool is_filling(const ClusterTile& tile) noexcept { return tile.rows == 0; }
+    static bool is_filling(const MaskedTile& tile) noexcept { return tile.pairs == 0; }
+    void forget(const ClusterTile& tile) noexcept {
+        memory_.rows -= static_cast<std::size_t>(std::popcount(tile.rows));
+    }
+    void forget(const MaskedTile&) noexcept {}
+
+    // Leaves the tiles of a row whose clusters have not moved and returns how many.
+    template <class Tile>
+    std::size_t drop(std::span<Tile> row, std::uint32_t row_cluster) noexcept {
+        const bool all = memory_.is_moved[row_cluster] != 0;
+        std::size_t kept = 0;
+        for (const Tile& tile : row) {
+            if (is_filling(tile)) break;
+            if (all || memory_.is_moved[tile.cluster] != 0) {
+                forget(tile);
+            } else {
+                row[kept++] = tile;
+            }
+        }
+        for (Tile& tile : row.subspan(kept)) {
+            if (is_filling(tile)) break;
+            tile = {static_cast<std::uint32_t>(list_.clusters()), 0};
+        }
+        return kept;
+    }
+
+    // Lays out all rows again, those that are too short with room to spare.
+    template <class Tile, class CountOf>
+    void make_room(std::span<const RowCounts> counts, std::vector<Tile>& tiles,
+                   std::vector<std::size_t>& first, const CountOf& count_of) const {
+        const Tile filling{static_cast<std::uint32_t>(list_.clusters()), 0};
+        std::vector<Tile> laid_out;
+        laid_out.reserve(tiles.size() + tiles.size() / 16);
+        std::size_t next = 0;
+        for (std::size_t c = 0; c < list_.clusters(); ++c) {
+            const std::span<const Tile> row = row_of(tiles, first, c);
+            std::size_t size = row.size();
+            if (next < counts.size() && memory_.touched[next] == c) {
+                const std::size_t count = count_of(counts[next++]);
+                if (count > size) size = with_room(count);
+            }
+            first[c] = laid_out.size();
+            laid_out.insert(laid_out.end(), row.begin(), row.end());
+            laid_out.resize(first[c] + size, filling);
+        }
+        first.back() = laid_out.size();
+        tiles = std::move(laid_out);
+    }
+
+    // Adds new tiles to the first `kept` of a row, both sorted.
+    template <class Tile>
+    static void merge(std::span<Tile> row, std::size_t kept, std::span<const Tile> added) noexcept {
+        std::size_t end = kept + added.size();
+        while (!added.empty()) {
+            if (kept > 0 && stands_before(added.back(), row[kept - 1])) {
+                row[--end] = row[--kept];
+            } else {
+                row[--end] = added.back();
+                added = added.first(added.size() - 1);
+            }
+        }
+    }
+
+    ClusterList& list_;
+    ClusterListMemory& memory_;
+    double reach2_ = reach2_of(list_);
+    std::vector<ClusterTile> new_plain_;
+    std::vector<MaskedTile> new_masked_;
 };
+
+// The clusters of `memory.moved`, if any.
+ListChange renew(std::span<const Vec3> positions,
+                 std::span<const std::array<std::uint32_t, 2>> left_out, ClusterList& list) {
+    if (list.memory.moved.empty()) return ListChange::None;
+    if (2 * list.memory.moved.size() <= list.clusters()) {
+        ListUpdate(list).run(positions);
+        if (4 * list.memory.rows <= 5 * list.memory.rows_at_build) return ListChange::Tiles;
+    }
+    const double cutoff = list.cutoff, skin = list.skin;
+    list = build_cluster_list(positions, left_out, cutoff, skin, std::move(list));
+    return ListChange::Clusters;
+}
 
 }  // namespace
 
@@ -259,12 +449,19 @@ ClusterList build_full_cluster_list(std::size_t atom_count,
         std::stable_sort(list.atoms.begin(), end,
                          [&](std::uint32_t a, std::uint32_t b) { return groups[a] < groups[b]; });
     }
-    const std::vector<Gap> gaps = find_gaps(list.atoms, atom_count, left_out);
-    TileWriter writer(gaps, groups, list);
+    find_gaps(atom_count, left_out, list);
+    const std::vector<std::uint32_t> group_of = find_groups(list, groups);
+    clear_tiles(list);
     for (std::uint32_t row_cluster = 0; row_cluster < list.clusters(); ++row_cluster) {
         const std::uint32_t rows = rows_of(list, row_cluster);
-        for (std::uint32_t c = row_cluster; c < list.clusters(); ++c) writer.add(c, rows);
-        writer.end_cluster();
+        TileRow row(list, row_cluster, list.plain, list.masked);
+        for (std::uint32_t c = row_cluster; c < list.clusters(); ++c) {
+            const bool is_left_out =
+                !group_of.empty() && group_of[c] != mixed && group_of[c] == group_of[row_cluster];
+            if (!is_left_out) row.add(c, rows);
+        }
+        row.sort();
+        end_row(list, made_even);
     }
     return list;
 }
@@ -274,18 +471,66 @@ ClusterList build_cluster_list(std::span<const Vec3> positions,
                                double cutoff, double skin, ClusterList storage) {
     PALPA_ASSERT(cutoff > 0 && skin >= 0 && std::isfinite(cutoff + skin));
     ClusterList list = std::move(storage);
+    ClusterListMemory& memory = list.memory;
     list.cutoff = cutoff;
     list.skin = skin;
     list.positions.assign(positions.begin(), positions.end());
     list.atoms = sort_into_clusters(positions);
-    const std::vector<Gap> gaps = find_gaps(list.atoms, positions.size(), left_out);
-    TileWriter writer(gaps, {}, list);
-    const NeighbourFinder finder(list, positions, cutoff + skin);
+    find_gaps(positions.size(), left_out, list);
+    memory.tree.build(std::span(list.atoms).first(list.clusters() * cluster_size), positions);
+    memory.is_moved.assign(list.clusters(), 0);
+    memory.is_touched.assign(list.clusters(), 0);
+    memory.slots.assign(list.clusters(), 0);
+    clear_tiles(list);
+    const double reach2 = reach2_of(list);
     for (std::uint32_t cluster = 0; cluster < list.clusters(); ++cluster) {
-        finder.add_tiles(cluster, writer);
-        writer.end_cluster();
+        TileRow row(list, cluster, list.plain, list.masked);
+        const ClusterPlaces& places = memory.tree.places(cluster);
+        memory.tree.visit_near(cluster, cluster, list.clusters(), reach2, [&](std::uint32_t other) {
+            const std::uint32_t rows = find_near_rows(places, memory.tree.places(other), reach2);
+            if (rows != 0) row.add(other, rows);
+        });
+        row.sort();
+        end_row(list, with_room);
     }
+    memory.rows = 0;
+    for (const ClusterTile& tile : list.plain)
+        memory.rows += static_cast<std::size_t>(std::popcount(tile.rows));
+    memory.rows_at_build = memory.rows;
     return list;
+}
+
+ListChange update_cluster_list(std::span<const Vec3> positions,
+                               std::span<const std::array<std::uint32_t, 2>> left_out,
+                               ClusterList& list) {
+    if (!is_outdated(list, positions)) return ListChange::None;
+    list.memory.moved.clear();
+    for (std::uint32_t c = 0; c < list.clusters(); ++c) {
+        if (has_moved(list, positions, c, renewed_from2(list))) list.memory.moved.push_back(c);
+    }
+    return renew(positions, left_out, list);
+}
+
+ListChange update_cluster_list(std::span<const Vec3> positions,
+                               std::span<const std::array<std::uint32_t, 2>> left_out,
+                               std::span<const std::uint32_t> moved, ClusterList& list) {
+    if (list.positions.empty()) return ListChange::None;
+    PALPA_ASSERT(positions.size() == list.positions.size());
+    const double most2 = half_skin2(list);
+    if (std::ranges::all_of(
+            moved, [&](std::uint32_t atom) { return moved2(list, positions, atom) <= most2; }))
+        return ListChange::None;
+    ClusterListMemory& memory = list.memory;
+    memory.moved.clear();
+    for (const std::uint32_t atom : moved) {
+        const auto cluster = static_cast<std::uint32_t>(memory.place_of[atom] / cluster_size);
+        if (memory.is_moved[cluster] != 0 || moved2(list, positions, atom) <= renewed_from2(list))
+            continue;
+        memory.is_moved[cluster] = 1;
+        memory.moved.push_back(cluster);
+    }
+    std::sort(memory.moved.begin(), memory.moved.end());
+    return renew(positions, left_out, list);
 }
 
 std::vector<std::array<std::uint32_t, 2>> list_pairs(const ClusterList& list) {
@@ -316,7 +561,7 @@ std::vector<std::array<std::uint32_t, 2>> list_pairs(const ClusterList& list) {
 bool is_outdated(const ClusterList& list, std::span<const Vec3> positions) noexcept {
     if (list.positions.empty()) return false;
     PALPA_ASSERT(positions.size() == list.positions.size());
-    const double most2 = 0.25 * list.skin * list.skin;
+    const double most2 = half_skin2(list);
     for (std::size_t i = 0; i < positions.size(); ++i) {
         if (!((positions[i] - list.positions[i]).squaredNorm() <= most2)) return true;
     }

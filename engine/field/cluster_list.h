@@ -2,6 +2,8 @@
 // the single-precision kernel (field/pair_kernel.h) sums over. After S. Páll, B. Hess, Comput.
 // Phys. Commun. 184, 2641 (2013).
 #pragma once
+#include "field/cluster_tree.h"
+#include "field/near_rows.h"
 #include "math/vec.h"
 
 #include <array>
@@ -12,8 +14,6 @@
 #include <vector>
 
 namespace palpa {
-
-inline constexpr std::size_t cluster_size = 8;
 
 // Fills the places of the last cluster that no atom has.
 inline constexpr std::uint32_t no_atom = std::numeric_limits<std::uint32_t>::max();
@@ -31,19 +31,44 @@ struct MaskedTile {
     std::uint64_t pairs = 0;
 };
 
+// Pairs that the tile of two clusters leaves out.
+struct TileGap {
+    std::uint32_t row_cluster = 0, cluster = 0;
+    std::uint64_t pairs = 0;
+};
+
+// What `update_cluster_list` goes on from.
+struct ClusterListMemory {
+    std::vector<std::uint32_t> place_of;  // in `ClusterList::atoms`, of each atom
+    std::vector<TileGap> gaps;            // of cluster c: [first_gap[c], first_gap[c + 1]), sorted
+    std::vector<std::size_t> first_gap;
+    ClusterTree tree;                         // by `ClusterList::positions`
+    std::size_t rows = 0, rows_at_build = 0;  // of all plain tiles: what the kernel has to do
+
+    struct FoundTile {
+        std::uint32_t row_cluster, cluster, rows;
+    };
+    std::vector<std::uint8_t> is_moved, is_touched;  // per cluster; zero between two calls
+    std::vector<std::uint32_t> moved, touched;       // clusters
+    std::vector<FoundTile> found, sorted;
+    std::vector<std::size_t> slots;  // per cluster
+};
+
 // Every pair of atoms stands in one tile at most. The order is that of places and indices alone, so
 // it repeats.
 struct ClusterList {
     double cutoff = std::numeric_limits<double>::infinity();  // Å; infinite for all pairs
     double skin = 0;                                          // Å
-    std::vector<Vec3> positions;  // when the list was built; none for all pairs
+    // Of each atom when the tiles of its cluster were found last; none for all pairs.
+    std::vector<Vec3> positions;
     // Atoms, eight a cluster, then eight times `no_atom`: the empty cluster.
     std::vector<std::uint32_t> atoms;
     // Tiles of cluster c: [first[c], first[c + 1]), an even number, filled up with the empty
-    // cluster's.
+    // cluster's, which are without rows or pairs.
     std::vector<std::size_t> first_plain, first_masked;
     std::vector<ClusterTile> plain;
     std::vector<MaskedTile> masked;
+    ClusterListMemory memory;
 
     std::size_t clusters() const noexcept { return atoms.size() / cluster_size - 1; }
 };
@@ -62,6 +87,27 @@ ClusterList build_full_cluster_list(std::size_t atom_count,
 ClusterList build_cluster_list(std::span<const Vec3> positions,
                                std::span<const std::array<std::uint32_t, 2>> left_out,
                                double cutoff, double skin, ClusterList storage = {});
+
+enum class ListChange {
+    None,
+    Tiles,    // what stands by cluster stays right
+    Clusters  // built anew
+};
+
+// Where an atom has moved more than half the skin since its place in the list was taken, finds the
+// tiles of all clusters anew that have an atom moved more than a quarter of it; so a list is right
+// that is not outdated then. Takes time by what moved. Builds anew, as `build_cluster_list` with
+// the same atoms, what is not worth it: where more than half of the clusters moved, or clusters
+// have become so wide that the tiles have a quarter more rows than after the last build.
+ListChange update_cluster_list(std::span<const Vec3> positions,
+                               std::span<const std::array<std::uint32_t, 2>> left_out,
+                               ClusterList& list);
+
+// The same where only the atoms named, each once or more, have moved since the last call; what
+// others are at is not looked at unless the list is built anew.
+ListChange update_cluster_list(std::span<const Vec3> positions,
+                               std::span<const std::array<std::uint32_t, 2>> left_out,
+                               std::span<const std::uint32_t> moved, ClusterList& list);
 
 // The pairs of all tiles, one by one.
 std::vector<std::array<std::uint32_t, 2>> list_pairs(const ClusterList& list);

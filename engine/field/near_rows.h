@@ -1,12 +1,13 @@
 // Which atoms of a cluster are near one of another's: what field/cluster_list.cpp asks most, by
 // code that is compiled for each kind of processor, with the same answer on all.
 #pragma once
-#include "field/cluster_list.h"
-
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace palpa {
+
+inline constexpr std::size_t cluster_size = 8;
 
 // A cluster's atoms by coordinate, Å; where there is none, NaN: nothing is near.
 struct alignas(64) ClusterPlaces {

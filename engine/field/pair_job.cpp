@@ -297,9 +297,11 @@ private:
         const VanDerWaals van_der_waals = van_der_waals_;
         Sums sums{nearest2_, hn::Zero(floats), hn::Zero(floats)};
         std::size_t stretches = 0;
-        for (std::size_t t = list_.first_plain[c]; t < list_.first_plain[c + 1];) {
-            const std::size_t end = std::min(t + most_tiles, list_.first_plain[c + 1]);
-            for (; t < end; t += step) {
+        // What follows a tile without rows or pairs has none either.
+        const std::size_t plain_end = list_.first_plain[c + 1];
+        for (std::size_t t = list_.first_plain[c]; t < plain_end && list_.plain[t].rows != 0;) {
+            const std::size_t end = std::min(t + most_tiles, plain_end);
+            for (; t < end && list_.plain[t].rows != 0; t += step) {
                 const ClusterTile& first = list_.plain[t];
                 const ClusterTile& second = list_.plain[t + step - 1];
                 sum_tile<false>(electrostatics, van_der_waals, sums, first.cluster, second.cluster,
@@ -308,9 +310,10 @@ private:
             flush_energies(sums);
             if (++stretches % most_stretches == 0) flush_rows(c);
         }
-        for (std::size_t t = list_.first_masked[c]; t < list_.first_masked[c + 1];) {
-            const std::size_t end = std::min(t + most_tiles, list_.first_masked[c + 1]);
-            for (; t < end; t += step) {
+        const std::size_t masked_end = list_.first_masked[c + 1];
+        for (std::size_t t = list_.first_masked[c]; t < masked_end && list_.masked[t].pairs != 0;) {
+            const std::size_t end = std::min(t + most_tiles, masked_end);
+            for (; t < end && list_.masked[t].pairs != 0; t += step) {
                 const MaskedTile& first = list_.masked[t];
                 const MaskedTile& second = list_.masked[t + step - 1];
                 sum_tile<true>(electrostatics, van_der_waals, sums, first.cluster, second.cluster,

@@ -3,9 +3,14 @@
 #include "core/assertion.h"
 
 #include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
 
 namespace palpa {
 namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 bool is_combined(const LennardJonesTable& table, std::uint32_t a, std::uint32_t b) noexcept {
     const LennardJonesPair& own_a = table.row(a)[a];
@@ -42,14 +47,67 @@ void add_replaced_pairs(const Topology& topology, FastAtoms& atoms) {
     }
 }
 
+// A large system has millions of pairs with replaced numbers, few of them near. A list leaves out
+// those that are within `margin` of its reach, as long as no atom has gone half of that.
+constexpr double margin = 6;  // Å
+
+double reach_of(const NonbondedSettings& settings, double skin) {
+    return has_end(settings) ? settings.cutoff + skin : infinity;
+}
+
+bool is_far(std::span<const Vec3> positions, const std::array<std::uint32_t, 2>& pair,
+            double reach) {
+    return (positions[pair[0]] - positions[pair[1]]).squaredNorm() >= reach * reach;
+}
+
+void update_left_out(const FastAtoms& atoms, double reach, std::span<const Vec3> positions,
+                     FastPairs& pairs) {
+    pairs.first_replaced = atoms.first_replaced;
+    pairs.left_out.assign(
+        atoms.left_out.begin(),
+        atoms.left_out.begin() + static_cast<std::ptrdiff_t>(atoms.first_replaced));
+    for (const auto& pair : atoms.replaced()) {
+        if (!is_far(positions, pair, reach + margin)) pairs.left_out.push_back(pair);
+    }
+}
+
+void update_replaced(double reach, std::span<const Vec3> positions, FastPairs& pairs) {
+    pairs.replaced.clear();
+    for (const auto& pair : std::span(pairs.left_out).subspan(pairs.first_replaced)) {
+        if (!is_far(positions, pair, reach)) pairs.replaced.push_back(pair);
+    }
+}
+
+bool has_wandered(const FastPairs& pairs, std::span<const Vec3> positions) {
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        if (!((positions[i] - pairs.positions[i]).squaredNorm() <= 0.25 * margin * margin))
+            return true;
+    }
+    return false;
+}
+
+void build_list(const Topology& topology, const FastAtoms& atoms, const NonbondedSettings& settings,
+                double skin, std::span<const Vec3> positions, FastPairs& pairs) {
+    update_left_out(atoms, reach_of(settings, skin), positions, pairs);
+    pairs.list = has_end(settings)
+                     ? build_cluster_list(positions, pairs.left_out, settings.cutoff, skin,
+                                          std::move(pairs.list))
+                     : build_full_cluster_list(topology.size(), pairs.left_out, atoms.groups);
+    pairs.positions.assign(positions.begin(), positions.end());
+}
+
 void update_list(const Topology& topology, const FastAtoms& atoms,
                  const NonbondedSettings& settings, double skin, std::span<const Vec3> positions,
                  FastPairs& pairs) {
-    const bool ends = has_end(settings);
     if (pairs.builds > 0 && !is_outdated(pairs.list, positions)) return;
-    pairs.list = ends ? build_cluster_list(positions, atoms.left_out, settings.cutoff, skin,
-                                           std::move(pairs.list))
-                      : build_full_cluster_list(topology.size(), atoms.left_out, atoms.groups);
+    if (pairs.builds == 0 || has_wandered(pairs, positions)) {
+        build_list(topology, atoms, settings, skin, positions, pairs);
+    } else if (update_cluster_list(positions, pairs.left_out, pairs.list) != ListChange::Clusters) {
+        update_replaced(reach_of(settings, skin), positions, pairs);
+        ++pairs.updates;
+        return;
+    }
+    update_replaced(reach_of(settings, skin), positions, pairs);
     pairs.workspace =
         build_pair_workspace(pairs.list, {topology.charge, atoms.sqrt_epsilon, atoms.half_rmin},
                              std::move(pairs.workspace));
@@ -84,29 +142,48 @@ NonbondedEnergy add_fast_nonbonded_forces(const Topology& topology, const FastAt
     if (settings.distance_dielectric &&
         settings.electrostatics == ElectrostaticCutoff::ForceSwitch) {
         if (threads.beside) threads.beside();
+        ++pairs.in_double;
         return add_nonbonded_forces(topology, settings, positions, forces);
     }
     update_list(topology, atoms, settings, skin, positions, pairs);
+    const std::optional<NonbondedEnergy> energy =
+        add_tile_forces(topology, settings, pairs.list, pairs.workspace, pairs.replaced, positions,
+                        forces, result, threads);
+    if (energy) return *energy;
+    ++pairs.in_double;
+    if (atoms.groups.empty()) return add_nonbonded_forces(topology, settings, positions, forces);
+    return add_pairs_in_double(topology, settings, pairs.list, pairs.replaced, positions, forces);
+}
+
+std::optional<NonbondedEnergy> add_tile_forces(const Topology& topology,
+                                               const NonbondedSettings& settings,
+                                               const ClusterList& list, PairWorkspace& workspace,
+                                               std::span<const std::array<std::uint32_t, 2>> others,
+                                               std::span<const Vec3> positions,
+                                               std::span<Vec3> forces, PairResult result,
+                                               const PairThreads& threads) {
     const PairScheme scheme{settings.coulomb_constant / settings.dielectric,
                             settings.distance_dielectric,
                             settings.electrostatics,
                             settings.van_der_waals,
                             settings.switch_from,
                             settings.cutoff};
-    const PairKernelSum sum = add_cluster_pair_forces(pairs.list, scheme, positions,
-                                                      pairs.workspace, forces, result, threads);
-    if (!sum.is_sound) {
-        // The same pairs, so that energies can be compared with those of other positions.
-        if (atoms.groups.empty())
-            return add_nonbonded_forces(topology, settings, positions, forces);
-        std::vector<std::array<std::uint32_t, 2>> all = list_pairs(pairs.list);
-        all.insert(all.end(), atoms.replaced().begin(), atoms.replaced().end());
-        return add_pair_forces(topology, settings, all, positions, forces);
-    }
-    const NonbondedEnergy replaced =
-        add_pair_forces(topology, settings, atoms.replaced(), positions, forces);
-    if (result == PairResult::Forces) return {};
-    return {sum.van_der_waals + replaced.van_der_waals, sum.electrostatic + replaced.electrostatic};
+    const PairKernelSum sum =
+        add_cluster_pair_forces(list, scheme, positions, workspace, forces, result, threads);
+    if (!sum.is_sound) return std::nullopt;
+    const NonbondedEnergy added = add_pair_forces(topology, settings, others, positions, forces);
+    if (result == PairResult::Forces) return NonbondedEnergy{};
+    return NonbondedEnergy{sum.van_der_waals + added.van_der_waals,
+                           sum.electrostatic + added.electrostatic};
+}
+
+NonbondedEnergy add_pairs_in_double(const Topology& topology, const NonbondedSettings& settings,
+                                    const ClusterList& list,
+                                    std::span<const std::array<std::uint32_t, 2>> others,
+                                    std::span<const Vec3> positions, std::span<Vec3> forces) {
+    std::vector<std::array<std::uint32_t, 2>> pairs = list_pairs(list);
+    pairs.insert(pairs.end(), others.begin(), others.end());
+    return add_pair_forces(topology, settings, pairs, positions, forces);
 }
 
 }  // namespace palpa

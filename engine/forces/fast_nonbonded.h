@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -38,13 +39,20 @@ FastAtoms build_fast_atoms(const Topology& topology);
 struct FastPairs {
     ClusterList list;
     PairWorkspace workspace;
-    std::size_t builds = 0;  // of the list so far
+    // What the list leaves out, as in `FastAtoms`; where it ends at a cutoff, of the pairs with
+    // replaced numbers only those that may come that near before it is built anew.
+    std::vector<std::array<std::uint32_t, 2>> left_out;
+    std::size_t first_replaced = 0;
+    std::vector<std::array<std::uint32_t, 2>> replaced;  // of these, those that are near now
+    std::vector<Vec3> positions;                         // Å, when it was built
+    std::size_t builds = 0, updates = 0;                 // of the list so far
+    std::size_t in_double = 0;  // sums so far that single precision did not do
 };
 
 // Adds the forces (kcal/mol/Å) of all pairs but those three bonds apart, as `add_nonbonded_forces`
 // does, and returns their energies, zero unless asked for. Settings must be sound. A list with a
 // cutoff holds pairs up to `skin` (Å) beyond it; `pairs`, empty before the first call and of one
-// topology and cutoff ever after, is built anew when outdated. Pairs with replaced numbers are
+// topology and cutoff ever after, is updated when outdated. Pairs with replaced numbers are
 // summed in double. So is everything where single precision does not do: switched forces of
 // a dielectric that grows with the distance; atoms as close or as far apart as field/pair_kernel.h
 // says.
@@ -53,5 +61,22 @@ NonbondedEnergy add_fast_nonbonded_forces(const Topology& topology, const FastAt
                                           std::span<const Vec3> positions, FastPairs& pairs,
                                           std::span<Vec3> forces, PairResult result,
                                           const PairThreads& threads = {});
+
+// The same of the pairs of one list that is not outdated, with a workspace of its own, and of
+// others, which are summed in double. Atoms that stand in neither are not looked at. Nothing where
+// single precision does not do; no forces are added then.
+std::optional<NonbondedEnergy> add_tile_forces(const Topology& topology,
+                                               const NonbondedSettings& settings,
+                                               const ClusterList& list, PairWorkspace& workspace,
+                                               std::span<const std::array<std::uint32_t, 2>> others,
+                                               std::span<const Vec3> positions,
+                                               std::span<Vec3> forces, PairResult result,
+                                               const PairThreads& threads = {});
+
+// The very same pairs in double, so that energies can be compared with those of other positions.
+NonbondedEnergy add_pairs_in_double(const Topology& topology, const NonbondedSettings& settings,
+                                    const ClusterList& list,
+                                    std::span<const std::array<std::uint32_t, 2>> others,
+                                    std::span<const Vec3> positions, std::span<Vec3> forces);
 
 }  // namespace palpa

@@ -5,11 +5,19 @@
 #include "forces/cmap.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <thread>
 #include <vector>
 
 namespace palpa {
 namespace {
+
+constexpr std::array all_terms{&EnergyTerms::bond,         &EnergyTerms::angle,
+                               &EnergyTerms::urey_bradley, &EnergyTerms::dihedral,
+                               &EnergyTerms::improper,     &EnergyTerms::cmap,
+                               &EnergyTerms::lj,           &EnergyTerms::lj14,
+                               &EnergyTerms::coulomb,      &EnergyTerms::coulomb14};
 
 void add_pairs(const NonbondedEnergy& pairs, EnergyTerms& energy) noexcept {
     energy.lj += pairs.van_der_waals;
@@ -34,6 +42,22 @@ EnergyTerms add_bonded_forces(const Topology& topology, const NonbondedSettings&
 }
 
 }  // namespace
+
+double EnergyTerms::magnitude() const noexcept {
+    double sum = 0;
+    for (const auto term : all_terms) sum += std::abs(this->*term);
+    return sum;
+}
+
+EnergyTerms& EnergyTerms::operator+=(const EnergyTerms& other) noexcept {
+    for (const auto term : all_terms) this->*term += other.*term;
+    return *this;
+}
+
+EnergyTerms& EnergyTerms::operator-=(const EnergyTerms& other) noexcept {
+    for (const auto term : all_terms) this->*term -= other.*term;
+    return *this;
+}
 
 EnergyTerms add_forces(const Topology& topology, const NonbondedSettings& settings,
                        std::span<const Vec3> positions, std::span<Vec3> forces) noexcept {
@@ -80,23 +104,31 @@ FastForceField build_fast_force_field(const Topology& topology) {
     return {build_fast_atoms(topology), build_fast_bonded(topology)};
 }
 
+EnergyTerms add_fast_terms(const Topology& topology, const Topology& terms,
+                           const FastBonded& bonded, const NonbondedSettings& settings,
+                           std::span<const Vec3> positions, std::span<Vec3> forces) noexcept {
+    EnergyTerms energy;
+    const BondedEnergy sums = add_fast_bonded_forces(bonded, positions, forces);
+    energy.bond = sums.bond;
+    energy.angle = sums.angle;
+    energy.urey_bradley = sums.urey_bradley;
+    energy.dihedral = sums.dihedral;
+    energy.improper = sums.improper;
+    energy.cmap = add_cmap_forces(terms.cmap_terms, topology.cmap_maps, positions, forces);
+    const NonbondedEnergy pairs14 =
+        add_pair14_forces(topology, settings, terms.exclusions.pairs14, positions, forces);
+    energy.lj14 = pairs14.van_der_waals;
+    energy.coulomb14 = pairs14.electrostatic;
+    return energy;
+}
+
 EnergyTerms add_fast_forces(const Topology& topology, const FastForceField& fast,
                             const NonbondedSettings& settings, double skin,
                             std::span<const Vec3> positions, FastPairs& pairs,
                             std::span<Vec3> forces, PairResult result, std::size_t threads) {
     EnergyTerms energy;
     const auto add_others = [&] {
-        const BondedEnergy bonded = add_fast_bonded_forces(fast.bonded, positions, forces);
-        energy.bond = bonded.bond;
-        energy.angle = bonded.angle;
-        energy.urey_bradley = bonded.urey_bradley;
-        energy.dihedral = bonded.dihedral;
-        energy.improper = bonded.improper;
-        energy.cmap = add_cmap_forces(topology.cmap_terms, topology.cmap_maps, positions, forces);
-        const NonbondedEnergy pairs14 =
-            add_nonbonded14_forces(topology, settings, positions, forces);
-        energy.lj14 = pairs14.van_der_waals;
-        energy.coulomb14 = pairs14.electrostatic;
+        energy += add_fast_terms(topology, topology, fast.bonded, settings, positions, forces);
     };
     // The other terms of a protein's atom take about as long as two tiles of pairs.
     add_pairs(add_fast_nonbonded_forces(topology, fast.atoms, settings, skin, positions, pairs,

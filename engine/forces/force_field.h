@@ -29,6 +29,9 @@ struct EnergyTerms {
         return bond + angle + urey_bradley + dihedral + improper + cmap + lj + lj14 + coulomb +
                coulomb14;
     }
+    double magnitude() const noexcept;  // the sum of terms without their signs
+    EnergyTerms& operator+=(const EnergyTerms& other) noexcept;
+    EnergyTerms& operator-=(const EnergyTerms& other) noexcept;
 };
 
 // Adds all forces (kcal/mol/Å) to `forces`, one entry per atom, in a fixed order: a repeated call
@@ -50,6 +53,12 @@ struct FastForceField {
 };
 
 FastForceField build_fast_force_field(const Topology& topology);
+
+// All terms but the plain pairs, in double: those of `bonded`, which are of `terms`, its maps and
+// its pairs three bonds apart. `topology` has the charges, types and maps.
+EnergyTerms add_fast_terms(const Topology& topology, const Topology& terms,
+                           const FastBonded& bonded, const NonbondedSettings& settings,
+                           std::span<const Vec3> positions, std::span<Vec3> forces) noexcept;
 
 // The same as fast as the processor at hand can: pairs as `add_fast_nonbonded_forces` says, the
 // other terms in double. Without the energies of plain pairs unless asked for.

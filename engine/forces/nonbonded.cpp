@@ -248,13 +248,20 @@ NonbondedEnergy add_pair_forces(const Topology& topology, const NonbondedSetting
 NonbondedEnergy add_nonbonded14_forces(const Topology& topology, const NonbondedSettings& settings,
                                        std::span<const Vec3> positions,
                                        std::span<Vec3> forces) noexcept {
+    return add_pair14_forces(topology, settings, topology.exclusions.pairs14, positions, forces);
+}
+
+NonbondedEnergy add_pair14_forces(const Topology& topology, const NonbondedSettings& settings,
+                                  std::span<const std::array<std::uint32_t, 2>> pairs,
+                                  std::span<const Vec3> positions,
+                                  std::span<Vec3> forces) noexcept {
     PALPA_ASSERT(!find_problem(settings));
     PALPA_ASSERT(positions.size() == topology.size() && forces.size() == topology.size());
     const double coulomb =
         settings.coulomb_constant / settings.dielectric * settings.coulomb14_factor;
     return with_law(settings, [&](const auto& law) {
-        return add_given_pairs(topology, topology.lennard_jones14, law, coulomb,
-                               topology.exclusions.pairs14, positions, forces);
+        return add_given_pairs(topology, topology.lennard_jones14, law, coulomb, pairs, positions,
+                               forces);
     });
 }
 

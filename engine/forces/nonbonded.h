@@ -71,4 +71,9 @@ NonbondedEnergy add_nonbonded14_forces(const Topology& topology, const Nonbonded
                                        std::span<const Vec3> positions,
                                        std::span<Vec3> forces) noexcept;
 
+// Only some of those.
+NonbondedEnergy add_pair14_forces(const Topology& topology, const NonbondedSettings& settings,
+                                  std::span<const std::array<std::uint32_t, 2>> pairs,
+                                  std::span<const Vec3> positions, std::span<Vec3> forces) noexcept;
+
 }  // namespace palpa

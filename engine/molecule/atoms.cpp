@@ -6,4 +6,8 @@ std::string to_string(const AtomName& name) {
     return name.segment + " " + name.residue + " " + name.number + " " + name.atom;
 }
 
+bool is_same_residue(const AtomName& a, const AtomName& b) noexcept {
+    return a.segment == b.segment && a.number == b.number && a.residue == b.residue;
+}
+
 }  // namespace palpa

@@ -21,6 +21,9 @@ struct AtomName {
 // "WATA TIP3 1 OH2", for messages.
 std::string to_string(const AtomName& name);
 
+// Of one segment, number and residue name.
+bool is_same_residue(const AtomName& a, const AtomName& b) noexcept;
+
 // What PDB and mmCIF files tell of an atom beside its name and place.
 struct AtomRecord {
     std::int64_t serial = 0;

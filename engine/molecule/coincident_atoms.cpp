@@ -1,5 +1,6 @@
 #include "molecule/coincident_atoms.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -76,6 +77,21 @@ std::vector<std::array<std::size_t, 2>> find_coincident_atoms(std::span<const Ve
         }
     }
     return pairs;
+}
+
+std::optional<std::string> describe_coincident_atoms(std::span<const AtomName> names,
+                                                     std::span<const Vec3> positions,
+                                                     double distance) {
+    const auto pairs = find_coincident_atoms(positions, distance);
+    if (pairs.empty()) return std::nullopt;
+    const auto distance_of = [&](const std::array<std::size_t, 2>& pair) {
+        return (positions[pair[0]] - positions[pair[1]]).norm();
+    };
+    const auto closest = *std::ranges::min_element(pairs, {}, distance_of);
+    std::string text = fmt::format("{} and {} are {:.2f} Å apart", to_string(names[closest[0]]),
+                                   to_string(names[closest[1]]), distance_of(closest));
+    if (pairs.size() > 1) text += fmt::format(", and {} more such pairs", pairs.size() - 1);
+    return text;
 }
 
 }  // namespace palpa

@@ -1,10 +1,13 @@
 // Atoms in one place, where no chemistry puts them.
 #pragma once
 #include "math/vec.h"
+#include "molecule/atoms.h"
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace palpa {
@@ -14,5 +17,10 @@ namespace palpa {
 // many are in one place.
 std::vector<std::array<std::size_t, 2>> find_coincident_atoms(std::span<const Vec3> positions,
                                                               double distance);
+
+// In words for a warning: the closest of them, and how many others there are. None where none are.
+std::optional<std::string> describe_coincident_atoms(std::span<const AtomName> names,
+                                                     std::span<const Vec3> positions,
+                                                     double distance);
 
 }  // namespace palpa

@@ -20,13 +20,12 @@ void append_terms(const std::vector<std::array<std::uint32_t, Count>>& from,
 
 }  // namespace
 
-std::optional<std::array<std::uint32_t, 2>> append_segment(const Connectivity& from,
-                                                           std::string_view segment,
-                                                           Connectivity& to) {
+std::optional<std::array<std::uint32_t, 2>> append_atoms(const Connectivity& from,
+                                                         std::span<const std::uint32_t> atoms,
+                                                         Connectivity& to) {
     if (to.file.empty()) to.file = from.file;
     std::vector<std::uint32_t> new_index(from.names.size(), left_out);
-    for (std::size_t i = 0; i < from.names.size(); ++i) {
-        if (from.names[i].segment != segment) continue;
+    for (const std::uint32_t i : atoms) {
         new_index[i] = static_cast<std::uint32_t>(to.names.size());
         to.names.push_back(from.names[i]);
         to.type.push_back(from.type[i]);
@@ -45,6 +44,16 @@ std::optional<std::array<std::uint32_t, 2>> append_segment(const Connectivity& f
     const auto out = std::ranges::find_if(from.bonds, leads_out);
     if (out == from.bonds.end()) return std::nullopt;
     return *out;
+}
+
+std::optional<std::array<std::uint32_t, 2>> append_segment(const Connectivity& from,
+                                                           std::string_view segment,
+                                                           Connectivity& to) {
+    std::vector<std::uint32_t> atoms;
+    for (std::uint32_t i = 0; i < from.names.size(); ++i) {
+        if (from.names[i].segment == segment) atoms.push_back(i);
+    }
+    return append_atoms(from, atoms, to);
 }
 
 }  // namespace palpa

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,8 +29,13 @@ struct Connectivity {
     std::vector<std::array<std::uint32_t, 8>> cmaps;  // two dihedrals each
 };
 
-// Adds the atoms of one segment behind those of `to`, in their order, and the terms among them.
-// Returns a bond that leads out of the segment, if there is one; it and others are left out.
+// Adds those atoms of `from`, indices, behind those of `to`, in their order, and the terms among
+// them. Returns a bond that leads out of them, if there is one; it and others are left out.
+std::optional<std::array<std::uint32_t, 2>> append_atoms(const Connectivity& from,
+                                                         std::span<const std::uint32_t> atoms,
+                                                         Connectivity& to);
+
+// The same with the atoms of one segment, in the order of the file.
 std::optional<std::array<std::uint32_t, 2>> append_segment(const Connectivity& from,
                                                            std::string_view segment,
                                                            Connectivity& to);

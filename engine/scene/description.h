@@ -26,6 +26,11 @@ inline constexpr std::array<std::string_view, 2> shape_names{"rigid", "flexible"
 enum class PairPrecision { Double, Fast };
 inline constexpr std::array<std::string_view, 2> pair_precision_names{"double", "fast"};
 
+// What counts where active joints are chosen.
+enum class JointWeights { Plain, Inertia, Single, Light, NearHand };
+inline constexpr std::array<std::string_view, 5> joint_weight_names{"plain", "inertia", "single",
+                                                                    "light", "near-hand"};
+
 // In the order of statics' RelaxMethod.
 enum class StaticsMethod { QuasiStatic, LimitedMemory, InverseMass };
 inline constexpr std::array<std::string_view, 3> statics_method_names{
@@ -87,6 +92,10 @@ struct StaticsDescription {
     double largest_move_angstrom = 0.05;
     PairPrecision pairs = PairPrecision::Fast;
     std::optional<double> cutoff_angstrom;  // unset: all pairs
+    std::int64_t active = 1'000'000;        // degrees of freedom at most
+    std::optional<double> budget_us;        // of a step; unset: none
+    JointWeights weights = JointWeights::NearHand;
+    std::int64_t choose_every = 10;  // steps
     double rest_kcal_per_mol = 0.05;
     std::int64_t relax_steps = 4000;
 };
@@ -141,6 +150,7 @@ struct LessonStepDescription {
 struct SceneDescription {
     std::filesystem::path file;
     std::string title, about;
+    std::string made_by;  // the command that makes the files it names; empty: they are there
     ForceFieldDescription force_field;
     std::vector<MoleculeDescription> molecules;  // in the order of the file
     JointsDescription joints;

@@ -157,6 +157,29 @@ void visit_statics(FieldVisitor& v, StaticsDescription& s) {
                      .lowest = 4,
                      .highest = 1e3},
                     s.cutoff_angstrom);
+    v.integer({.key = "active",
+               .meaning = "degrees of freedom that may move at a time, those that would move most; "
+                          "a free base is 6 of them",
+               .lowest = 0,
+               .highest = 1e6},
+              s.active);
+    v.optional_real({.key = "budget_us",
+                     .meaning = "time of a step, in which as many are active as 99 % of steps "
+                                "have time for; such runs do not repeat to the bit; unset: any",
+                     .lowest = 1,
+                     .highest = 1e6},
+                    s.budget_us);
+    choose(v,
+           {.key = "weights",
+            .meaning = "what counts in that choice: accelerations of regions, as in the paper, or "
+                       "with the inertia that they move; of joints one by one; of these the more "
+                       "the fewer atoms they move; and the nearer they are to the hand"},
+           joint_weight_names, s.weights);
+    v.integer({.key = "choose_every",
+               .meaning = "steps from one choice to the next",
+               .lowest = 1,
+               .highest = 1e6},
+              s.choose_every);
     v.real({.key = "rest_kcal_per_mol",
             .meaning = "on loading all is relaxed until the rms force along the coordinates "
                        "(per radian and per Å) is below this",
@@ -427,6 +450,10 @@ private:
 void visit_scene(FieldVisitor& v, SceneDescription& scene) {
     v.text({.key = "title", .meaning = "name of the scene"}, scene.title);
     v.text({.key = "about", .meaning = "what it shows, in a few sentences"}, scene.about);
+    v.text({.key = "made_by",
+            .meaning = "command that makes the files that the scene names, told where one is "
+                       "missing"},
+           scene.made_by);
     visit_force_field(v, scene.force_field);
     visit_molecules(v, scene.molecules);
     visit_joints(v, scene.joints);

@@ -68,7 +68,9 @@ std::string kind_of(const toml::node& node) {
 class Reader final : public FieldVisitor {
 public:
     Reader(const toml::table& root, fs::path file)
-        : file_(std::move(file)), folder_(file_.parent_path()) {
+        : file_(std::move(file)),
+          folder_(file_.parent_path()),
+          made_by_(root["made_by"].value_or(std::string())) {
         levels_.push_back({&root, "", place_or_start(root), {}, false});
     }
 
@@ -345,9 +347,11 @@ private:
         value = folder_ / node.ref<std::string>();
         std::error_code error;
         if (fs::is_regular_file(value, error)) return true;
-        problem(node, fmt::format("'{}' names no file: {} is not there; expected a file beside the "
-                                  "scene",
-                                  full_key(field.key), value.generic_string()));
+        problem(node,
+                fmt::format("'{}' names no file: {} is not there; expected {}", full_key(field.key),
+                            value.generic_string(),
+                            made_by_.empty() ? "a file beside the scene"
+                                             : fmt::format("what {} makes, run first", made_by_)));
         return false;
     }
 
@@ -367,6 +371,7 @@ private:
     }
 
     fs::path file_, folder_;
+    std::string made_by_;  // the command that makes files that are not there
     std::vector<Level> levels_;
     std::vector<Problem> problems_;
     std::map<std::string, TextPlace, std::less<>> places_;  // by full key

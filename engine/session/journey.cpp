@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <numeric>
 
 namespace palpa {
 namespace {
@@ -16,17 +18,41 @@ AtomRange grabbed_atoms(const Simulation& simulation) {
     return simulation.world.find<Molecule>(grab.molecule)->atoms;
 }
 
+std::vector<std::uint32_t> held_atoms(const Simulation& simulation) {
+    if (simulation.flexible && simulation.flexible->state.tether) {
+        return simulation.flexible->state.tether->atoms;
+    }
+    const AtomRange grabbed = grabbed_atoms(simulation);
+    std::vector<std::uint32_t> atoms(grabbed.count);
+    std::iota(atoms.begin(), atoms.end(), grabbed.first);
+    return atoms;
+}
+
+Vec3 centre_of_held(const Simulation& simulation) {
+    if (simulation.flexible && simulation.flexible->state.tether) {
+        const Flexible& flexible = *simulation.flexible;
+        return find_tethered(flexible.model, *flexible.state.tether, flexible.state.positions);
+    }
+    return centre_of_mass(simulation.atoms, grabbed_atoms(simulation));
+}
+
 }  // namespace
 
 JourneyLog::JourneyLog(const Simulation& start) {
+    const auto is_heavy = [&](std::size_t i) {
+        return start.atoms.mass[i] >= heavier_than_hydrogen;
+    };
+    for (const std::uint32_t i : held_atoms(start)) {
+        if (!is_heavy(i)) continue;
+        heavy_.push_back(i);
+        start_.push_back(start.atoms.positions[i]);
+    }
     const AtomRange grabbed = grabbed_atoms(start);
     for (std::size_t i = 0; i < start.atoms.size(); ++i) {
-        if (start.atoms.mass[i] < heavier_than_hydrogen) continue;
         const bool is_grabbed = i >= grabbed.first && i < grabbed.first + grabbed.count;
-        (is_grabbed ? heavy_ : other_heavy_).push_back(i);
-        if (is_grabbed) start_.push_back(start.atoms.positions[i]);
+        if (!is_grabbed && is_heavy(i)) other_heavy_.push_back(i);
     }
-    start_centre_ = centre_of_mass(start.atoms, grabbed);
+    start_centre_ = centre_of_held(start);
     journey_.closest = std::numeric_limits<double>::infinity();
     journey_.farthest = -1;  // so that the start counts
     add(start);
@@ -44,7 +70,7 @@ void JourneyLog::add(const Simulation& simulation) {
     }
     const double clearance = std::sqrt(nearest2);
     journey_.closest = std::min(journey_.closest, clearance);
-    const Vec3 centre = centre_of_mass(simulation.atoms, grabbed_atoms(simulation));
+    const Vec3 centre = centre_of_held(simulation);
     const double distance = (centre - start_centre_).norm();
     if (distance > journey_.farthest) {
         journey_.farthest = distance;

@@ -1,4 +1,4 @@
-// How far the molecule in the hand went from where it started, and how it came back.
+// How far what is in the hand went from where it started, and how it came back.
 #pragma once
 #include "simulation/simulation.h"
 
@@ -10,12 +10,12 @@ namespace palpa {
 // Å; heavy atoms are all but hydrogens.
 struct Journey {
     double farthest = 0;   // of the centre of mass from its start
-    double clearance = 0;  // then: between heavy atoms of it and of all others
+    double clearance = 0;  // then: between heavy atoms of it and of all other molecules
     double closest = 0;    // the smallest such distance of the whole way
     double last_rmsd = 0;  // of its heavy atoms at the end from their start
 };
 
-// Of a molecule that the hand moves in space.
+// Of a molecule that the hand moves in space, or of the residue or atom that its spring pulls at.
 class JourneyLog {
 public:
     explicit JourneyLog(const Simulation& start);

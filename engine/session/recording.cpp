@@ -166,6 +166,12 @@ std::string format_summary(const SceneDescription& scene, const Summary& summary
     json["largest_repulsion_N"] = summary.largest_repulsion_N;
     json["closest_angstrom"] = summary.closest_angstrom;
     json["last_angstrom"] = summary.last_angstrom;
+    if (summary.activity) {
+        json["active_mean"] = summary.activity->active;
+        json["neglected_share"] = summary.activity->neglected_share;
+        json["choices"] = summary.activity->choices;
+        json["within_budget_share"] = summary.activity->within_budget;
+    }
     if (summary.journey) {
         json["farthest_angstrom"] = summary.journey->farthest;
         json["clearance_angstrom"] = summary.journey->clearance;

@@ -3,6 +3,7 @@
 #include "core/units.h"
 #include "haptics/hand.h"
 #include "haptics/plant.h"
+#include "molecule/coincident_atoms.h"
 #include "session/lockstep.h"
 #include "simulation/components.h"
 #include "simulation/probe.h"
@@ -110,6 +111,10 @@ std::vector<std::string> list_warnings(const SceneDescription& scene, const Simu
                 relaxed_limit, scene.period_ms, stiffest.newton_per_metre));
         }
     }
+    if (const auto closest = describe_coincident_atoms(
+            simulation.atoms.names, simulation.atoms.positions, nearest_single_precision)) {
+        warnings.push_back(fmt::format("atoms are on each other at the start: {}", *closest));
+    }
     if (simulation.flexible && simulation.flexible->relaxed.end != RelaxEnd::Converged) {
         const JointRelaxReport& relaxed = simulation.flexible->relaxed;
         warnings.push_back(fmt::format(
@@ -133,7 +138,43 @@ void warn_of_outcome(Summary& summary) {
     if (summary.stopped) {
         summary.warnings.emplace_back("a force was not finite: the device was stopped");
     }
+    if (summary.steps_not_finite > 0) {
+        summary.warnings.push_back(fmt::format("{} of {} steps were not finite and moved nothing",
+                                               summary.steps_not_finite, summary.steps));
+    }
+    if (summary.sums_in_double > 0) {
+        summary.warnings.push_back(fmt::format(
+            "{} of {} sums of forces were in double and took longer: atoms were within {} Å of "
+            "each other, or {} Å away",
+            summary.sums_in_double, summary.sums, nearest_single_precision,
+            farthest_single_precision));
+    }
 }
+
+// What was active, step by step.
+class ActivityLog {
+public:
+    void add(const SettleReport& settled, double took_us, const std::optional<double>& budget_us) {
+        steps_ += 1;
+        sum_.active += static_cast<double>(settled.active);
+        if (!budget_us || took_us <= *budget_us) within_ += 1;
+        if (!settled.is_chosen) return;
+        ++sum_.choices;
+        if (settled.total > 0) sum_.neglected_share += settled.neglected / settled.total;
+    }
+
+    Activity activity() const {
+        Activity result = sum_;
+        if (steps_ > 0) result.active /= steps_;
+        if (result.choices > 0) result.neglected_share /= static_cast<double>(result.choices);
+        result.within_budget = steps_ > 0 ? within_ / steps_ : 1;
+        return result;
+    }
+
+private:
+    Activity sum_;
+    double steps_ = 0, within_ = 0;
+};
 
 Summary run_headless(const SceneDescription& scene, Simulation& simulation, Device& device,
                      const std::vector<std::string>& warnings, Recording* recording,
@@ -142,6 +183,7 @@ Summary run_headless(const SceneDescription& scene, Simulation& simulation, Devi
     const auto ticks_per_step =
         static_cast<std::uint64_t>(std::lround(simulation.period_s / tick_s));
     Statistics statistics(tick_s);
+    ActivityLog activity;
     std::optional<JourneyLog> journey;
     if (simulation.flexible) journey.emplace(simulation);
 
@@ -151,6 +193,8 @@ Summary run_headless(const SceneDescription& scene, Simulation& simulation, Devi
         const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
         statistics.add_step(took.count(), report.finite);
         if (journey) journey->add(simulation);
+        if (report.settled)
+            activity.add(*report.settled, 1e6 * took.count(), scene.statics.budget_us);
         return report.touch;
     };
     std::uint64_t done = 0, drawn = 0;
@@ -173,11 +217,17 @@ Summary run_headless(const SceneDescription& scene, Simulation& simulation, Devi
     if (progress) progress(1);
     Summary summary = statistics.summary();
     summary.warnings = warnings;
-    if (journey) {
+    if (journey && simulation.flexible) {
         // Where molecules make room for each other, one may well be on either side of another.
         constexpr double on_top = 1;  // Å
         summary.journey = journey->journey();
         summary.went_through = summary.journey->closest < on_top;
+        const Flexible& flexible = *simulation.flexible;
+        const ForceMemory& memory =
+            flexible.adaptive_settings ? flexible.adaptive.memory : flexible.statics.memory;
+        if (flexible.adaptive_settings) summary.activity = activity.activity();
+        summary.sums = memory.evaluations;
+        summary.sums_in_double = memory.fast_pairs.in_double;
     }
     warn_of_outcome(summary);
     if (recording) recording->finish(summary);

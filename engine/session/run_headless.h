@@ -41,8 +41,9 @@ FeltStiffness stiffest_place(const SceneDescription& scene, const Simulation& si
 double calm_stiffness(const SceneDescription& scene, const std::optional<HandModel>& hand,
                       double period_s);
 
-// In words, what about the scene's settings makes trouble: a spring stiffer than this hand, device,
-// period and servo delay keep calm (haptics/plant.h), a stroke longer than the run.
+// In words, what about the scene makes trouble: a spring stiffer than this hand, device, period and
+// servo delay keep calm (haptics/plant.h), atoms on each other, molecules that are not at rest, a
+// stroke longer than the run.
 std::vector<std::string> list_warnings(const SceneDescription& scene, const Simulation& simulation,
                                        const HandScript& script);
 

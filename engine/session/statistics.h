@@ -11,9 +11,22 @@
 
 namespace palpa {
 
+// Of scenes in which few degrees of freedom are active at a time.
+struct Activity {
+    double active = 0;  // degrees of freedom, on average over the steps
+    // Of the weighted squares of accelerations, on average over the choices: how much was not
+    // chosen.
+    double neglected_share = 0;
+    std::uint64_t choices = 0;
+    double within_budget = 1;  // share of the steps; 1 without a budget
+};
+
 struct Summary {
     std::uint64_t ticks = 0, steps = 0;
     std::uint64_t steps_not_finite = 0;
+    // Sums of forces since the scene was loaded, and those that fast pairs left to double. 0 where
+    // nothing moves by itself.
+    std::uint64_t sums = 0, sums_in_double = 0;
     double step_median_us = 0, step_p99_us = 0;  // wall time
     std::optional<Ripple> ripple;                // of the device force along x, last 4 s
     double net_work_J = 0;                       // done on the hand; + = generated
@@ -26,6 +39,7 @@ struct Summary {
     bool stopped = false;                        // a force was not finite
     std::uint64_t overruns = 0;                  // servo ticks that came too late; none in lockstep
     std::optional<Journey> journey;              // in space, where something moves by itself
+    std::optional<Activity> activity;
     std::vector<std::string> warnings;
 };
 

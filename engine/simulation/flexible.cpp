@@ -85,7 +85,9 @@ public:
         };
         for (std::size_t first = 0, next = 0; first < is_mobile_.size(); first = next) {
             bool is_kept = false;
-            for (; next < is_mobile_.size() && is_same_residue(connectivity, first, next); ++next) {
+            for (; next < is_mobile_.size() &&
+                   is_same_residue(connectivity.names[first], connectivity.names[next]);
+                 ++next) {
                 is_kept = is_kept || (is_mobile_[next] != 0 && is_near(next));
             }
             if (is_kept) continue;
@@ -98,24 +100,12 @@ public:
     }
 
 private:
-    static bool is_same_residue(const Connectivity& connectivity, std::size_t a, std::size_t b) {
-        const AtomName &first = connectivity.names[a], &second = connectivity.names[b];
-        return first.segment == second.segment && first.number == second.number &&
-               first.residue == second.residue;
-    }
-
     std::vector<std::uint8_t> is_mobile_;
 };
 
 const FlexiblePart& part_named(std::span<const FlexiblePart> parts, std::string_view name) {
     return *std::ranges::find_if(
         parts, [&](const FlexiblePart& part) { return part.description->name == name; });
-}
-
-bool is_backbone(const Connectivity& connectivity, const Joint& joint) {
-    const std::string &a = connectivity.names[joint.bond[0]].atom,
-                      &b = connectivity.names[joint.bond[1]].atom;
-    return (a == "CA" && (b == "N" || b == "C")) || (b == "CA" && (a == "N" || a == "C"));
 }
 
 struct SceneJoints {
@@ -140,7 +130,7 @@ SceneJoints find_joints(const SceneDescription& scene, const Connectivity& conne
     };
     if (!scene.joints.backbone) {
         std::erase_if(result.joints.joints, [&](const Joint& joint) {
-            return is_backbone(connectivity, joint) && !is_named(joint);
+            return is_backbone(connectivity, joint.bond) && !is_named(joint);
         });
     }
     for (const JointOverride& o : rules.overrides) {
@@ -172,16 +162,6 @@ SceneJoints find_joints(const SceneDescription& scene, const Connectivity& conne
 }
 
 // ---- which bases -----------------------------------------------------------------------------
-
-// Which molecule of the bonded each body belongs to.
-std::vector<std::uint32_t> molecules_of(const TorsionBodies& bodies) {
-    std::vector<std::uint32_t> molecules;
-    std::uint32_t count = 0;
-    for (const Body& body : bodies.bodies) {
-        molecules.push_back(body.parent == no_body ? count++ : molecules[body.parent]);
-    }
-    return molecules;
-}
 
 BaseFreedom freedom_of(Motion motion) {
     if (motion == Motion::Free) return BaseFreedom::Free;
@@ -286,6 +266,130 @@ RelaxSettings build_settings(const SceneDescription& scene) {
     return settings;
 }
 
+AdaptiveSettings build_adaptive_settings(const StaticsDescription& s,
+                                         const QuasiStaticSettings& step) {
+    AdaptiveSettings settings;
+    settings.step = step;
+    settings.limits.degrees_of_freedom = static_cast<std::size_t>(s.active);
+    settings.choose_every = static_cast<std::size_t>(s.choose_every);
+    if (s.weights != JointWeights::Plain) settings.weight = MetricWeight::Inertia;
+    if (s.weights != JointWeights::Plain && s.weights != JointWeights::Inertia)
+        settings.limits.shape = SelectionShape::Single;
+    return settings;
+}
+
+// A joint that turns half a chain makes all its pairs change; its factor falls with the third power
+// of the atoms behind it, and that of a free base as if all were.
+std::vector<double> find_lightness(const TorsionModel& model) {
+    const AssemblyTree& tree = model.tree;
+    const std::vector<Body>& bodies = tree.bodies.bodies;
+    std::vector<double> behind(bodies.size(), 0), lightness;
+    for (std::size_t b = bodies.size(); b-- > 0;) {
+        behind[b] += tree.first_atom[b + 1] - tree.first_atom[b];
+        if (!tree.bodies.is_base(b)) behind[bodies[b].parent] += behind[b];
+    }
+    for (const double atoms : behind) {
+        lightness.push_back(1 / ((1 + atoms / 20) * (1 + atoms * atoms / 100)));
+    }
+    return lightness;
+}
+
+bool is_adaptive(const StaticsDescription& s, const TorsionModel& model) {
+    return s.method == StaticsMethod::QuasiStatic &&
+           (s.active < model.coordinates || s.budget_us.has_value());
+}
+
+// What is held, as a ball.
+struct Ball {
+    Vec3 centre;
+    double radius;
+};
+
+Ball find_held_ball(const Flexible& flexible) {
+    const TorsionModel& model = flexible.model;
+    const std::vector<Vec3>& positions = flexible.state.positions;
+    if (flexible.state.tether) {
+        const Tether& tether = *flexible.state.tether;
+        return {find_tethered(model, tether, positions), 0};
+    }
+    const AssemblyState& whole = flexible.adaptive.whole;
+    return {whole.points[model.tree.bases[flexible.grabbed]], whole.gyration[flexible.grabbed]};
+}
+
+// How much each joint counts: less than half from 5 Å on around what is held, then less and less.
+void update_factors(const Flexible& flexible, AdaptiveSettings& settings) {
+    constexpr double reach2 = 25;  // Å^2
+    const TorsionModel& model = flexible.model;
+    const std::vector<Body>& bodies = model.tree.bodies.bodies;
+    std::vector<double>& factors = settings.factors;
+    factors = flexible.lightness;
+    if (!flexible.adaptive.is_built && !flexible.state.tether) return;
+    const auto [centre, radius] = find_held_ball(flexible);
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        if (model.tree.bodies.is_base(b)) continue;
+        const double distance = (flexible.state.positions[bodies[b].axis[1]] - centre).norm();
+        const double beyond = std::max(0.0, distance - radius);
+        const double nearness = reach2 / (reach2 + beyond * beyond);
+        factors[b] *= nearness * nearness;
+    }
+}
+
+// Before a choice.
+void prepare_choice(Flexible& flexible, AdaptiveSettings& settings) {
+    if (flexible.is_near_hand) update_factors(flexible, settings);
+    if (!flexible.budget) return;
+    settings.limits.degrees_of_freedom =
+        flexible.budget->find_freedom(static_cast<std::size_t>(flexible.model.coordinates));
+    settings.choose_every = flexible.budget->find_interval(flexible.choose_every);
+}
+
+void keep_held(Flexible& flexible) {
+    const TorsionState& state = flexible.state;
+    flexible.held_before.shift = state.shifts[flexible.grabbed];
+    if (state.tether) flexible.held_before.place = state.tether->place;
+}
+
+// What the hand did, from the coordinates, which are those of the last step else.
+void take_back(const AdaptiveSettings& settings, Flexible& flexible) {
+    TorsionState& state = flexible.state;
+    state.shifts[flexible.grabbed] = flexible.held_before.shift;
+    if (state.tether) state.tether->place = flexible.held_before.place;
+    update_positions(flexible.model, state);
+    flexible.adaptive.is_built = false;
+    (void)update_adaptive_forces(flexible.model, settings, state, flexible.adaptive);
+}
+
+SettleReport step_adaptively(Flexible& flexible, AdaptiveSettings& settings) {
+    const TorsionModel& model = flexible.model;
+    AdaptiveStatics& statics = flexible.adaptive;
+    TorsionState& state = flexible.state;
+    SettleReport report;
+    const std::size_t evaluations = statics.memory.evaluations, renewals = statics.renewals;
+    const double before = state.energy();
+    report.is_finite = update_adaptive_forces(model, settings, state, statics);
+    report.hand_work = state.energy() - before;
+    for (std::size_t i = 0; i < flexible.settings.steps && report.is_finite; ++i) {
+        if (statics.steps_since_choice >= settings.choose_every) prepare_choice(flexible, settings);
+        const AdaptiveReport step = step_adaptive(model, settings, state, statics);
+        report.is_finite = step.step.is_finite;
+        report.is_chosen = report.is_chosen || step.is_chosen;
+        if (step.step.is_taken) report.largest_move += step.step.largest_move;
+    }
+    report.energy_change = state.energy() - before - report.hand_work;
+    report.is_renewed = statics.renewals != renewals;
+    report.evaluations = statics.memory.evaluations - evaluations;
+    report.active = find_active_freedom(model, statics);
+    report.total = statics.selection.total;
+    report.neglected = statics.selection.neglected;
+    report.is_finite = report.is_finite && std::isfinite(state.energy());
+    if (report.is_finite) {
+        keep_held(flexible);
+    } else {
+        take_back(settings, flexible);
+    }
+    return report;
+}
+
 }  // namespace
 
 Flexible build_flexible(const SceneDescription& scene, const Connectivity& connectivity,
@@ -303,44 +407,78 @@ Flexible build_flexible(const SceneDescription& scene, const Connectivity& conne
     if (!scene.grab.atom.empty()) tether = read_tether(scene, connectivity, grabbed);
 
     // At first nobody holds anything.
-    Flexible result;
-    result.grabbed = molecules_of(bodies)[bodies.body_of[grabbed.reference_atom]];
+    const std::uint32_t in_hand = molecules_of(bodies)[bodies.body_of[grabbed.reference_atom]];
     std::vector<MoleculeBase> bases = find_bases(bodies, parts);
-    const MoleculeBase held = bases[result.grabbed];
-    if (is_moved) bases[result.grabbed].freedom = BaseFreedom::Free;
+    const MoleculeBase held = bases[in_hand];
+    if (is_moved) bases[in_hand].freedom = BaseFreedom::Free;
     const TorsionModel loose = build_torsion_model(
         bodies, connectivity.mass, {positions.begin(), positions.end()}, topology, bases);
     TorsionState rest = build_torsion_state(loose);
     QuasiStatics statics = build_quasi_statics(loose);
-    result.settings = build_settings(scene);
     RelaxSettings to_rest;
-    to_rest.step.forces = result.settings.step.forces;
+    to_rest.step.forces = build_settings(scene).step.forces;
     to_rest.force_tolerance = scene.statics.rest_kcal_per_mol;
     to_rest.steps = static_cast<std::size_t>(scene.statics.relax_steps);
-    result.relaxed = relax_joints(loose, to_rest, rest, statics, on_relax);
-    if (result.relaxed.end == RelaxEnd::NotFinite) {
+    const JointRelaxReport relaxed = relax_joints(loose, to_rest, rest, statics, on_relax);
+    if (relaxed.end == RelaxEnd::NotFinite) {
         throw LoadError(scene.place_of("molecules"),
                         "the energy at the start is not finite; expected atoms apart from each "
-                        "other");
+                        "other, and charges and parameters of molecules");
     }
 
-    bases[result.grabbed] = held;
-    result.model = build_torsion_model(bodies, connectivity.mass, rest.positions, topology, bases);
+    bases[in_hand] = held;
+    TorsionModel model =
+        build_torsion_model(bodies, connectivity.mass, rest.positions, topology, bases);
+    Flexible flexible = build_flexible(scene, std::move(model), in_hand, std::move(tether));
+    flexible.relaxed = relaxed;
+    flexible.joints = joints.joints.joints.size();
+    flexible.joints_held = joints.held;
+    return flexible;
+}
+
+Flexible build_flexible(const SceneDescription& scene, TorsionModel model, std::uint32_t grabbed,
+                        std::optional<Tether> tether) {
+    Flexible result;
+    result.grabbed = grabbed;
+    result.settings = build_settings(scene);
+    result.model = std::move(model);
     join_fixed(result.grabbed, result.model);
     result.state = build_torsion_state(result.model);
     result.statics = build_quasi_statics(result.model);
-    result.joints = joints.joints.joints.size();
-    result.joints_held = joints.held;
+    result.joints = result.model.tree.bodies.joints();
     if (tether) {
         result.state.tether = std::move(tether);
         result.state.tether->place =
             find_tethered(result.model, *result.state.tether, result.state.positions);
+    }
+    if (is_adaptive(scene.statics, result.model)) {
+        result.adaptive_settings = build_adaptive_settings(scene.statics, result.settings.step);
+        result.adaptive = build_adaptive_statics(result.model);
+        const JointWeights weights = scene.statics.weights;
+        result.is_near_hand = weights == JointWeights::NearHand;
+        if (weights == JointWeights::Light || weights == JointWeights::NearHand) {
+            result.lightness = find_lightness(result.model);
+            // What is in the hand weighs nothing.
+            result.lightness[result.model.tree.bases[result.grabbed]] = 1;
+            result.adaptive_settings->factors = result.lightness;
+        }
+        result.choose_every = result.adaptive_settings->choose_every;
+        if (scene.statics.budget_us) result.budget.emplace(*scene.statics.budget_us);
     }
     start_flexible(result);
     return result;
 }
 
 void start_flexible(Flexible& flexible) {
+    if (flexible.adaptive_settings) {
+        AdaptiveSettings& settings = *flexible.adaptive_settings;
+        prepare_choice(flexible, settings);
+        if (!flexible.state.tether) flexible.adaptive.is_guided[flexible.grabbed] = 1;
+        // What has no numbers is told by the first step.
+        (void)update_adaptive_forces(flexible.model, settings, flexible.state, flexible.adaptive);
+        keep_held(flexible);
+        return;
+    }
     update_forces(flexible.model, flexible.settings.step.forces, flexible.statics.memory,
                   flexible.state);
     flexible.safe = flexible.state;
@@ -354,12 +492,15 @@ Vec3 find_held(const Flexible& flexible) noexcept {
 void move_held(Flexible& flexible, const Vec3& by) noexcept {
     if (flexible.state.tether) {
         flexible.state.tether->place += by;
+    } else if (flexible.adaptive_settings) {
+        shift_base(flexible.model, flexible.grabbed, by, flexible.state, flexible.adaptive);
     } else {
         shift_base(flexible.model, flexible.grabbed, by, flexible.state);
     }
 }
 
 SettleReport step_flexible(Flexible& flexible) {
+    if (flexible.adaptive_settings) return step_adaptively(flexible, *flexible.adaptive_settings);
     const TorsionModel& model = flexible.model;
     const RelaxSettings& settings = flexible.settings;
     TorsionState& state = flexible.state;
@@ -382,6 +523,7 @@ SettleReport step_flexible(Flexible& flexible) {
         report.is_finite = relaxed.end != RelaxEnd::NotFinite;
     }
     report.evaluations = flexible.statics.memory.evaluations - evaluations;
+    report.active = static_cast<std::size_t>(model.coordinates);
     report.is_finite = report.is_finite && std::isfinite(state.energy());
     if (!report.is_finite) {
         state = flexible.safe;
@@ -390,6 +532,53 @@ SettleReport step_flexible(Flexible& flexible) {
     report.largest_move = find_largest_move(flexible.safe.positions, state.positions);
     flexible.safe = state;
     return report;
+}
+
+std::size_t find_active_freedom(const Flexible& flexible) noexcept {
+    return flexible.adaptive_settings ? find_active_freedom(flexible.model, flexible.adaptive)
+                                      : static_cast<std::size_t>(flexible.model.coordinates);
+}
+
+void note_time(Flexible& flexible, const SettleReport& report, double took_us) noexcept {
+    if (!flexible.budget) return;
+    if (report.is_chosen || report.is_renewed) {
+        flexible.budget->add_choice(took_us);
+    } else {
+        flexible.budget->add_step(took_us);
+    }
+}
+
+Vec6 find_pull_on_held(const Flexible& flexible) noexcept {
+    if (flexible.adaptive_settings) return find_wrench_on(flexible.adaptive, flexible.grabbed);
+    // What atoms of the molecule do to each other adds up to nothing.
+    const TorsionModel& model = flexible.model;
+    Vec6 wrench = Vec6::Zero();
+    for (std::size_t i = 0; i < flexible.state.forces.size(); ++i) {
+        if (model.tree.molecule_of[model.tree.bodies.body_of[i]] != flexible.grabbed) continue;
+        wrench.head<3>() += flexible.state.positions[i].cross(flexible.state.forces[i]);
+        wrench.tail<3>() += flexible.state.forces[i];
+    }
+    return wrench;
+}
+
+void copy_positions(Flexible& flexible, std::vector<Vec3>& positions) {
+    if (!flexible.adaptive_settings) {
+        positions = flexible.state.positions;
+        return;
+    }
+    AdaptiveStatics& statics = flexible.adaptive;
+    const std::size_t changes = statics.choices + statics.renewals;
+    if (!statics.is_built || flexible.copied != changes) {
+        positions = flexible.state.positions;
+        flexible.copied = changes;
+    } else {
+        for (std::size_t c = 0; c < statics.has_moved.size(); ++c) {
+            if (statics.has_moved[c] == 0) continue;
+            for (const std::uint32_t i : atoms_of(statics.clusters, c))
+                positions[i] = flexible.state.positions[i];
+        }
+    }
+    std::ranges::fill(statics.has_moved, std::uint8_t{0});
 }
 
 }  // namespace palpa

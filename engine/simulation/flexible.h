@@ -4,11 +4,14 @@
 #include "molecule/atoms.h"
 #include "molecule/connectivity.h"
 #include "scene/description.h"
+#include "statics/adaptive_step.h"
 #include "statics/relax_joints.h"
+#include "statics/time_budget.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -26,12 +29,25 @@ struct Flexible {
     TorsionModel model;
     TorsionState state;
     QuasiStatics statics;
-    TorsionState safe;            // where the last step left it
-    RelaxSettings settings;       // of every step
-    std::uint32_t grabbed = 0;    // the molecule of the model whose base the hand moves
-    JointRelaxReport relaxed;     // on loading
-    std::size_t joints = 0;       // in all
-    std::size_t joints_held = 0;  // that the rules would turn, were it not for the region
+    TorsionState safe;       // where the last step left it
+    RelaxSettings settings;  // of every step
+    // Instead, where not everything is active at a time.
+    std::optional<AdaptiveSettings> adaptive_settings;
+    AdaptiveStatics adaptive;
+    struct {
+        Vec3 shift = Vec3::Zero(), place = Vec3::Zero();  // Å, of its base, of its spring
+    } held_before;  // where the last step left what is in hand
+    std::optional<TimeBudget> budget;
+    // How much each joint counts for what it moves; empty where all do alike. And whether what is
+    // near to the hand counts more.
+    std::vector<double> lightness;
+    bool is_near_hand = false;
+    std::size_t choose_every = 0;  // steps, as the scene says
+    std::size_t copied = 0;        // choices and renewals when positions were copied in full
+    std::uint32_t grabbed = 0;     // the molecule of the model whose base the hand moves
+    JointRelaxReport relaxed;      // on loading
+    std::size_t joints = 0;        // in all
+    std::size_t joints_held = 0;   // that the rules would turn, were it not for the region
 };
 
 // Called while molecules come to rest; where it returns false they stay as they are.
@@ -44,6 +60,11 @@ Flexible build_flexible(const SceneDescription& scene, const Connectivity& conne
                         const Topology& topology, std::span<const Vec3> positions,
                         std::span<const FlexiblePart> parts,
                         const RelaxProgressFunction& on_relax = {});
+
+// A model that is at rest where its reference is, as the scene's statics move it. The hand moves
+// the base of the molecule `grabbed`, or what the tether holds, from where that is.
+Flexible build_flexible(const SceneDescription& scene, TorsionModel model, std::uint32_t grabbed,
+                        std::optional<Tether> tether = {});
 
 // Takes what the state is now as the start: forces, and where a step that fails goes back to.
 void start_flexible(Flexible& flexible);
@@ -59,10 +80,29 @@ struct [[nodiscard]] SettleReport {
     double energy_change = 0;  // kcal/mol, by coming to rest: above 0 only by rounding
     double largest_move = 0;   // of any atom, Å
     std::size_t evaluations = 0;
-    bool is_finite = true;  // else all is where the last step left it
+    std::size_t active = 0;  // degrees of freedom that could move
+    // The metric of everything at the last choice, and of what was not chosen: weighted squares of
+    // accelerations.
+    double total = 0, neglected = 0;
+    bool is_chosen = false;   // joints were chosen in this step
+    bool is_renewed = false;  // everything was summed anew
+    bool is_finite = true;    // else all is where the last step left it
 };
 
 // As many steps towards rest as the scene says.
 SettleReport step_flexible(Flexible& flexible);
+
+// How long the whole step took that the report is of; what a time budget goes by.
+void note_time(Flexible& flexible, const SettleReport& report, double took_us) noexcept;
+
+// Degrees of freedom that can move now.
+std::size_t find_active_freedom(const Flexible& flexible) noexcept;
+
+// Force and torque about the origin on the molecule that the hand moves, from all others.
+Vec6 find_pull_on_held(const Flexible& flexible) noexcept;
+
+// The places of atoms in the scene's table, those that have changed since `positions` were written
+// the last time.
+void copy_positions(Flexible& flexible, std::vector<Vec3>& positions);
 
 }  // namespace palpa

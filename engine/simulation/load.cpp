@@ -23,6 +23,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace palpa {
@@ -288,6 +289,21 @@ Simulation load_simulation(const SceneDescription& scene, const RelaxProgressFun
     }
     start_grabbed(scene, simulation);
     return simulation;
+}
+
+SceneSystem load_system(const SceneDescription& scene) {
+    const ForceField force_field = read_force_field(scene.force_field.files);
+    Files files;
+    AtomTable atoms;
+    const std::vector<const MoleculeDescription*> molecules = grabbed_first(scene);
+    for (const MoleculeDescription* const molecule : molecules) {
+        add_atoms(*molecule, force_field, files, atoms);
+    }
+    SceneSystem system;
+    system.connectivity = build_scene_connectivity(molecules, force_field, files);
+    system.topology = build_topology(system.connectivity, force_field);
+    system.positions = std::move(atoms.positions);
+    return system;
 }
 
 Vec3 centre_of_mass(const AtomTable& atoms, AtomRange range) noexcept {

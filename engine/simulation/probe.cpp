@@ -64,7 +64,7 @@ void place_grabbed(Simulation& simulation, const Vec3& place) noexcept {
     const Vec3 reference = simulation.anchor + place;
     if (simulation.flexible) {
         move_held(*simulation.flexible, reference - find_held(*simulation.flexible));
-        simulation.atoms.positions = simulation.flexible->state.positions;
+        copy_positions(*simulation.flexible, simulation.atoms.positions);
         return;
     }
     for (std::size_t i = 0; i < simulation.grabbed_shape.size(); ++i) {

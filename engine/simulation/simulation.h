@@ -1,11 +1,13 @@
 // The state of a running scene, and how it is made.
 #pragma once
+#include "charmm/topology.h"
 #include "ecs/entity.h"
 #include "ecs/world.h"
 #include "field/pair_field.h"
 #include "haptics/gains.h"
 #include "math/vec.h"
 #include "molecule/atoms.h"
+#include "molecule/connectivity.h"
 #include "scene/description.h"
 #include "simulation/flexible.h"
 #include "simulation/relax.h"
@@ -46,6 +48,17 @@ CouplingLaws build_coupling_laws(const CouplingDescription& coupling);
 // wrong.
 Simulation load_simulation(const SceneDescription& scene,
                            const RelaxProgressFunction& on_relax = {});
+
+// What a scene's molecules are, in the order of the atom table that load_simulation makes, and
+// where its files have them.
+struct SceneSystem {
+    Connectivity connectivity;
+    Topology topology;
+    std::vector<Vec3> positions;  // Å
+};
+
+// Without anything moved, held or relaxed. Throws LoadError as load_simulation does.
+SceneSystem load_system(const SceneDescription& scene);
 
 // By mass; of massless atoms the first's place.
 Vec3 centre_of_mass(const AtomTable& atoms, AtomRange range) noexcept;

@@ -2,10 +2,12 @@
 #include "simulation/step.h"
 
 #include "core/units.h"
+#include "field/frozen_field.h"
 #include "simulation/components.h"
 #include "simulation/probe.h"
 
 #include <Eigen/Eigenvalues>
+#include <chrono>
 #include <cmath>
 
 namespace palpa {
@@ -40,6 +42,14 @@ struct Pull {
     double stiffness, energy;
 };
 
+// In single precision: a step of molecules that move has no time for more.
+FieldSum fast_field_on_grabbed(const Simulation& simulation) {
+    const FieldPoints group = grabbed_points(simulation);
+    const FrozenField field =
+        build_frozen_field(group, environment_points(simulation), pair_rule(simulation));
+    return evaluate_frozen_field(field, group.positions);
+}
+
 // A hand on a spring feels the spring; one that moves a molecule, what all others do to it, with
 // the stiffness that it would have if they stayed where they are.
 Pull find_pull(const Simulation& simulation, const Grab& grab, const Guide& guide) noexcept {
@@ -51,17 +61,13 @@ Pull find_pull(const Simulation& simulation, const Grab& grab, const Guide& guid
         return {tether.k * away, Vec3::Zero(), tether.k, flexible.state.energy()};
     }
     const AtomRange atoms = simulation.world.find<Molecule>(grab.molecule)->atoms;
-    FieldSum field = field_on_grabbed(simulation);
+    FieldSum field =
+        simulation.flexible ? fast_field_on_grabbed(simulation) : field_on_grabbed(simulation);
     if (simulation.flexible) {
-        // As what moves by itself feels it, with its cutoff. What atoms of the molecule do to each
-        // other adds up to nothing.
-        const TorsionState& state = simulation.flexible->state;
-        field.force.setZero();
-        field.torque.setZero();
-        for (std::uint32_t i = atoms.first; i < atoms.first + atoms.count; ++i) {
-            field.force += state.forces[i];
-            field.torque += state.positions[i].cross(state.forces[i]);
-        }
+        // As what moves by itself feels it, with its cutoff.
+        const Vec6 wrench = find_pull_on_held(*simulation.flexible);
+        field.torque = wrench.head<3>();
+        field.force = wrench.tail<3>();
     }
     const Vec3 centre = centre_of_mass(simulation.atoms, atoms);
     return {field.force, field.torque_about(centre), extreme_stiffness(guide, field.stiffness),
@@ -85,7 +91,7 @@ TouchModel build_touch_model(const Simulation& simulation, const HandPose& hand)
     touch.potential_kcal_per_mol = pull.energy;
     touch.active_freedom = guide->freedom;
     if (simulation.flexible)
-        touch.active_freedom += static_cast<int>(simulation.flexible->model.coordinates);
+        touch.active_freedom += static_cast<int>(find_active_freedom(*simulation.flexible));
     touch.period_s = simulation.period_s;
     return touch;
 }
@@ -96,6 +102,7 @@ void take_hold(Simulation& simulation, const HandPose& hand) noexcept {
 
 StepReport step_simulation(Simulation& simulation, const HandPose& hand,
                            const TouchModel& felt) noexcept {
+    const auto begin = std::chrono::steady_clock::now();
     Grab* const grab = simulation.world.find<Grab>(simulation.hand);
     const Guide* const guide = simulation.world.find<Guide>(grab->molecule);
     const Move move = find_move(simulation, hand, felt, *grab, *guide);
@@ -113,13 +120,18 @@ StepReport step_simulation(Simulation& simulation, const HandPose& hand,
     place_grabbed(simulation, place);
     if (simulation.flexible) {
         report.settled = step_flexible(*simulation.flexible);
-        simulation.atoms.positions = simulation.flexible->state.positions;
+        copy_positions(*simulation.flexible, simulation.atoms.positions);
         report.finite = report.settled->is_finite;
     }
     report.touch = build_touch_model(simulation, hand);
     report.touch.displacement_gain = move.displacement_gain;
     report.finite = report.finite && report.touch.force_newton.allFinite();
     if (!report.finite) place_grabbed(simulation, before);
+    if (report.settled && simulation.flexible) {
+        const std::chrono::duration<double, std::micro> took =
+            std::chrono::steady_clock::now() - begin;
+        note_time(*simulation.flexible, *report.settled, took.count());
+    }
     return report;
 }
 

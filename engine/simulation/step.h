@@ -8,7 +8,7 @@
 namespace palpa {
 
 // What a step found. A step that is not finite has moved nothing; its touch model says what was not
-// finite, so that the servo stops, unless it was the hand's pose.
+// finite, so that the servo stops, unless it was the hand's pose or on the way to rest.
 struct [[nodiscard]] StepReport {
     TouchModel touch;                     // for the hand, one period later
     double move = 0;                      // Å, how far the hand moved what it holds

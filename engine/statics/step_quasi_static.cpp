@@ -25,15 +25,6 @@ void read_accelerations(const TorsionModel& model, const AssemblyState& assembly
     }
 }
 
-// Where the points are that guided bases turn about.
-void guide_pivots(const TorsionModel& model, const TorsionState& state,
-                  AssemblyState& assembly) noexcept {
-    for (std::size_t m = 0; m < model.bases.size(); ++m) {
-        if (model.bases[m].freedom == BaseFreedom::Turning)
-            assembly.guides[m].point = state.pivots[m];
-    }
-}
-
 // The wrench that does along each coordinate what the forces say.
 void put_on_bodies(const TorsionModel& model, const TorsionState& state,
                    const Coordinates& coordinate_forces, AssemblyState& assembly) noexcept {
@@ -60,7 +51,19 @@ void put_on_bodies(const TorsionModel& model, const TorsionState& state,
     }
 }
 
+double sum_of_terms(const TorsionState& state) noexcept {
+    return state.terms.magnitude() + state.tether_energy;
+}
+
 }  // namespace
+
+void guide_pivots(const TorsionModel& model, const TorsionState& state,
+                  AssemblyState& assembly) noexcept {
+    for (std::size_t m = 0; m < model.bases.size(); ++m) {
+        if (model.bases[m].freedom == BaseFreedom::Turning)
+            assembly.guides[m].point = state.pivots[m];
+    }
+}
 
 QuasiStatics build_quasi_statics(const TorsionModel& model) {
     QuasiStatics statics;
@@ -117,11 +120,9 @@ double place_within(const TorsionModel& model, const TorsionState& from, double 
 
 bool is_lower(const ForceSettings& settings, const TorsionState& from, const TorsionState& to,
               const Coordinates& move) noexcept {
-    const double change = to.energy() - from.energy();
-    // Fast pairs have been seen to round the energy by a tenth of that on 3,275 atoms.
-    constexpr double rounding = 0.01;  // kcal/mol
-    if (!settings.fast || std::abs(change) > rounding) return change <= 0;
-    return (from.coordinate_forces + to.coordinate_forces).dot(move) >= 0;
+    return is_energy_lower(settings, sum_of_terms(from), to.energy() - from.energy(), [&] {
+        return (from.coordinate_forces + to.coordinate_forces).dot(move);
+    });
 }
 
 QuasiStaticReport step_quasi_static(const TorsionModel& model, const QuasiStaticSettings& settings,
@@ -150,7 +151,6 @@ QuasiStaticReport step_quasi_static(const TorsionModel& model, const QuasiStatic
         statics.h *= settings.shrinkage;
         return report;
     }
-    constexpr double longest_h = 10;  // AKMA time
     if (wanted > 0) statics.h = std::min(longest_h, settings.growth * statics.h);
     take_over(statics.trial, state);
     return report;

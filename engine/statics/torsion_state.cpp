@@ -14,21 +14,6 @@ RigidMotion motion_of_base(const TorsionState& state, std::size_t molecule) {
     return {state.turns[molecule].toRotationMatrix(), state.shifts[molecule]};
 }
 
-// After the positions.
-void update_pivots(const TorsionModel& model, TorsionState& state) noexcept {
-    std::vector<Vec3>& pivots = state.pivots;
-    std::ranges::fill(pivots, Vec3::Zero());
-    for (std::size_t i = 0; i < state.positions.size(); ++i) {
-        const std::uint32_t molecule = model.tree.molecule_of[model.tree.bodies.body_of[i]];
-        pivots[molecule] += model.masses[i] * state.positions[i];
-    }
-    for (std::size_t m = 0; m < pivots.size(); ++m) {
-        const MoleculeBase& base = model.bases[m];
-        pivots[m] = base.freedom == BaseFreedom::Free ? Vec3(pivots[m] / model.molecule_masses[m])
-                                                      : state.positions[base.pivot];
-    }
-}
-
 // Turns a base about its pivot (rad, along the axis of `turn`), then displaces it.
 void move_base(std::size_t molecule, const Vec3& turn, const Vec3& by, TorsionState& state) {
     const double angle = turn.norm();
@@ -101,6 +86,26 @@ void update_positions(const TorsionModel& model, TorsionState& state) noexcept {
         state.positions[i] = state.motions[model.tree.bodies.body_of[i]] * model.reference[i];
     }
     update_pivots(model, state);
+}
+
+void update_pivots(const TorsionModel& model, TorsionState& state) noexcept {
+    std::vector<Vec3>& pivots = state.pivots;
+    std::ranges::fill(pivots, Vec3::Zero());
+    for (std::size_t i = 0; i < state.positions.size(); ++i) {
+        const std::uint32_t molecule = model.tree.molecule_of[model.tree.bodies.body_of[i]];
+        pivots[molecule] += model.masses[i] * state.positions[i];
+    }
+    for (std::size_t m = 0; m < pivots.size(); ++m) {
+        const MoleculeBase& base = model.bases[m];
+        pivots[m] = base.freedom == BaseFreedom::Free ? Vec3(pivots[m] / model.molecule_masses[m])
+                                                      : state.positions[base.pivot];
+    }
+}
+
+bool is_fast(const ForceSettings& settings) noexcept {
+    const NonbondedSettings& n = settings.nonbonded;
+    return settings.fast &&
+           !(n.distance_dielectric && n.electrostatics == ElectrostaticCutoff::ForceSwitch);
 }
 
 void update_forces(const TorsionModel& model, const ForceSettings& settings, ForceMemory& memory,

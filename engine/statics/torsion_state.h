@@ -21,6 +21,9 @@ struct ForceSettings {
     std::size_t threads = 1;
 };
 
+// Whether the kernel has them: not for what single precision cannot do.
+bool is_fast(const ForceSettings& settings) noexcept;
+
 // A spring from the centre of mass of some atoms to a place: the hand on them. E = k |x -
 // place|^2/2.
 struct Tether {
@@ -65,6 +68,9 @@ TorsionState build_torsion_state(const TorsionModel& model);
 
 // Positions from coordinates: no bond gets longer, however many steps there were.
 void update_positions(const TorsionModel& model, TorsionState& state) noexcept;
+
+// From the positions.
+void update_pivots(const TorsionModel& model, TorsionState& state) noexcept;
 
 // Energy and forces on atoms. Allocates where a list has to be built.
 void update_forces(const TorsionModel& model, const ForceSettings& settings, ForceMemory& memory,

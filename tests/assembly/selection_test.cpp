@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <random>
 #include <vector>
 
@@ -39,7 +41,7 @@ Ready ready(std::uint32_t seed) {
 // As if there had been no selection before.
 void select(Ready& r, const SelectionLimits& limits) {
     r.selection = build_joint_selection(r.tree);
-    select_joints(r.tree, r.metric, limits, r.state, r.selection);
+    select_joints(r.tree, r.metric, {}, limits, r.state, r.selection);
 }
 
 // What all joints and bases do that are chosen, or that are not.
@@ -64,7 +66,7 @@ std::size_t freedom_chosen(const Ready& r) {
 // With the metric and the selection of a step before still there.
 void select_again(Ready& r, const MetricWeights& weights, const SelectionLimits& limits) {
     update_metric(r.tree, r.state, weights, r.metric);
-    select_joints(r.tree, r.metric, limits, r.state, r.selection);
+    select_joints(r.tree, r.metric, {}, limits, r.state, r.selection);
 }
 
 std::vector<double> fluctuating(std::size_t bodies, std::mt19937& random) {
@@ -210,7 +212,7 @@ TEST_CASE("joints do not come and go while metrics fluctuate by 20 %", "[assembl
 
             // Without an advantage they would come and go.
             JointSelection fresh = build_joint_selection(r.tree);
-            select_joints(r.tree, r.metric, limits, r.state, fresh);
+            select_joints(r.tree, r.metric, {}, limits, r.state, fresh);
             flickers += fresh.is_active != chosen ? 1 : 0;
         }
     }
@@ -233,4 +235,54 @@ TEST_CASE("a real change is followed at once", "[assembly][selection]") {
     Ready fresh = r;
     select(fresh, limits);
     CHECK(r.selection.neglected <= limits.advantage * fresh.selection.neglected);
+}
+
+TEST_CASE("single joints are those that count most by themselves", "[assembly][selection]") {
+    Ready r = ready(GENERATE(11U, 12U, 13U));
+    const auto weight = GENERATE(MetricWeight::Plain, MetricWeight::Inertia);
+    const std::size_t count = GENERATE(std::size_t{0}, std::size_t{1}, std::size_t{10},
+                                       std::size_t{40}, std::size_t{1000});
+    std::mt19937 random(9);
+    const std::vector<double> factors = fluctuating(r.c.bodies.bodies.size(), random);
+    const MetricWeights weights{weight, factors};
+    update_metric(r.tree, r.state, weights, r.metric);
+    // All of them, from what the passes found, the largest first.
+    struct Value {
+        double each;
+        std::size_t body, freedom;
+    };
+    std::vector<Value> values;
+    double total = 0;
+    for (const AssemblyNode& node : r.tree.nodes) {
+        if (node.is_leaf() || node.link >= r.c.bodies.bodies.size()) continue;
+        const double a = r.state.joint_acceleration[node.link];
+        const double inertia =
+            weight == MetricWeight::Inertia ? 1 / r.state.joints[node.part].D : 1;
+        values.push_back({inertia * factors[node.link] * a * a, node.link, 1});
+        total += values.back().each;
+    }
+    for (std::size_t m = 0; m < r.tree.bases.size(); ++m) {
+        values.push_back({r.metric.bases[m] / 6, r.tree.bases[m], 6});
+        total += r.metric.bases[m];
+    }
+    std::ranges::sort(values, std::ranges::greater{}, &Value::each);
+    std::vector<std::uint8_t> expected(r.c.bodies.bodies.size(), 0);
+    std::size_t left = count;
+    double neglected = total;
+    for (const Value& value : values) {
+        if (value.freedom > left) continue;
+        expected[value.body] = 1;
+        left -= value.freedom;
+        neglected -= value.each * static_cast<double>(value.freedom);
+    }
+
+    r.selection = build_joint_selection(r.tree);
+    SelectionLimits limits;
+    limits.shape = SelectionShape::Single;
+    limits.degrees_of_freedom = count;
+    select_joints(r.tree, r.metric, weights, limits, r.state, r.selection);
+
+    CHECK(r.selection.is_active == expected);
+    CHECK(r.selection.total == Approx(total));
+    CHECK(r.selection.neglected == Approx(neglected).margin(1e-9 * total));
 }

@@ -1,5 +1,6 @@
 #include "field/cluster_list.h"
 
+#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -7,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <random>
 #include <utility>
 #include <vector>
@@ -170,4 +172,199 @@ TEST_CASE("an atom that is nowhere has no neighbours", "[field][cluster]") {
             if (!nowhere) CHECK(count.contains({i, j}));
         }
     }
+}
+
+namespace {
+
+constexpr double test_cutoff = 6, test_skin = 1;
+
+// Every pair nearer than the cutoff and what its atoms have left of the skin stands in the list
+// once, no pair left out and none twice.
+void check_pairs(const ClusterList& list, const std::vector<Vec3>& places) {
+    const std::size_t n = places.size();
+    std::vector<int> count(n * n);
+    for (const auto& [a, b] : list_pairs(list)) ++count[std::min(a, b) * n + std::max(a, b)];
+    const auto moved = [&](std::uint32_t i) { return (places[i] - list.positions[i]).norm(); };
+    for (std::uint32_t i = 0; i < n; ++i) {
+        for (std::uint32_t j = i + 1; j < n; ++j) {
+            const int times = count[i * n + j];
+            const double reach = test_cutoff + test_skin - moved(i) - moved(j);
+            if (j <= i + 3 && times != 0) FAIL("left out: " << i << ' ' << j);
+            if (j > i + 3 && times != 1 && (places[i] - places[j]).norm() < reach - 1e-9)
+                FAIL("missing: " << i << ' ' << j);
+            if (times > 1) FAIL("more than once: " << i << ' ' << j);
+        }
+    }
+}
+
+// Tiles in order, even in number, what is left of each cluster's room at its end.
+void check_layout(const ClusterList& list) {
+    REQUIRE(list.first_plain.size() == list.clusters() + 1);
+    REQUIRE(list.first_masked.size() == list.clusters() + 1);
+    CHECK(list.first_plain.back() == list.plain.size());
+    CHECK(list.first_masked.back() == list.masked.size());
+    for (std::size_t c = 0; c < list.clusters(); ++c) {
+        CHECK(list.first_plain[c] % 2 == 0);
+        CHECK(list.first_masked[c] % 2 == 0);
+        bool sorted = true;
+        for (std::size_t t = list.first_plain[c] + 1; t < list.first_plain[c + 1]; ++t) {
+            const ClusterTile &a = list.plain[t - 1], &b = list.plain[t];
+            sorted = sorted && (a.rows == b.rows ? a.cluster <= b.cluster : a.rows > b.rows);
+            if (b.rows == 0) sorted = sorted && b.cluster == list.clusters();
+        }
+        for (std::size_t t = list.first_masked[c] + 1; t < list.first_masked[c + 1]; ++t) {
+            const MaskedTile &a = list.masked[t - 1], &b = list.masked[t];
+            sorted = sorted && (b.pairs == 0 ? b.cluster == list.clusters()
+                                             : a.pairs != 0 && a.cluster < b.cluster);
+        }
+        CHECK(sorted);
+    }
+}
+
+bool is_same(const ClusterList& a, const ClusterList& b) {
+    const auto same_plain = [](const ClusterTile& s, const ClusterTile& t) {
+        return s.cluster == t.cluster && s.rows == t.rows;
+    };
+    const auto same_masked = [](const MaskedTile& s, const MaskedTile& t) {
+        return s.cluster == t.cluster && s.pairs == t.pairs;
+    };
+    return a.atoms == b.atoms && a.positions == b.positions && a.first_plain == b.first_plain &&
+           a.first_masked == b.first_masked &&
+           std::equal(a.plain.begin(), a.plain.end(), b.plain.begin(), b.plain.end(), same_plain) &&
+           std::equal(a.masked.begin(), a.masked.end(), b.masked.begin(), b.masked.end(),
+                      same_masked);
+}
+
+// Atoms that go as one rigid body.
+struct Group {
+    std::vector<std::uint32_t> atoms;
+    Vec3 step;
+};
+
+void step_group(const Group& group, std::mt19937& random, std::vector<Vec3>& places) {
+    std::normal_distribution<double> normal(0, 0.05);
+    const double x = normal(random), y = normal(random), z = normal(random);
+    const Eigen::Quaterniond turn(Eigen::AngleAxisd(normal(random), Vec3(y, z, x).normalized()));
+    Vec3 centre = Vec3::Zero();
+    for (const std::uint32_t atom : group.atoms)
+        centre += places[atom] / static_cast<double>(group.atoms.size());
+    for (const std::uint32_t atom : group.atoms) {
+        places[atom] = centre + turn * (places[atom] - centre) + group.step + Vec3(x, y, z);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("an updated list has every near pair, whatever groups move", "[field][cluster]") {
+    constexpr std::uint32_t atoms = 500;
+    const bool tells_moved = GENERATE(false, true);
+    const auto share = static_cast<std::uint32_t>(GENERATE(1, 5, 30, 100));  // percent
+    INFO(share << " % move, " << (tells_moved ? "told" : "not told"));
+    std::vector<Vec3> places = random_places(atoms, 12);
+    std::mt19937 random(share);
+    // Neighbours, as bodies of a molecule are, and one atom here and there.
+    std::vector<std::uint32_t> order(atoms);
+    std::iota(order.begin(), order.end(), 0U);
+    std::sort(order.begin(), order.end(),
+              [&](std::uint32_t a, std::uint32_t b) { return places[a].x() < places[b].x(); });
+    std::vector<Group> groups{{{}, Vec3(0.1, 0.05, 0)}, {{}, Vec3(-0.08, 0, 0.05)}};
+    for (std::uint32_t i = 0; i < atoms * share / 100; ++i)
+        groups[i % 5 == 0 ? 1 : 0].atoms.push_back(order[i]);
+    std::vector<std::uint32_t> moved = groups[0].atoms;
+    moved.insert(moved.end(), groups[1].atoms.begin(), groups[1].atoms.end());
+    const auto left_out = chain_exclusions(atoms);
+    ClusterList list = build_cluster_list(places, left_out, test_cutoff, test_skin);
+    std::map<ListChange, int> changes;
+
+    for (int step = 0; step < 40; ++step) {
+        for (const Group& group : groups) step_group(group, random, places);
+        const std::vector<std::uint32_t> composition = list.atoms;
+        const ListChange change = tells_moved ? update_cluster_list(places, left_out, moved, list)
+                                              : update_cluster_list(places, left_out, list);
+        ++changes[change];
+        REQUIRE_FALSE(is_outdated(list, places));
+        if (change != ListChange::Clusters) REQUIRE(list.atoms == composition);
+        check_pairs(list, places);
+        check_layout(list);
+    }
+
+    CHECK(changes[ListChange::None] > 0);
+    CHECK(changes[ListChange::Tiles] + changes[ListChange::Clusters] > 5);
+    if (share <= 30) CHECK(changes[ListChange::Tiles] > 5);
+    if (share == 100) CHECK(changes[ListChange::Clusters] > 5);
+}
+
+TEST_CASE("an update of nothing changes nothing", "[field][cluster]") {
+    std::vector<Vec3> places = random_places(200, 9);
+    const auto left_out = chain_exclusions(200);
+    ClusterList list = build_cluster_list(places, left_out, test_cutoff, test_skin);
+    const ClusterList before = list;
+
+    places[31].x() += 0.49;
+    CHECK(update_cluster_list(places, left_out, list) == ListChange::None);
+    CHECK(update_cluster_list(places, left_out, std::vector<std::uint32_t>{31, 5}, list) ==
+          ListChange::None);
+    CHECK(update_cluster_list(places, left_out, std::vector<std::uint32_t>{}, list) ==
+          ListChange::None);
+    CHECK(is_same(list, before));
+    ClusterList full = build_full_cluster_list(200, left_out);
+    places[31].x() += 9;
+    CHECK(update_cluster_list(places, left_out, full) == ListChange::None);
+}
+
+TEST_CASE("there and back by updates is the list as it was", "[field][cluster]") {
+    std::vector<Vec3> places = random_places(400, 11);
+    const auto left_out = chain_exclusions(400);
+    ClusterList list = build_cluster_list(places, left_out, test_cutoff, test_skin);
+    const auto pairs = count_pairs(list);
+    const std::vector<Vec3> home = places;
+    const std::vector<std::uint32_t> moved{17, 18, 19, 80, 81, 17};
+
+    for (const std::uint32_t atom : {17U, 18U, 19U, 80U, 81U}) places[atom].z() += 3;
+    REQUIRE(update_cluster_list(places, left_out, moved, list) == ListChange::Tiles);
+    CHECK(count_pairs(list) != pairs);
+    REQUIRE(update_cluster_list(home, left_out, moved, list) == ListChange::Tiles);
+
+    CHECK(count_pairs(list) == pairs);
+    CHECK(list.positions == home);
+    CHECK(list.memory.rows == list.memory.rows_at_build);
+}
+
+TEST_CASE("clusters that have become wide are built anew", "[field][cluster]") {
+    constexpr std::uint32_t atoms = 600;
+    std::vector<Vec3> places = random_places(atoms, 14);
+    const auto left_out = chain_exclusions(atoms);
+    ClusterList list = build_cluster_list(places, left_out, test_cutoff, test_skin);
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> uniform(-14, 14);
+    std::size_t updates = 0;
+
+    // Atoms jump anywhere, few at a time: soon no cluster is one.
+    ListChange change = ListChange::None;
+    while (change != ListChange::Clusters && updates < 100) {
+        const auto atom = static_cast<std::uint32_t>(random() % atoms);
+        const double x = uniform(random), y = uniform(random), z = uniform(random);
+        places[atom] = Vec3(x, y, z);
+        change = update_cluster_list(places, left_out, std::vector<std::uint32_t>{atom}, list);
+        check_pairs(list, places);
+        ++updates;
+    }
+
+    CHECK(updates > 3);
+    CHECK(updates < 100);
+    CHECK(is_same(list, build_cluster_list(places, left_out, test_cutoff, test_skin)));
+}
+
+TEST_CASE("an atom that was nowhere has neighbours once it is somewhere", "[field][cluster]") {
+    std::vector<Vec3> places = random_places(300, 9);
+    const auto left_out = chain_exclusions(300);
+    ClusterList list = build_cluster_list(places, left_out, test_cutoff, test_skin);
+    const Vec3 home = places[40];
+
+    places[40].x() = std::numeric_limits<double>::quiet_NaN();
+    CHECK(update_cluster_list(places, left_out, list) == ListChange::Tiles);
+    places[40] = home;
+    CHECK(update_cluster_list(places, left_out, list) == ListChange::Tiles);
+
+    check_pairs(list, places);
 }

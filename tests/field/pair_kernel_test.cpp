@@ -111,6 +111,35 @@ TEST_CASE("a repeated sum has the same bits, whatever the number of threads", "[
     CHECK(total.norm() < 1e-3);
 }
 
+TEST_CASE("an updated list gives the sum of a new one", "[field][kernel]") {
+    Gas gas = random_gas(300);
+    ClusterList list = build_cluster_list(gas.positions, {}, 6, 1);
+    std::vector<std::uint32_t> moved;
+    for (std::uint32_t i = 0; i < 300; ++i) {
+        if (gas.positions[i].x() > 11) moved.push_back(i);
+    }
+    REQUIRE(moved.size() > 10);
+
+    for (int step = 1; step <= 12; ++step) {
+        INFO("step " << step);
+        for (const std::uint32_t i : moved) gas.positions[i] += Vec3(0.02, 0, 0.2);
+        const ListChange change = update_cluster_list(gas.positions, {}, moved, list);
+        REQUIRE(change != ListChange::Clusters);
+
+        const Result result = evaluate(gas, list, force_switch, 2);
+        const Result expected =
+            evaluate(gas, build_cluster_list(gas.positions, {}, 6, 0), force_switch);
+        REQUIRE(result.sum.is_sound);
+        CHECK(result.sum.van_der_waals == Approx(expected.sum.van_der_waals).epsilon(1e-5));
+        CHECK(result.sum.electrostatic ==
+              Approx(expected.sum.electrostatic).epsilon(1e-5).margin(1e-3));
+        for (std::size_t i = 0; i < 300; ++i) {
+            CHECK((result.forces[i] - expected.forces[i]).norm() <
+                  1e-5 * (10 + expected.forces[i].norm()));
+        }
+    }
+}
+
 TEST_CASE("a list that is not outdated gives the sum of a new one", "[field][kernel]") {
     Gas gas = random_gas(300);
     const ClusterList list = build_cluster_list(gas.positions, {}, 6, 1);

@@ -56,3 +56,18 @@ TEST_CASE("atoms that are all in one place are each told once", "[molecule]") {
     CHECK(pairs.back() == std::array<std::size_t, 2>{0, 59'999});
     CHECK(find_coincident_atoms(std::vector<Vec3>{{0, 0, 0}, {0, 0, 0.2}}, 0.1).empty());
 }
+
+TEST_CASE("atoms that coincide are told by name, the closest first", "[molecule]") {
+    const std::vector<AtomName> names{{"A", "ALA", "1", "N"},
+                                      {"A", "ALA", "1", "CA"},
+                                      {"B", "GLY", "7", "N"},
+                                      {"B", "GLY", "7", "CA"}};
+    std::vector<Vec3> positions{{0, 0, 0}, {1.5, 0, 0}, {0.3, 0, 0}, {1.5, 0.12, 0}};
+
+    CHECK(describe_coincident_atoms(names, positions, 0.5) ==
+          "A ALA 1 CA and B GLY 7 CA are 0.12 Å apart, and 1 more such pairs");
+    positions[2].y() = 1;
+    CHECK(describe_coincident_atoms(names, positions, 0.5) ==
+          "A ALA 1 CA and B GLY 7 CA are 0.12 Å apart");
+    CHECK_FALSE(describe_coincident_atoms(names, positions, 0.1));
+}

@@ -246,6 +246,11 @@ TEST_CASE("a file that a scene names must be there", "[scene][errors]") {
                StartsWith(at(3, 10) + "'force_field.files' names no file: " + folder +
                           "tip4p.str is not there"));
     CHECK_THAT(error_of(replaced(base, "\"dimer.crd\"", "\"\"")), StartsWith(at(5, 13)));
+    // What a command makes may not be there yet.
+    const std::string made =
+        replaced(base, "[force_field]", "made_by = \"tools/make_it\"\n[force_field]");
+    CHECK_THAT(error_of(replaced(made, "tip3p.str", "tip4p.str")),
+               Contains("tip4p.str is not there; expected what tools/make_it makes"));
     // A folder is no file.
     CHECK_THAT(error_of(replaced(base, "dimer.crd", "../water")), StartsWith(at(5, 13)));
 }

@@ -111,6 +111,7 @@ TEST_CASE("every field is written, under its full key", "[scene][write]") {
     scene.hand.release_s = 4;
     scene.joints.within_angstrom = 8;
     scene.statics.cutoff_angstrom = 12;
+    scene.statics.budget_us = 1000;
     for (MoleculeDescription& molecule : scene.molecules) molecule.topology = folder / "dimer.psf";
 
     const std::string text = formatted(scene);

@@ -1,9 +1,11 @@
 #include "simulation/flexible.h"
 
 #include "charmm/generate.h"
+#include "core/files.h"
 #include "core/units.h"
 #include "formats/crd.h"
 #include "formats/psf.h"
+#include "formats/structure.h"
 #include "scene/read_scene.h"
 #include "simulation/components.h"
 #include "simulation/probe.h"
@@ -35,80 +37,42 @@ namespace {
 constexpr std::uint32_t peptide_atoms = 62;
 
 // The tetrapeptide AERA twice, 11 Å apart.
-Structure two_peptides() {
-    const std::string path = PALPA_TEST_DATA "/tetra_aera_c36m";
-    Structure one = test::read_reference_atoms(path + ".ff.json").structure;
-    one.positions = test::read_reference_frames(path + ".frames.json")[0].positions;
-    Structure both;
-    for (const auto& [segment, by] : {std::pair{"PEPA", Vec3(0, 0, 0)}, {"PEPB", Vec3(11, 2, 1)}}) {
-        for (std::size_t i = 0; i < one.names.size(); ++i) {
-            both.names.push_back(one.names[i]);
-            both.names.back().segment = segment;
-            both.positions.emplace_back(one.positions[i] + by);
-            both.lines.push_back(i + 1);
-        }
-    }
-    return both;
+const std::filesystem::path peptides = PALPA_TEST_DATA "/two_peptides";
+
+Simulation load_peptides(const std::vector<std::string>& settings = {}) {
+    return load_simulation(read_scene(peptides, settings));
 }
 
-const std::string scene_text = R"(title = "Two peptides"
-[force_field]
-files = [")" PALPA_TEST_DATA R"(/aera_c36m.rtf", ")" PALPA_TEST_DATA R"(/aera_c36m.prm"]
-[molecules.resting]
-structure = "both.crd"
-topology = "both.psf"
-segment = "PEPA"
-reference_atom = "2 CA"
-shape = "flexible"
-[molecules.held]
-structure = "both.crd"
-topology = "both.psf"
-segment = "PEPB"
-reference_atom = "3 CA"
-shape = "flexible"
-motion = "translate"
-[grab]
-molecule = "held"
-measured_from = "resting"
-[statics]
-pairs = "double"
-steps = 3
-[coupling]
-mode = "4"
-A_d = 0.25e9
-)";
+Structure read_peptides() { return read_structure(peptides / "both.crd"); }
 
 Connectivity connectivity_of(const Structure& structure) {
     return build_connectivity(
         test::read_charmm(PALPA_TEST_DATA, {"aera_c36m.rtf", "aera_c36m.prm"}), structure);
 }
 
-// A folder with the scene, as a scene file has it.
-class Peptides {
+// The same scene in a folder of its own, to be changed.
+class ChangedPeptides {
 public:
-    Peptides() : Peptides(two_peptides(), connectivity_of(two_peptides())) {}
-    Peptides(const Structure& structure, const Connectivity& connectivity) {
+    ChangedPeptides() : ChangedPeptides(read_peptides(), connectivity_of(read_peptides())) {}
+    ChangedPeptides(const Structure& structure, const Connectivity& connectivity) {
         folder_.add_file("both.crd", format_crd(structure, "two peptides"));
         folder_.add_file("both.psf", format_psf(connectivity, "two peptides"));
-        folder_.add_file("scene.toml", scene_text);
+        folder_.add_file("scene.toml", text());
     }
 
+    static std::string text() {
+        std::string text = read_text_file(peptides / "scene.toml");
+        for (int i = 0; i < 2; ++i) text = test::replaced(text, "\"../", "\"" PALPA_TEST_DATA "/");
+        return text;
+    }
     SceneDescription scene(const std::vector<std::string>& settings = {}) const {
         return read_scene(folder_.path(), settings);
-    }
-    Simulation load(const std::vector<std::string>& settings = {}) const {
-        return load_simulation(scene(settings));
     }
     const test::TemporaryFolder& folder() const { return folder_; }
 
 private:
     test::TemporaryFolder folder_;
 };
-
-const Peptides& peptides() {
-    static const Peptides scene;
-    return scene;
-}
 
 // A handle that travelled so that the molecule goes by that much.
 HandPose hand_at(const Vec3& angstrom) {
@@ -134,7 +98,7 @@ const std::vector<std::string> by_spring{"molecules.held.motion=free", "grab.ato
 }  // namespace
 
 TEST_CASE("flexible molecules are at rest when the scene begins", "[simulation][flexible]") {
-    const Simulation simulation = peptides().load();
+    const Simulation simulation = load_peptides();
     REQUIRE(simulation.flexible);
     const Flexible& flexible = *simulation.flexible;
 
@@ -153,10 +117,26 @@ TEST_CASE("flexible molecules are at rest when the scene begins", "[simulation][
     CHECK(build_touch_model(simulation, {}).force_newton.norm() < 50e-12);
 }
 
+TEST_CASE("the system of a scene has its atoms in the order of the table, and all terms",
+          "[simulation][load]") {
+    const SceneSystem system = load_system(read_scene(peptides, {}));
+    const Simulation simulation = load_peptides({"statics.relax_steps=0"});
+
+    REQUIRE(simulation.flexible);
+    REQUIRE(system.connectivity.names.size() == std::size_t{2} * peptide_atoms);
+    CHECK(system.connectivity.names[0].segment == simulation.atoms.names[0].segment);
+    CHECK(system.connectivity.mass == simulation.atoms.mass);
+    CHECK(system.topology.charge == simulation.atoms.charge);
+    CHECK(system.positions == simulation.flexible->model.reference);
+    // What is rigid in the scene is there too.
+    CHECK(system.topology.bonds.size() == connectivity_of(read_peptides()).bonds.size());
+    CHECK(system.topology.bonds.size() > simulation.flexible->model.topology.bonds.size());
+}
+
 TEST_CASE("without joints to turn and bases to move a scene stays rigid",
           "[simulation][flexible]") {
     const Simulation simulation =
-        peptides().load({"molecules.held.shape=rigid", "molecules.resting.shape=rigid"});
+        load_peptides({"molecules.held.shape=rigid", "molecules.resting.shape=rigid"});
 
     CHECK_FALSE(simulation.flexible);
     CHECK(simulation.relaxed);
@@ -166,7 +146,7 @@ TEST_CASE("while the hand rests the energy falls with every step", "[simulation]
     const std::string method = GENERATE(from_range(methods));
     INFO(method);
     Simulation simulation =
-        peptides().load({"statics.method=" + method, "hand.start_offset_angstrom=[-1.5, 0, 0]"});
+        load_peptides({"statics.method=" + method, "hand.start_offset_angstrom=[-1.5, 0, 0]"});
     const Flexible& flexible = *simulation.flexible;
     TouchModel felt = build_touch_model(simulation, {});
     double energy = flexible.safe.energy(), fallen = 0;
@@ -198,7 +178,7 @@ TEST_CASE("work of the hand and what is given up add to the change of energy",
     INFO(method);
     std::vector<std::string> settings{"statics.method=" + method};
     if (GENERATE(false, true)) settings.insert(settings.end(), by_spring.begin(), by_spring.end());
-    Simulation simulation = peptides().load(settings);
+    Simulation simulation = load_peptides(settings);
     const Flexible& flexible = *simulation.flexible;
     TouchModel felt = build_touch_model(simulation, {});
     const double start = flexible.state.energy();
@@ -216,7 +196,7 @@ TEST_CASE("work of the hand and what is given up add to the change of energy",
 }
 
 TEST_CASE("what the hand moves is the base, and nobody else", "[simulation][flexible]") {
-    Simulation simulation = peptides().load();
+    Simulation simulation = load_peptides();
     Flexible& flexible = *simulation.flexible;
     const std::vector<Vec3> before = simulation.atoms.positions;
     const Vec3 place = place_of(simulation), held = find_held(flexible);
@@ -244,7 +224,7 @@ TEST_CASE("a molecule that turns by itself does so about its reference atom",
           "[simulation][flexible]") {
     const std::string method = GENERATE(from_range(methods));
     INFO(method);
-    Simulation simulation = peptides().load(
+    Simulation simulation = load_peptides(
         {"statics.method=" + method, "molecules.held.motion=translate-and-turn",
          "molecules.held.shape=rigid", "molecules.resting.shape=rigid", "statics.steps=20"});
     const Flexible& flexible = *simulation.flexible;
@@ -268,7 +248,7 @@ TEST_CASE("a spring pulls at the hand with k times its stretch", "[simulation][f
     std::vector<std::string> settings = by_spring;
     const bool is_residue = GENERATE(false, true);
     if (is_residue) settings[1] = "grab.atom=\"4\"";
-    Simulation simulation = peptides().load(settings);
+    Simulation simulation = load_peptides(settings);
     const Flexible& flexible = *simulation.flexible;
     // By hand, of residue 4 or its CB.
     const auto tethered = [&] {
@@ -303,10 +283,10 @@ TEST_CASE("a spring pulls at the hand with k times its stretch", "[simulation][f
 }
 
 TEST_CASE("joints outside of a region are held, and counted", "[simulation][flexible]") {
-    const Simulation everywhere = peptides().load();
+    const Simulation everywhere = load_peptides();
     const std::string around = GENERATE("", "resting");
     const Simulation simulation =
-        peptides().load({"joints.within_angstrom=5", fmt::format("joints.around=\"{}\"", around)});
+        load_peptides({"joints.within_angstrom=5", fmt::format("joints.around=\"{}\"", around)});
     const Flexible& flexible = *simulation.flexible;
 
     CHECK(flexible.joints_held > 0);
@@ -314,7 +294,7 @@ TEST_CASE("joints outside of a region are held, and counted", "[simulation][flex
     CHECK(flexible.joints + flexible.joints_held == everywhere.flexible->joints);
     CHECK(flexible.model.tree.bodies.joints() == flexible.joints);
     // Residues with an atom near one of that molecule in the file; its own all are.
-    const Structure file = two_peptides();
+    const Structure file = read_peptides();
     std::set<std::string> near;
     for (std::size_t i = 0; i < file.names.size(); ++i) {
         for (std::size_t j = 0; j < file.names.size(); ++j) {
@@ -344,7 +324,7 @@ TEST_CASE("only joints of flexible molecules turn, and those that the scene name
           "[simulation][flexible]") {
     const auto joints_with = [](std::vector<std::string> settings) {
         settings.emplace_back("statics.relax_steps=0");
-        return peptides().load(settings).flexible->joints;
+        return load_peptides(settings).flexible->joints;
     };
     const std::size_t one = joints_with({"molecules.resting.shape=rigid"});
 
@@ -358,7 +338,7 @@ TEST_CASE("only joints of flexible molecules turn, and those that the scene name
 TEST_CASE("runs repeat to the bit", "[simulation][flexible]") {
     const std::string pairs = GENERATE("double", "fast");
     const auto run = [&] {
-        Simulation simulation = peptides().load(
+        Simulation simulation = load_peptides(
             {"statics.pairs=" + pairs, "statics.method=inverse-mass", "statics.steps=4"});
         TouchModel felt = build_touch_model(simulation, {});
         for (int i = 1; i <= 10; ++i) {
@@ -374,7 +354,7 @@ TEST_CASE("runs repeat to the bit", "[simulation][flexible]") {
 TEST_CASE("a hand that is nowhere changes nothing", "[simulation][flexible]") {
     std::vector<std::string> settings;
     if (GENERATE(false, true)) settings = by_spring;
-    Simulation simulation = peptides().load(settings);
+    Simulation simulation = load_peptides(settings);
     TouchModel felt = build_touch_model(simulation, {});
     felt = step_simulation(simulation, hand_at({-0.1, 0, 0}), felt).touch;
     const TorsionState before = simulation.flexible->state;
@@ -397,7 +377,7 @@ TEST_CASE("a hand that is nowhere changes nothing", "[simulation][flexible]") {
 }
 
 TEST_CASE("coordinates that are no numbers are not stepped into", "[simulation][flexible]") {
-    Simulation simulation = peptides().load();
+    Simulation simulation = load_peptides();
     Flexible& flexible = *simulation.flexible;
     const TorsionState safe = flexible.safe;
     move_held(flexible, Vec3(std::numeric_limits<double>::quiet_NaN(), 0, 0));
@@ -430,8 +410,8 @@ TEST_CASE("a scene is told which of its joints, atoms and springs are not there"
     INFO(row.line);
     // A line of a table of its own, or behind what the hand holds.
     const bool is_joint = row.table != nullptr;
-    const Peptides broken;
-    std::string text = scene_text;
+    const ChangedPeptides broken;
+    std::string text = ChangedPeptides::text();
     if (is_joint) {
         text += fmt::format("[{}]\n{}\n", row.table, row.line);
     } else {
@@ -449,14 +429,14 @@ TEST_CASE("a scene is told which of its joints, atoms and springs are not there"
 
 TEST_CASE("molecules that are bonded across segments cannot move apart",
           "[simulation][flexible][errors]") {
-    Structure structure = two_peptides();
+    Structure structure = read_peptides();
     Connectivity connectivity = connectivity_of(structure);
     for (std::size_t i = 0; i < structure.names.size(); ++i) {
         if (structure.names[i].segment != "PEPB" || structure.names[i].number != "4") continue;
         structure.names[i].segment = "TAIL";
     }
     connectivity.names = structure.names;
-    const Peptides broken(structure, connectivity);
+    const ChangedPeptides broken(structure, connectivity);
 
     const std::string error = load_error_of([&] { load_simulation(broken.scene()); });
 
@@ -466,7 +446,7 @@ TEST_CASE("molecules that are bonded across segments cannot move apart",
 }
 
 TEST_CASE("a hand holds one molecule, not two under one name", "[simulation][flexible][errors]") {
-    Structure structure = two_peptides();
+    Structure structure = read_peptides();
     for (std::size_t i = 0; i < peptide_atoms; ++i) {
         structure.names.push_back(structure.names[i]);
         structure.names.back().segment = "PEPC";
@@ -480,11 +460,23 @@ TEST_CASE("a hand holds one molecule, not two under one name", "[simulation][fle
         if (name.segment == "PEPC") name.segment = "PEPB";
     }
     connectivity.names = structure.names;
-    const Peptides broken(structure, connectivity);
+    const ChangedPeptides broken(structure, connectivity);
 
     CHECK_THAT(
         load_error_of([&] { load_simulation(broken.scene()); }),
         Contains("scene.toml:18:") && Contains("'held' is not all bonded together; expected"));
     // A spring may hold one of them.
     CHECK(load_simulation(broken.scene(by_spring)).flexible->model.bases.size() == 3);
+}
+
+TEST_CASE("few active joints leave the force that is felt at first as it is",
+          "[simulation][flexible]") {
+    const Simulation all = load_peptides();
+    const Simulation few = load_peptides({"statics.active=2"});
+
+    const Vec6 expected = find_pull_on_held(*all.flexible),
+               found = find_pull_on_held(*few.flexible);
+
+    CHECK(find_active_freedom(*few.flexible) <= 2);
+    CHECK((found - expected).norm() < 1e-4 * expected.norm());
 }

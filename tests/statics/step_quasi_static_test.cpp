@@ -267,17 +267,21 @@ TEST_CASE("where fast pairs round the energy, the forces tell whether it falls",
     const Coordinates move = Coordinates::Ones(2);
     from.coordinate_forces = Coordinates::Ones(2);
     to.coordinate_forces = -0.5 * Coordinates::Ones(2);
-    from.terms.bond = 100;
+    from.terms.bond = 1e4;
 
-    to.terms.bond = 100.001;
+    to.terms.bond = 1e4 + 0.001;
     CHECK_FALSE(is_lower(settings, from, to, move));
     settings.fast = true;
     CHECK(is_lower(settings, from, to, move));
     to.coordinate_forces *= 3;
     CHECK_FALSE(is_lower(settings, from, to, move));
-    to.terms.bond = 99.9;
+    to.terms.bond = 1e4 - 0.1;
     CHECK(is_lower(settings, from, to, move));
-    to.terms.bond = 100.1;
+    to.terms.bond = 1e4 + 0.1;
     to.coordinate_forces = from.coordinate_forces;
+    CHECK_FALSE(is_lower(settings, from, to, move));
+    // Smaller energies are rounded by less.
+    from.terms.bond = 100;
+    to.terms.bond = 100.001;
     CHECK_FALSE(is_lower(settings, from, to, move));
 }

@@ -35,6 +35,8 @@ class BenchKernel(unittest.TestCase):
                         self.assertIsNotNone(row["error"])
                         self.check_share(row["reference"])
             self.check_share(rows[f"kernel/{name}/130-in-1000/stiffness/{kind}"]["reference"])
+        for what in "build", "1%-moved", "10%-moved/told":
+            self.assertIn(f"kernel/{name}/list/{what}", rows)
         return kinds, rows
 
     def check_share(self, text):

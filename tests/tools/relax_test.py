@@ -1,6 +1,7 @@
 """palpa relax from outside: flexible molecules come to rest, and a scene can begin from there."""
 import json
 import os
+import shutil
 import subprocess
 import tempfile
 import unittest
@@ -11,56 +12,17 @@ ROOT = Path(os.environ["PALPA_ROOT"])
 DATA = ROOT / "tests" / "data"
 REST = 0.05
 
-SCENE = f"""title = "Two peptides"
-[force_field]
-files = ["{DATA}/aera_c36m.rtf", "{DATA}/aera_c36m.prm"]
-[molecules.resting]
-structure = "both.crd"
-topology = "system.psf"
-segment = "PEPA"
-reference_atom = "2 CA"
-shape = "flexible"
-[molecules.held]
-structure = "both.crd"
-topology = "system.psf"
-segment = "PEPB"
-reference_atom = "3 CA"
-shape = "flexible"
-motion = "translate"
-[grab]
-molecule = "held"
-measured_from = "resting"
-[statics]
-pairs = "double"
-rest_kcal_per_mol = {REST}
-"""
-
-
-def write_peptides(path):
-    """The tetrapeptide AERA twice, 11 Å apart, as CHARMM coordinates; Å."""
-    atoms = json.loads((DATA / "tetra_aera_c36m.ff.json").read_text())["atoms"]["rows"]
-    frame = json.loads((DATA / "tetra_aera_c36m.frames.json").read_text())["frames"][0]["x"]
-    lines = ["* two peptides", "*", f"{2 * len(atoms):10d}  EXT"]
-    for copy, segment in enumerate(("PEPA", "PEPB")):
-        for row, place in zip(atoms, frame):
-            x, y, z = (10 * value + copy * by for value, by in zip(place, (11, 2, 1)))
-            lines.append(f"{len(lines) - 2:10d}{4 * copy + row[2]:10d}  {row[1]:<8s}  {row[0]:<8s}"
-                         f"{x:20.10f}{y:20.10f}{z:20.10f}  {segment:<8s}  {row[2]:<8d}{0:20.10f}")
-    path.write_text("\n".join(lines) + "\n")
+SCENE = (DATA / "two_peptides" / "scene.toml").read_text()
 
 
 class Relax(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
-        write_peptides(self.folder / "both.crd")
-        prepared = self.palpa("prepare", self.folder / "both.crd", "--toppar",
-                              DATA / "aera_c36m.rtf", DATA / "aera_c36m.prm", "--no-relax",
-                              "-o", self.folder / "prepared")
-        self.assertEqual(prepared.returncode, 0, prepared.stderr)
-        (self.folder / "prepared" / "system.psf").rename(self.folder / "system.psf")
-        (self.folder / "scene.toml").write_text(SCENE)
+        self.folder = Path(folder.name) / "two_peptides"
+        shutil.copytree(DATA / "two_peptides", self.folder)
+        for name in ("aera_c36m.rtf", "aera_c36m.prm"):
+            shutil.copy(DATA / name, folder.name)
 
     def palpa(self, *arguments):
         return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True,
@@ -121,6 +83,16 @@ class Relax(unittest.TestCase):
         report = json.loads(self.relax("--json", "--set", "statics.relax_steps=2", code=1).stdout)
         self.assertEqual(report["steps"], 2)
         self.assertGreater(report["rms_force"], REST)
+
+    def test_molecules_in_one_place_are_told_of(self):
+        lines = (self.folder / "both.crd").read_text().splitlines()
+        atoms = (len(lines) - 3) // 2
+        for i in range(3, 3 + atoms):
+            lines[i + atoms] = lines[i + atoms][:40] + lines[i][40:100] + lines[i + atoms][100:]
+        (self.folder / "both.crd").write_text("\n".join(lines) + "\n")
+        result = self.palpa("relax", self.folder, "--set", "statics.relax_steps=0")
+        self.assertRegex(result.stderr, r"^warning: atoms are on each other: PEP. .* are 0\.00 Å "
+                                        rf"apart, and {atoms - 1} more such pairs\n$")
 
     def test_a_rigid_scene_has_nothing_to_relax(self):
         self.assert_bad_input(self.palpa("relax", ROOT / "scenes" / "water"), "scene.toml: ",

@@ -1,0 +1,37 @@
+// A ball of whole residues cut out of a larger system: systems of any size and of one kind.
+#pragma once
+#include "charmm/topology.h"
+#include "math/vec.h"
+#include "molecule/connectivity.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace palpa {
+
+struct CutSystem {
+    std::vector<std::uint32_t> atoms;  // which atom of the whole each one is, rising
+    Connectivity connectivity;
+    Topology topology;
+    std::vector<Vec3> positions;  // Å
+};
+
+// The residues with the atom nearest to `centre`, as many of them as have no more than `most_atoms`
+// atoms together, that of `centre` in any case. `centre` and the result are indices of atoms, the
+// result rises. A residue is atoms of one in a row; of two equally near ones the first counts.
+std::vector<std::uint32_t> find_sphere(const Connectivity& connectivity,
+                                       std::span<const Vec3> positions, std::uint32_t centre,
+                                       std::size_t most_atoms);
+
+// Those atoms of a topology, rising, with the terms, exclusions and pairs three bonds apart among
+// them: what reaches out is left out. Pairs stay excluded though the bonds that join them be cut.
+// Tables of types and maps stay whole.
+Topology cut_topology(const Topology& whole, std::span<const std::uint32_t> atoms);
+
+// A ball of the whole; pieces of chain are molecules of their own.
+CutSystem cut_sphere(const Connectivity& connectivity, const Topology& topology,
+                     std::span<const Vec3> positions, std::uint32_t centre, std::size_t most_atoms);
+
+}  // namespace palpa

@@ -1,0 +1,43 @@
+// The part of a force field that changes when atoms move in rigid groups: the terms and pairs that
+// reach from one group into another.
+#pragma once
+#include "forces/force_field.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace palpa {
+
+// Of one topology, one list of neighbours and one choice of groups; constant but for the kernel's
+// memory. Some terms and pairs within a group are in it too, always the same.
+struct GroupForces {
+    // The bonded terms and pairs three bonds apart; without charges, types and exclusions.
+    Topology terms;
+    FastBonded bonded;  // of terms
+
+    ClusterList tiles;  // plain pairs, by the kernel
+    PairWorkspace workspace;
+    std::vector<std::array<std::uint32_t, 2>> pairs;  // plain pairs in double
+
+    bool was_in_double = false;  // the last sum, for pairs too close for the kernel
+
+    std::vector<std::uint32_t> atoms;  // on which anything acts, rising
+};
+
+// Pairs by the kernel, of those that are listed; `groups` has a number for each atom.
+GroupForces build_fast_group_forces(const Topology& topology, const FastAtoms& atoms,
+                                    const FastPairs& pairs, std::span<const std::uint32_t> groups);
+
+// All pairs in double: those of `list`, or without one all that the topology does not exclude.
+GroupForces build_group_forces(const Topology& topology, const PairList* list,
+                               std::span<const std::uint32_t> groups);
+
+// Adds forces (kcal/mol/Å) and returns energies. Only entries of `GroupForces::atoms` are read and
+// written. Pairs that are too close for the kernel are summed in double.
+EnergyTerms add_group_forces(const Topology& topology, const NonbondedSettings& settings,
+                             GroupForces& group_forces, std::span<const Vec3> positions,
+                             std::span<Vec3> forces);
+
+}  // namespace palpa

@@ -1,0 +1,63 @@
+#include "field/group_tiles.h"
+
+#include <algorithm>
+#include <array>
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <iterator>
+#include <random>
+#include <utility>
+#include <vector>
+
+using namespace palpa;
+
+namespace {
+
+using Pair = std::array<std::uint32_t, 2>;
+
+std::vector<Pair> sorted_pairs(const ClusterList& list) {
+    std::vector<Pair> pairs = list_pairs(list);
+    for (auto& [a, b] : pairs) {
+        if (a > b) std::swap(a, b);
+    }
+    std::ranges::sort(pairs);
+    return pairs;
+}
+
+}  // namespace
+
+TEST_CASE("tiles between groups hold each pair of two groups once", "[field][list]") {
+    const std::uint32_t count = GENERATE(3U, 8U, 61U, 200U);
+    const int group_count = GENERATE(1, 2, 9, 50);
+    const bool ends = GENERATE(false, true);
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> place(-8, 8);
+    std::vector<Vec3> places;
+    std::vector<std::uint32_t> groups;
+    std::vector<Pair> left_out;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const double x = place(random), y = place(random), z = place(random);
+        places.emplace_back(x, y, z);
+        // Mostly one large group, as a molecule at rest is.
+        const bool is_rest = random() % 3 != 0;
+        groups.push_back(is_rest ? 0 : static_cast<std::uint32_t>(random() % group_count));
+        if (i > 0 && i % 4 != 0) left_out.push_back({i - 1, i});
+    }
+    const ClusterList whole = ends ? build_cluster_list(places, left_out, 5, 1)
+                                   : build_full_cluster_list(count, left_out);
+
+    const ClusterList selected = select_tiles_between_groups(whole, groups);
+
+    const std::vector<Pair> all = sorted_pairs(whole), found = sorted_pairs(selected);
+    CHECK(std::ranges::adjacent_find(found) == found.end());
+    CHECK(std::ranges::includes(sorted_pairs(build_full_cluster_list(count, left_out)), found));
+    std::vector<Pair> left;
+    std::ranges::set_difference(all, found, std::back_inserter(left));
+    CHECK(std::ranges::all_of(left, [&](const Pair& p) {
+        return groups[p[0]] == groups[p[1]] ||
+               // Of a tile whose rows and columns are exchanged, others are too far.
+               (ends && (places[p[0]] - places[p[1]]).norm() > 6);
+    }));
+    if (group_count == 1) CHECK(selected.clusters() == 0);
+    CHECK(selected.positions.empty());
+}

@@ -1,0 +1,153 @@
+// Peptides at random torsion angles, most of them with atoms in each other, on their way to rest.
+#include "statics/relax_joints.h"
+#include "tests/hard/ways_of_stepping.h"
+#include "tests/support/shared_data.h"
+#include "tests/support/torsion_case.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <iostream>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <string_view>
+
+using namespace palpa;
+
+namespace {
+
+constexpr double at_rest = 0.5;  // rms force, kcal/mol per radian and Å
+constexpr int most_steps = 300;
+
+struct Tally {
+    std::size_t at_rest = 0, out_of_steps = 0, stuck = 0;
+    double highest_start = 0;  // kcal/mol
+};
+
+TorsionState random_conformation(const TorsionModel& model, std::mt19937& random) {
+    TorsionState state = build_torsion_state(model);
+    add_move(model, test::random_move(model, std::numbers::pi, random), state);
+    return state;
+}
+
+double rms_force(const TorsionModel& model, TorsionState& state) {
+    update_coordinate_forces(model, state);
+    return state.coordinate_forces.norm() / std::sqrt(static_cast<double>(model.coordinates));
+}
+
+void check_rise(const TorsionModel& model, const ForceSettings& forces, const TorsionState& state,
+                double rise) {
+    if (rise <= 0) return;
+    CHECK(forces.fast);
+    CHECK(rise <= test::rounding_of(forces) * test::sum_of_terms(model, state));
+}
+
+void check_end(const TorsionModel& model, const TorsionState& state) {
+    CHECK(test::is_finite(state));
+    test::check_shape(model, state.positions);
+}
+
+void step_to_rest(const TorsionModel& model, const test::WayOfStepping& way, TorsionState state,
+                  Tally& tally) {
+    QuasiStaticSettings settings;
+    settings.forces = way.forces;
+    const test::Stepper step = way.start(model, settings);
+    ForceMemory memory;
+    update_forces(model, way.forces, memory, state);
+    tally.highest_start = std::max(tally.highest_start, state.energy());
+    bool is_resting = false;
+    for (int i = 0; i < most_steps && !is_resting; ++i) {
+        const QuasiStaticReport report = step(state);
+        CHECK(report.is_finite);
+        if (report.is_taken) check_rise(model, way.forces, state, report.energy_change);
+        is_resting = rms_force(model, state) <= at_rest;
+    }
+    check_end(model, state);
+    ++(is_resting ? tally.at_rest : tally.out_of_steps);
+}
+
+void minimise(const TorsionModel& model, const ForceSettings& forces, TorsionState state,
+              Tally& tally) {
+    RelaxSettings settings;
+    settings.method = RelaxMethod::LimitedMemory;
+    settings.step.forces = forces;
+    settings.steps = most_steps;
+    settings.force_tolerance = at_rest;
+    QuasiStatics statics = build_quasi_statics(model);
+    double last = std::numeric_limits<double>::infinity();
+
+    const JointRelaxReport report =
+        relax_joints(model, settings, state, statics, [&](const RelaxProgress& progress) {
+            CHECK(std::isfinite(progress.rms_force));
+            check_rise(model, forces, state, progress.energy - last);
+            last = progress.energy;
+            return true;
+        });
+
+    check_end(model, state);
+    CHECK(report.rms_force == Approx(rms_force(model, state)));
+    CHECK((report.rms_force <= at_rest) == (report.end == RelaxEnd::Converged));
+    CHECK((report.end == RelaxEnd::Steps) ==
+          (report.steps == most_steps && report.rms_force > at_rest));
+    CHECK(report.end != RelaxEnd::NotFinite);
+    if (report.end == RelaxEnd::Converged) ++tally.at_rest;
+    if (report.end == RelaxEnd::Steps) ++tally.out_of_steps;
+    if (report.end == RelaxEnd::Stuck) ++tally.stuck;
+    tally.highest_start = std::max(tally.highest_start, report.energy_before);
+}
+
+// The same conformations each time.
+void relax_conformations(std::string_view how, const TorsionModel& model, std::size_t count,
+                         const std::function<void(const TorsionState&, Tally&)>& relax) {
+    std::mt19937 random(20);
+    Tally tally;
+    for (std::size_t i = 0; i < count; ++i) {
+        INFO(how << ", conformation " << i);
+        relax(random_conformation(model, random), tally);
+    }
+    std::cout << fmt::format(
+        "  {}: {} of {} at rest after {} steps, {} stuck; from up to {:.0e} "
+        "kcal/mol\n",
+        how, tally.at_rest, count, most_steps, tally.stuck, tally.highest_start);
+    CHECK(tally.at_rest + tally.out_of_steps + tally.stuck == count);
+}
+
+void relax_conformations(std::string_view name, const test::FlexibleCase& c, std::size_t count) {
+    const TorsionModel model = test::model_of(c, {BaseFreedom::Free}, test::all_joints);
+    std::cout << fmt::format("{}, {} degrees of freedom\n", name, model.coordinates);
+    for (const test::WayOfStepping& way : test::all_ways_of_stepping()) {
+        relax_conformations(way.name, model, count, [&](const TorsionState& start, Tally& tally) {
+            step_to_rest(model, way, start, tally);
+        });
+    }
+    for (const ForceSettings& forces : {ForceSettings{}, test::fast_forces()}) {
+        relax_conformations(forces.fast ? "limited-memory BFGS, fast pairs"
+                                        : "limited-memory BFGS, pairs in double",
+                            model, count, [&](const TorsionState& start, Tally& tally) {
+                                minimise(model, forces, start, tally);
+                            });
+    }
+}
+
+}  // namespace
+
+TEST_CASE("500 random conformations of alanine dipeptide go towards rest", "[hard][slow]") {
+    relax_conformations("alanine dipeptide", test::alanine_dipeptide(), 500);
+}
+
+TEST_CASE("500 random conformations of the tetrapeptide AERA go towards rest", "[hard][slow]") {
+    relax_conformations("AERA", test::tetrapeptide(), 500);
+}
+
+TEST_CASE("random conformations of tetrapeptides with proline and lysine go towards rest",
+          "[hard][slow]") {
+    const auto folder = test::find_shared_data("reference");
+    if (!folder) return;
+    for (const char* const name : {"tetra_ampa_c36m", "tetra_adka_c36m"}) {
+        relax_conformations(name, test::read_flexible_case(*folder, name), 50);
+    }
+}

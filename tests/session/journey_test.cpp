@@ -1,0 +1,46 @@
+#include "session/journey.h"
+
+#include "scene/read_scene.h"
+#include "simulation/simulation.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <vector>
+
+using namespace palpa;
+
+TEST_CASE("of a hand on a spring the journey is that of its residue", "[session][journey]") {
+    Simulation simulation = load_simulation(read_scene(
+        PALPA_ROOT "/scenes/hiv/flexible.toml",
+        std::vector<std::string>{"grab.molecule=protease_b", "grab.atom=\"50\"",
+                                 "molecules.inhibitor.motion=free", "statics.relax_steps=0"}));
+    const AtomTable& atoms = simulation.atoms;
+    REQUIRE(simulation.flexible);
+    const auto is_held = [&](std::size_t i) {
+        return atoms.names[i].segment == "B" && atoms.names[i].number == "50";
+    };
+    double clearance = std::numeric_limits<double>::infinity();
+    JourneyLog log(simulation);
+
+    for (std::size_t i = 0; i < atoms.size(); ++i) {
+        if (!is_held(i)) continue;
+        simulation.atoms.positions[i].x() += 0.5;
+        simulation.flexible->state.positions[i].x() += 0.5;
+    }
+    log.add(simulation);
+
+    for (std::size_t i = 0; i < atoms.size(); ++i) {
+        for (std::size_t j = 0; j < atoms.size(); ++j) {
+            if (!is_held(i) || atoms.names[j].segment == "B") continue;
+            if (atoms.mass[i] < 2 || atoms.mass[j] < 2) continue;
+            clearance = std::min(clearance, (atoms.positions[i] - atoms.positions[j]).norm());
+        }
+    }
+    CHECK(log.journey().farthest == Approx(0.5).epsilon(1e-12));
+    CHECK(log.journey().last_rmsd == Approx(0.5).epsilon(1e-12));
+    CHECK(log.journey().clearance == Approx(clearance).epsilon(1e-12));
+    CHECK(clearance > 1);
+}
