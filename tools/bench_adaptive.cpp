@@ -1,19 +1,16 @@
 #include "tools/bench_adaptive.h"
 
-#include "assembly/joints.h"
-#include "charmm/cut_sphere.h"
 #include "core/load_error.h"
-#include "core/text.h"
 #include "core/units.h"
 #include "simulation/simulation.h"
-#include "statics/held_model.h"
+#include "tools/bench_response.h"
+#include "tools/bench_stroke.h"
 
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -23,25 +20,13 @@
 namespace palpa {
 namespace {
 
-constexpr std::size_t everything = std::numeric_limits<std::size_t>::max();
-constexpr std::array<std::size_t, 8> active_counts{0, 10, 20, 40, 80, 160, 320, everything};
 constexpr std::array<std::optional<double>, 2> cutoffs{std::nullopt, 12.0};
-constexpr double stride = 0.005;     // Å, of the hand along the stroke
 constexpr double local_shift = 0.1;  // Å
 constexpr std::size_t local_steps = 300;
 constexpr double apart = 0.001;  // Å, of the two runs that make the floor
 constexpr double pN = 1e12 * units::newton_per_kcal_per_mol_angstrom;
 
-void say(const std::string& what) { fmt::print(stderr, "{}\n", what); }
-
 // ---- what is compared --------------------------------------------------------------------------
-
-struct Variant {
-    std::size_t active;
-    std::optional<double> cutoff;
-    JointWeights weights;
-    PairPrecision pairs;
-};
 
 std::string_view weight_name(const Variant& v) {
     return v.active == everything ? "all" : joint_weight_names[static_cast<std::size_t>(v.weights)];
@@ -62,62 +47,12 @@ std::string name_of(const Variant& v) {
                                                    : fmt::format("{}/{}", name, weight_name(v));
 }
 
-SceneDescription scene_with(SceneDescription scene, const Variant& v) {
-    StaticsDescription& statics = scene.statics;
-    statics.method = StaticsMethod::QuasiStatic;
-    statics.budget_us.reset();
-    statics.active =
-        v.active == everything ? StaticsDescription{}.active : static_cast<std::int64_t>(v.active);
-    statics.cutoff_angstrom = v.cutoff;
-    statics.weights = v.weights;
-    statics.pairs = v.pairs;
-    return scene;
-}
-
-// A scene that has been loaded.
-struct Start {
-    const SceneDescription& scene;
-    const Connectivity& connectivity;
-    Flexible flexible;
-};
-
-Flexible build_variant(const Start& start, const Variant& variant) {
+Flexible build_variant(const BenchStart& start, const Variant& variant) {
     return build_flexible(scene_with(start.scene, variant), start.flexible.model,
                           start.flexible.grabbed, start.flexible.state.tether);
 }
 
-void put(const TorsionState& state, Flexible& flexible) {
-    flexible.state = state;
-    flexible.statics.h = 0;
-    flexible.adaptive = {};
-    if (flexible.adaptive_settings) flexible.adaptive = build_adaptive_statics(flexible.model);
-    start_flexible(flexible);
-}
-
-// kcal/mol/Å, on the hand.
-Vec3 find_force(const Flexible& flexible) {
-    if (!flexible.state.tether) return find_pull_on_held(flexible).tail<3>();
-    const Tether& tether = *flexible.state.tether;
-    return tether.k *
-           (find_tethered(flexible.model, tether, flexible.state.positions) - tether.place);
-}
-
-std::size_t count_backbone(const Start& start, const Flexible& flexible) {
-    const TorsionBodies& bodies = flexible.model.tree.bodies;
-    std::size_t count = 0;
-    for (std::size_t b = 0; b < bodies.bodies.size(); ++b) {
-        if (bodies.is_base(b) || !is_backbone(start.connectivity, bodies.bodies[b].axis)) continue;
-        if (!flexible.adaptive_settings || flexible.adaptive.selection.is_active[b] != 0) ++count;
-    }
-    return count;
-}
-
 // ---- numbers -----------------------------------------------------------------------------------
-
-double mean_of(std::span<const double> values) {
-    return std::accumulate(values.begin(), values.end(), 0.0) /
-           static_cast<double>(std::max<std::size_t>(1, values.size()));
-}
 
 double rms_of(std::span<const double> values) {
     const double squares = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
@@ -145,98 +80,6 @@ std::vector<double> relative_errors(std::span<const Vec3> values, std::span<cons
     return errors;
 }
 
-// Of logarithms, of values above 0.
-struct Relation {
-    double slope = 0, correlation = 0;
-    std::size_t points = 0;
-};
-
-Relation relate(std::span<const std::array<double, 2>> points) {
-    std::vector<std::array<double, 2>> logs;
-    for (const auto& [x, y] : points) {
-        if (x > 0 && y > 0) logs.push_back({std::log(x), std::log(y)});
-    }
-    double x_mean = 0, y_mean = 0, xx = 0, xy = 0, yy = 0;
-    for (const auto& [x, y] : logs) {
-        x_mean += x / static_cast<double>(logs.size());
-        y_mean += y / static_cast<double>(logs.size());
-    }
-    for (const auto& [x, y] : logs) {
-        xx += (x - x_mean) * (x - x_mean);
-        xy += (x - x_mean) * (y - y_mean);
-        yy += (y - y_mean) * (y - y_mean);
-    }
-    if (!(xx > 0 && yy > 0)) return {0, 0, logs.size()};
-    return {xy / xx, xy / std::sqrt(xx * yy), logs.size()};
-}
-
-// ---- the stroke --------------------------------------------------------------------------------
-
-// Å along x, from where the scene's path begins to where it is farthest.
-double find_reach(const SceneDescription& scene) {
-    double farthest = 0;
-    if (scene.hand.stroke == Stroke::Path) {
-        for (const auto& [time, place] : scene.hand.path) {
-            const double away = place - scene.hand.path.front()[1];
-            if (std::abs(away) > std::abs(farthest)) farthest = away;
-        }
-    }
-    if (farthest == 0) return 3;
-    return farthest * 1e-3 / scene.coupling.A_d * units::angstrom_per_metre;
-}
-
-struct StrokeResult {
-    std::vector<double> ordinary_us, choice_us;
-    std::vector<double> neglected;  // shares of the metric, at choices
-    std::vector<double> active, backbone;
-    std::size_t renewals = 0;
-    std::vector<Vec3> forces;  // after each move, kcal/mol/Å
-
-    double mean_us() const {
-        std::vector<double> all = ordinary_us;
-        all.insert(all.end(), choice_us.begin(), choice_us.end());
-        return mean_of(all);
-    }
-};
-
-// Out and back.
-StrokeResult play_stroke(const Start& start, int moves, Flexible& flexible) {
-    const double step = std::copysign(stride, find_reach(start.scene));
-    StrokeResult result;
-    for (int i = 0; i < moves; ++i) {
-        const std::size_t renewals = flexible.adaptive.renewals;
-        SettleReport report;
-        const double us = 1e6 * seconds_of([&] {
-                              move_held(flexible, {i < moves / 2 ? step : -step, 0, 0});
-                              report = step_flexible(flexible);
-                          });
-        result.renewals += flexible.adaptive.renewals - renewals;
-        const bool is_ordinary = !report.is_chosen && flexible.adaptive.renewals == renewals;
-        (is_ordinary ? result.ordinary_us : result.choice_us).push_back(us);
-        result.forces.push_back(find_force(flexible));
-        if (!report.is_chosen && i > 0) continue;
-        result.neglected.push_back(report.total > 0 ? report.neglected / report.total : 0);
-        result.active.push_back(static_cast<double>(report.active));
-        result.backbone.push_back(static_cast<double>(count_backbone(start, flexible)));
-    }
-    return result;
-}
-
-// Twice the same; each move took what it took the faster time.
-StrokeResult time_stroke(const Start& start, const TorsionState& from, int moves,
-                         Flexible& flexible) {
-    put(from, flexible);
-    StrokeResult result = play_stroke(start, moves, flexible);
-    put(from, flexible);
-    const StrokeResult again = play_stroke(start, moves, flexible);
-    const auto keep_less = [](std::vector<double>& values, const std::vector<double>& others) {
-        for (std::size_t i = 0; i < values.size(); ++i) values[i] = std::min(values[i], others[i]);
-    };
-    keep_less(result.ordinary_us, again.ordinary_us);
-    keep_less(result.choice_us, again.choice_us);
-    return result;
-}
-
 // ---- from rest ---------------------------------------------------------------------------------
 
 struct LocalEnd {
@@ -245,11 +88,11 @@ struct LocalEnd {
     double neglected = 0;  // of the metric, at the last choice
 };
 
-Vec3 local_move(const Start& start) {
+Vec3 local_move(const BenchStart& start) {
     return {std::copysign(local_shift, find_reach(start.scene)), 0, 0};
 }
 
-LocalEnd play_local(const Start& start, const TorsionState& pose, Flexible& flexible) {
+LocalEnd play_local(const BenchStart& start, const TorsionState& pose, Flexible& flexible) {
     put(pose, flexible);
     const Vec3 before = find_force(flexible);
     move_held(flexible, local_move(start));
@@ -262,7 +105,7 @@ LocalEnd play_local(const Start& start, const TorsionState& pose, Flexible& flex
     return end;
 }
 
-double relax(const Start& start, RelaxMethod method, std::size_t steps, Flexible& flexible) {
+double relax(const BenchStart& start, RelaxMethod method, std::size_t steps, Flexible& flexible) {
     RelaxSettings settings;
     settings.method = method;
     settings.step.forces = flexible.settings.step.forces;
@@ -272,7 +115,7 @@ double relax(const Start& start, RelaxMethod method, std::size_t steps, Flexible
 }
 
 // Most of the way with fast pairs, the end in double. Returns the rms force that is left.
-double bring_to_rest(const Start& start, Flexible& fast, Flexible& exact) {
+double bring_to_rest(const BenchStart& start, Flexible& fast, Flexible& exact) {
     (void)relax(start, RelaxMethod::InverseMass, 1500, fast);
     (void)relax(start, RelaxMethod::LimitedMemory, 1500, fast);
     put(fast.state, exact);
@@ -286,7 +129,7 @@ struct Pose {
     LocalEnd same_steps, at_rest;
 };
 
-std::vector<Pose> build_poses(const Start& start, int count) {
+std::vector<Pose> build_poses(const BenchStart& start, int count) {
     Flexible guide =
         build_variant(start, {everything, {}, JointWeights::Plain, PairPrecision::Fast});
     Flexible exact =
@@ -343,7 +186,7 @@ std::vector<Vec3> changes_of(std::span<const Pose> poses, LocalEnd Pose::* end) 
     return changes;
 }
 
-Result run_variant(const Start& start, const References& references, const Variant& variant) {
+Result run_variant(const BenchStart& start, const References& references, const Variant& variant) {
     Result result{variant, {}, {}, {}, {}, {}, {}, {}};
     Flexible flexible = build_variant(start, variant);
     std::vector<Vec3> changes;
@@ -364,24 +207,6 @@ Result run_variant(const Start& start, const References& references, const Varia
                                 static_cast<int>(references.path.size()), flexible);
     result.path = relative_errors(result.stroke.forces, references.path);
     return result;
-}
-
-std::string describe_stroke(const StrokeResult& stroke, double all_us) {
-    std::string text = fmt::format("mean {:.0f} us with choices", stroke.mean_us());
-    if (all_us > 0) text += fmt::format(", {:.3f} of all joints'", stroke.mean_us() / all_us);
-    if (!stroke.choice_us.empty())
-        text += fmt::format(", choice {:.0f} us", quantile(stroke.choice_us, 0.5));
-    return text + fmt::format(
-                      ", {} renewals, {:.0f} active, {:.1f} of them backbone, {:.3g} of "
-                      "the metric neglected",
-                      stroke.renewals, mean_of(stroke.active), mean_of(stroke.backbone),
-                      mean_of(stroke.neglected));
-}
-
-void add_time_rows(const std::string& name, const StrokeResult& stroke, double all_us,
-                   std::vector<BenchRow>& rows) {
-    rows.push_back({name, stroke.ordinary_us, "us", {}, "", describe_stroke(stroke, all_us)});
-    if (!stroke.choice_us.empty()) rows.push_back({name + "/choice", stroke.choice_us, "us"});
 }
 
 void add_rows(const std::string& name, const Result& result, const References& references,
@@ -426,7 +251,7 @@ constexpr std::string_view table_head =
     "| neglected, % | force, % | at rest, % | position, Å | stroke, % |\n"
     "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
 
-std::vector<Variant> list_variants(const Start& start, const std::optional<double>& cutoff) {
+std::vector<Variant> list_variants(const BenchStart& start, const std::optional<double>& cutoff) {
     std::vector<Variant> variants;
     const PairPrecision pairs = start.scene.statics.pairs;
     variants.push_back({everything, cutoff, JointWeights::Plain, pairs});
@@ -476,7 +301,7 @@ void add_relations(const std::string& prefix, std::span<const Result> results,
     }
 }
 
-Start load_start(const SceneDescription& scene, const Connectivity& connectivity) {
+BenchStart load_start(const SceneDescription& scene, const Connectivity& connectivity) {
     Simulation simulation = load_simulation(scene);
     if (!simulation.flexible) {
         throw LoadError({scene.file.string()},
@@ -486,125 +311,47 @@ Start load_start(const SceneDescription& scene, const Connectivity& connectivity
     return {scene, connectivity, std::move(*simulation.flexible)};
 }
 
-// ---- spheres -----------------------------------------------------------------------------------
-
-constexpr std::array<std::size_t, 5> sphere_sizes{1'000, 3'000, 10'000, 30'000, 100'000};
-constexpr std::size_t sphere_of_counts = 30'000, sphere_active = 40;
-
-bool is_residue(const AtomName& name, const AtomName& other) {
-    return name.segment == other.segment && name.number == other.number;
-}
-
-// The first atom of what the hand's spring holds; the molecule in hand is the first of the table.
-std::uint32_t find_centre(const SceneDescription& scene, const Connectivity& connectivity) {
-    const std::vector<std::string_view> words = split_words(scene.grab.atom);
-    if (!words.empty()) {
-        for (std::uint32_t i = 0; i < connectivity.names.size(); ++i) {
-            if (connectivity.names[i].number == words.front()) return i;
-        }
+// What no choice can mend, and a sentence on it.
+std::string bench_best_joints(const std::string& prefix, const BenchStart& start, Flexible& at_rest,
+                              std::vector<BenchRow>& rows) {
+    constexpr Eigen::Index most = 2000;  // second derivatives of more take too long
+    if (at_rest.model.coordinates > most) return "";
+    say("the joints that matter most");
+    const HandResponse response = find_hand_response(at_rest, local_move(start), active_counts);
+    std::string text = fmt::format(
+        "\nAt rest the hand finds {:.0f} pN/Å where nothing else moves and {:.1f} where all comes "
+        "to "
+        "rest. Of that force the coordinates that matter most, chosen with all second derivatives "
+        "known, still miss:",
+        pN * response.rigid.norm(), pN * response.relaxed.norm());
+    for (std::size_t i = 0; i < active_counts.size(); ++i) {
+        if (active_counts[i] >= static_cast<std::size_t>(at_rest.model.coordinates)) continue;
+        const double error = response.errors[i];
+        rows.push_back(
+            {fmt::format("{}/best/active={}", prefix, active_counts[i]),
+             {error},
+             "relative",
+             pN * error * response.relaxed.norm(),
+             "pN/A",
+             fmt::format("all joints at rest: {:.1f} pN/A", pN * response.relaxed.norm())});
+        text += fmt::format("{} {} {:.3g} %", i == 0 ? "" : ",", active_counts[i], 100 * error);
     }
-    throw LoadError(scene.place_of("grab.atom"),
-                    "expected a residue in the hand, to cut spheres around");
+    return text + ".\n";
 }
-
-// A sphere with its middle residue on the hand's spring.
-Flexible build_sphere(const SceneDescription& scene, const CutSystem& sphere,
-                      const AtomName& middle) {
-    Tether tether;
-    tether.k = scene.grab.spring_kcal_per_mol_angstrom2;
-    for (std::uint32_t i = 0; i < sphere.connectivity.names.size(); ++i) {
-        if (is_residue(sphere.connectivity.names[i], middle)) tether.atoms.push_back(i);
-    }
-    TorsionModel model = build_held_model(sphere.connectivity, sphere.topology, sphere.positions);
-    const std::uint32_t body = model.tree.bodies.body_of[tether.atoms.front()];
-    const std::uint32_t grabbed = model.tree.molecule_of[body];
-    const Variant variant{0, 12.0, JointWeights::Light, PairPrecision::Fast};
-    return build_flexible(scene_with(scene, variant), std::move(model), grabbed, std::move(tether));
-}
-
-StrokeResult time_sphere(const Start& start, std::size_t active, int moves) {
-    Flexible flexible = start.flexible;
-    if (flexible.adaptive_settings) flexible.adaptive_settings->limits.degrees_of_freedom = active;
-    return time_stroke(start, start.flexible.state, moves, flexible);
-}
-
-constexpr std::string_view sphere_table_head =
-    "| atoms | joints | active | backbone | step, µs | 10 to 90 % | choice | mean |\n"
-    "| --- | --- | --- | --- | --- | --- | --- | --- |\n";
-
-std::string sphere_line(std::size_t atoms, std::size_t joints, std::size_t active,
-                        const StrokeResult& s) {
-    return fmt::format("| {} | {} | {} | {:.1f} | {:.0f} | {:.0f} to {:.0f} | {:.0f} | {:.0f} |\n",
-                       atoms, joints, active, mean_of(s.backbone), quantile(s.ordinary_us, 0.5),
-                       quantile(s.ordinary_us, 0.1), quantile(s.ordinary_us, 0.9),
-                       quantile(s.choice_us, 0.5), s.mean_us());
-}
-
-// Growth of steps, choices and all together.
-class Growth {
-public:
-    void add(double size, const StrokeResult& stroke) {
-        steps_.push_back({size, quantile(stroke.ordinary_us, 0.5)});
-        choices_.push_back({size, quantile(stroke.choice_us, 0.5)});
-        means_.push_back({size, stroke.mean_us()});
-    }
-
-    std::string add_rows(const std::string& name, std::vector<BenchRow>& rows) const {
-        rows.push_back({name + "/step", {relate(steps_).slope}, "exponent"});
-        rows.push_back({name + "/choice", {relate(choices_).slope}, "exponent"});
-        rows.push_back({name + "/mean", {relate(means_).slope}, "exponent"});
-        return fmt::format("step {:.2f}, choice {:.2f}, mean {:.2f}", relate(steps_).slope,
-                           relate(choices_).slope, relate(means_).slope);
-    }
-
-private:
-    std::vector<std::array<double, 2>> steps_, choices_, means_;
-};
 
 }  // namespace
-
-std::string bench_spheres(const std::string& scene_name, const SceneDescription& scene,
-                          const AdaptiveBenchSettings& settings, std::vector<BenchRow>& rows) {
-    const SceneSystem system = load_system(scene);
-    const std::uint32_t centre = find_centre(scene, system.connectivity);
-    const std::string prefix = "adaptive/" + scene_name;
-    std::string table{sphere_table_head};
-    Growth with_atoms, with_active;
-    for (const std::size_t most : sphere_sizes) {
-        if (most > system.positions.size()) break;
-        const CutSystem sphere =
-            cut_sphere(system.connectivity, system.topology, system.positions, centre, most);
-        const Start start{scene, sphere.connectivity,
-                          build_sphere(scene, sphere, system.connectivity.names[centre])};
-        for (const std::size_t active : active_counts) {
-            const bool is_counted = most == sphere_of_counts && active > 0 && active != everything;
-            if (active != sphere_active && !is_counted) continue;
-            say(fmt::format("sphere of {} atoms, {} active", sphere.positions.size(), active));
-            const StrokeResult stroke = time_sphere(start, active, settings.stroke_moves);
-            add_time_rows(
-                fmt::format("{}/atoms={}/active={}", prefix, sphere.positions.size(), active),
-                stroke, 0, rows);
-            table += sphere_line(sphere.positions.size(), start.flexible.joints, active, stroke);
-            if (active == sphere_active)
-                with_atoms.add(static_cast<double>(sphere.positions.size()), stroke);
-            if (is_counted) with_active.add(static_cast<double>(active), stroke);
-        }
-    }
-    table += fmt::format("\nExponents of growth with atoms: {}; with active joints: {}.\n",
-                         with_atoms.add_rows(prefix + "/exponent-of-atoms", rows),
-                         with_active.add_rows(prefix + "/exponent-of-active", rows));
-    return table;
-}
 
 std::string bench_adaptive(const std::string& scene_name, const SceneDescription& scene,
                            const AdaptiveBenchSettings& settings, std::vector<BenchRow>& rows) {
     const Connectivity connectivity = load_system(scene).connectivity;
-    const Start start = load_start(scene, connectivity);
+    const BenchStart start = load_start(scene, connectivity);
     const std::string prefix = "adaptive/" + scene_name;
     References references{build_poses(start, settings.poses), {}};
     Flexible exact =
         build_variant(start, {everything, {}, JointWeights::Plain, PairPrecision::Double});
     const TorsionState& rest = references.poses.front().rest;
+    put(rest, exact);
+    const std::string best = bench_best_joints(prefix, start, exact, rows);
     put(rest, exact);
     say("all joints along the stroke");
     references.path = play_stroke(start, settings.stroke_moves, exact).forces;
@@ -648,7 +395,8 @@ std::string bench_adaptive(const std::string& scene_name, const SceneDescription
     }
     return table +
            fmt::format("\nTwo runs with all joints along the stroke, 0.001 Å apart: {:.2g} %.\n",
-                       100 * rms_of(floor));
+                       100 * rms_of(floor)) +
+           best;
 }
 
 }  // namespace palpa

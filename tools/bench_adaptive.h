@@ -29,6 +29,9 @@ struct AdaptiveBenchSettings {
 //   adaptive/SCENE/relation/CUTOFF/WEIGHT/force, position
 //                        correlation of the logarithms of what was neglected and of the local error
 //   adaptive/SCENE/exponent-of-active/CUTOFF/WEIGHT
+//   adaptive/SCENE/best/active=N
+//                        what the nearly best choice of N would miss of the force when all comes to
+//                        rest (tools/bench_response.h), of the first pose
 //
 // of scenes in which something moves by itself. Returns all that as a table in Markdown. Says on
 // standard error how far it is.

@@ -19,6 +19,12 @@ bool may_base_move(const TorsionModel& model, const AdaptiveStatics& statics,
            statics.moving.passes.is_active[statics.clusters.tree.bases[molecule]] != 0;
 }
 
+double find_rms(const std::vector<Vec3>& forces) {
+    double squares = 0;
+    for (const Vec3& force : forces) squares += force.squaredNorm();
+    return std::sqrt(squares / static_cast<double>(forces.size()));
+}
+
 // ---- forces ----------------------------------------------------------------------------------
 
 bool is_list_outdated(const AdaptiveSettings& settings, const TorsionState& state,
@@ -118,6 +124,7 @@ void rebuild_clusters(const TorsionModel& model, const AdaptiveSettings& setting
                                model.topology,
                                has_end(forces.nonbonded) ? &statics.memory.list : nullptr, groups);
     const EnergyTerms all = state.terms;
+    statics.rounded_force = std::max(statics.rounded_force, find_rms(state.forces));
     update_across(model, settings, state, statics, statics.across_forces);
     statics.within_terms = all;
     statics.within_terms -= statics.across_terms;
@@ -162,6 +169,7 @@ bool is_within_reach(const std::vector<Vec3>& positions) {
     if (!std::isfinite(state.energy())) return false;
     if (is_new || statics.steps_since_choice >= settings.choose_every)
         choose_joints(model, settings, state, statics);
+    statics.rounded_force = 0;
     rebuild_clusters(model, settings, state, statics);
     statics.is_built = true;
     statics.renewed_energy = state.energy();
@@ -169,24 +177,29 @@ bool is_within_reach(const std::vector<Vec3>& positions) {
     return true;
 }
 
-void choose_anew(const TorsionModel& model, const AdaptiveSettings& settings, TorsionState& state,
-                 AdaptiveStatics& statics) {
-    complete_forces(model, statics, state);
-    const std::vector<std::uint8_t> before = statics.selection.is_active;
-    choose_joints(model, settings, state, statics);
-    if (statics.selection.is_active != before) rebuild_clusters(model, settings, state, statics);
-}
-
 bool is_choice_due(const AdaptiveSettings& settings, const AdaptiveStatics& statics) {
     return statics.steps_since_choice >= settings.choose_every;
 }
 
+// Of a state whose forces are complete.
 bool is_renewal_due(const AdaptiveSettings& settings, const TorsionState& state,
                     const AdaptiveStatics& statics) {
-    // What was rounded when forces were much larger weighs too much after that.
+    // What was rounded when forces were larger weighs too much after that.
     constexpr double much = 1000;  // kcal/mol
     return statics.choices % settings.renew_every == 0 ||
-           std::abs(state.energy() - statics.renewed_energy) > much;
+           std::abs(state.energy() - statics.renewed_energy) > much ||
+           find_rms(state.forces) < 0.5 * statics.rounded_force;
+}
+
+// False where energies are no numbers.
+[[nodiscard]] bool choose_anew(const TorsionModel& model, const AdaptiveSettings& settings,
+                               TorsionState& state, AdaptiveStatics& statics) {
+    complete_forces(model, statics, state);
+    if (is_renewal_due(settings, state, statics)) return renew(model, settings, state, statics);
+    const std::vector<std::uint8_t> before = statics.selection.is_active;
+    choose_joints(model, settings, state, statics);
+    if (statics.selection.is_active != before) rebuild_clusters(model, settings, state, statics);
+    return true;
 }
 
 // ---- the step --------------------------------------------------------------------------------
@@ -393,20 +406,16 @@ AdaptiveReport step_adaptive(const TorsionModel& model, const AdaptiveSettings& 
     PALPA_ASSERT(settings.choose_every > 0 && settings.renew_every > 0);
     if (statics.h == 0) statics.h = settings.step.first_h;
     const std::size_t choices = statics.choices;
-    if (!statics.is_built || is_list_outdated(settings, state, statics) ||
-        (is_choice_due(settings, statics) && is_renewal_due(settings, state, statics))) {
-        if (!renew(model, settings, state, statics)) {
-            AdaptiveReport report;
-            report.step.is_finite = false;
-            return report;
-        }
-    } else if (is_choice_due(settings, statics)) {
-        choose_anew(model, settings, state, statics);
-    }
-    ++statics.steps_since_choice;
-
     AdaptiveReport result;
     QuasiStaticReport& report = result.step;
+    if (!statics.is_built || is_list_outdated(settings, state, statics)) {
+        report.is_finite = renew(model, settings, state, statics);
+    } else if (is_choice_due(settings, statics)) {
+        report.is_finite = choose_anew(model, settings, state, statics);
+    }
+    if (!report.is_finite) return result;
+    ++statics.steps_since_choice;
+
     result.is_chosen = statics.choices != choices;
     update_accelerations(statics.clusters, statics.moving);
     const Accelerations accelerations = find_accelerations(model, statics);
@@ -487,9 +496,7 @@ AdaptiveDeviation find_deviation(const TorsionModel& model, const AdaptiveSettin
     anew.positions = state.positions;
     ForceMemory memory;
     update_forces(model, settings.step.forces, memory, anew);
-    double squares = 0;
-    for (const Vec3& force : anew.forces) squares += force.squaredNorm();
-    const double rms = std::sqrt(squares / static_cast<double>(anew.forces.size()));
+    const double rms = find_rms(anew.forces);
     for (std::size_t i = 0; i < anew.forces.size(); ++i) {
         const double size = std::max({anew.forces[i].norm(), rms, 1e-300});
         deviation.force =

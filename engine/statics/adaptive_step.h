@@ -70,6 +70,8 @@ struct AdaptiveStatics {
 
     double h = 0;               // AKMA time; 0 before the first step
     double renewed_energy = 0;  // kcal/mol, at the last sum over everything
+    // kcal/mol/Å, the largest rms force since then at which forces within clusters were rounded.
+    double rounded_force = 0;
     bool is_built = false;
 };
 

@@ -64,6 +64,12 @@ class BenchAdaptive(unittest.TestCase):
             self.assertIn("2 points", row["reference"])
             self.assertAlmostEqual(row["median"], 1)
 
+    def test_the_best_choice_misses_less_with_more_joints(self):
+        misses = [self.rows[f"best/active={n}"]["error"] for n in (0, 10, 20)]
+        self.assertEqual(misses, sorted(misses, reverse=True))
+        self.assertGreater(misses[0], misses[2])
+        self.assertNotIn("best/active=40", self.rows)
+
     def test_prints_a_table(self):
         result = bench(PEPTIDES, "--adaptive", "--poses", 1, "--stroke-steps", 20, "--table")
         lines = [line for line in result.stdout.splitlines() if line.startswith("|")]

@@ -1,0 +1,153 @@
+#include "tools/bench_stroke.h"
+
+#include "assembly/joints.h"
+#include "core/units.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace palpa {
+namespace {
+
+constexpr double stride = 0.005;  // Å, of the hand along the stroke
+
+std::size_t count_backbone(const BenchStart& start, const Flexible& flexible) {
+    const TorsionBodies& bodies = flexible.model.tree.bodies;
+    std::size_t count = 0;
+    for (std::size_t b = 0; b < bodies.bodies.size(); ++b) {
+        if (bodies.is_base(b) || !is_backbone(start.connectivity, bodies.bodies[b].axis)) continue;
+        if (!flexible.adaptive_settings || flexible.adaptive.selection.is_active[b] != 0) ++count;
+    }
+    return count;
+}
+
+std::string describe_stroke(const StrokeResult& stroke, double all_us) {
+    std::string text = fmt::format("mean {:.0f} us with choices", stroke.mean_us());
+    if (all_us > 0) text += fmt::format(", {:.3f} of all joints'", stroke.mean_us() / all_us);
+    if (!stroke.choice_us.empty())
+        text += fmt::format(", choice {:.0f} us", quantile(stroke.choice_us, 0.5));
+    return text + fmt::format(
+                      ", {} renewals, {:.0f} active, {:.1f} of them backbone, {:.3g} of "
+                      "the metric neglected",
+                      stroke.renewals, mean_of(stroke.active), mean_of(stroke.backbone),
+                      mean_of(stroke.neglected));
+}
+
+}  // namespace
+
+void say(const std::string& what) { fmt::print(stderr, "{}\n", what); }
+
+SceneDescription scene_with(SceneDescription scene, const Variant& v) {
+    StaticsDescription& statics = scene.statics;
+    statics.method = StaticsMethod::QuasiStatic;
+    statics.budget_us.reset();
+    statics.active =
+        v.active == everything ? StaticsDescription{}.active : static_cast<std::int64_t>(v.active);
+    statics.cutoff_angstrom = v.cutoff;
+    statics.weights = v.weights;
+    statics.pairs = v.pairs;
+    return scene;
+}
+
+void put(const TorsionState& state, Flexible& flexible) {
+    flexible.state = state;
+    flexible.statics.h = 0;
+    flexible.adaptive = {};
+    if (flexible.adaptive_settings) flexible.adaptive = build_adaptive_statics(flexible.model);
+    start_flexible(flexible);
+}
+
+Vec3 find_force(const Flexible& flexible) {
+    if (!flexible.state.tether) return find_pull_on_held(flexible).tail<3>();
+    const Tether& tether = *flexible.state.tether;
+    return tether.k *
+           (find_tethered(flexible.model, tether, flexible.state.positions) - tether.place);
+}
+
+double find_reach(const SceneDescription& scene) {
+    double farthest = 0;
+    if (scene.hand.stroke == Stroke::Path) {
+        for (const auto& [time, place] : scene.hand.path) {
+            const double away = place - scene.hand.path.front()[1];
+            if (std::abs(away) > std::abs(farthest)) farthest = away;
+        }
+    }
+    if (farthest == 0) return 3;
+    return farthest * 1e-3 / scene.coupling.A_d * units::angstrom_per_metre;
+}
+
+double StrokeResult::mean_us() const {
+    std::vector<double> all = ordinary_us;
+    all.insert(all.end(), choice_us.begin(), choice_us.end());
+    return mean_of(all);
+}
+
+StrokeResult play_stroke(const BenchStart& start, int moves, Flexible& flexible) {
+    const double step = std::copysign(stride, find_reach(start.scene));
+    StrokeResult result;
+    for (int i = 0; i < moves; ++i) {
+        const std::size_t renewals = flexible.adaptive.renewals;
+        SettleReport report;
+        const double us = 1e6 * seconds_of([&] {
+                              move_held(flexible, {i < moves / 2 ? step : -step, 0, 0});
+                              report = step_flexible(flexible);
+                          });
+        result.renewals += flexible.adaptive.renewals - renewals;
+        const bool is_ordinary = !report.is_chosen && flexible.adaptive.renewals == renewals;
+        (is_ordinary ? result.ordinary_us : result.choice_us).push_back(us);
+        result.forces.push_back(find_force(flexible));
+        if (!report.is_chosen && i > 0) continue;
+        result.neglected.push_back(report.total > 0 ? report.neglected / report.total : 0);
+        result.active.push_back(static_cast<double>(report.active));
+        result.backbone.push_back(static_cast<double>(count_backbone(start, flexible)));
+    }
+    return result;
+}
+
+StrokeResult time_stroke(const BenchStart& start, const TorsionState& from, int moves,
+                         Flexible& flexible) {
+    put(from, flexible);
+    StrokeResult result = play_stroke(start, moves, flexible);
+    put(from, flexible);
+    const StrokeResult again = play_stroke(start, moves, flexible);
+    const auto keep_less = [](std::vector<double>& values, const std::vector<double>& others) {
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] = std::min(values[i], others[i]);
+    };
+    keep_less(result.ordinary_us, again.ordinary_us);
+    keep_less(result.choice_us, again.choice_us);
+    return result;
+}
+
+void add_time_rows(const std::string& name, const StrokeResult& stroke, double all_us,
+                   std::vector<BenchRow>& rows) {
+    rows.push_back({name, stroke.ordinary_us, "us", {}, "", describe_stroke(stroke, all_us)});
+    if (!stroke.choice_us.empty()) rows.push_back({name + "/choice", stroke.choice_us, "us"});
+}
+
+double mean_of(std::span<const double> values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) /
+           static_cast<double>(std::max<std::size_t>(1, values.size()));
+}
+
+Relation relate(std::span<const std::array<double, 2>> points) {
+    std::vector<std::array<double, 2>> logs;
+    for (const auto& [x, y] : points) {
+        if (x > 0 && y > 0) logs.push_back({std::log(x), std::log(y)});
+    }
+    double x_mean = 0, y_mean = 0, xx = 0, xy = 0, yy = 0;
+    for (const auto& [x, y] : logs) {
+        x_mean += x / static_cast<double>(logs.size());
+        y_mean += y / static_cast<double>(logs.size());
+    }
+    for (const auto& [x, y] : logs) {
+        xx += (x - x_mean) * (x - x_mean);
+        xy += (x - x_mean) * (y - y_mean);
+        yy += (y - y_mean) * (y - y_mean);
+    }
+    if (!(xx > 0 && yy > 0)) return {0, 0, logs.size()};
+    return {xy / xx, xy / std::sqrt(xx * yy), logs.size()};
+}
+
+}  // namespace palpa
