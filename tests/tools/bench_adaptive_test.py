@@ -70,6 +70,11 @@ class BenchAdaptive(unittest.TestCase):
         self.assertGreater(misses[0], misses[2])
         self.assertNotIn("best/active=40", self.rows)
 
+    def test_joints_give_way_as_their_stiffness_says(self):
+        moved = self.rows["active=all/all-pairs/local-rest"]["reference"].split()[-2]  # by 0.1 Å
+        per_angstrom = self.rows["best/active=0"]["reference"].split()[-2]
+        self.assertAlmostEqual(float(moved) / (0.1 * float(per_angstrom)), 1, delta=0.15)
+
     def test_prints_a_table(self):
         result = bench(PEPTIDES, "--adaptive", "--poses", 1, "--stroke-steps", 20, "--table")
         lines = [line for line in result.stdout.splitlines() if line.startswith("|")]
