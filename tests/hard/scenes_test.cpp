@@ -178,7 +178,7 @@ const std::vector<std::string> by_spring{"molecules.held.motion=free", "grab.ato
 TEST_CASE("a hand that jumps onto, through and far beyond the other molecule", "[hard]") {
     std::vector<std::string> settings;
     if (GENERATE(false, true)) settings = by_spring;
-    const auto jump = GENERATE(onto_the_other, Vec3(-30, 0, 0), Vec3(-30, -5.5, -2.7));
+    const auto jump = GENERATE(as<Vec3>{}, onto_the_other, Vec3(-30, 0, 0), Vec3(-30, -5.5, -2.7));
     for (const WayOfStepping& way : all_ways_of_stepping()) {
         INFO(way.name);
         Watched watched(peptides, way, settings);
@@ -208,9 +208,8 @@ TEST_CASE("a molecule that starts in the other one, and is warned of", "[hard]")
     for (const WayOfStepping& way : all_ways_of_stepping()) {
         INFO(way.name);
         Watched watched(peptides, way, {"hand.start_offset_angstrom=[-11, -2, -1]"});
-        CHECK_THAT(
-            all_of(list_warnings(watched.scene(), watched.simulation(), {})),
-            Contains("atoms are on each other at the start: PEP") && Contains(" Å apart"));
+        CHECK_THAT(all_of(list_warnings(watched.scene(), watched.simulation(), {})),
+                   Contains("atoms are on each other at the start: PEP") && Contains(" Å apart"));
 
         watched.rest(30);
         watched.look_back();
