@@ -159,7 +159,7 @@ TEST_CASE("clusters move as rigid bodies and accelerate as new ones would", "[as
         Vec6 move;
         for (int i = 0; i < 6; ++i) move[i] = uniform(random);
         const std::vector<Vec3> before = c.positions;
-        const Vec3 centre = test::molecules_of(c).centres[0].cast<double>();
+        const Vec3 centre = test::centres_of(c)[0];
         move_clusters(h.tree, turns, std::vector<Vec6>{move}, h.state);
         update_positions(h.tree, h.state, c.positions);
         update_clusters(h.tree, h.state);

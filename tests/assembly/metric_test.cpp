@@ -85,7 +85,7 @@ void check_metric(const TorsionCase& c, const Held& held) {
 Vec6 free_motion(const TorsionCase& c, const AssemblyState& state, const GuidedBase& base) {
     Vec6 motion = state.base_acceleration[0];
     if (base.guide != BaseGuide::Point) return motion;
-    const Vec3 centre = test::molecules_of(c).centres[0].cast<double>();
+    const Vec3 centre = test::centres_of(c)[0];
     const Vec3 turn = motion.head<3>(), arm = base.point.value_or(centre) - centre;
     motion.tail<3>() = -turn.cross(arm);
     return motion;
@@ -137,7 +137,7 @@ TEST_CASE("a base counts by its parts or by the work of pushing it", "[assembly]
         update_metric(tree, state, {MetricWeight::Plain, factors}, metric);
 
         // From the atoms.
-        const Vec3 centre = test::molecules_of(c).centres[0].cast<double>();
+        const Vec3 centre = test::centres_of(c)[0];
         double mass = 0, moment = 0;
         for (std::size_t i = 0; i < c.masses.size(); ++i) {
             mass += c.masses[i];

@@ -2,7 +2,6 @@
 
 #include "tests/support/shared_data.h"
 #include "tests/support/torsion_held.h"
-#include "tests/support/torsion_oracles.h"
 #include "tests/support/torsion_reference.h"
 
 #include <fmt/format.h>
@@ -38,32 +37,6 @@ AssemblyTree tree_of(const TorsionCase& c) {
 double worst_against_dense(const TorsionCase& c, const Held& held) {
     const AssemblyTree tree = tree_of(c);
     return test::worst_difference(state_of(c, tree, held), test::dense_accelerations(c, held));
-}
-
-// rad/ps^2 of 1 kcal/mol / (amu Å^2)
-constexpr double per_ps2 = 418.4;
-
-// The file gives a base's acceleration at its first atom, in rad/ps^2 and nm/ps^2.
-TorsionAccelerations read_accelerations(const std::filesystem::path& folder,
-                                        const std::string& name, const TorsionCase& c) {
-    const nlohmann::json json = test::read_json(folder / (name + ".torsion.json"));
-    const test::Molecules molecules = test::molecules_of(c);
-    TorsionAccelerations result{std::vector<double>(c.bodies.bodies.size(), 0), {}};
-    for (const auto& row : json["qdd"]) {
-        result.joints[row[0].get<std::size_t>()] = row[1].get<double>() / per_ps2;
-    }
-    for (const auto& base : json["base"]) {
-        Vec6 a;
-        for (int i = 0; i < 3; ++i) {
-            a[i] = base["angular"][i].get<double>() / per_ps2;
-            a[i + 3] = base["linear"][i].get<double>() * test::angstrom_per_nm / per_ps2;
-        }
-        const std::uint32_t first = json["bodies"][base["body"].get<std::size_t>()]["atoms"][0];
-        const Vec3 arm = molecules.centres[result.bases.size()].cast<double>() - c.positions[first];
-        a.tail<3>() += a.head<3>().cross(arm);
-        result.bases.push_back(a);
-    }
-    return result;
 }
 
 }  // namespace
@@ -139,7 +112,8 @@ TEST_CASE("proteins accelerate as Simbody and a dense solve say", "[assembly][pa
         const AssemblyState state = state_of(c, tree, test::all_free(c));
         INFO(name);
 
-        const double error = test::worst_difference(state, read_accelerations(*folder, name, c));
+        const double error =
+            test::worst_difference(state, test::read_torsion_accelerations(*folder, name, c));
         // To which Simbody and the file agree; the file has twelve digits.
         CHECK(error <= 1e-8);
         const double exact =
@@ -193,7 +167,7 @@ TEST_CASE("what holds a base is what it takes to do so", "[assembly][passes]") {
     // All rigid and fixed: against all forces on atoms.
     const AssemblyState state = state_of(c, tree, held);
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
-    const Vec3 centre = test::molecules_of(c).centres[0].cast<double>();
+    const Vec3 centre = test::centres_of(c)[0];
     for (std::size_t i = 0; i < c.forces.size(); ++i) {
         force += c.forces[i];
         torque += (c.positions[i] - centre).cross(c.forces[i]);

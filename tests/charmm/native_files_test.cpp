@@ -130,7 +130,7 @@ void check_reference(const fs::path& folder, const std::string& name, const Forc
         }
     }
     REQUIRE(!frames.empty());
-    test::ReferenceAtoms atoms = test::read_reference_atoms(folder / (name + ".ff.json"));
+    test::NativeAtoms atoms = test::read_native_atoms(folder / (name + ".ff.json"));
     atoms.structure.positions = frames[0].positions;
     const test::ReferenceCase reference = test::read_reference_case(folder / (name + ".ff.json"));
 

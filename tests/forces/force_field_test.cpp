@@ -186,8 +186,8 @@ TEST_CASE("crambin has the energies that CHARMM prints, with CHARMM's cutoffs",
         places[{structure.names[i].number, structure.names[i].atom}] = structure.positions[i];
     }
     std::vector<Vec3> positions;
-    for (const auto& [number, atom] : reference.names)
-        positions.push_back(places.at({number, atom}));
+    for (const test::ReferenceAtom& atom : reference.atoms)
+        positions.push_back(places.at({std::to_string(atom.number), atom.name}));
     std::vector<Vec3> forces(positions.size(), Vec3::Zero());
 
     const EnergyTerms energy = add_forces(reference.topology,

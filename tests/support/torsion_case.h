@@ -3,16 +3,12 @@
 #include "assembly/bodies.h"
 #include "molecule/connectivity.h"
 #include "statics/torsion_state.h"
-#include "tests/support/reference_case.h"
 #include "tests/support/torsion_molecules.h"
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <random>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace palpa::test {
@@ -24,171 +20,41 @@ struct FlexibleCase {
 };
 
 // CASE.ff.json and the first frame of CASE.frames.json.
-inline FlexibleCase read_flexible_case(const std::filesystem::path& folder, const std::string& name,
-                                       const std::string& frames = "frames") {
-    const std::filesystem::path path = folder / (name + ".ff.json");
-    FlexibleCase result;
-    result.topology = read_reference_case(path).topology;
-    result.connectivity.file = path.string();
-    const nlohmann::json json = read_json(path);
-    for (const auto& row : json["atoms"]["rows"]) {
-        result.connectivity.names.push_back(
-            {"A", row[1], std::to_string(row[2].get<int>()), row[0]});
-        result.connectivity.mass.push_back(row[4]);
-    }
-    for (const Bond& bond : result.topology.bonds) {
-        result.connectivity.bonds.push_back({bond.a, bond.b});
-    }
-    result.positions = read_reference_frames(folder / (name + "." + frames + ".json"))[0].positions;
-    return result;
-}
+FlexibleCase read_flexible_case(const std::filesystem::path& folder, const std::string& name,
+                                const std::string& frames = "frames");
 
-inline FlexibleCase alanine_dipeptide() {
-    return read_flexible_case(PALPA_TEST_DATA, "ala_dipeptide");
-}
+FlexibleCase alanine_dipeptide();
 
-inline FlexibleCase tetrapeptide() {
-    return read_flexible_case(PALPA_TEST_DATA, "tetra_aera_c36m");
-}
+FlexibleCase tetrapeptide();
 
 // The molecule and a copy, turned and `away` from it.
-inline FlexibleCase with_copy(FlexibleCase c, const Vec3& away) {
-    const auto atoms = static_cast<std::uint32_t>(c.topology.size());
-    const auto copy = [&](auto& terms, auto... atom) {
-        const std::size_t count = terms.size();
-        for (std::size_t i = 0; i < count; ++i) {
-            auto term = terms[i];
-            ((term.*atom += atoms), ...);
-            terms.push_back(term);
-        }
-    };
-    Topology& t = c.topology;
-    copy(t.bonds, &Bond::a, &Bond::b);
-    copy(t.angles, &Angle::a, &Angle::b, &Angle::c);
-    copy(t.urey_bradleys, &UreyBradley::a, &UreyBradley::c);
-    copy(t.dihedrals, &Dihedral::a, &Dihedral::b, &Dihedral::c, &Dihedral::d);
-    copy(t.impropers, &Improper::a, &Improper::b, &Improper::c, &Improper::d);
-    for (std::size_t i = 0, count = t.cmap_terms.size(); i < count; ++i) {
-        CmapTerm term = t.cmap_terms[i];
-        for (std::uint32_t& atom : term.phi) atom += atoms;
-        for (std::uint32_t& atom : term.psi) atom += atoms;
-        t.cmap_terms.push_back(term);
-    }
-    for (std::size_t i = 0, count = t.exclusions.pairs14.size(); i < count; ++i) {
-        const auto [a, b] = t.exclusions.pairs14[i];
-        t.exclusions.pairs14.push_back({a + atoms, b + atoms});
-    }
-    const auto excluded = static_cast<std::uint32_t>(t.exclusions.atoms.size());
-    for (std::uint32_t i = 0; i < excluded; ++i) {
-        t.exclusions.atoms.push_back(t.exclusions.atoms[i] + atoms);
-    }
-    for (std::uint32_t i = 0; i < atoms; ++i) {
-        t.exclusions.first.push_back(t.exclusions.first[i + 1] + excluded);
-        t.charge.push_back(t.charge[i]);
-        t.type.push_back(t.type[i]);
-        c.connectivity.mass.push_back(c.connectivity.mass[i]);
-        c.connectivity.names.push_back(c.connectivity.names[i]);
-        c.connectivity.names.back().segment = "B";
-    }
-    for (std::size_t i = 0, count = c.connectivity.bonds.size(); i < count; ++i) {
-        const auto [a, b] = c.connectivity.bonds[i];
-        c.connectivity.bonds.push_back({a + atoms, b + atoms});
-    }
-    const Mat3 turn = Eigen::AngleAxisd(1.1, Vec3(2, -1, 1).normalized()).toRotationMatrix();
-    for (std::uint32_t i = 0; i < atoms; ++i) {
-        c.positions.emplace_back(turn * (c.positions[i] - c.positions[0]) + c.positions[0] + away);
-    }
-    return c;
-}
+FlexibleCase with_copy(FlexibleCase c, const Vec3& away);
 
 inline const JointRules all_joints{
     .methyl = true, .amide = true, .amide_nh2 = true, .guanidinium_nh2 = true, .overrides = {}};
 
-inline TorsionBodies bodies_of(const FlexibleCase& c, const JointRules& rules = {}) {
-    return build_bodies(c.connectivity, build_joints(c.connectivity, rules));
-}
+TorsionBodies bodies_of(const FlexibleCase& c, const JointRules& rules = {});
 
 // Bases in the order of the molecules; each turns about its molecule's first atom if not free.
-inline TorsionModel model_of(const FlexibleCase& c, const std::vector<BaseFreedom>& freedoms,
-                             const JointRules& rules = {}) {
-    const TorsionBodies bodies = bodies_of(c, rules);
-    std::vector<MoleculeBase> bases;
-    const std::size_t atoms = c.positions.size() / freedoms.size();
-    for (std::size_t m = 0; m < freedoms.size(); ++m) {
-        bases.push_back({freedoms[m], static_cast<std::uint32_t>(m * atoms)});
-    }
-    return build_torsion_model(bodies, c.connectivity.mass, c.positions, c.topology, bases);
-}
+TorsionModel model_of(const FlexibleCase& c, const std::vector<BaseFreedom>& freedoms,
+                      const JointRules& rules = {});
 
 // Made-up bodies on which no force field acts.
-inline TorsionModel forceless_model(const TorsionCase& c, BaseFreedom freedom,
-                                    std::uint32_t pivot = 0) {
-    Topology topology;
-    topology.charge.assign(c.masses.size(), 0);
-    topology.type.assign(c.masses.size(), 0);
-    topology.lennard_jones = build_lennard_jones_table(std::vector<LennardJonesType>{{0, 1}}, {});
-    topology.lennard_jones14 = topology.lennard_jones;
-    topology.exclusions.first.assign(c.masses.size() + 1, 0);
-    return build_torsion_model(c.bodies, c.masses, c.positions, topology,
-                               std::vector<MoleculeBase>(c.bodies.molecules(), {freedom, pivot}));
-}
+TorsionModel forceless_model(const TorsionCase& c, BaseFreedom freedom, std::uint32_t pivot = 0);
 
-inline Coordinates random_move(const TorsionModel& model, double size, std::mt19937& random) {
-    std::uniform_real_distribution<double> uniform(-size, size);
-    Coordinates move(model.coordinates);
-    for (double& value : move) value = uniform(random);
-    return move;
-}
+Coordinates random_move(const TorsionModel& model, double size, std::mt19937& random);
 
 // Where it is after a random move from the reference.
-inline TorsionState state_after(const TorsionModel& model, double size, std::uint32_t seed) {
-    std::mt19937 random(seed);
-    TorsionState state = build_torsion_state(model);
-    add_move(model, random_move(model, size, random), state);
-    return state;
-}
+TorsionState state_after(const TorsionModel& model, double size, std::uint32_t seed);
 
 // How atoms go with each coordinate, as the positions themselves tell: a column of x, y and z of
 // each atom per coordinate. Differences of fourth order, an error of 1e-11 of the arm or so.
-inline Eigen::MatrixXd find_jacobian(const TorsionModel& model, const TorsionState& state) {
-    constexpr double h = 1e-3;
-    const auto atoms = static_cast<Eigen::Index>(state.positions.size());
-    Eigen::MatrixXd jacobian(3 * atoms, model.coordinates);
-    for (Eigen::Index c = 0; c < model.coordinates; ++c) {
-        const auto moved = [&](double by) {
-            TorsionState there = state;
-            add_move(model, by * Coordinates::Unit(model.coordinates, c), there);
-            return there.positions;
-        };
-        const auto up = moved(h), down = moved(-h), up2 = moved(2 * h), down2 = moved(-2 * h);
-        for (Eigen::Index i = 0; i < atoms; ++i) {
-            const auto at = static_cast<std::size_t>(i);
-            jacobian.block<3, 1>(3 * i, c) =
-                (8 * (up[at] - down[at]) - (up2[at] - down2[at])) / (12 * h);
-        }
-    }
-    return jacobian;
-}
+Eigen::MatrixXd find_jacobian(const TorsionModel& model, const TorsionState& state);
 
 // Forces on atoms, one below the other as the rows of the jacobian.
-inline Eigen::VectorXd stacked(const std::vector<Vec3>& vectors) {
-    Eigen::VectorXd result(static_cast<Eigen::Index>(3 * vectors.size()));
-    for (std::size_t i = 0; i < vectors.size(); ++i) {
-        result.segment<3>(static_cast<Eigen::Index>(3 * i)) = vectors[i];
-    }
-    return result;
-}
+Eigen::VectorXd stacked(const std::vector<Vec3>& vectors);
 
 // J^T m J qdd = J^T f
-inline Coordinates find_accelerations(const TorsionModel& model, const TorsionState& state) {
-    const Eigen::MatrixXd J = find_jacobian(model, state);
-    Eigen::VectorXd mass(J.rows());
-    for (Eigen::Index i = 0; i < mass.size(); ++i) {
-        mass[i] = model.masses[static_cast<std::size_t>(i / 3)];
-    }
-    return (J.transpose() * mass.asDiagonal() * J)
-        .ldlt()
-        .solve(J.transpose() * stacked(state.forces));
-}
+Coordinates find_accelerations(const TorsionModel& model, const TorsionState& state);
 
 }  // namespace palpa::test
