@@ -186,7 +186,9 @@ int bench_command(const BenchOptions& options) {
             continue;
         }
         if (options.adaptive) {
-            const auto bench = options.spheres ? bench_spheres : bench_adaptive;
+            const auto bench = options.spheres ? bench_spheres
+                               : options.best  ? bench_best_joints
+                                               : bench_adaptive;
             tables += bench(name, scene, options.adaptive_settings, rows);
             continue;
         }

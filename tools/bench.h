@@ -19,6 +19,7 @@ struct BenchOptions {
     bool statics = false;   // ways to rest of flexible scenes, likewise
     bool adaptive = false;  // few active joints in flexible scenes, likewise
     bool spheres = false;   // with it: of spheres cut from the scenes' systems
+    bool best = false;      // with it: what the best choice of joints could do
     bool table = false;     // with it: Markdown
     AdaptiveBenchSettings adaptive_settings;
     bool json = false;

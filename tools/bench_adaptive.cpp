@@ -1,9 +1,7 @@
 #include "tools/bench_adaptive.h"
 
-#include "core/load_error.h"
 #include "core/units.h"
 #include "simulation/simulation.h"
-#include "tools/bench_response.h"
 #include "tools/bench_stroke.h"
 
 #include <fmt/format.h>
@@ -45,11 +43,6 @@ std::string name_of(const Variant& v) {
         fmt::format("active={}/{}", active_name(v.active), cutoff_name(v.cutoff));
     return v.active == everything || v.active == 0 ? name
                                                    : fmt::format("{}/{}", name, weight_name(v));
-}
-
-Flexible build_variant(const BenchStart& start, const Variant& variant) {
-    return build_flexible(scene_with(start.scene, variant), start.flexible.model,
-                          start.flexible.grabbed, start.flexible.state.tether);
 }
 
 // ---- numbers -----------------------------------------------------------------------------------
@@ -103,15 +96,6 @@ LocalEnd play_local(const BenchStart& start, const TorsionState& pose, Flexible&
     end.change = find_force(flexible) - before;
     end.positions = flexible.state.positions;
     return end;
-}
-
-double relax(const BenchStart& start, RelaxMethod method, std::size_t steps, Flexible& flexible) {
-    RelaxSettings settings;
-    settings.method = method;
-    settings.step.forces = flexible.settings.step.forces;
-    settings.force_tolerance = start.scene.statics.rest_kcal_per_mol;
-    settings.steps = steps;
-    return relax_joints(flexible.model, settings, flexible.state, flexible.statics).rms_force;
 }
 
 // Most of the way with fast pairs, the end in double. Returns the rms force that is left.
@@ -301,44 +285,6 @@ void add_relations(const std::string& prefix, std::span<const Result> results,
     }
 }
 
-BenchStart load_start(const SceneDescription& scene, const Connectivity& connectivity) {
-    Simulation simulation = load_simulation(scene);
-    if (!simulation.flexible) {
-        throw LoadError({scene.file.string()},
-                        "nothing moves by itself here; expected a flexible scene, as "
-                        "scenes/hiv/flexible.toml");
-    }
-    return {scene, connectivity, std::move(*simulation.flexible)};
-}
-
-// What no choice can mend, and a sentence on it.
-std::string bench_best_joints(const std::string& prefix, const BenchStart& start, Flexible& at_rest,
-                              std::vector<BenchRow>& rows) {
-    constexpr Eigen::Index most = 2000;  // second derivatives of more take too long
-    if (at_rest.model.coordinates > most) return "";
-    say("the joints that matter most");
-    const HandResponse response = find_hand_response(at_rest, local_move(start), active_counts);
-    std::string text = fmt::format(
-        "\nAt rest the hand finds {:.0f} pN/Å where nothing else moves and {:.1f} where all comes "
-        "to "
-        "rest. Of that force the coordinates that matter most, chosen with all second derivatives "
-        "known, still miss:",
-        pN * response.rigid.norm(), pN * response.relaxed.norm());
-    for (std::size_t i = 0; i < active_counts.size(); ++i) {
-        if (active_counts[i] >= static_cast<std::size_t>(at_rest.model.coordinates)) continue;
-        const double error = response.errors[i];
-        rows.push_back(
-            {fmt::format("{}/best/active={}", prefix, active_counts[i]),
-             {error},
-             "relative",
-             pN * error * response.relaxed.norm(),
-             "pN/A",
-             fmt::format("all joints at rest: {:.1f} pN/A", pN * response.relaxed.norm())});
-        text += fmt::format("{} {} {:.3g} %", i == 0 ? "" : ",", active_counts[i], 100 * error);
-    }
-    return text + ".\n";
-}
-
 }  // namespace
 
 std::string bench_adaptive(const std::string& scene_name, const SceneDescription& scene,
@@ -350,8 +296,6 @@ std::string bench_adaptive(const std::string& scene_name, const SceneDescription
     Flexible exact =
         build_variant(start, {everything, {}, JointWeights::Plain, PairPrecision::Double});
     const TorsionState& rest = references.poses.front().rest;
-    put(rest, exact);
-    const std::string best = bench_best_joints(prefix, start, exact, rows);
     put(rest, exact);
     say("all joints along the stroke");
     references.path = play_stroke(start, settings.stroke_moves, exact).forces;
@@ -395,8 +339,7 @@ std::string bench_adaptive(const std::string& scene_name, const SceneDescription
     }
     return table +
            fmt::format("\nTwo runs with all joints along the stroke, 0.001 Å apart: {:.2g} %.\n",
-                       100 * rms_of(floor)) +
-           best;
+                       100 * rms_of(floor));
 }
 
 }  // namespace palpa

@@ -29,9 +29,6 @@ struct AdaptiveBenchSettings {
 //   adaptive/SCENE/relation/CUTOFF/WEIGHT/force, position
 //                        correlation of the logarithms of what was neglected and of the local error
 //   adaptive/SCENE/exponent-of-active/CUTOFF/WEIGHT
-//   adaptive/SCENE/best/active=N
-//                        what the nearly best choice of N would miss of the force when all comes to
-//                        rest (tools/bench_response.h), of the first pose
 //
 // of scenes in which something moves by itself. Returns all that as a table in Markdown. Says on
 // standard error how far it is.
@@ -44,5 +41,13 @@ std::string bench_adaptive(const std::string& scene_name, const SceneDescription
 // likewise.
 std::string bench_spheres(const std::string& scene_name, const SceneDescription& scene,
                           const AdaptiveBenchSettings& settings, std::vector<BenchRow>& rows);
+
+// What no choice of joints can mend: adaptive/SCENE/best/active=N is the change of the force on the
+// hand per Å along x, from rest, when N coordinates come to rest again, and how far that is from
+// all. They are chosen one by one, each the one that lowers the energy most beside those before it,
+// from all second derivatives of the energy: nearly as good as any choice, and far too slow for a
+// step. Throws LoadError where there are too many. Returns a table likewise.
+std::string bench_best_joints(const std::string& scene_name, const SceneDescription& scene,
+                              const AdaptiveBenchSettings& settings, std::vector<BenchRow>& rows);
 
 }  // namespace palpa

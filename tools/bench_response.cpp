@@ -1,14 +1,17 @@
-#include "tools/bench_response.h"
-
+#include "core/load_error.h"
+#include "core/units.h"
+#include "simulation/simulation.h"
+#include "tools/bench_adaptive.h"
 #include "tools/bench_stroke.h"
 
+#include <fmt/format.h>
 #include <algorithm>
-#include <cmath>
 
 namespace palpa {
 namespace {
 
 constexpr double step = 2e-4;  // rad and Å
+constexpr double pN = 1e12 * units::newton_per_kcal_per_mol_angstrom;
 
 // Forces on the coordinates, then on the hand.
 using Pull = Eigen::VectorXd;
@@ -22,7 +25,7 @@ Pull find_pull(Flexible& flexible) {
     return pull;
 }
 
-// By what `move` changes, central differences.
+// How it changes with a move, by central differences.
 template <class Move>
 Pull find_slope(Flexible& flexible, const Move& move) {
     const TorsionState start = flexible.state;
@@ -35,21 +38,21 @@ Pull find_slope(Flexible& flexible, const Move& move) {
     return (up - down) / (2 * step);
 }
 
-// Forces on the coordinates and the hand per coordinate, and in the last column per Å of the hand.
-Eigen::MatrixXd find_slopes(Flexible& flexible, const Vec3& direction) {
+// A column for each coordinate, and a last one for the hand along x.
+Eigen::MatrixXd find_slopes(Flexible& flexible) {
     const Eigen::Index n = flexible.model.coordinates;
     Eigen::MatrixXd slopes(n + 3, n + 1);
     for (Eigen::Index c = 0; c < n; ++c) {
+        if (c % 100 == 0) say(fmt::format("second derivatives: {} of {} coordinates", c, n));
         slopes.col(c) = find_slope(flexible, [&](double by) {
             add_move(flexible.model, by * Coordinates::Unit(n, c), flexible.state);
         });
     }
-    slopes.col(n) =
-        find_slope(flexible, [&](double by) { move_held(flexible, by * direction.normalized()); });
+    slopes.col(n) = find_slope(flexible, [&](double by) { move_held(flexible, {by, 0, 0}); });
     return slopes;
 }
 
-// The coordinate that lowers the energy most by coming to rest; -1 where none can.
+// The coordinate that lowers the energy most by coming to rest; -1 where none does.
 Eigen::Index find_best(const Eigen::MatrixXd& slopes) {
     const Eigen::Index n = slopes.cols() - 1;
     Eigen::Index best = -1;
@@ -64,30 +67,59 @@ Eigen::Index find_best(const Eigen::MatrixXd& slopes) {
     return best;
 }
 
-}  // namespace
-
-HandResponse find_hand_response(Flexible& at_rest, const Vec3& direction,
-                                std::span<const std::size_t> counts) {
-    Eigen::MatrixXd slopes = find_slopes(at_rest, direction);
-    const Eigen::Index n = slopes.cols() - 1;
-    const auto force = [&] { return Vec3(slopes.col(n).tail<3>()); };
-    HandResponse response;
-    response.rigid = force();
-    std::vector<Vec3> left{force()};  // by the number of coordinates that came to rest
+// The change of the force on the hand per Å that it went, kcal/mol/Å^2, when none, one, two, ...
+// coordinates came to rest: each the best beside those before it.
+std::vector<Vec3> find_responses(Eigen::MatrixXd slopes) {
+    const auto force = [&] { return Vec3(slopes.rightCols<1>().tail<3>()); };
+    std::vector<Vec3> responses{force()};
     for (Eigen::Index best = find_best(slopes); best >= 0; best = find_best(slopes)) {
         const Eigen::VectorXd column = slopes.col(best);
         const Eigen::RowVectorXd row = slopes.row(best) / slopes(best, best);
         slopes.noalias() -= column * row;
         slopes.row(best).setZero();
         slopes.col(best).setZero();
-        left.push_back(force());
+        responses.push_back(force());
     }
-    response.relaxed = left.back();
-    for (const std::size_t count : counts) {
-        const Vec3 error = left[std::min(count, left.size() - 1)] - response.relaxed;
-        response.errors.push_back(error.norm() / response.relaxed.norm());
+    return responses;
+}
+
+}  // namespace
+
+std::string bench_best_joints(const std::string& scene_name, const SceneDescription& scene,
+                              const AdaptiveBenchSettings&, std::vector<BenchRow>& rows) {
+    const Connectivity connectivity = load_system(scene).connectivity;
+    const BenchStart start = load_start(scene, connectivity);
+    Flexible flexible =
+        build_variant(start, {everything, {}, JointWeights::Plain, PairPrecision::Double});
+    constexpr Eigen::Index most = 2000;
+    if (flexible.model.coordinates > most) {
+        throw LoadError({scene.file.string()},
+                        fmt::format("{} degrees of freedom; expected at most {}, of which second "
+                                    "derivatives are had in minutes",
+                                    flexible.model.coordinates, most));
     }
-    return response;
+    const double left = relax(start, RelaxMethod::LimitedMemory, 300, flexible);
+    say(fmt::format("at rest to {:.2g} kcal/mol per rad and Å", left));
+    const std::vector<Vec3> responses = find_responses(find_slopes(flexible));
+
+    const Vec3& relaxed = responses.back();
+    const std::string reference = fmt::format("all at rest: {:.1f} pN/A", pN * relaxed.norm());
+    std::string table = "| come to rest | the hand finds, pN/Å | wrong, % |\n| --- | --- | --- |\n";
+    for (const std::size_t active : active_counts) {
+        const std::size_t count = std::min(active, responses.size() - 1);
+        if (count < active && active != everything) continue;
+        const std::string name = active == everything ? "all" : fmt::format("{}", active);
+        const double error = (responses[count] - relaxed).norm();
+        rows.push_back({fmt::format("adaptive/{}/best/active={}", scene_name, name),
+                        {pN * responses[count].norm()},
+                        "pN/A",
+                        error / relaxed.norm(),
+                        "relative",
+                        reference});
+        table += fmt::format("| {} | {:.1f} | {:.3g} |\n", name, pN * responses[count].norm(),
+                             100 * error / relaxed.norm());
+    }
+    return table;
 }
 
 }  // namespace palpa

@@ -1,12 +1,15 @@
 #include "tools/bench_stroke.h"
 
 #include "assembly/joints.h"
+#include "core/load_error.h"
 #include "core/units.h"
+#include "simulation/simulation.h"
 
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace palpa {
 namespace {
@@ -49,6 +52,30 @@ SceneDescription scene_with(SceneDescription scene, const Variant& v) {
     statics.weights = v.weights;
     statics.pairs = v.pairs;
     return scene;
+}
+
+BenchStart load_start(const SceneDescription& scene, const Connectivity& connectivity) {
+    Simulation simulation = load_simulation(scene);
+    if (!simulation.flexible) {
+        throw LoadError({scene.file.string()},
+                        "nothing moves by itself here; expected a flexible scene, as "
+                        "scenes/hiv/flexible.toml");
+    }
+    return {scene, connectivity, std::move(*simulation.flexible)};
+}
+
+Flexible build_variant(const BenchStart& start, const Variant& variant) {
+    return build_flexible(scene_with(start.scene, variant), start.flexible.model,
+                          start.flexible.grabbed, start.flexible.state.tether);
+}
+
+double relax(const BenchStart& start, RelaxMethod method, std::size_t steps, Flexible& flexible) {
+    RelaxSettings settings;
+    settings.method = method;
+    settings.step.forces = flexible.settings.step.forces;
+    settings.force_tolerance = start.scene.statics.rest_kcal_per_mol;
+    settings.steps = steps;
+    return relax_joints(flexible.model, settings, flexible.state, flexible.statics).rms_force;
 }
 
 void put(const TorsionState& state, Flexible& flexible) {

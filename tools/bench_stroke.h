@@ -26,6 +26,9 @@ struct BenchStart {
     Flexible flexible;
 };
 
+// Throws LoadError where nothing moves by itself.
+BenchStart load_start(const SceneDescription& scene, const Connectivity& connectivity);
+
 // What of a scene's statics a bench sets.
 struct Variant {
     std::size_t active;
@@ -35,6 +38,11 @@ struct Variant {
 };
 
 SceneDescription scene_with(SceneDescription scene, const Variant& variant);
+
+Flexible build_variant(const BenchStart& start, const Variant& variant);
+
+// The rms force along the coordinates that is left, kcal/mol/rad or Å.
+double relax(const BenchStart& start, RelaxMethod method, std::size_t steps, Flexible& flexible);
 
 // Starts from another state, with nothing remembered.
 void put(const TorsionState& state, Flexible& flexible);

@@ -147,6 +147,11 @@ void add_adaptive_options(CLI::App& bench, palpa::BenchOptions& options) {
                   "only time them, in spheres around the residue in hand")
         ->needs(adaptive);
     bench
+        .add_flag("--best", options.best,
+                  "only say how wrong the joints are that matter most, chosen at leisure")
+        ->excludes("--spheres")
+        ->needs(adaptive);
+    bench
         .add_option("--poses", options.adaptive_settings.poses, "along the stroke, 3 unless given")
         ->check(in_range(1, 1000))
         ->needs(adaptive);
