@@ -138,16 +138,6 @@ class Cli(unittest.TestCase):
         self.assertEqual([(row["name"], row["unit"], row["reference"]) for row in rows],
                          [("load/dimer.crd", "ms", "6 atoms"), ("load/toppar", "ms", "2 types")])
 
-    def test_bench_times_assembly_trees(self):
-        result = self.palpa("bench", "--tree", WATER, "--json")
-        self.assertEqual(result.returncode, 0, result.stderr)
-        rows = {row["name"]: row for row in json.loads(result.stdout)["rows"]}
-        self.assertIn("tree/water/joints=0/passes", rows)
-        for joints in (100, 1000, 5000, 20000):
-            row = rows[f"tree/polymer/joints={joints}/metric"]
-            self.assertLess(row["error"], 1e-9)
-        self.assertIn("tree/polymer/passes/exponent", rows)
-
     def test_an_assembly_that_is_not_there(self):
         arguments = ("prepare", WATER / "dimer.crd", "--toppar", WATER / "tip3p.str", "-o", "out",
                      "--assembly")
