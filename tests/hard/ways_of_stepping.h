@@ -31,7 +31,8 @@ double rounding_of(const ForceSettings& forces);
 
 // Energies in double, by the twin of every faster way.
 double exact_energy(const TorsionModel& model, const TorsionState& state);
-// All its terms without their signs: of pairs repulsion, attraction and electrostatics, each.
+// All its terms without their signs: of pairs repulsion, attraction and electrostatics, each. The
+// largest pair counts twice, as field/pair_kernel.h says.
 double sum_of_terms(const TorsionModel& model, const TorsionState& state);
 
 bool is_finite(const TorsionState& state);
