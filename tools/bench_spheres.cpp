@@ -52,7 +52,7 @@ Flexible build_sphere(const SceneDescription& scene, const CutSystem& sphere,
 
 StrokeResult time_sphere(const BenchStart& start, std::size_t active, int moves) {
     Flexible flexible = start.flexible;
-    if (flexible.adaptive_settings) flexible.adaptive_settings->limits.degrees_of_freedom = active;
+    if (flexible.adaptive) flexible.adaptive->settings.limits.degrees_of_freedom = active;
     return time_stroke(start, start.flexible.state, moves, flexible);
 }
 

@@ -21,7 +21,7 @@ std::size_t count_backbone(const BenchStart& start, const Flexible& flexible) {
     std::size_t count = 0;
     for (std::size_t b = 0; b < bodies.bodies.size(); ++b) {
         if (bodies.is_base(b) || !is_backbone(start.connectivity, bodies.bodies[b].axis)) continue;
-        if (!flexible.adaptive_settings || flexible.adaptive.selection.is_active[b] != 0) ++count;
+        if (!flexible.adaptive || flexible.adaptive->statics.selection.is_active[b] != 0) ++count;
     }
     return count;
 }
@@ -81,8 +81,7 @@ double relax(const BenchStart& start, RelaxMethod method, std::size_t steps, Fle
 void put(const TorsionState& state, Flexible& flexible) {
     flexible.state = state;
     flexible.statics.h = 0;
-    flexible.adaptive = {};
-    if (flexible.adaptive_settings) flexible.adaptive = build_adaptive_statics(flexible.model);
+    if (flexible.adaptive) flexible.adaptive->statics = build_adaptive_statics(flexible.model);
     start_flexible(flexible);
 }
 
@@ -115,14 +114,13 @@ StrokeResult play_stroke(const BenchStart& start, int moves, Flexible& flexible)
     const double step = std::copysign(stride, find_reach(start.scene));
     StrokeResult result;
     for (int i = 0; i < moves; ++i) {
-        const std::size_t renewals = flexible.adaptive.renewals;
         SettleReport report;
         const double us = 1e6 * seconds_of([&] {
                               move_held(flexible, {i < moves / 2 ? step : -step, 0, 0});
                               report = step_flexible(flexible);
                           });
-        result.renewals += flexible.adaptive.renewals - renewals;
-        const bool is_ordinary = !report.is_chosen && flexible.adaptive.renewals == renewals;
+        if (report.is_renewed) ++result.renewals;
+        const bool is_ordinary = !report.is_chosen && !report.is_renewed;
         (is_ordinary ? result.ordinary_us : result.choice_us).push_back(us);
         result.forces.push_back(find_force(flexible));
         if (!report.is_chosen && i > 0) continue;

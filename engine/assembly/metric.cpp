@@ -12,13 +12,32 @@ double factor_of(const MetricWeights& weights, std::uint32_t body) {
     return weights.factors.empty() ? 1 : weights.factors[body];
 }
 
-// Both parts' forms at their joined handles, +-W u, and the joint's own square, as forms of
+// Two parts and what they are joined to. Both parts' forms at their joined handles, +-W u, and the
+// joint's own square, are a form u^T K u + r^T u of
 //     u = sum_j s_j L_j^T f_j + beta,   s = 1 in A and -1 in B, L_j = phi of handle and joined one,
-// as passes.cpp has it: u^T K u + r^T u.
-struct FormOfJoint {
-    Mat6 K;
-    Vec6 r;
+// as passes.cpp has it.
+struct Joined {
+    const AssemblyNode& node;
+    std::array<Side, 2> sides;
+    std::array<PartInertia, 2> parts;
+    Vec6 beta;
+
+    Joined(const AssemblyTree& tree, const AssemblyState& state, const AssemblyNode& joined)
+        : node(joined),
+          sides(sides_of(tree, joined)),
+          parts{PartInertia(tree, state, *sides[0].node), PartInertia(tree, state, *sides[1].node)},
+          beta(parts[0].b(sides[0].joined()) - parts[1].b(sides[1].joined())) {}
+
+    const Mat6& L(std::uint32_t handle) const {
+        const std::uint32_t side = node.side[handle];
+        return parts[side].phi(node.number[handle], sides[side].joined());
+    }
 };
+
+const Mat6& psi_of(const AccelerationMetric& metric, const AssemblyNode& part, std::uint32_t i,
+                   std::uint32_t j) {
+    return metric.psi[part.first_pair + pair_number(i, j)];
+}
 
 // With N_i = psi_i,joined W the form of the joined part is the sum of those of u, of the handles
 // themselves, and of what ties them: -2 s_i f_i^T N_i u. Collecting what stands before f and f^T f:
@@ -26,62 +45,76 @@ struct FormOfJoint {
 //     psi_ij = [psi_ij of the side, if i and j are on one] + s_i s_j (M_i L_j^T - L_i N_j^T)
 //     p_i    = p_i of the side + s_i (2 M_i beta + L_i r)
 //     eta    = eta_A + eta_B + beta^T K beta + r^T beta
-void join_metric(const AssemblyTree& tree, const AssemblyNode& node, const AssemblyState& state,
-                 const MetricWeights& weights, AccelerationMetric& metric) {
-    const JointInertia& joint = state.joints[node.part];
-    const std::array sides = sides_of(tree, node);
-    const std::array<PartInertia, 2> parts{PartInertia(tree, state, *sides[0].node),
-                                           PartInertia(tree, state, *sides[1].node)};
-    const Vec6 beta = parts[0].b(sides[0].joined()) - parts[1].b(sides[1].joined());
-    // Of a side that is no leaf.
-    const auto psi_of = [&](const Side& side, std::uint32_t i, std::uint32_t j) -> const Mat6& {
-        return metric.psi[side.node->first_pair + pair_number(i, j)];
-    };
-    const auto p_of = [&](const Side& side, std::uint32_t i) -> const Vec6& {
-        return metric.p[side.node->first_handle + i];
-    };
-
-    FormOfJoint form;
-    form.K = weight_of_joint(joint, node.link, weights) * joint.gain * joint.gain.transpose();
-    form.r.setZero();
-    double eta = 0;
+// First psi, which forces have no part in.
+void join_psi(const Joined& joined, const JointInertia& joint, double weight,
+              AccelerationMetric& metric) {
+    const auto& [node, sides, parts, beta] = joined;
+    Mat6 K = weight * joint.gain * joint.gain.transpose();
     for (const Side& side : sides) {
         if (side.node->is_leaf()) continue;
-        const Mat6 psi_W = psi_of(side, side.joined(), side.joined()).lazyProduct(joint.W);
-        form.K += joint.W.lazyProduct(psi_W);
-        form.r -= side.sign * (joint.W * p_of(side, side.joined()));
-        eta += metric.eta[side.node->part];
+        const Mat6 psi_W =
+            psi_of(metric, *side.node, side.joined(), side.joined()).lazyProduct(joint.W);
+        K += joint.W.lazyProduct(psi_W);
     }
-    metric.eta[node.part] = eta + beta.dot(form.K * beta) + form.r.dot(beta);
 
     std::array<Mat6, 3> M, N;
     for (std::uint32_t j = 0; j < node.handles; ++j) {
         const Side& side_j = sides[node.side[j]];
-        const std::uint32_t j_there = node.number[j];
-        const Mat6& L_j = parts[node.side[j]].phi(j_there, side_j.joined());
-        Vec6& p = metric.p[node.first_handle + j];
+        const Mat6& L_j = joined.L(j);
         N[j].setZero();
-        p.setZero();
         if (!side_j.node->is_leaf()) {
-            N[j] = psi_of(side_j, j_there, side_j.joined()).lazyProduct(joint.W);
-            p = p_of(side_j, j_there);
+            N[j] =
+                psi_of(metric, *side_j.node, node.number[j], side_j.joined()).lazyProduct(joint.W);
         }
-        M[j] = L_j.lazyProduct(form.K) - N[j];
-        p += side_j.sign * (2 * M[j] * beta + L_j * form.r);
+        M[j] = L_j.lazyProduct(K) - N[j];
         for (std::uint32_t i = 0; i <= j; ++i) {
             const Side& side_i = sides[node.side[i]];
-            const std::uint32_t i_there = node.number[i];
-            const Mat6& L_i = parts[node.side[i]].phi(i_there, side_i.joined());
             Mat6& psi = metric.psi[node.first_pair + pair_number(i, j)];
             psi = M[i].lazyProduct(L_j.transpose());
-            psi -= L_i.lazyProduct(N[j].transpose());
+            psi -= joined.L(i).lazyProduct(N[j].transpose());
             if (node.side[i] != node.side[j]) {
                 psi = -psi;
             } else if (!side_i.node->is_leaf()) {
-                psi += psi_of(side_i, i_there, j_there);
+                psi += psi_of(metric, *side_i.node, node.number[i], node.number[j]);
             }
         }
     }
+}
+
+// Then what forces have to do with: p and eta, without products of matrices.
+void join_bias(const Joined& joined, const JointInertia& joint, double weight,
+               AccelerationMetric& metric) {
+    const auto& [node, sides, parts, beta] = joined;
+    const Vec6 W_beta = joint.W * beta;
+    Vec6 K_beta = weight * joint.gain.dot(beta) * joint.gain, r = Vec6::Zero();
+    double eta = 0;
+    for (const Side& side : sides) {
+        if (side.node->is_leaf()) continue;
+        const Mat6& psi = psi_of(metric, *side.node, side.joined(), side.joined());
+        const Vec6& p = metric.p[side.node->first_handle + side.joined()];
+        K_beta += joint.W * (psi * W_beta);
+        r -= side.sign * (joint.W * p);
+        eta += metric.eta[side.node->part];
+    }
+    metric.eta[node.part] = eta + beta.dot(K_beta + r);
+
+    for (std::uint32_t j = 0; j < node.handles; ++j) {
+        const Side& side = sides[node.side[j]];
+        Vec6& p = metric.p[node.first_handle + j];
+        p = side.sign * (joined.L(j) * (2 * K_beta + r));
+        if (side.node->is_leaf()) continue;
+        const Mat6& psi = psi_of(metric, *side.node, node.number[j], side.joined());
+        p += metric.p[side.node->first_handle + node.number[j]] - 2 * side.sign * (psi * W_beta);
+    }
+}
+
+// Whether forms are of these weights; they are from now on.
+bool take_weights(const MetricWeights& weights, AccelerationMetric& metric) {
+    const bool are_same =
+        metric.weight == weights.weight && std::ranges::equal(metric.factors, weights.factors);
+    metric.weight = weights.weight;
+    metric.factors.assign(weights.factors.begin(), weights.factors.end());
+    return are_same;
 }
 
 // The components that the guide prescribes have nothing to do with what the base is worth.
@@ -126,9 +159,17 @@ AccelerationMetric build_acceleration_metric(const AssemblyTree& tree) {
 }
 
 void update_metric(const AssemblyTree& tree, const AssemblyState& state,
-                   const MetricWeights& weights, AccelerationMetric& metric) noexcept {
-    for (const AssemblyNode& node : tree.nodes) {
-        if (!node.is_leaf()) join_metric(tree, node, state, weights, metric);
+                   const MetricWeights& weights, AccelerationMetric& metric) {
+    const bool is_new = !take_weights(weights, metric);
+    for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
+        const AssemblyNode& node = tree.nodes[i];
+        const Change change = is_new ? Change::Places : state.changes[i];
+        if (node.is_leaf() || change == Change::None) continue;
+        const JointInertia& joint = state.joints[node.part];
+        const double weight = weight_of_joint(joint, node.link, weights);
+        const Joined joined(tree, state, node);
+        if (change == Change::Places) join_psi(joined, joint, weight, metric);
+        join_bias(joined, joint, weight, metric);
     }
     for (std::size_t i = 0; i < tree.bases.size(); ++i) {
         metric.bases[i] = base_metric(tree, state, i, weights);

@@ -14,9 +14,8 @@ enum class MetricWeight : std::uint8_t {
     // gyration squared (of a molecule, at least 1 Å).
     Plain,
     // The inertia that a torque on the joint meets in the two parts that it joins, by themselves
-    // and
-    // with their joints open, amu Å^2: large parts count more than small ones, whose cuts follow
-    // from the tree. Of a base a^T I a with the inertia I that a push on it meets.
+    // and with their joints open, amu Å^2: large parts count more than small ones, whose cuts
+    // follow from the tree. Of a base a^T I a with the inertia I that a push on it meets.
     Inertia,
 };
 
@@ -37,13 +36,17 @@ struct AccelerationMetric {
     // Of each molecule: the weighted square of its base's acceleration with everything active, of
     // the components that its guide leaves. 0 if none is left.
     std::vector<double> bases;
+    // What it was last of; without joints' factors that is all 1.
+    MetricWeight weight = MetricWeight::Plain;
+    std::vector<double> factors;
 };
 
 AccelerationMetric build_acceleration_metric(const AssemblyTree& tree);
 
-// From the leaves to the roots, after upward_pass. What is not active counts nothing.
+// From the leaves to the roots, after upward_pass. What is not active counts nothing. Of parts that
+// the state does not mark as changed all stays, unless weights are others.
 void update_metric(const AssemblyTree& tree, const AssemblyState& state,
-                   const MetricWeights& weights, AccelerationMetric& metric) noexcept;
+                   const MetricWeights& weights, AccelerationMetric& metric);
 
 // What the square of a joint's acceleration counts; 0 of one that is rigid.
 double weight_of_joint(const JointInertia& joint, std::uint32_t link,

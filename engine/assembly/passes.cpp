@@ -99,21 +99,23 @@ JointInertia joint_inertia(const AssemblyTree& tree, const AssemblyState& state,
 // With the force from A on B, W u, where for open handles f
 //     u = sum_(i in A) phi_ia^T f_i - sum_(j in B) phi_jb^T f_j + beta,   beta = b_a - b_b,
 // the handles of A accelerate by -phi_ia W u more and those of B by phi_jb W u.
-void join(const AssemblyTree& tree, const AssemblyNode& node, AssemblyState& state) {
+void join(const AssemblyTree& tree, const AssemblyNode& node, Change change, AssemblyState& state) {
     const std::array sides = sides_of(tree, node);
     const std::array<PartInertia, 2> parts{PartInertia(tree, state, *sides[0].node),
                                            PartInertia(tree, state, *sides[1].node)};
     const std::uint32_t a = sides[0].joined(), b = sides[1].joined();
     JointInertia& joint = state.joints[node.part];
-    joint = joint_inertia(tree, state, node.link, parts[0].phi(a, a), parts[1].phi(b, b));
+    if (change == Change::Places)
+        joint = joint_inertia(tree, state, node.link, parts[0].phi(a, a), parts[1].phi(b, b));
     const Vec6 gamma = joint.W * (parts[0].b(a) - parts[1].b(b));
 
     for (std::uint32_t j = 0; j < node.handles; ++j) {
         const std::uint32_t side_j = node.side[j], j_there = node.number[j];
         const Mat6& across_j = parts[side_j].phi(j_there, sides[side_j].joined());
-        const Mat6 W_across_j = joint.W * across_j.transpose();
         state.b[node.first_handle + j] =
             parts[side_j].b(j_there) - sides[side_j].sign * (across_j * gamma);
+        if (change != Change::Places) continue;
+        const Mat6 W_across_j = joint.W * across_j.transpose();
         for (std::uint32_t i = 0; i <= j; ++i) {
             const std::uint32_t side_i = node.side[i], i_there = node.number[i];
             const Mat6& across_i = parts[side_i].phi(i_there, sides[side_i].joined());
@@ -155,6 +157,42 @@ Vec6 open_acceleration(const AssemblyTree& tree, const AssemblyState& state,
     acceleration << turn,
         copies / body.mass * force + turn.cross(state.points[node.link] - body.centre);
     return acceleration;
+}
+
+// What of a body is not as the state has it.
+Change find_change(const AssemblyTree& tree, std::uint32_t body, std::span<const Vec3> positions,
+                   std::span<const Vec3> forces, const AssemblyState& state) {
+    const auto has_moved = [&](std::uint32_t atom) {
+        return positions[atom] != state.positions[atom];
+    };
+    for (std::uint32_t i = tree.first_share[body]; i < tree.first_share[body + 1]; ++i) {
+        if (has_moved(tree.shares[i].atom)) return Change::Places;
+    }
+    Change change = Change::None;
+    for (std::uint32_t i = tree.first_atom[body]; i < tree.first_atom[body + 1]; ++i) {
+        const std::uint32_t atom = tree.atoms[i];
+        if (has_moved(atom)) return Change::Places;
+        if (forces[atom] != state.forces[atom]) change = Change::Forces;
+    }
+    return change;
+}
+
+void update_joint(const AssemblyTree& tree, std::uint32_t body, std::span<const Vec3> positions,
+                  AssemblyState& state) {
+    if (tree.bodies.is_base(body)) return;
+    const auto [j, k] = tree.bodies.bodies[body].axis;
+    state.points[body] = positions[k];
+    state.axes[body] = (positions[k] - positions[j]).normalized();
+}
+
+// A joined part is as much out of date as the worse of its two.
+void mark_changes(const AssemblyTree& tree, std::span<const Change> of_bodies,
+                  std::span<Change> changes) {
+    for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
+        const AssemblyNode& node = tree.nodes[i];
+        changes[i] =
+            node.is_leaf() ? of_bodies[node.body] : std::max(changes[node.a], changes[node.b]);
+    }
 }
 
 // What pushes a base that is guided at a point and turns about that: a force there alone, which
@@ -249,6 +287,9 @@ AssemblyState build_assembly_state(const AssemblyTree& tree) {
     state.gyration.assign(molecules, 0);
     state.points.assign(tree.links, Vec3::Zero());
     state.axes.assign(bodies, Vec3::Zero());
+    state.positions.assign(tree.atoms.size(), Vec3::Zero());
+    state.forces.assign(tree.atoms.size(), Vec3::Zero());
+    state.changes.assign(tree.nodes.size(), Change::Places);
     state.phi.assign(tree.pairs, Mat6::Zero());
     state.b.assign(tree.handles, Vec6::Zero());
     state.joints.assign(tree.parts, {Mat6::Zero(), Vec6::Zero(), 0});
@@ -262,21 +303,45 @@ AssemblyState build_assembly_state(const AssemblyTree& tree) {
 void update_bodies(const AssemblyTree& tree, std::span<const Vec3> positions,
                    std::span<const Vec3> forces, AssemblyState& state) noexcept {
     PALPA_ASSERT(positions.size() == tree.atoms.size() && forces.size() == tree.atoms.size());
-    const std::span<const Body> bodies = tree.bodies.bodies;
-    for (std::uint32_t b = 0; b < bodies.size(); ++b) {
+    for (std::uint32_t b = 0; b < state.bodies.size(); ++b) {
         update_inertia(tree, b, positions, state.bodies[b]);
         update_wrench(tree, b, positions, forces, state.bodies[b]);
-        if (tree.bodies.is_base(b)) continue;
-        const auto [j, k] = bodies[b].axis;
-        state.points[b] = positions[k];
-        state.axes[b] = (positions[k] - positions[j]).normalized();
+        update_joint(tree, b, positions, state);
     }
     update_links(tree, state);
+    std::ranges::copy(positions, state.positions.begin());
+    std::ranges::copy(forces, state.forces.begin());
+    std::ranges::fill(state.changes, Change::Places);
+}
+
+void update_changed_bodies(const AssemblyTree& tree, std::span<const Vec3> positions,
+                           std::span<const Vec3> forces, AssemblyState& state) {
+    std::vector<Change> of_bodies;
+    for (std::uint32_t b = 0; b < state.bodies.size(); ++b) {
+        const Change change = find_change(tree, b, positions, forces, state);
+        of_bodies.push_back(change);
+        if (change == Change::Places) {
+            update_inertia(tree, b, positions, state.bodies[b]);
+            update_joint(tree, b, positions, state);
+        }
+        if (change != Change::None) update_wrench(tree, b, positions, forces, state.bodies[b]);
+    }
+    std::vector<Vec3> grounds;
+    for (const std::uint32_t base : tree.bases) grounds.push_back(state.points[base]);
+    update_links(tree, state);
+    for (std::size_t m = 0; m < grounds.size(); ++m) {
+        if (grounds[m] != state.points[tree.bases[m]]) of_bodies[tree.bases[m]] = Change::Places;
+    }
+    std::ranges::copy(positions, state.positions.begin());
+    std::ranges::copy(forces, state.forces.begin());
+    mark_changes(tree, of_bodies, state.changes);
 }
 
 void upward_pass(const AssemblyTree& tree, AssemblyState& state) noexcept {
-    for (const AssemblyNode& node : tree.nodes) {
-        if (!node.is_leaf()) join(tree, node, state);
+    for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
+        const Change change = state.changes[i];
+        if (tree.nodes[i].is_leaf() || change == Change::None) continue;
+        join(tree, tree.nodes[i], change, state);
     }
 }
 

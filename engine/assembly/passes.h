@@ -58,6 +58,9 @@ struct GuidedBase {
     std::optional<Vec3> point;
 };
 
+// What is out of date of a part: nothing, what follows from forces, or all.
+enum class Change : std::uint8_t { None, Forces, Places };
+
 // Quantities of joined parts: those of handles stand at AssemblyNode::first_handle, those of pairs
 // of handles (i, j) with i <= j at first_pair + pair_number(i, j). Those of leaves follow from
 // BodyState and are computed where they are needed, which costs less than to fetch them. Spatial
@@ -77,6 +80,9 @@ struct AssemblyState {
     std::vector<double> gyration;       // radius of gyration of each molecule, Å
     std::vector<Vec3> points;           // of each link, Å
     std::vector<Vec3> axes;             // of each joint, length 1
+    std::vector<Vec3> positions, forces;  // of the atoms, of which all that is
+    // Of each node; the passes over all of them renew no more than that. All places at first.
+    std::vector<Change> changes;
 
     // upward_pass.
     std::vector<Mat6> phi;             // of pairs of handles
@@ -101,6 +107,11 @@ AssemblyState build_assembly_state(const AssemblyTree& tree);
 // What the bodies weigh, and where the links are. One position and one force (kcal/mol/Å) per atom.
 void update_bodies(const AssemblyTree& tree, std::span<const Vec3> positions,
                    std::span<const Vec3> forces, AssemblyState& state) noexcept;
+
+// The same, telling apart what is not what it was in the state, bit for bit. What may move must be
+// what it was. upward_pass, and update_metric where that is in use, have to follow each time.
+void update_changed_bodies(const AssemblyTree& tree, std::span<const Vec3> positions,
+                           std::span<const Vec3> forces, AssemblyState& state);
 
 // From the leaves to the roots: phi, b and the joints' inertias. Many rigid joints in a row cost
 // digits, since a part that is larger and larger is had from differences; hybrid.h sums it instead.

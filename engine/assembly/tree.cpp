@@ -229,17 +229,16 @@ void add_molecules(AssemblyTree& tree) {
     }
 }
 
-// Lists by body, from entries of body and anything.
+// Lists by body, from entries of body and anything; in the order of entries.
 template <class Entry>
-void group_by_body(std::vector<std::pair<std::uint32_t, Entry>> entries, std::size_t bodies,
+void group_by_body(std::span<const std::pair<std::uint32_t, Entry>> entries, std::size_t bodies,
                    std::vector<std::uint32_t>& first, std::vector<Entry>& grouped) {
-    std::ranges::stable_sort(entries, {}, [](const auto& entry) { return entry.first; });
     first.assign(bodies + 1, 0);
-    for (const auto& [body, entry] : entries) {
-        ++first[body + 1];
-        grouped.push_back(entry);
-    }
+    for (const auto& [body, entry] : entries) ++first[body + 1];
     std::partial_sum(first.begin(), first.end(), first.begin());
+    std::vector<std::uint32_t> next = first;
+    grouped.resize(entries.size());
+    for (const auto& [body, entry] : entries) grouped[next[body]++] = entry;
 }
 
 void add_shares(AssemblyTree& tree, std::span<const double> masses) {
@@ -261,8 +260,8 @@ void add_shares(AssemblyTree& tree, std::span<const double> masses) {
     for (const auto& [body, atom] : shared) {
         shares.push_back({body, {atom, masses[atom] / sharers[atom]}});
     }
-    group_by_body(std::move(shares), bodies.bodies.size(), tree.first_share, tree.shares);
-    group_by_body(std::move(owned), bodies.bodies.size(), tree.first_atom, tree.atoms);
+    group_by_body<AtomShare>(shares, bodies.bodies.size(), tree.first_share, tree.shares);
+    group_by_body<std::uint32_t>(owned, bodies.bodies.size(), tree.first_atom, tree.atoms);
 }
 
 // By the moments of inertia about the centre: nothing turns about the line.

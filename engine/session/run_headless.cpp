@@ -224,8 +224,8 @@ Summary run_headless(const SceneDescription& scene, Simulation& simulation, Devi
         summary.went_through = summary.journey->closest < on_top;
         const Flexible& flexible = *simulation.flexible;
         const ForceMemory& memory =
-            flexible.adaptive_settings ? flexible.adaptive.memory : flexible.statics.memory;
-        if (flexible.adaptive_settings) summary.activity = activity.activity();
+            flexible.adaptive ? flexible.adaptive->statics.memory : flexible.statics.memory;
+        if (flexible.adaptive) summary.activity = activity.activity();
         summary.sums = memory.evaluations;
         summary.sums_in_double = memory.fast_pairs.in_double;
     }

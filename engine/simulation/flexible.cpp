@@ -299,32 +299,34 @@ bool is_adaptive(const StaticsDescription& s, const TorsionModel& model) {
            (s.active < model.coordinates || s.budget_us.has_value());
 }
 
-// What is held, as a ball.
-struct Ball {
-    Vec3 centre;
-    double radius;
-};
-
-Ball find_held_ball(const Flexible& flexible) {
+// What is held.
+Ball find_held_ball(const Flexible& flexible, const FewActive& few) {
     const TorsionModel& model = flexible.model;
     const std::vector<Vec3>& positions = flexible.state.positions;
     if (flexible.state.tether) {
         const Tether& tether = *flexible.state.tether;
         return {find_tethered(model, tether, positions), 0};
     }
-    const AssemblyState& whole = flexible.adaptive.whole;
+    const AssemblyState& whole = few.statics.whole;
     return {whole.points[model.tree.bases[flexible.grabbed]], whole.gyration[flexible.grabbed]};
 }
 
 // How much each joint counts: less than half from 5 Å on around what is held, then less and less.
-void update_factors(const Flexible& flexible, AdaptiveSettings& settings) {
-    constexpr double reach2 = 25;  // Å^2
+// As long as that stays where it is about, all stays; with the same factors a choice costs less.
+void update_factors(const Flexible& flexible, FewActive& few) {
+    constexpr double reach2 = 25, about = 0.5;  // Å^2, Å
     const TorsionModel& model = flexible.model;
     const std::vector<Body>& bodies = model.tree.bodies.bodies;
-    std::vector<double>& factors = settings.factors;
-    factors = flexible.lightness;
-    if (!flexible.adaptive.is_built && !flexible.state.tether) return;
-    const auto [centre, radius] = find_held_ball(flexible);
+    std::vector<double>& factors = few.settings.factors;
+    if (!few.statics.is_built && !flexible.state.tether) {
+        factors = few.lightness;
+        return;
+    }
+    const Ball ball = find_held_ball(flexible, few);
+    if (few.near_to && (ball.centre - few.near_to->centre).norm() < about) return;
+    few.near_to = ball;
+    factors = few.lightness;
+    const auto [centre, radius] = ball;
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         if (model.tree.bodies.is_base(b)) continue;
         const double distance = (flexible.state.positions[bodies[b].axis[1]] - centre).norm();
@@ -335,33 +337,34 @@ void update_factors(const Flexible& flexible, AdaptiveSettings& settings) {
 }
 
 // Before a choice.
-void prepare_choice(Flexible& flexible, AdaptiveSettings& settings) {
-    if (flexible.is_near_hand) update_factors(flexible, settings);
-    if (!flexible.budget) return;
-    settings.limits.degrees_of_freedom =
-        flexible.budget->find_freedom(static_cast<std::size_t>(flexible.model.coordinates));
-    settings.choose_every = flexible.budget->find_interval(flexible.choose_every);
+void prepare_choice(const Flexible& flexible, FewActive& few) {
+    if (few.is_near_hand) update_factors(flexible, few);
+    if (!few.budget) return;
+    few.settings.limits.degrees_of_freedom =
+        few.budget->find_freedom(static_cast<std::size_t>(flexible.model.coordinates));
+    few.settings.choose_every = few.budget->find_interval(few.choose_every);
 }
 
-void keep_held(Flexible& flexible) {
+void keep_held(const Flexible& flexible, FewActive& few) {
     const TorsionState& state = flexible.state;
-    flexible.held_before.shift = state.shifts[flexible.grabbed];
-    if (state.tether) flexible.held_before.place = state.tether->place;
+    few.held_before.shift = state.shifts[flexible.grabbed];
+    if (state.tether) few.held_before.place = state.tether->place;
 }
 
 // What the hand did, from the coordinates, which are those of the last step else.
-void take_back(const AdaptiveSettings& settings, Flexible& flexible) {
+void take_back(Flexible& flexible, FewActive& few) {
     TorsionState& state = flexible.state;
-    state.shifts[flexible.grabbed] = flexible.held_before.shift;
-    if (state.tether) state.tether->place = flexible.held_before.place;
+    state.shifts[flexible.grabbed] = few.held_before.shift;
+    if (state.tether) state.tether->place = few.held_before.place;
     update_positions(flexible.model, state);
-    flexible.adaptive.is_built = false;
-    (void)update_adaptive_forces(flexible.model, settings, state, flexible.adaptive);
+    few.statics.is_built = false;
+    (void)update_adaptive_forces(flexible.model, few.settings, state, few.statics);
 }
 
-SettleReport step_adaptively(Flexible& flexible, AdaptiveSettings& settings) {
+SettleReport step_adaptively(Flexible& flexible, FewActive& few) {
     const TorsionModel& model = flexible.model;
-    AdaptiveStatics& statics = flexible.adaptive;
+    const AdaptiveSettings& settings = few.settings;
+    AdaptiveStatics& statics = few.statics;
     TorsionState& state = flexible.state;
     SettleReport report;
     const std::size_t evaluations = statics.memory.evaluations, renewals = statics.renewals;
@@ -369,7 +372,7 @@ SettleReport step_adaptively(Flexible& flexible, AdaptiveSettings& settings) {
     report.is_finite = update_adaptive_forces(model, settings, state, statics);
     report.hand_work = state.energy() - before;
     for (std::size_t i = 0; i < flexible.settings.steps && report.is_finite; ++i) {
-        if (statics.steps_since_choice >= settings.choose_every) prepare_choice(flexible, settings);
+        if (statics.steps_since_choice >= settings.choose_every) prepare_choice(flexible, few);
         const AdaptiveReport step = step_adaptive(model, settings, state, statics);
         report.is_finite = step.step.is_finite;
         report.is_chosen = report.is_chosen || step.is_chosen;
@@ -383,9 +386,9 @@ SettleReport step_adaptively(Flexible& flexible, AdaptiveSettings& settings) {
     report.neglected = statics.selection.neglected;
     report.is_finite = report.is_finite && std::isfinite(state.energy());
     if (report.is_finite) {
-        keep_held(flexible);
+        keep_held(flexible, few);
     } else {
-        take_back(settings, flexible);
+        take_back(flexible, few);
     }
     return report;
 }
@@ -452,31 +455,32 @@ Flexible build_flexible(const SceneDescription& scene, TorsionModel model, std::
             find_tethered(result.model, *result.state.tether, result.state.positions);
     }
     if (is_adaptive(scene.statics, result.model)) {
-        result.adaptive_settings = build_adaptive_settings(scene.statics, result.settings.step);
-        result.adaptive = build_adaptive_statics(result.model);
+        FewActive& few = result.adaptive.emplace();
+        few.settings = build_adaptive_settings(scene.statics, result.settings.step);
+        few.statics = build_adaptive_statics(result.model);
         const JointWeights weights = scene.statics.weights;
-        result.is_near_hand = weights == JointWeights::NearHand;
+        few.is_near_hand = weights == JointWeights::NearHand;
         if (weights == JointWeights::Light || weights == JointWeights::NearHand) {
-            result.lightness = find_lightness(result.model);
+            few.lightness = find_lightness(result.model);
             // What is in the hand weighs nothing.
-            result.lightness[result.model.tree.bases[result.grabbed]] = 1;
-            result.adaptive_settings->factors = result.lightness;
+            few.lightness[result.model.tree.bases[result.grabbed]] = 1;
+            few.settings.factors = few.lightness;
         }
-        result.choose_every = result.adaptive_settings->choose_every;
-        if (scene.statics.budget_us) result.budget.emplace(*scene.statics.budget_us);
+        few.choose_every = few.settings.choose_every;
+        if (scene.statics.budget_us) few.budget.emplace(*scene.statics.budget_us);
     }
     start_flexible(result);
     return result;
 }
 
 void start_flexible(Flexible& flexible) {
-    if (flexible.adaptive_settings) {
-        AdaptiveSettings& settings = *flexible.adaptive_settings;
-        prepare_choice(flexible, settings);
-        if (!flexible.state.tether) flexible.adaptive.is_guided[flexible.grabbed] = 1;
+    if (flexible.adaptive) {
+        FewActive& few = *flexible.adaptive;
+        prepare_choice(flexible, few);
+        if (!flexible.state.tether) few.statics.is_guided[flexible.grabbed] = 1;
         // What has no numbers is told by the first step.
-        (void)update_adaptive_forces(flexible.model, settings, flexible.state, flexible.adaptive);
-        keep_held(flexible);
+        (void)update_adaptive_forces(flexible.model, few.settings, flexible.state, few.statics);
+        keep_held(flexible, few);
         return;
     }
     update_forces(flexible.model, flexible.settings.step.forces, flexible.statics.memory,
@@ -492,15 +496,16 @@ Vec3 find_held(const Flexible& flexible) noexcept {
 void move_held(Flexible& flexible, const Vec3& by) noexcept {
     if (flexible.state.tether) {
         flexible.state.tether->place += by;
-    } else if (flexible.adaptive_settings) {
-        shift_base(flexible.model, flexible.grabbed, by, flexible.state, flexible.adaptive);
+    } else if (flexible.adaptive) {
+        shift_base(flexible.model, flexible.grabbed, by, flexible.state,
+                   flexible.adaptive->statics);
     } else {
         shift_base(flexible.model, flexible.grabbed, by, flexible.state);
     }
 }
 
 SettleReport step_flexible(Flexible& flexible) {
-    if (flexible.adaptive_settings) return step_adaptively(flexible, *flexible.adaptive_settings);
+    if (flexible.adaptive) return step_adaptively(flexible, *flexible.adaptive);
     const TorsionModel& model = flexible.model;
     const RelaxSettings& settings = flexible.settings;
     TorsionState& state = flexible.state;
@@ -535,21 +540,22 @@ SettleReport step_flexible(Flexible& flexible) {
 }
 
 std::size_t find_active_freedom(const Flexible& flexible) noexcept {
-    return flexible.adaptive_settings ? find_active_freedom(flexible.model, flexible.adaptive)
-                                      : static_cast<std::size_t>(flexible.model.coordinates);
+    return flexible.adaptive ? find_active_freedom(flexible.model, flexible.adaptive->statics)
+                             : static_cast<std::size_t>(flexible.model.coordinates);
 }
 
 void note_time(Flexible& flexible, const SettleReport& report, double took_us) noexcept {
-    if (!flexible.budget) return;
+    if (!flexible.adaptive || !flexible.adaptive->budget) return;
+    TimeBudget& budget = *flexible.adaptive->budget;
     if (report.is_chosen || report.is_renewed) {
-        flexible.budget->add_choice(took_us);
+        budget.add_choice(took_us);
     } else {
-        flexible.budget->add_step(took_us);
+        budget.add_step(took_us);
     }
 }
 
 Vec6 find_pull_on_held(const Flexible& flexible) noexcept {
-    if (flexible.adaptive_settings) return find_wrench_on(flexible.adaptive, flexible.grabbed);
+    if (flexible.adaptive) return find_wrench_on(flexible.adaptive->statics, flexible.grabbed);
     // What atoms of the molecule do to each other adds up to nothing.
     const TorsionModel& model = flexible.model;
     Vec6 wrench = Vec6::Zero();
@@ -562,15 +568,16 @@ Vec6 find_pull_on_held(const Flexible& flexible) noexcept {
 }
 
 void copy_positions(Flexible& flexible, std::vector<Vec3>& positions) {
-    if (!flexible.adaptive_settings) {
+    if (!flexible.adaptive) {
         positions = flexible.state.positions;
         return;
     }
-    AdaptiveStatics& statics = flexible.adaptive;
+    FewActive& few = *flexible.adaptive;
+    AdaptiveStatics& statics = few.statics;
     const std::size_t changes = statics.choices + statics.renewals;
-    if (!statics.is_built || flexible.copied != changes) {
+    if (!statics.is_built || few.copied != changes) {
         positions = flexible.state.positions;
-        flexible.copied = changes;
+        few.copied = changes;
     } else {
         for (std::size_t c = 0; c < statics.has_moved.size(); ++c) {
             if (statics.has_moved[c] == 0) continue;

@@ -24,30 +24,40 @@ struct FlexiblePart {
     std::uint32_t reference_atom;
 };
 
+struct Ball {
+    Vec3 centre;  // Å
+    double radius;
+};
+
+// Of a scene in which not everything is active at a time.
+struct FewActive {
+    AdaptiveSettings settings;
+    AdaptiveStatics statics;
+    std::optional<TimeBudget> budget;
+    std::size_t choose_every = 0;  // steps, as the scene says
+    // How much each joint counts for what it moves; empty where all do alike. And whether what is
+    // near to the hand counts more, and around what that was found last.
+    std::vector<double> lightness;
+    bool is_near_hand = false;
+    std::optional<Ball> near_to;
+    struct {
+        Vec3 shift = Vec3::Zero(), place = Vec3::Zero();  // Å, of its base, of its spring
+    } held_before;           // where the last step left what is in hand
+    std::size_t copied = 0;  // choices and renewals when positions were copied in full
+};
+
 // Owned by the simulation; atoms are those of its table.
 struct Flexible {
     TorsionModel model;
     TorsionState state;
     QuasiStatics statics;
-    TorsionState safe;       // where the last step left it
-    RelaxSettings settings;  // of every step
-    // Instead, where not everything is active at a time.
-    std::optional<AdaptiveSettings> adaptive_settings;
-    AdaptiveStatics adaptive;
-    struct {
-        Vec3 shift = Vec3::Zero(), place = Vec3::Zero();  // Å, of its base, of its spring
-    } held_before;  // where the last step left what is in hand
-    std::optional<TimeBudget> budget;
-    // How much each joint counts for what it moves; empty where all do alike. And whether what is
-    // near to the hand counts more.
-    std::vector<double> lightness;
-    bool is_near_hand = false;
-    std::size_t choose_every = 0;  // steps, as the scene says
-    std::size_t copied = 0;        // choices and renewals when positions were copied in full
-    std::uint32_t grabbed = 0;     // the molecule of the model whose base the hand moves
-    JointRelaxReport relaxed;      // on loading
-    std::size_t joints = 0;        // in all
-    std::size_t joints_held = 0;   // that the rules would turn, were it not for the region
+    TorsionState safe;                  // where the last step left it
+    RelaxSettings settings;             // of every step
+    std::optional<FewActive> adaptive;  // instead, where not everything is active at a time
+    std::uint32_t grabbed = 0;          // the molecule of the model whose base the hand moves
+    JointRelaxReport relaxed;           // on loading
+    std::size_t joints = 0;             // in all
+    std::size_t joints_held = 0;        // that the rules would turn, were it not for the region
 };
 
 // Called while molecules come to rest; where it returns false they stay as they are.

@@ -142,7 +142,8 @@ void choose_joints(const TorsionModel& model, const AdaptiveSettings& settings, 
                    AdaptiveStatics& statics) {
     update_pivots(model, state);
     guide_pivots(model, state, statics.whole);
-    update_bodies(model.tree, state.positions, state.forces, statics.whole);
+    const auto update = statics.choices == 0 ? update_bodies : update_changed_bodies;
+    update(model.tree, state.positions, state.forces, statics.whole);
     upward_pass(model.tree, statics.whole);
     const MetricWeights weights{settings.weight, settings.factors};
     update_metric(model.tree, statics.whole, weights, statics.metric);

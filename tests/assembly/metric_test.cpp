@@ -81,6 +81,32 @@ void check_metric(const TorsionCase& c, const Held& held) {
     }
 }
 
+// Turns all that lies beyond a body's joint.
+void turn_joint(TorsionCase& c, std::uint32_t body, double angle) {
+    const std::span<const Body> bodies = c.bodies.bodies;
+    const auto [j, k] = bodies[body].axis;
+    const Vec3 point = c.positions[k], axis = (point - c.positions[j]).normalized();
+    const Eigen::AngleAxisd turn(angle, axis);
+    std::vector<std::uint8_t> is_beyond(bodies.size(), 0);
+    for (std::uint32_t b = body; b < bodies.size(); ++b) {
+        is_beyond[b] = b == body || (!c.bodies.is_base(b) && is_beyond[bodies[b].parent] != 0);
+    }
+    for (std::size_t i = 0; i < c.positions.size(); ++i) {
+        if (is_beyond[c.bodies.body_of[i]] != 0)
+            c.positions[i] = point + turn * (c.positions[i] - point);
+    }
+}
+
+void check_same(const AssemblyState& state, const AccelerationMetric& metric,
+                const AssemblyState& whole, const AccelerationMetric& whole_metric) {
+    CHECK(state.phi == whole.phi);
+    CHECK(state.b == whole.b);
+    CHECK(metric.psi == whole_metric.psi);
+    CHECK(metric.p == whole_metric.p);
+    CHECK(metric.eta == whole_metric.eta);
+    CHECK(metric.bases == whole_metric.bases);
+}
+
 // The part of a base's acceleration that its guide leaves, at the centre of mass.
 Vec6 free_motion(const TorsionCase& c, const AssemblyState& state, const GuidedBase& base) {
     Vec6 motion = state.base_acceleration[0];
@@ -116,6 +142,43 @@ TEST_CASE("the metric of every part of a protein is the sum of squares below it"
         const TorsionCase c = test::read_torsion_case(*folder, name);
         check_metric(c, test::all_free(c));
         check_metric(c, test::some_held(c, 1, 0.33));
+    }
+}
+
+TEST_CASE("what is renewed in part is to the bit what everything anew is", "[assembly][metric]") {
+    const auto shape =
+        GENERATE(TorsionShape::Tree, TorsionShape::Chain, TorsionShape::Comb, TorsionShape::Star);
+    constexpr std::uint32_t bodies = 200;
+    TorsionCase c = test::torsion_case(3, bodies, shape);
+    const AssemblyTree tree = build_assembly_tree(c.bodies, c.masses, c.positions);
+    AssemblyState state = build_assembly_state(tree);
+    AccelerationMetric metric = build_acceleration_metric(tree);
+    const std::vector<double> factors = some_factors(bodies);
+    std::vector<MetricWeights> weights = all_weights(factors);
+    update_bodies(tree, c.positions, c.forces, state);
+    upward_pass(tree, state);
+    update_metric(tree, state, weights[0], metric);
+    for (std::uint32_t round = 0; round < 24; ++round) {
+        INFO("round " << round);
+        const std::uint32_t body = 1 + (37 * round) % (bodies - 1);
+        if (round % 3 == 1) turn_joint(c, body, 0.1);
+        if (round % 3 == 2) c.forces[tree.atoms[tree.first_atom[body]]] += Vec3(1, -2, 0.5);
+
+        update_changed_bodies(tree, c.positions, c.forces, state);
+        const auto stale = std::ranges::count_if(
+            state.changes, [](Change change) { return change != Change::None; });
+        upward_pass(tree, state);
+        update_metric(tree, state, weights[round / 6], metric);
+
+        AssemblyState whole = build_assembly_state(tree);
+        AccelerationMetric whole_metric = build_acceleration_metric(tree);
+        update_bodies(tree, c.positions, c.forces, whole);
+        upward_pass(tree, whole);
+        update_metric(tree, whole, weights[round / 6], whole_metric);
+        check_same(state, metric, whole, whole_metric);
+        // Nothing; something; the copies of a body and the parts that they are in.
+        CHECK((stale > 0) == (round % 3 != 0));
+        if (round % 3 == 2) CHECK(stale <= tree.copies[body] * static_cast<double>(tree.depth + 1));
     }
 }
 
