@@ -76,10 +76,10 @@ struct AssemblyState {
     // update_bodies. A joint's point is the atom at the end of its axis, the ground's the centre of
     // mass of its molecule, a seam's the centre of its body.
     std::vector<BodyState> bodies;
-    std::vector<double> molecule_mass;  // amu
-    std::vector<double> gyration;       // radius of gyration of each molecule, Å
-    std::vector<Vec3> points;           // of each link, Å
-    std::vector<Vec3> axes;             // of each joint, length 1
+    std::vector<double> molecule_mass;    // amu
+    std::vector<double> gyration;         // radius of gyration of each molecule, Å
+    std::vector<Vec3> points;             // of each link, Å
+    std::vector<Vec3> axes;               // of each joint, length 1
     std::vector<Vec3> positions, forces;  // of the atoms, of which all that is
     // Of each node; the passes over all of them renew no more than that. All places at first.
     std::vector<Change> changes;

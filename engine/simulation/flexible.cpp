@@ -342,7 +342,10 @@ void prepare_choice(const Flexible& flexible, FewActive& few) {
     if (!few.budget) return;
     few.settings.limits.degrees_of_freedom =
         few.budget->find_freedom(static_cast<std::size_t>(flexible.model.coordinates));
-    few.settings.choose_every = few.budget->find_interval(few.choose_every);
+    // The budget is for as many quasi-static steps as make one of the simulation.
+    const std::size_t together = flexible.settings.steps, usual = few.choose_every;
+    few.settings.choose_every =
+        std::max(usual, together * few.budget->find_interval(usual / together));
 }
 
 void keep_held(const Flexible& flexible, FewActive& few) {

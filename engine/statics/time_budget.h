@@ -18,8 +18,8 @@ public:
     // Before a choice: from how long nine of ten steps since the last one took at most.
     std::size_t find_freedom(std::size_t most);
 
-    // Steps between two choices. Where a choice takes longer than the budget there is one in so
-    // many steps that 99 % of all keep within it.
+    // Steps between two choices, of which `usual` are wanted. Where a choice takes longer than the
+    // budget there is one in so many that 99 % of all keep within it.
     std::size_t find_interval(std::size_t usual) const noexcept;
 
 private:
