@@ -1,11 +1,15 @@
 // The laws of the coupling: molecular force to hand force, handle travel to molecule travel. SI.
 #pragma once
+#include "math/vec.h"
+
+#include <optional>
 #include <variant>
 
 namespace palpa {
 
 // Eq. 2 of the paper as printed: F_h = α1 atan(δ1 F) + α2 [atan(δ2 (F - F0)) + atan(δ2 (F + F0))].
-// Odd in F to the last bit, monotone, tends to ±F_h2. Its slope at 0 is 8 % above A_fmax.
+// Odd in F to the last bit, monotone, tends to ±F_h2. As printed its slope at 0 is 8 % above A_fmax
+// and at F_0 29 % below A_fmin.
 class PrintedForceLaw {
 public:
     struct Parameters {
@@ -18,13 +22,22 @@ public:
 
     explicit PrintedForceLaw(const Parameters& parameters) noexcept;
 
+    // The same form with other δ1 and δ2: the slope is A_fmax at 0 and A_fmin at F_0. Nothing
+    // unless 0 < F_h1 < F_h2, the gains and F_0 are positive, low forces have their say below F_0
+    // (A_fmax F_0 >= α1 + α2, so that there is at most one solution) and alone leave a slope below
+    // A_fmin there.
+    static std::optional<PrintedForceLaw> find_calibrated(const Parameters& parameters) noexcept;
+
     double value(double F_m) const noexcept;  // N
     double slope(double F_m) const noexcept;  // dF_h/dF_m
+    // F_m (N) of a hand force: exact to what the rounding of F_h leaves of it; ±infinity from ±F_h2
+    // on, no number for no number.
+    double inverse(double F_h) const noexcept;
 
 private:
     double alpha_1_, alpha_2_;  // N
     double delta_1_, delta_2_;  // 1/N
-    double F_0_;
+    double F_0_, F_h2_;         // N
 };
 
 // F_h = gain F_m; a gain of 0 is the mode without force.
@@ -33,15 +46,58 @@ struct ConstantForceLaw {
 
     double value(double F_m) const noexcept { return gain * F_m; }
     double slope(double /*F_m*/) const noexcept { return gain; }
+    // Without a gain no molecular force gives a hand force: ±infinity, but 0 for 0.
+    double inverse(double F_h) const noexcept { return F_h == 0 ? 0 : F_h / gain; }
 };
 
-using ForceLaw = std::variant<PrintedForceLaw, ConstantForceLaw>;
+// Equally many noticeable steps for each decade of F_m. A just noticeable step is 9 % of the force,
+// but 0.05 N at least: below `F_h_lo` steps are nearly equal in newtons and the law is linear, from
+// there to (F_hi, F_h_hi) it is the power law φ = F_h_lo (F/F_lo)^p, p = log10(F_h_hi/F_h_lo)/n,
+// n = log10(F_hi/F_lo). These meet in a kink at F_lo; a parabola in log φ over log F goes from one
+// exponent to the other between F_lo/2 and 2 F_lo. Its φ(F_lo) is 0.27 N instead of 0.3 N, less
+// than a step. Above F_hi it tends to F_h_limit, without a kink. Odd, monotone; value and slope are
+// continuous.
+class PerceptualForceLaw {
+public:
+    // By default what can be told from nothing is what eq. 3 calls near (F_off); a hand on eq. 2
+    // hardly goes above 3 nN. Between, the attraction of two waters (0.32 nN) feels like 1.1 N.
+    struct Parameters {
+        double F_lo = 20e-12;  // N
+        double F_hi = 3e-9;    // N, > 2 F_lo
+    };
+    static constexpr double F_h_lo = 0.3;     // N
+    static constexpr double F_h_hi = 3.0;     // N, where the usual device is clamped
+    static constexpr double F_h_limit = 3.3;  // N, what it is built for
+
+    explicit PerceptualForceLaw(const Parameters& parameters) noexcept;
+
+    double value(double F_m) const noexcept;    // N
+    double slope(double F_m) const noexcept;    // dF_h/dF_m
+    double inverse(double F_h) const noexcept;  // N; ±infinity from ±F_h_limit on
+
+private:
+    double F_lo_, F_hi_;  // N
+    double exponent_;     // p
+    double slope_at_hi_;
+};
+
+using ForceLaw = std::variant<PrintedForceLaw, ConstantForceLaw, PerceptualForceLaw>;
 
 // Force on the hand (N) for the molecular force F_m (N) along one direction, and its derivative.
 double hand_force(const ForceLaw& law, double F_m) noexcept;
 double hand_force_slope(const ForceLaw& law, double F_m) noexcept;
+// The molecular force (N) that gives this hand force; infinite where none does.
+double hand_force_inverse(const ForceLaw& law, double F_h) noexcept;
 // F_h/F_m, the gain that is on at F_m; its limit, the slope, at F_m = 0.
 double force_gain(const ForceLaw& law, double F_m) noexcept;
+
+// Derivative of the hand force in space, where the law acts on the norm along the force: its slope
+// along the force, its gain across.
+Mat3 force_jacobian(const ForceLaw& law, const Vec3& force_newton) noexcept;
+// The stiffest that a hand feels a molecular stiffness (N/m) in any direction, times A_d: the
+// largest eigenvalue of the symmetric part of jacobian times stiffness, 0 where it is negative.
+// Infinite where force or stiffness are not finite: then the capped gain lets nothing move.
+double largest_felt(const ForceLaw& law, const Vec3& force_newton, const Mat3& stiffness) noexcept;
 
 // Eq. 3 of the paper as printed: A_d = A_dmin + β [atan((|F| - F_off) γ) - atan(-F_off γ)], handle
 // metres per molecule metre. A_d(0) is A_dmin to the last bit, the limit is A_dmax.
@@ -56,25 +112,60 @@ public:
 
     explicit PrintedDisplacementLaw(const Parameters& parameters) noexcept;
 
-    double value(double F_m) const noexcept;
+    double value(double F_m, double stiffness = 0) const noexcept;
     // dA_d/dF_m; the law has a kink at 0, where this is 0.
-    double slope(double F_m) const noexcept;
+    double slope(double F_m, double stiffness = 0) const noexcept;
+    // |F_m| (N) where the gain is A_d: 0 up to A_dmin, infinite from A_dmax on.
+    double inverse(double A_d) const noexcept;
 
 private:
-    double A_dmin_, beta_, gamma_, F_off_, atan_at_0_;
+    double A_dmin_, A_dmax_, beta_, gamma_, F_off_, atan_at_0_;
 };
 
+// Eq. 3 at sqrt(F² + (l k)²), k the stiffness (N/m): as printed the gain also falls to A_dmin at
+// the equilibrium in contact, where there is no force but a stiff place.
+class RepairedDisplacementLaw {
+public:
+    struct Parameters {
+        PrintedDisplacementLaw::Parameters printed = {};
+        double length_m = 5e-12;  // l: the stiffness counts as much as its force over this way
+    };
+
+    explicit RepairedDisplacementLaw(const Parameters& parameters) noexcept;
+
+    double value(double F_m, double stiffness = 0) const noexcept;
+    // dA_d/dF_m at that stiffness; 0 at F_m = 0, where there is no kink unless the stiffness is 0.
+    double slope(double F_m, double stiffness = 0) const noexcept;
+    // |F_m| (N) where the gain is A_d at that stiffness: 0 where the gain is larger at all forces,
+    // infinite from A_dmax on.
+    double inverse(double A_d, double stiffness = 0) const noexcept;
+
+private:
+    PrintedDisplacementLaw printed_;
+    double length_m_;
+};
+
+// Has no inverse.
 struct ConstantDisplacementLaw {
     double gain = 0.25e9;
 
-    double value(double /*F_m*/) const noexcept { return gain; }
-    double slope(double /*F_m*/) const noexcept { return 0; }
+    double value(double /*F_m*/, double /*stiffness*/ = 0) const noexcept { return gain; }
+    double slope(double /*F_m*/, double /*stiffness*/ = 0) const noexcept { return 0; }
 };
 
-using DisplacementLaw = std::variant<PrintedDisplacementLaw, ConstantDisplacementLaw>;
+using DisplacementLaw =
+    std::variant<PrintedDisplacementLaw, ConstantDisplacementLaw, RepairedDisplacementLaw>;
 
-// A_d, handle metres per molecule metre, where the molecular force is F_m (N).
-double displacement_gain(const DisplacementLaw& law, double F_m) noexcept;
+// A_d, handle metres per molecule metre, where the molecular force is F_m (N), and dA_d/dF_m. In
+// space `stiffness` is the largest |eigenvalue| (N/m) of the molecular one; only the repaired law
+// looks at it.
+double displacement_gain(const DisplacementLaw& law, double F_m, double stiffness = 0) noexcept;
+double displacement_gain_slope(const DisplacementLaw& law, double F_m,
+                               double stiffness = 0) noexcept;
+
+// A_d raised until the felt stiffness is K_cap (N/m, > 0) at most. `felt` is that stiffness times
+// A_d: slope times stiffness along a line, largest_felt() in space.
+double capped_gain(double A_d, double felt, double K_cap) noexcept;
 
 // Both sides of the paper's coupling.
 struct CouplingLaws {
