@@ -52,7 +52,7 @@ BenchRow bench_step(const std::string& scene_name, Simulation simulation) {
     const int batch = moves_in_space(simulation) ? 1 : 200;
     BenchRow row{
         "step/" + scene_name, {}, "us", {}, "relative", "central difference of the energy"};
-    TouchModel felt = build_touch_model(simulation, {});
+    TouchModel felt = simulation.touch.model;
     HandPose hand;
     int tick = 0;
     row.samples = sample(101, 1e6 / batch, [&] {

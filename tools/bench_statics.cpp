@@ -75,7 +75,7 @@ void bench_region(const std::string& scene_name, SceneDescription scene,
     scene.statics.relax_steps = 0;
     Simulation simulation = load_simulation(scene);
     if (!simulation.flexible) return;
-    TouchModel felt = build_touch_model(simulation, {});
+    TouchModel felt = simulation.touch.model;
     HandPose hand;
     const Flexible& flexible = *simulation.flexible;
     const std::string reference = fmt::format("{} joints, {} tiles", flexible.joints,

@@ -45,7 +45,7 @@ void print_flexible(const Simulation& simulation, const Flexible& flexible) {
     fmt::print("  freedom     {} degrees: {} joints, {} of bases; {} more of the hand\n",
                flexible.model.coordinates, flexible.joints,
                flexible.model.coordinates - static_cast<Eigen::Index>(flexible.joints),
-               build_touch_model(simulation, {}).active_freedom - flexible.model.coordinates);
+               simulation.touch.model.active_freedom - flexible.model.coordinates);
     if (flexible.joints_held > 0) {
         fmt::print("  region      {} joints further away are held\n", flexible.joints_held);
     }
@@ -53,7 +53,7 @@ void print_flexible(const Simulation& simulation, const Flexible& flexible) {
         "  relaxed     {:.3f} to {:.3f} kcal/mol in {} steps, moved {:.3f} Å at most, rms "
         "force {:.3g} kcal/mol left\n",
         r.energy_before, r.energy_after, r.steps, r.largest_move, r.rms_force);
-    const TouchModel start = build_touch_model(simulation, {});
+    const TouchModel start = simulation.touch.model;
     fmt::print("  start       {:.3f} kcal/mol, {:.3f} nN\n", start.potential_kcal_per_mol,
                start.force_newton.norm() * 1e9);
 }
@@ -65,7 +65,7 @@ void print_line(const SceneDescription& scene, const Simulation& simulation) {
         print_flexible(simulation, *simulation.flexible);
     } else if (simulation.relaxed) {
         const RelaxReport& r = *simulation.relaxed;
-        const TouchModel start = build_touch_model(simulation, {});
+        const TouchModel start = simulation.touch.model;
         fmt::print(
             "  relaxed     {:.3f} to {:.3f} kcal/mol in {} looks, moved {:.3f} Å, turned "
             "{:.2f}°, {:.3f} pN left\n",
@@ -263,14 +263,6 @@ int run_command(const RunOptions& options) {
     if (options.record) recording.emplace(*options.record, scene);
     FrameClock frames;
     if (writer) frames = {options.frames_per_second, [&] { write_frame(writer, simulation); }};
-    if (!scene.places.contains("coupling.mode")) {
-        fmt::print(
-            stderr,
-            "guarded mode is not built yet: mode {} of the paper at T_s = {} ms with {} N of "
-            "device friction stands in (--mode, --period-ms, --friction)\n",
-            coupling_mode_names[static_cast<std::size_t>(scene.coupling.mode)], scene.period_ms,
-            scene.device.friction_N);
-    }
     for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
 
     EmulatedOmni device(settings);

@@ -37,9 +37,10 @@ Clock::duration period_of(const Simulation& simulation) {
         std::chrono::duration<double>(simulation.period_s));
 }
 
-// While nothing moves, the hand feels nothing.
+// While nothing moves, the hand feels nothing and has no hold.
 TouchModel without_force(TouchModel touch) noexcept {
     touch.force_newton.setZero();
+    touch.is_still = true;
     return touch;
 }
 
@@ -50,10 +51,9 @@ LiveSession::LiveSession(const SceneDescription& scene, const ViewSettings& view
     : scene_(scene),
       device_(device),
       orders_(orders),
-      state_{load_simulation(scene), view, {}, {}, {}, false, {}, {}} {
+      state_{load_simulation(scene), view, {}, {}, false, {}, {}} {
     order_.granted_ticks = ticks_of(scene.period_ms);
-    state_.next = build_touch_model(state_.simulation, {});
-    exchange_.touch.post(state_.next);
+    exchange_.touch.post(state_.simulation.touch);
     const ServoOrder order{build_servo_settings(scene, state_.simulation)};
     servo_thread_ = std::thread([this, order] { run_servo(order); });
     simulation_thread_ = std::thread([this] { run_simulation(state_); });
@@ -156,15 +156,16 @@ void LiveSession::run_simulation(State& state) {
 void LiveSession::hold(State& state) {
     exchange_.hand.read(state.hand);
     take_hold(state.simulation, state.hand);
-    exchange_.touch.post(state.felt = without_force(state.next));
+    exchange_.touch.post(state.felt = without_force(state.simulation.touch.model));
 }
 
 void LiveSession::step(State& state) {
     state.step_once = false;
-    exchange_.touch.post(state.felt = state.next);
+    exchange_.touch.post(state.simulation.touch);
+    state.felt = state.simulation.touch.model;
     exchange_.hand.read(state.hand);
     const Clock::time_point begin = Clock::now();
-    state.next = step_simulation(state.simulation, state.hand, state.felt).touch;
+    (void)step_simulation(state.simulation, state.hand, state.felt);
     state.readout.step_ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
     ++state.readout.steps;
 }
@@ -173,7 +174,7 @@ void LiveSession::obey(State& state, const Command& command) {
     if (const auto* const settings = std::get_if<LiveSettings>(&command)) {
         scene_.coupling = settings->coupling;
         scene_.period_ms = settings->period_ms;
-        state.simulation.laws = build_coupling_laws(scene_.coupling);
+        set_coupling(scene_.coupling, state.simulation);
         state.simulation.period_s = scene_.period_ms * 1e-3;
         order_servo(state);
     } else if (const auto* const view = std::get_if<ViewSettings>(&command)) {
@@ -197,9 +198,9 @@ void LiveSession::reset(State& state) {
     }
     state.readout.problem.clear();
     state.settled = Clock::now() + settle_time;
-    hold(state);
-    state.next = build_touch_model(state.simulation, state.hand);
     ++restarts_;
+    state.simulation.touch.model.start = restarts_;
+    hold(state);
     order_servo(state);
 }
 
@@ -211,9 +212,9 @@ void LiveSession::post_frame_if_wanted(const State& state) {
     if (!frame_wanted_.exchange(false)) return;
     const auto grabbed =
         static_cast<std::uint32_t>(grabbed_points(state.simulation).positions.size());
-    LiveFrame frame{build_frame(state.simulation, state.next, state.view), grabbed,
+    LiveFrame frame{build_frame(state.simulation, state.simulation.touch.model, state.view), grabbed,
                     grabbed_place(state.simulation), state.readout};
-    frame.readout.touch = state.next;
+    frame.readout.touch = state.simulation.touch.model;
     frames_.post(frame);
 }
 

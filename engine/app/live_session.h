@@ -63,7 +63,7 @@ private:
         Simulation simulation;
         ViewSettings view;
         HandPose hand;
-        TouchModel felt, next;  // by the hand now; the last step's answer
+        TouchModel felt;  // by the hand now; the last step's answer is the simulation's
         bool step_once = false;
         std::chrono::steady_clock::time_point settled{};  // after a reset, until the hand rests
         Readout readout;

@@ -16,18 +16,32 @@ class Mailbox {
 
 public:
     void post(const Value& value) noexcept(plain) {
-        slots_[write_] = value;
+        draft() = value;
+        send();
+    }
+
+    // The same without a copy: the value that is written, with whatever it held the last time but
+    // one or two, and when it is done.
+    Value& draft() noexcept { return slots_[write_]; }
+    void send() noexcept {
         // The slot just written becomes the newest; the one that lay there is written next.
         write_ = newest_.exchange(write_ | fresh, std::memory_order_acq_rel) & slot_mask;
     }
 
     // The newest value posted. False, and `value` untouched, if none came since the last read.
     bool read(Value& value) noexcept(plain) {
-        if ((newest_.load(std::memory_order_relaxed) & fresh) == 0) return false;
-        read_ = newest_.exchange(read_, std::memory_order_acq_rel) & slot_mask;
-        value = slots_[read_];
+        if (!take()) return false;
+        value = taken();
         return true;
     }
+
+    // The same without a copy: what was taken last stays the reader's until the next time.
+    bool take() noexcept {
+        if ((newest_.load(std::memory_order_relaxed) & fresh) == 0) return false;
+        read_ = newest_.exchange(read_, std::memory_order_acq_rel) & slot_mask;
+        return true;
+    }
+    const Value& taken() const noexcept { return slots_[read_]; }
 
 private:
     static constexpr std::uint32_t fresh = 4, slot_mask = 3;

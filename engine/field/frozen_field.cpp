@@ -38,6 +38,7 @@ public:
     HWY_INLINE Total() {
         lj12_ = coulomb_ = fx_ = fy_ = fz_ = tx_ = ty_ = tz_ = hn::Zero(doubles);
         kxx_ = kxy_ = kxz_ = kyy_ = kyz_ = kzz_ = gradients_ = hn::Zero(doubles);
+        own_x_ = own_y_ = own_z_ = hn::Zero(doubles);
     }
 
     HWY_INLINE void add(const Partial& part, const Vec3& place) {
@@ -59,10 +60,21 @@ public:
         kyz_ = hn::Add(kyz_, both_halves(part.kyz));
         kzz_ = hn::Add(kzz_, both_halves(part.kzz));
         gradients_ = hn::Add(gradients_, both_halves(part.gradients));
+        own_x_ = hn::Add(own_x_, fx);
+        own_y_ = hn::Add(own_y_, fy);
+        own_z_ = hn::Add(own_z_, fz);
     }
 
-    FieldSum sum() const {
-        FieldSum sum;
+    // After the last part of a point.
+    HWY_INLINE void end_point() {
+        const Vec3 force(sum_of(own_x_), sum_of(own_y_), sum_of(own_z_));
+        largest2_ = std::max(largest2_, force.squaredNorm());
+        own_x_ = own_y_ = own_z_ = hn::Zero(doubles);
+    }
+
+    FrozenSum sum() const {
+        FrozenSum sum;
+        sum.largest_force = std::sqrt(largest2_);
         sum.van_der_waals = sum_of(lj12_) / 12;
         sum.electrostatic = sum_of(coulomb_);
         sum.force = Vec3(sum_of(fx_), sum_of(fy_), sum_of(fz_));
@@ -76,6 +88,15 @@ public:
 private:
     W lj12_, coulomb_, fx_, fy_, fz_, tx_, ty_, tz_;
     W kxx_, kxy_, kxz_, kyy_, kyz_, kzz_, gradients_;
+    W own_x_, own_y_, own_z_;  // of the point at hand
+    double largest2_ = 0;
+};
+
+// Nearest of all pairs.
+struct Nearest {
+    HWY_INLINE Nearest() { r2 = clearance = all(std::numeric_limits<float>::infinity()); }
+
+    V r2, clearance;
 };
 
 // The point that the others act on.
@@ -85,7 +106,7 @@ struct Point {
 
 // d from the environment's points to the group's: as in field/pair_field.cpp.
 HWY_INLINE void add_pairs(const Point& point, const FrozenPoints& others, std::size_t at,
-                          V epsilon12, V rmin, V& nearest2, Partial& sum) {
+                          V epsilon12, V rmin, Nearest& nearest, Partial& sum) {
     const auto column = [&](const FrozenPoints::Column& c)
                             HWY_ATTR { return hn::Load(floats, c.data() + at); };
     const V dx = hn::Add(hn::Sub(point.high_x, column(others.high[0])),
@@ -95,8 +116,9 @@ HWY_INLINE void add_pairs(const Point& point, const FrozenPoints& others, std::s
     const V dz = hn::Add(hn::Sub(point.high_z, column(others.high[2])),
                          hn::Sub(point.low_z, column(others.low[2])));
     const V r2 = hn::MulAdd(dz, dz, hn::MulAdd(dy, dy, hn::Mul(dx, dx)));
-    nearest2 = hn::Min(nearest2, r2);
+    nearest.r2 = hn::Min(nearest.r2, r2);
     const V inverse_r = inverse_root(r2), inverse_r2 = hn::Mul(inverse_r, inverse_r);
+    nearest.clearance = hn::Min(nearest.clearance, hn::MulSub(r2, inverse_r, rmin));
     const V s = hn::Mul(rmin, inverse_r), s2 = hn::Mul(s, s);
     const V s6 = hn::Mul(hn::Mul(s2, s2), s2), well = hn::Mul(epsilon12, s6);
     const V coulomb = hn::Mul(hn::Mul(point.charge, column(others.charge)), inverse_r);
@@ -123,12 +145,12 @@ HWY_INLINE void add_pairs(const Point& point, const FrozenPoints& others, std::s
 // Sixteens of points between two sums in double.
 constexpr std::size_t most_sixteens = 64 * lane_count / 16 > 0 ? 64 * lane_count / 16 : 1;
 
-FrozenSum sum_field(const FrozenField& field, std::span<const Vec3> group) {
+FrozenJobSum sum_field(const FrozenField& field, std::span<const Vec3> group, const Vec3& origin) {
     Total total;
-    V nearest2 = all(std::numeric_limits<float>::infinity());
+    Nearest nearest;
     for (std::size_t i = 0; i < group.size(); ++i) {
         const FrozenField::GroupPoint& own = field.group[i];
-        const Vec3 place = group[i] - field.origin;
+        const Vec3 place = group[i] - origin;
         const Vec3 high(rounded_to_grid(place.x()), rounded_to_grid(place.y()),
                         rounded_to_grid(place.z()));
         const Vec3 low = place - high;
@@ -147,7 +169,7 @@ FrozenSum sum_field(const FrozenField& field, std::span<const Vec3> group) {
                     for (std::size_t at = 0; at < 16; at += lane_count) {
                         add_pairs(point, field.points[p], at,
                                   hn::Load(floats, numbers[p].epsilon12.data() + at),
-                                  hn::Load(floats, numbers[p].rmin.data() + at), nearest2, part);
+                                  hn::Load(floats, numbers[p].rmin.data() + at), nearest, part);
                     }
                 }
             } else {
@@ -159,14 +181,17 @@ FrozenSum sum_field(const FrozenField& field, std::span<const Vec3> group) {
                                           hn::Load(floats, others.sqrt_epsilon.data() + at)),
                                   hn::Add(point.half_rmin,
                                           hn::Load(floats, others.half_rmin.data() + at)),
-                                  nearest2, part);
+                                  nearest, part);
                     }
                 }
             }
             total.add(part, place);
         }
+        total.end_point();
     }
-    return {total.sum(), hn::GetLane(hn::MinOfLanes(floats, nearest2))};
+    FrozenJobSum result{total.sum(), hn::GetLane(hn::MinOfLanes(floats, nearest.r2))};
+    result.sum.clearance = hn::GetLane(hn::MinOfLanes(floats, nearest.clearance));
+    return result;
 }
 
 }  // namespace
@@ -267,15 +292,54 @@ void fill_group(FrozenField& field) {
     }
 }
 
-bool is_near(const FrozenField& field, std::span<const Vec3> group) noexcept {
-    return std::all_of(group.begin(), group.end(), [&](const Vec3& place) {
-        return (place - field.origin).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <
+bool is_near(std::span<const Vec3> points, const Vec3& origin) noexcept {
+    return std::all_of(points.begin(), points.end(), [&](const Vec3& place) {
+        return (place - origin).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <
                farthest_single_precision;
     });
 }
 
-FieldPoints view(const FrozenField::Points& points, std::span<const Vec3> positions) noexcept {
-    return {positions, points.charge, points.sqrt_epsilon, points.half_rmin, points.type};
+FieldPoints view(const FrozenField::Points& points, std::span<const Vec3> positions,
+                 std::size_t first, std::size_t count) noexcept {
+    const auto part = [&](const auto& column) {
+        return std::span(column).subspan(column.empty() ? 0 : first, column.empty() ? 0 : count);
+    };
+    return {positions, part(points.charge), part(points.sqrt_epsilon), part(points.half_rmin),
+            part(points.type)};
+}
+
+double find_clearance(const FrozenField& field, std::size_t i, const Vec3& place) noexcept {
+    const FrozenField::Points &own = field.group_numbers, &others = field.environment;
+    double clearance = std::numeric_limits<double>::infinity();
+    for (std::size_t j = 0; j < others.positions.size(); ++j) {
+        const ReplacedPair* const pair =
+            field.replaced.empty() ? nullptr : find_replaced(field, own.type[i], others.type[j]);
+        const double rmin = pair ? pair->rmin : own.half_rmin[i] + others.half_rmin[j];
+        clearance = std::min(clearance, (place - others.positions[j]).norm() - rmin);
+    }
+    return clearance;
+}
+
+// Point by point by the twin.
+FrozenSum evaluate_in_double(const FrozenField& field, std::span<const Vec3> group,
+                             const Vec3& shift) noexcept {
+    FrozenSum sum;
+    for (std::size_t i = 0; i < group.size(); ++i) {
+        const Vec3 place = group[i] + shift;
+        const FieldSum one = evaluate_pair_field(
+            view(field.group_numbers, std::span(&place, 1), i, 1),
+            view(field.environment, field.environment.positions, 0,
+                 field.environment.positions.size()),
+            {field.coulomb_constant, field.replaced});
+        sum.van_der_waals += one.van_der_waals;
+        sum.electrostatic += one.electrostatic;
+        sum.force += one.force;
+        sum.torque += one.torque;
+        sum.stiffness += one.stiffness;
+        sum.largest_force = std::max(sum.largest_force, one.force.norm());
+        sum.clearance = std::min(sum.clearance, find_clearance(field, i, place));
+    }
+    return sum;
 }
 
 }  // namespace
@@ -294,19 +358,19 @@ FrozenField build_frozen_field(const FieldPoints& group, const FieldPoints& envi
     return field;
 }
 
-FieldSum evaluate_frozen_field(const FrozenField& field, std::span<const Vec3> group) noexcept {
+FrozenSum evaluate_frozen_field(const FrozenField& field, std::span<const Vec3> group,
+                                const Vec3& shift) noexcept {
     PALPA_ASSERT(group.size() == field.group.size());
-    if (is_near(field, group) && is_near(field, field.environment.positions)) {
-        FrozenSum result = HWY_DYNAMIC_DISPATCH(sum_field)(field, group);
+    const Vec3 origin = field.origin - shift;  // as the group where it was sees it
+    if (is_near(group, origin) && is_near(field.environment.positions, field.origin)) {
+        FrozenJobSum result = HWY_DYNAMIC_DISPATCH(sum_field)(field, group, origin);
         constexpr double nearest = nearest_single_precision;
         if (result.nearest2 > nearest * nearest) {
             result.sum.torque += field.origin.cross(result.sum.force);
             return result.sum;
         }
     }
-    return evaluate_pair_field(view(field.group_numbers, group),
-                               view(field.environment, field.environment.positions),
-                               {field.coulomb_constant, field.replaced});
+    return evaluate_in_double(field, group, shift);
 }
 
 }  // namespace palpa

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -61,13 +62,22 @@ struct FrozenField {
 FrozenField build_frozen_field(const FieldPoints& group, const FieldPoints& environment,
                                const PairRule& rule);
 
-// As `evaluate_pair_field`. Pairs are in single precision, sums over more than some hundreds in
+// And what limits how far the group may go.
+struct FrozenSum : FieldSum {
+    // The least of r - Rmin of all pairs, Å, below 0 where they repel; infinite without pairs.
+    double clearance = std::numeric_limits<double>::infinity();
+    double largest_force = 0;  // on any point of the group, kcal/mol/Å
+};
+
+// As `evaluate_pair_field`, of the group moved by `shift`. Pairs are in single precision, sums over more than some hundreds in
 // double; with two points nearer than `nearest_single_precision`, or one further than
 // `farthest_single_precision` from the middle of the environment (field/pair_kernel.h), all is the
 // twin's. Repeats to the bit on the same kind of processor. Without allocation or lock.
 //
 // Against the twin: force, torque (about the origin of the frozen field, in a lever of 1 Å at
-// least) and stiffness within 2e-6 of the sum of all pairs' magnitudes, the energy within 1e-6.
-FieldSum evaluate_frozen_field(const FrozenField& field, std::span<const Vec3> group) noexcept;
+// least) and stiffness within 2e-6 of the sum of all pairs' magnitudes, the energy within 1e-6; the
+// clearance within 1e-5 Å, the largest force within 2e-6 of the sum of the point's pairs.
+FrozenSum evaluate_frozen_field(const FrozenField& field, std::span<const Vec3> group,
+                                const Vec3& shift = Vec3::Zero()) noexcept;
 
 }  // namespace palpa

@@ -7,8 +7,8 @@
 
 namespace palpa {
 
-struct FrozenSum {
-    FieldSum sum;                                             // torque about the field's origin
+struct FrozenJobSum {
+    FrozenSum sum;                                            // torque about the field's origin
     float nearest2 = std::numeric_limits<float>::infinity();  // Å^2
 };
 

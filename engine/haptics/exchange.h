@@ -2,7 +2,10 @@
 // touch model outward. Here the loop from hand to molecule to hand is closed.
 #pragma once
 #include "core/mailbox.h"
+#include "haptics/local_field.h"
 #include "math/vec.h"
+
+#include <optional>
 
 namespace palpa {
 
@@ -10,25 +13,23 @@ namespace palpa {
 struct HandPose {
     double time_s = 0;
     Vec3 travel_m = Vec3::Zero();  // handle travel so far, but for what was travelled clutched
+    // Where guarded coupling has put the molecule: its reference atom, from its counterpart. Without
+    // it the simulation moves the molecule by the travel.
+    std::optional<Vec3> place_angstrom = {};
 };
 
-// What the simulation tells the servo, every step, of the molecule in the hand. One simulation
-// step old when it is felt: the paper's z^-1.
-struct TouchModel {
-    double time_s = 0;                        // of the hand pose that it answers
-    Vec3 molecule_angstrom = Vec3::Zero();    // reference atom, from its counterpart
-    Vec3 force_newton = Vec3::Zero();         // on the molecule, along what it may do
-    Vec3 torque_newton_metre = Vec3::Zero();  // about its centre of mass; felt by no device so far
-    double stiffness_N_per_m = 0;       // -dF/dx where it is largest of what the molecule may do
-    double displacement_gain = 0;       // A_d of the step that led here
-    double potential_kcal_per_mol = 0;  // of the molecule and its environment
-    int active_freedom = 0;             // degrees of freedom that the step could move
-    double period_s = 0;                // of the simulation
+// The simulation's answer. One simulation step old when it is felt: the paper's z^-1.
+struct Touch {
+    TouchModel model;
+    LocalField field;
+
+    Touch() = default;
+    Touch(const TouchModel& without_field) : model(without_field) {}  // NOLINT: as good as one
 };
 
 struct Exchange {
     Mailbox<HandPose> hand;
-    Mailbox<TouchModel> touch;
+    Mailbox<Touch> touch;
 };
 
 }  // namespace palpa

@@ -152,6 +152,12 @@ double hand_force(const ForceLaw& law, double F_m) noexcept {
     return std::visit([F_m](const auto& l) { return l.value(F_m); }, law);
 }
 
+Vec3 hand_force(const ForceLaw& law, const Vec3& force_newton) noexcept {
+    const double norm = force_newton.norm();  // stableNorm drops what is no number
+    if (norm == 0) return Vec3::Zero();
+    return force_newton * (hand_force(law, norm) / norm);
+}
+
 double hand_force_slope(const ForceLaw& law, double F_m) noexcept {
     return std::visit([F_m](const auto& l) { return l.slope(F_m); }, law);
 }

@@ -86,6 +86,8 @@ using ForceLaw = std::variant<PrintedForceLaw, ConstantForceLaw, PerceptualForce
 // Force on the hand (N) for the molecular force F_m (N) along one direction, and its derivative.
 double hand_force(const ForceLaw& law, double F_m) noexcept;
 double hand_force_slope(const ForceLaw& law, double F_m) noexcept;
+// In space the law acts on the norm, along the force. What is no number stays none.
+Vec3 hand_force(const ForceLaw& law, const Vec3& force_newton) noexcept;
 // The molecular force (N) that gives this hand force; infinite where none does.
 double hand_force_inverse(const ForceLaw& law, double F_h) noexcept;
 // F_h/F_m, the gain that is on at F_m; its limit, the slope, at F_m = 0.

@@ -3,19 +3,22 @@
 #include "haptics/device.h"
 #include "haptics/exchange.h"
 #include "haptics/gains.h"
+#include "haptics/guarded.h"
 #include "math/vec.h"
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 namespace palpa {
 
 inline constexpr int max_servo_delay_ticks = 7;
 
 struct ServoSettings {
-    ForceLaw force_law = ConstantForceLaw{};
-    double clamp_newton = 3.0;  // on the norm of the force
-    int delay_ticks = 0;        // between a force and its sending, 0 to max_servo_delay_ticks
+    ForceLaw force_law = ConstantForceLaw{};  // the paper's coupling, force held between two steps
+    double clamp_newton = 3.0;                // on the norm of the force
+    int delay_ticks = 0;  // between a force and its sending, 0 to max_servo_delay_ticks
+    std::optional<GuardedSettings> guarded = {};  // instead of the paper's
 };
 
 // Everything that one tick leaves to the next.
@@ -26,6 +29,7 @@ struct ServoState {
     bool has_reading = false;
     // touch model
     TouchModel touch;  // the newest that came
+    GuardedState guarded;
     // safety
     bool stopped = false;  // a force was not finite; latched
     // sending
@@ -38,6 +42,8 @@ struct ServoState {
 // What a tick did, for the recording and the overlay.
 struct ServoTick {
     DeviceReading reading;
+    // The newest; in guarded coupling with place, force, torque, stiffness and displacement gain of
+    // this tick.
     TouchModel touch;
     Vec3 sent_newton = Vec3::Zero();  // to be written to the device
     double force_gain = 0;            // F_h/F_m of the force law at this tick
@@ -45,11 +51,15 @@ struct ServoTick {
     bool clutched = false;
     bool clamped = false;  // the clamp acted
     bool stopped = false;
+    // Guarded coupling alone.
+    double felt_N_per_m = 0;          // of the molecule's stiffness, where it is largest
+    Vec3 kept_m = Vec3::Zero();       // handle travel that the stop holds back
+    Vec3 dropped_m = Vec3::Zero();    // that the limits of a step did away with in this tick
 };
 
 // Takes the newest touch model out of the exchange, puts the hand's pose in, returns the force that
-// the device is to play until the next tick. Eq. 2 acts on the norm of the molecular force, along
-// its direction. Never throws, locks, waits or allocates.
+// the device is to play until the next tick. The force law acts on the norm of the molecular force,
+// along its direction. Never throws, locks, waits or allocates.
 [[nodiscard]] ServoTick step_servo(const ServoSettings& settings, ServoState& state,
                                    Exchange& exchange, const DeviceReading& reading) noexcept;
 

@@ -39,7 +39,7 @@ inline constexpr std::array<std::string_view, 3> statics_method_names{
 enum class Stroke { Hold, InOut, Path };
 inline constexpr std::array<std::string_view, 3> stroke_names{"hold", "in-out", "path"};
 
-// The paper's five modes, and the one that is to become the default.
+// The paper's five modes, and guarded coupling.
 enum class CouplingMode {
     VariableForceVariableDisplacement,
     VariableForceConstantDisplacement,
@@ -50,6 +50,16 @@ enum class CouplingMode {
 };
 inline constexpr std::array<std::string_view, 6> coupling_mode_names{"1", "2", "3",
                                                                      "4", "5", "guarded"};
+
+// The laws of guarded coupling, and what carries the workspace.
+enum class ForceLawChoice { Printed, Calibrated, Constant, Perceptual };
+inline constexpr std::array<std::string_view, 4> force_law_names{"printed", "calibrated",
+                                                                 "constant", "perceptual"};
+enum class DisplacementLawChoice { Repaired, Printed, Constant };
+inline constexpr std::array<std::string_view, 3> displacement_law_names{"repaired", "printed",
+                                                                        "constant"};
+enum class WorkspaceChoice { Clutch, Bubble, Drift };
+inline constexpr std::array<std::string_view, 3> workspace_names{"clutch", "bubble", "drift"};
 
 // In the order of haptics' Grip.
 inline constexpr std::array<std::string_view, 6> hand_names{"none",   "light", "slack",
@@ -130,11 +140,20 @@ struct DeviceDescription {
 };
 
 struct CouplingDescription {
-    CouplingMode mode = CouplingMode::VariableForceConstantDisplacement;
+    CouplingMode mode = CouplingMode::Guarded;
     double clamp_N = 3;
     double F_h1_N = 1, F_h2_N = 3, F_0_nN = 1.5, A_f_min = 0.64e9, A_f_max = 5.1e9;  // eq. 2
     double gamma_per_N = 10e11, F_off_pN = 20, A_d_min = 0.005e9, A_d_max = 0.25e9;  // eq. 3
     double A_f = 0.64e9, A_d = 0.25e9;  // the constant gains
+
+    // Of guarded coupling.
+    ForceLawChoice force_law = ForceLawChoice::Printed;
+    DisplacementLawChoice displacement_law = DisplacementLawChoice::Repaired;
+    WorkspaceChoice workspace = WorkspaceChoice::Clutch;
+    double F_lo_pN = 20, F_hi_nN = 3;  // of the perceptual law
+    double damping_N_s_per_m = 0.5;
+    double stop_nN = 10;
+    std::int64_t pairs_per_tick = 130'000;
 
     friend bool operator==(const CouplingDescription&, const CouplingDescription&) = default;
 };

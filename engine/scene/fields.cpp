@@ -278,8 +278,9 @@ void visit_coupling(FieldVisitor& v, CouplingDescription& c) {
     v.enter_table({.key = "coupling", .meaning = "from molecule to hand and back"});
     choose(v,
            {.key = "mode",
-            .meaning = "1 variable force and displacement gain, 2 variable force gain, 3 variable "
-                       "displacement gain, 4 both constant, 5 no force; guarded is not built yet"},
+            .meaning = "guarded: the servo moves the molecule in the field around it; the paper's, "
+                       "which may vibrate: 1 variable force and displacement gain, 2 variable "
+                       "force gain, 3 variable displacement gain, 4 both constant, 5 no force"},
            coupling_mode_names, c.mode);
     v.real({.key = "clamp_N",
             .meaning = "largest force sent to the device",
@@ -342,6 +343,45 @@ void visit_coupling(FieldVisitor& v, CouplingDescription& c) {
             .lowest = 1,
             .highest = 1e15},
            c.A_d);
+    choose(v,
+           {.key = "force_law",
+            .meaning = "guarded: eq. 2 as printed, or calibrated to the slopes A_f_max and A_f_min, "
+                       "constant A_f, or perceptual: equal noticeable steps a decade"},
+           force_law_names, c.force_law);
+    choose(v,
+           {.key = "displacement_law",
+            .meaning = "guarded: eq. 3 repaired to see stiff places too, as printed, constant A_d"},
+           displacement_law_names, c.displacement_law);
+    choose(v,
+           {.key = "workspace",
+            .meaning = "guarded: how far places are reached: by the clutch alone, beyond a bubble "
+                       "at a rate, with a drift to the centre"},
+           workspace_names, c.workspace);
+    v.real({.key = "F_lo_pN",
+            .meaning = "perceptual law: molecular force that is felt as 0.3 N",
+            .lowest = positive,
+            .highest = 1e6},
+           c.F_lo_pN);
+    v.real({.key = "F_hi_nN",
+            .meaning = "perceptual law: molecular force that is felt as 3 N, above 2 F_lo",
+            .lowest = positive,
+            .highest = 1e6},
+           c.F_hi_nN);
+    v.real({.key = "damping_N_s_per_m",
+            .meaning = "guarded: damping of the handle by the servo",
+            .lowest = 0,
+            .highest = 5},
+           c.damping_N_s_per_m);
+    v.real({.key = "stop_nN",
+            .meaning = "guarded: force on an atom beyond which the molecule goes no further in",
+            .lowest = positive,
+            .highest = 1e3},
+           c.stop_nN);
+    v.integer({.key = "pairs_per_tick",
+               .meaning = "guarded: pairs of atoms that the servo has time for in a tick",
+               .lowest = 1000,
+               .highest = 10'000'000},
+              c.pairs_per_tick);
     v.leave_table();
 }
 

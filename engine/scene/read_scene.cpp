@@ -478,8 +478,9 @@ void check_ranges(const SceneDescription& scene, Reader& reader) {
     check(c.A_d_max >= c.A_d_min, "coupling.A_d_max",
           fmt::format("'coupling.A_d_max' is {}; expected A_d_min, {}, or more", c.A_d_max,
                       c.A_d_min));
-    check(c.mode != CouplingMode::Guarded, "coupling.mode",
-          "'coupling.mode' is \"guarded\", which is not built yet; expected one of 1, 2, 3, 4, 5");
+    check(c.F_hi_nN * 1e3 > 2 * c.F_lo_pN, "coupling.F_hi_nN",
+          fmt::format("'coupling.F_hi_nN' is {}; expected more than twice F_lo_pN, {}", c.F_hi_nN,
+                      c.F_lo_pN));
     check(std::abs(scene.period_ms - std::round(scene.period_ms)) < 1e-9, "run.period_ms",
           fmt::format("'run.period_ms' is {}; expected a whole number of servo ticks of 1 ms",
                       scene.period_ms));

@@ -3,14 +3,18 @@
 namespace palpa {
 
 void run_lockstep(const LockstepSettings& settings, const ServoSettings& servo, Device& device,
-                  const TouchModel& first, const StepFunction& step, const TickFunction& on_tick) {
+                  const Touch& first, const StepFunction& step, const TickFunction& on_tick) {
     Exchange exchange;
     ServoState state;
-    TouchModel felt = first, next = first;
+    TouchModel felt;
+    Touch next = first;
     HandPose hand;
     for (std::uint64_t tick = 0; tick < settings.ticks; ++tick) {
         const bool period_begins = tick % settings.ticks_per_step == 0;
-        if (period_begins) exchange.touch.post(felt = next);
+        if (period_begins) {
+            exchange.touch.post(next);
+            felt = next.model;
+        }
 
         const ServoTick done = step_servo(servo, state, exchange, device.read());
         on_tick(done);

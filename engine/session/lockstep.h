@@ -15,7 +15,7 @@ struct LockstepSettings {
 };
 
 // Answers a hand pose; `felt` is the touch model that the hand feels meanwhile.
-using StepFunction = std::function<TouchModel(const HandPose& hand, const TouchModel& felt)>;
+using StepFunction = std::function<Touch(const HandPose& hand, const TouchModel& felt)>;
 using TickFunction = std::function<void(const ServoTick& tick)>;
 
 // Tick j reads the device, runs the servo and writes the force. Where a period begins, the result
@@ -23,6 +23,6 @@ using TickFunction = std::function<void(const ServoTick& tick)>;
 // finds is felt from the next period on and held throughout (the paper's z^-1 and hold). `first` is
 // felt during the first period.
 void run_lockstep(const LockstepSettings& settings, const ServoSettings& servo, Device& device,
-                  const TouchModel& first, const StepFunction& step, const TickFunction& on_tick);
+                  const Touch& first, const StepFunction& step, const TickFunction& on_tick);
 
 }  // namespace palpa

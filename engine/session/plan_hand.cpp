@@ -2,6 +2,7 @@
 
 #include "core/load_error.h"
 #include "core/units.h"
+#include "session/run_headless.h"
 #include "simulation/probe.h"
 
 #include <fmt/format.h>
@@ -18,24 +19,31 @@ namespace {
 constexpr double first_rest_s = 0.3;  // before the hand sets out, and between cycles
 constexpr double fastest_hand_m_per_s = 3;
 
-double newton_at(const Simulation& simulation, double distance) {
-    return force_along_line_at(simulation, distance).force *
-           units::newton_per_kcal_per_mol_angstrom;
+// A_d where the molecule stands at a distance.
+double gain_at(const Simulation& simulation, const std::optional<GuardedSettings>& guarded,
+               double distance) {
+    const LineForce line = force_along_line_at(simulation, distance);
+    const double F_m = line.force * units::newton_per_kcal_per_mol_angstrom;
+    if (!guarded) return displacement_gain(simulation.laws.displacement, F_m);
+    Mat3 stiffness = Mat3::Zero();
+    stiffness(0, 0) = line.stiffness * units::newton_per_metre_per_kcal_per_mol_angstrom2;
+    return guarded_gain(*guarded, Vec3(F_m, 0, 0), stiffness);
 }
 
 // Handle travel (m) that takes the molecule from `far` in to `near` (Å): midpoint sum of A_d.
-double handle_travel(const Simulation& simulation, double near, double far) {
+double handle_travel(const SceneDescription& scene, const Simulation& simulation, double near,
+                     double far) {
+    const std::optional<GuardedSettings> guarded = build_servo_settings(scene, simulation).guarded;
     // Where A_d does not vary one step tells all, and a look at a large molecule takes
     // milliseconds.
     const bool constant =
-        std::holds_alternative<ConstantDisplacementLaw>(simulation.laws.displacement);
-    const auto steps = constant ? 1 : static_cast<int>(std::ceil((far - near) / 1e-3));
+        !guarded && std::holds_alternative<ConstantDisplacementLaw>(simulation.laws.displacement);
+    const double fineness = moves_in_space(simulation) ? 0.02 : 1e-3;  // Å
+    const auto steps = constant ? 1 : static_cast<int>(std::ceil((far - near) / fineness));
     const double width = (far - near) / steps;
     double sum = 0;
-    for (int i = 0; i < steps; ++i) {
-        sum += displacement_gain(simulation.laws.displacement,
-                                 newton_at(simulation, near + (i + 0.5) * width));
-    }
+    for (int i = 0; i < steps; ++i)
+        sum += gain_at(simulation, guarded, near + (i + 0.5) * width);
     return sum * width * units::metre_per_angstrom;
 }
 
@@ -59,7 +67,7 @@ HandScript plan_in_out(const SceneDescription& scene, const Simulation& simulati
     const std::optional<HandModel> hand = hand_model(static_cast<Grip>(scene.hand.grip));
     const double peak_felt = hand_force(simulation.laws.force, peak_newton);
     const double bend = hand ? peak_felt / static_stiffness(*hand) : 0;
-    const double travel = handle_travel(simulation, *innermost, start) + bend;
+    const double travel = handle_travel(scene, simulation, *innermost, start) + bend;
     const double outside = std::min(travel / 2, half_width_m - stop_margin_m);
 
     HandScript script;

@@ -10,7 +10,6 @@
 #include "simulation/step.h"
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -23,37 +22,46 @@ namespace {
 constexpr double tick_s = 1 / servo_rate_hz;
 constexpr std::uint64_t ticks_between_progress = 100;
 
-// Largest eigenvalue (N/m over A_d) of what a hand feels of a stiffness through eq. 2 on the norm
-// of the force. Along the force that takes the law's slope, across it the gain.
-double felt_stiffness(const ForceLaw& law, const Vec3& force, const Mat3& stiffness) {
-    const double F_m = force.norm();
-    const double slope = hand_force_slope(law, F_m), gain = force_gain(law, F_m);
-    Mat3 jacobian = gain * Mat3::Identity();
-    if (F_m > 0) jacobian += (slope - gain) / (F_m * F_m) * force * force.transpose();
-    const Mat3 felt = jacobian * stiffness;
-    const Mat3 symmetric = 0.5 * (felt + felt.transpose());
-    return Eigen::SelfAdjointEigenSolver<Mat3>(symmetric, Eigen::EigenvaluesOnly)
-        .eigenvalues()
-        .maxCoeff();
+WorkspaceMap build_workspace(WorkspaceChoice choice) {
+    switch (choice) {
+        case WorkspaceChoice::Bubble:
+            return BubbleMap{};
+        case WorkspaceChoice::Drift:
+            return DriftMap{};
+        case WorkspaceChoice::Clutch:
+            break;
+    }
+    return ClutchMap{};
 }
 
 }  // namespace
 
 ServoSettings build_servo_settings(const SceneDescription& scene, const Simulation& simulation) {
-    return {simulation.laws.force, scene.coupling.clamp_N,
-            static_cast<int>(scene.device.servo_delay_ticks)};
+    const CouplingDescription& c = scene.coupling;
+    ServoSettings settings{simulation.laws.force, c.clamp_N,
+                           static_cast<int>(scene.device.servo_delay_ticks)};
+    if (!simulation.is_guarded) return settings;
+    GuardedSettings& guarded = settings.guarded.emplace();
+    guarded.force_law = simulation.laws.force;
+    guarded.displacement_law = simulation.laws.displacement;
+    guarded.workspace = build_workspace(c.workspace);
+    guarded.cap_N_per_m = guarded_cap(scene.device.viscosity_N_s_per_m, c.damping_N_s_per_m);
+    guarded.damping_N_s_per_m = c.damping_N_s_per_m;
+    guarded.stop_newton = c.stop_nN * 1e-9;
+    return settings;
 }
 
 FeltStiffness stiffest_place(const SceneDescription& scene, const Simulation& simulation) {
     const Grab& grab = *simulation.world.find<Grab>(simulation.hand);
     const Guide& guide = *simulation.world.find<Guide>(grab.molecule);
+    const std::optional<GuardedSettings> guarded = build_servo_settings(scene, simulation).guarded;
     FeltStiffness stiffest;
     if (simulation.flexible && simulation.flexible->state.tether) {
         const double k = simulation.flexible->state.tether->k *
                          units::newton_per_metre_per_kcal_per_mol_angstrom2;
-        return {force_gain(simulation.laws.force, 0) * k /
-                    displacement_gain(simulation.laws.displacement, 0),
-                grabbed_distance(simulation)};
+        const double A_d = guarded ? guarded_gain(*guarded, Vec3::Zero(), k * Mat3::Identity())
+                                   : displacement_gain(simulation.laws.displacement, 0);
+        return {force_gain(simulation.laws.force, 0) * k / A_d, grabbed_distance(simulation)};
     }
     // False where the hand does not go: further in than its peak.
     const auto look_at = [&](double distance) {
@@ -64,8 +72,9 @@ FeltStiffness stiffest_place(const SceneDescription& scene, const Simulation& si
         if (F_m > scene.hand.peak_nN * 1e-9 && !pulls_outward) return false;
         const Mat3 stiffness = guide.projector * field.stiffness * guide.projector *
                                units::newton_per_metre_per_kcal_per_mol_angstrom2;
-        const double K = felt_stiffness(simulation.laws.force, force, stiffness) /
-                         displacement_gain(simulation.laws.displacement, F_m);
+        const double A_d = guarded ? guarded_gain(*guarded, force, stiffness)
+                                   : displacement_gain(simulation.laws.displacement, F_m);
+        const double K = largest_felt(simulation.laws.force, force, stiffness) / A_d;
         if (K > stiffest.newton_per_metre) stiffest = {K, distance};
         return true;
     };
@@ -84,7 +93,11 @@ FeltStiffness stiffest_place(const SceneDescription& scene, const Simulation& si
 
 double calm_stiffness(const SceneDescription& scene, const std::optional<HandModel>& hand,
                       double period_s) {
-    const DeviceDynamics device{scene.device.inertia_kg, scene.device.viscosity_N_s_per_m};
+    DeviceDynamics device{scene.device.inertia_kg, scene.device.viscosity_N_s_per_m};
+    if (scene.coupling.mode == CouplingMode::Guarded) {
+        device.viscosity_N_s_per_m += scene.coupling.damping_N_s_per_m;
+        period_s = tick_s;
+    }
     return critical_stiffness(build_plant(device, hand), period_s,
                               static_cast<double>(scene.device.servo_delay_ticks) * tick_s);
 }
@@ -195,7 +208,7 @@ Summary run_headless(const SceneDescription& scene, Simulation& simulation, Devi
         if (journey) journey->add(simulation);
         if (report.settled)
             activity.add(*report.settled, 1e6 * took.count(), scene.statics.budget_us);
-        return report.touch;
+        return simulation.touch;
     };
     std::uint64_t done = 0, drawn = 0;
     const auto on_tick = [&](const ServoTick& tick) {
@@ -212,7 +225,7 @@ Summary run_headless(const SceneDescription& scene, Simulation& simulation, Devi
         }
     };
     run_lockstep({ticks, ticks_per_step}, build_servo_settings(scene, simulation), device,
-                 build_touch_model(simulation, {}), step, on_tick);
+                 simulation.touch, step, on_tick);
 
     if (progress) progress(1);
     Summary summary = statistics.summary();

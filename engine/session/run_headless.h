@@ -37,7 +37,7 @@ struct FeltStiffness {
 FeltStiffness stiffest_place(const SceneDescription& scene, const Simulation& simulation);
 
 // The stiffest spring (N/m) that this hand on the scene's device keeps calm at that period and the
-// scene's servo delay (haptics/plant.h).
+// scene's servo delay (haptics/plant.h); guarded, at the servo's own period and with its damping.
 double calm_stiffness(const SceneDescription& scene, const std::optional<HandModel>& hand,
                       double period_s);
 

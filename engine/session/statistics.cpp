@@ -26,7 +26,7 @@ Statistics::Statistics(double tick_s) : tick_s_(tick_s), step_counts_(class_coun
 
 void Statistics::add(const ServoTick& tick) {
     const Vec3& place = tick.touch.molecule_angstrom;
-    const double distance = place.stableNorm();
+    const double distance = place.norm();
     if (running_.ticks == 0) {
         first_place_angstrom_ = place;
         running_.closest_angstrom = distance;

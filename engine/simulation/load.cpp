@@ -12,6 +12,7 @@
 #include "simulation/components.h"
 #include "simulation/probe.h"
 #include "simulation/simulation.h"
+#include "simulation/touch.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -234,16 +235,64 @@ void start_grabbed(const SceneDescription& scene, Simulation& simulation) {
 
 }  // namespace
 
+namespace {
+
+ForceLaw guarded_force_law(const CouplingDescription& c,
+                           const PrintedForceLaw::Parameters& parameters) {
+    switch (c.force_law) {
+        case ForceLawChoice::Printed:
+            break;
+        case ForceLawChoice::Calibrated:
+            if (const auto law = PrintedForceLaw::find_calibrated(parameters)) return *law;
+            break;  // load_simulation lets no other pass
+        case ForceLawChoice::Constant:
+            return ConstantForceLaw{c.A_f};
+        case ForceLawChoice::Perceptual:
+            return PerceptualForceLaw({.F_lo = c.F_lo_pN * 1e-12, .F_hi = c.F_hi_nN * 1e-9});
+    }
+    return PrintedForceLaw(parameters);
+}
+
+DisplacementLaw guarded_displacement_law(const CouplingDescription& c,
+                                         const PrintedDisplacementLaw::Parameters& parameters) {
+    switch (c.displacement_law) {
+        case DisplacementLawChoice::Repaired:
+            break;
+        case DisplacementLawChoice::Printed:
+            return PrintedDisplacementLaw(parameters);
+        case DisplacementLawChoice::Constant:
+            return ConstantDisplacementLaw{c.A_d};
+    }
+    return RepairedDisplacementLaw({.printed = parameters});
+}
+
+PrintedForceLaw::Parameters force_parameters(const CouplingDescription& c) {
+    return {.F_h1 = c.F_h1_N,
+            .F_h2 = c.F_h2_N,
+            .F_0 = c.F_0_nN * 1e-9,
+            .A_fmin = c.A_f_min,
+            .A_fmax = c.A_f_max};
+}
+
+void check_laws(const SceneDescription& scene) {
+    const CouplingDescription& c = scene.coupling;
+    if (c.mode != CouplingMode::Guarded || c.force_law != ForceLawChoice::Calibrated ||
+        PrintedForceLaw::find_calibrated(force_parameters(c)))
+        return;
+    throw LoadError(scene.place_of("coupling.force_law"),
+                    "eq. 2 of these F_h1_N, F_h2_N, F_0_nN cannot have the slopes A_f_max at 0 and "
+                    "A_f_min at F_0; expected others, or coupling.force_law = \"printed\"");
+}
+
+}  // namespace
+
 CouplingLaws build_coupling_laws(const CouplingDescription& c) {
-    const PrintedForceLaw printed_force({.F_h1 = c.F_h1_N,
-                                         .F_h2 = c.F_h2_N,
-                                         .F_0 = c.F_0_nN * 1e-9,
-                                         .A_fmin = c.A_f_min,
-                                         .A_fmax = c.A_f_max});
-    const PrintedDisplacementLaw printed_displacement({.gamma = c.gamma_per_N,
-                                                       .F_off = c.F_off_pN * 1e-12,
-                                                       .A_dmin = c.A_d_min,
-                                                       .A_dmax = c.A_d_max});
+    const PrintedForceLaw printed_force(force_parameters(c));
+    const PrintedDisplacementLaw::Parameters displacement{.gamma = c.gamma_per_N,
+                                                          .F_off = c.F_off_pN * 1e-12,
+                                                          .A_dmin = c.A_d_min,
+                                                          .A_dmax = c.A_d_max};
+    const PrintedDisplacementLaw printed_displacement(displacement);
     const ConstantForceLaw constant_force{c.A_f};
     const ConstantDisplacementLaw constant_displacement{c.A_d};
     switch (c.mode) {
@@ -256,13 +305,26 @@ CouplingLaws build_coupling_laws(const CouplingDescription& c) {
         case CouplingMode::ConstantForceConstantDisplacement:
             return {constant_force, constant_displacement};
         case CouplingMode::NoForce:
+            break;
         case CouplingMode::Guarded:
-            break;  // read_scene lets no guarded scene pass
+            return {guarded_force_law(c, force_parameters(c)),
+                    guarded_displacement_law(c, displacement)};
     }
     return {ConstantForceLaw{0}, constant_displacement};
 }
 
+void set_coupling(const CouplingDescription& coupling, Simulation& simulation) {
+    simulation.laws = build_coupling_laws(coupling);
+    simulation.is_guarded = coupling.mode == CouplingMode::Guarded;
+    simulation.pairs_per_tick = static_cast<std::size_t>(coupling.pairs_per_tick);
+    update_near(simulation);
+    const std::uint32_t start = simulation.touch.model.start;
+    simulation.touch = build_touch(simulation, {});
+    simulation.touch.model.start = start;
+}
+
 Simulation load_simulation(const SceneDescription& scene, const RelaxProgressFunction& on_relax) {
+    check_laws(scene);
     Simulation simulation(build_coupling_laws(scene.coupling));
     simulation.coulomb_constant = scene.force_field.coulomb_constant;
     simulation.period_s = scene.period_ms * 1e-3;
@@ -288,6 +350,7 @@ Simulation load_simulation(const SceneDescription& scene, const RelaxProgressFun
         load_flexible(scene, force_field, files, molecules, entities, on_relax, simulation);
     }
     start_grabbed(scene, simulation);
+    set_coupling(scene.coupling, simulation);
     return simulation;
 }
 

@@ -4,6 +4,7 @@
 #include "ecs/entity.h"
 #include "ecs/world.h"
 #include "field/pair_field.h"
+#include "haptics/exchange.h"
 #include "haptics/gains.h"
 #include "math/vec.h"
 #include "molecule/atoms.h"
@@ -12,10 +13,20 @@
 #include "simulation/flexible.h"
 #include "simulation/relax.h"
 
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
 namespace palpa {
+
+// Atoms of the environment near to the molecule in the hand, by number, rising.
+struct NearAtoms {
+    std::vector<std::uint32_t> atoms;  // empty: not chosen yet
+    Vec3 place = Vec3::Zero();         // of the molecule when they were chosen
+    std::size_t steps = 0;             // since
+    std::size_t most = 0;              // that were asked for
+};
 
 // Owned by one thread. The grabbed molecule's atoms stand first in the table, all others, its
 // environment, behind them.
@@ -27,6 +38,8 @@ struct Simulation {
     double coulomb_constant = 0;               // kcal Å/mol/e^2
     std::vector<ReplacedPair> replaced_pairs;  // of types in the table
     double period_s = 0;                       // declared
+    bool is_guarded = false;                   // the servo moves the molecule
+    std::size_t pairs_per_tick = 130'000;      // that it has time for
     Vec3 anchor = Vec3::Zero();          // Å, where places of the grabbed molecule are told from
     std::vector<Vec3> grabbed_shape;     // Å, the grabbed molecule's atoms from its reference atom,
                                          // where it is rigid
@@ -37,10 +50,15 @@ struct Simulation {
     World world;
     AtomTable atoms;                   // positions only
     std::optional<Flexible> flexible;  // where something moves by itself
+    NearAtoms near;
+    Touch touch;  // the last answer to the hand
 };
 
 // The laws that a scene's mode asks for.
 CouplingLaws build_coupling_laws(const CouplingDescription& coupling);
+
+// Makes the scene's coupling that of a simulation.
+void set_coupling(const CouplingDescription& coupling, Simulation& simulation);
 
 // Reads everything the scene names, relaxes a grabbed molecule that moves in space as a rigid body,
 // until less than 20 pN pull at it, or everything that moves by itself as the scene's [statics]

@@ -2,7 +2,7 @@
 
 #include "core/units.h"
 #include "simulation/components.h"
-#include "simulation/step.h"
+#include "simulation/touch.h"
 
 #include <algorithm>
 #include <cmath>
@@ -150,7 +150,7 @@ FrameScene build_frame(const Simulation& simulation, const TouchModel& touch,
 }
 
 FrameScene build_frame(const Simulation& simulation, const ViewSettings& settings) {
-    return build_frame(simulation, build_touch_model(simulation, {}), settings);
+    return build_frame(simulation, build_touch(simulation, {}).model, settings);
 }
 
 ViewSettings default_view(const Simulation& simulation) {

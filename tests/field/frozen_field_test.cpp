@@ -3,6 +3,7 @@
 #include "core/units.h"
 #include "field/processor.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstddef>
@@ -68,6 +69,34 @@ Magnitude sum_magnitudes(const Points& group, const Points& environment, const V
     return sum;
 }
 
+// Pair by pair: what limits how far the group may go.
+struct Nearness {
+    double clearance = std::numeric_limits<double>::infinity(), largest_force = 0;
+};
+Nearness find_nearness(const Points& group, const Points& environment, const PairRule& rule) {
+    Nearness nearness;
+    for (std::size_t i = 0; i < group.positions.size(); ++i) {
+        Vec3 force = Vec3::Zero();
+        for (std::size_t j = 0; j < environment.positions.size(); ++j) {
+            const Vec3 d = group.positions[i] - environment.positions[j];
+            double rmin = group.half_rmin[i] + environment.half_rmin[j];
+            double epsilon = group.sqrt_epsilon[i] * environment.sqrt_epsilon[j];
+            for (const ReplacedPair& pair : rule.replaced) {
+                if (std::minmax(group.type[i], environment.type[j]) != std::minmax(pair.a, pair.b))
+                    continue;
+                rmin = pair.rmin;
+                epsilon = pair.epsilon;
+            }
+            const double r = d.norm(), s6 = std::pow(rmin / r, 6);
+            const double charges = coulomb * group.charge[i] * environment.charge[j];
+            force += (12 * epsilon * s6 * (s6 - 1) + charges / r) / (r * r) * d;
+            nearness.clearance = std::min(nearness.clearance, r - rmin);
+        }
+        nearness.largest_force = std::max(nearness.largest_force, force.norm());
+    }
+    return nearness;
+}
+
 }  // namespace
 
 TEST_CASE("a frozen field agrees with the twin on every kind of processor", "[field][frozen]") {
@@ -82,12 +111,15 @@ TEST_CASE("a frozen field agrees with the twin on every kind of processor", "[fi
     const FrozenField field = build_frozen_field(group.view(), environment.view(), rule);
     const FieldSum expected = evaluate_pair_field(group.view(), environment.view(), rule);
     const Magnitude scale = sum_magnitudes(group, environment, field.origin);
+    const Nearness near = find_nearness(group, environment, rule);
 
     for (const std::string& kind : list_processor_kinds()) {
         INFO(kind);
         use_processor_kind(kind);
-        const FieldSum sum = evaluate_frozen_field(field, group.positions);
+        const FrozenSum sum = evaluate_frozen_field(field, group.positions);
 
+        CHECK(sum.clearance == Approx(near.clearance).margin(1e-5));
+        CHECK(sum.largest_force == Approx(near.largest_force).epsilon(2e-5));
         CHECK(std::abs(sum.van_der_waals - expected.van_der_waals) < 1e-6 * scale.energy);
         CHECK(std::abs(sum.electrostatic - expected.electrostatic) < 1e-6 * scale.energy);
         CHECK((sum.force - expected.force).norm() < 2e-6 * scale.force);
@@ -113,19 +145,42 @@ TEST_CASE("the frozen field of nothing, or on nothing, is none", "[field][frozen
     CHECK(evaluate_frozen_field(on_none, none.positions).stiffness == Mat3(Mat3::Zero()));
 }
 
-TEST_CASE("where single precision does not do, a frozen field is the twin's to the bit",
-          "[field][frozen]") {
+TEST_CASE("a group that is moved feels what one that stands there feels", "[field][frozen]") {
+    std::mt19937 random(14);
+    const Points environment = random_points(random, 4, 4, 4, Vec3::Zero());
+    Points group = random_points(random, 2, 2, 2, Vec3(3, 3, 9));
+    const FrozenField field = build_frozen_field(group.view(), environment.view(), {coulomb});
+    const Vec3 shift(0.3, -0.2, 1);
+
+    const FrozenSum moved = evaluate_frozen_field(field, group.positions, shift);
+    for (Vec3& place : group.positions) place += shift;
+    const FrozenSum there = evaluate_frozen_field(field, group.positions);
+
+    CHECK((moved.force - there.force).norm() < 1e-5 * there.force.norm());
+    CHECK((moved.torque - there.torque).norm() < 1e-5 * there.torque.norm());
+    CHECK(moved.clearance == Approx(there.clearance).margin(1e-5));
+}
+
+TEST_CASE("where single precision does not do, a frozen field is the twin's", "[field][frozen]") {
     std::mt19937 random(13);
     const Points environment = random_points(random, 3, 3, 3, Vec3::Zero());
     Points group = random_points(random, 2, 2, 2, Vec3(0, 0, 9));
+    SECTION("two points near each other") {
+        group.positions[5] = environment.positions[6] + Vec3(0.3, 0, 0);
+    }
     SECTION("two points at one place") { group.positions[5] = environment.positions[6]; }
     SECTION("a point far off") { group.positions[5].x() = 1e5; }
 
     const FrozenField field = build_frozen_field(group.view(), environment.view(), {coulomb});
-    const FieldSum sum = evaluate_frozen_field(field, group.positions);
+    const FrozenSum sum = evaluate_frozen_field(field, group.positions);
     const FieldSum expected = evaluate_pair_field(group.view(), environment.view(), {coulomb});
+    const Nearness near = find_nearness(group, environment, {coulomb});
 
-    CHECK(sum.energy() == expected.energy());
-    CHECK(sum.force == expected.force);
-    CHECK(sum.stiffness == expected.stiffness);
+    CHECK(sum.energy() == Approx(expected.energy()).epsilon(1e-12));
+    CHECK((sum.force - expected.force).norm() <= 1e-12 * expected.force.norm());
+    CHECK((sum.stiffness - expected.stiffness).norm() <= 1e-12 * expected.stiffness.norm());
+    CHECK(sum.clearance == Approx(near.clearance).margin(1e-12));
+    // At one place a pair has no force; the other numbers are another way to the same.
+    if (near.clearance > -1.9)
+        CHECK(sum.largest_force == Approx(near.largest_force).epsilon(1e-12));
 }

@@ -51,7 +51,7 @@ public:
         : scene_(scene_in(path, way, settings)),
           way_(way),
           simulation_(load_simulation(scene_)),
-          felt_(build_touch_model(simulation_, {})),
+          felt_(simulation_.touch.model),
           first_energy_(flexible().state.energy()) {}
     Watched(const Watched&) = delete;
     Watched& operator=(const Watched&) = delete;
@@ -288,7 +288,7 @@ TEST_CASE("a hand thrown out of the world and back", "[hard]") {
         SceneDescription scene = scene_in(peptides, way, settings);
         Simulation simulation = load_simulation(scene);
         const Flexible& flexible = *simulation.flexible;
-        TouchModel felt = build_touch_model(simulation, {});
+        TouchModel felt = simulation.touch.model;
         HandPose pose;
         pose.travel_m = Vec3(far, -far, 0) * scene.coupling.A_d / units::angstrom_per_metre;
         const std::vector<Vec3> before = simulation.atoms.positions;

@@ -27,7 +27,7 @@ std::vector<ServoTick> ticks_of(const std::string& path, const std::vector<std::
     run_lockstep(
         {static_cast<std::uint64_t>(scene.seconds * servo_rate_hz),
          static_cast<std::uint64_t>(scene.period_ms)},
-        build_servo_settings(scene, simulation), device, build_touch_model(simulation, {}),
+        build_servo_settings(scene, simulation), device, simulation.touch.model,
         [&](const HandPose& hand, const TouchModel& felt) {
             return step_simulation(simulation, hand, felt).touch;
         },
@@ -76,7 +76,7 @@ TEST_CASE("in space the stiffest the hand feels is an eigenvalue, whatever its d
           "[session][coupling]") {
     const SceneDescription scene = read_scene(PALPA_ROOT "/scenes/hiv");
     const Simulation simulation = load_simulation(scene);
-    const TouchModel rest = build_touch_model(simulation, {});
+    const TouchModel rest = simulation.touch.model;
 
     const FeltStiffness stiffest = stiffest_place(scene, simulation);
 

@@ -33,7 +33,7 @@ Lesson play_water(const std::vector<std::string>& settings, Lesson lesson) {
     };
     run_lockstep(
         {static_cast<std::uint64_t>(scene.seconds * servo_rate_hz), 1},
-        build_servo_settings(scene, simulation), device, build_touch_model(simulation, {}), step,
+        build_servo_settings(scene, simulation), device, simulation.touch.model, step,
         [&](const ServoTick& tick) { lesson.update(read_tick(tick), scene.coupling.mode); });
     return lesson;
 }

@@ -17,7 +17,7 @@ TEST_CASE("the water scene runs on two threads without a race", "[session][threa
     EmulatedOmni device(build_emulated_omni(scene, simulation));
     const ServoSettings settings = build_servo_settings(scene, simulation);
     Exchange exchange;
-    TouchModel felt = build_touch_model(simulation, {});
+    TouchModel felt = simulation.touch.model;
     exchange.touch.post(felt);
     std::atomic<bool> done = false;
     std::atomic<int> steps = 0;

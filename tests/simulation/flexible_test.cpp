@@ -114,7 +114,7 @@ TEST_CASE("flexible molecules are at rest when the scene begins", "[simulation][
     CHECK(simulation.atoms.positions == flexible.state.positions);
     CHECK(find_held(flexible) == simulation.atoms.positions[reference_of(simulation)]);
     // The hand's own molecule came to rest as well; then the hand took its base.
-    CHECK(build_touch_model(simulation, {}).force_newton.norm() < 50e-12);
+    CHECK(simulation.touch.model.force_newton.norm() < 50e-12);
 }
 
 TEST_CASE("the system of a scene has its atoms in the order of the table, and all terms",
@@ -148,7 +148,7 @@ TEST_CASE("while the hand rests the energy falls with every step", "[simulation]
     Simulation simulation =
         load_peptides({"statics.method=" + method, "hand.start_offset_angstrom=[-1.5, 0, 0]"});
     const Flexible& flexible = *simulation.flexible;
-    TouchModel felt = build_touch_model(simulation, {});
+    TouchModel felt = simulation.touch.model;
     double energy = flexible.safe.energy(), fallen = 0;
 
     for (int i = 0; i < 25; ++i) {
@@ -180,7 +180,7 @@ TEST_CASE("work of the hand and what is given up add to the change of energy",
     if (GENERATE(false, true)) settings.insert(settings.end(), by_spring.begin(), by_spring.end());
     Simulation simulation = load_peptides(settings);
     const Flexible& flexible = *simulation.flexible;
-    TouchModel felt = build_touch_model(simulation, {});
+    TouchModel felt = simulation.touch.model;
     const double start = flexible.state.energy();
     double sum = 0;
 
@@ -210,7 +210,7 @@ TEST_CASE("what the hand moves is the base, and nobody else", "[simulation][flex
     move_held(flexible, -by);
 
     const StepReport report =
-        step_simulation(simulation, hand_at(by), build_touch_model(simulation, {}));
+        step_simulation(simulation, hand_at(by), simulation.touch.model);
     CHECK(report.move == Approx(by.norm()));
     CHECK((place_of(simulation) - place - by).norm() < 1e-12);
     CHECK((find_held(flexible) - held - by).norm() < 1e-12);
@@ -230,7 +230,7 @@ TEST_CASE("a molecule that turns by itself does so about its reference atom",
     const Flexible& flexible = *simulation.flexible;
     CHECK(flexible.joints == 0);
     REQUIRE(flexible.model.coordinates == 3);
-    TouchModel felt = build_touch_model(simulation, {});
+    TouchModel felt = simulation.touch.model;
     CHECK(felt.active_freedom == 6);
 
     // The other end of the molecule comes too close, and gives way.
@@ -265,7 +265,7 @@ TEST_CASE("a spring pulls at the hand with k times its stretch", "[simulation][f
     CHECK(flexible.state.tether->atoms.size() == (is_residue ? 11 : 1));
     CHECK((find_held(flexible) - tethered()).norm() < 1e-12);
     const Vec3 start = tethered();
-    TouchModel felt = build_touch_model(simulation, {});
+    TouchModel felt = simulation.touch.model;
     CHECK(felt.force_newton.norm() < 1e-20);
     CHECK(felt.active_freedom == 3 + static_cast<int>(flexible.joints) + 6);
 
@@ -340,7 +340,7 @@ TEST_CASE("runs repeat to the bit", "[simulation][flexible]") {
     const auto run = [&] {
         Simulation simulation = load_peptides(
             {"statics.pairs=" + pairs, "statics.method=inverse-mass", "statics.steps=4"});
-        TouchModel felt = build_touch_model(simulation, {});
+        TouchModel felt = simulation.touch.model;
         for (int i = 1; i <= 10; ++i) {
             felt = step_simulation(simulation, hand_at({-0.1 * i, 0, 0}), felt).touch;
         }
@@ -355,7 +355,7 @@ TEST_CASE("a hand that is nowhere changes nothing", "[simulation][flexible]") {
     std::vector<std::string> settings;
     if (GENERATE(false, true)) settings = by_spring;
     Simulation simulation = load_peptides(settings);
-    TouchModel felt = build_touch_model(simulation, {});
+    TouchModel felt = simulation.touch.model;
     felt = step_simulation(simulation, hand_at({-0.1, 0, 0}), felt).touch;
     const TorsionState before = simulation.flexible->state;
     const std::vector<Vec3> positions = simulation.atoms.positions;

@@ -10,6 +10,7 @@
 #include "simulation/relax.h"
 #include "simulation/simulation.h"
 #include "simulation/step.h"
+#include "simulation/touch.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -109,7 +110,7 @@ TEST_CASE("loading brings TL-3 to rest in all six degrees of freedom", "[simulat
     CHECK(report.force * pN < 20);
     CHECK(report.energy_after < report.energy_before);
     CHECK(report.displacement < 0.5);
-    const TouchModel touch = build_touch_model(simulation, {});
+    const TouchModel touch = build_touch(simulation, {}).model;
     CHECK(touch.force_newton.norm() < 20e-12);
     CHECK(touch.torque_newton_metre.norm() < 20e-12 * 10e-10);  // 20 pN at its ends
     CHECK(touch.active_freedom == 3);
@@ -142,7 +143,7 @@ TEST_CASE("a rigid body finds back to its rest from a little beside it", "[simul
 TEST_CASE("the hand moves TL-3 in space without turning it", "[simulation][hiv]") {
     Simulation simulation = load_simulation(hiv_scene({"A_d=1e9"}));
     const std::vector<Vec3> before = simulation.atoms.positions;
-    TouchModel felt = build_touch_model(simulation, {});
+    TouchModel felt = build_touch(simulation, {}).model;
     const Vec3 rest = felt.molecule_angstrom;
     const double energy = felt.potential_kcal_per_mol;
 
@@ -165,7 +166,7 @@ TEST_CASE("the hand moves TL-3 in space without turning it", "[simulation][hiv]"
 TEST_CASE("a step is finite wherever the hand pushes TL-3, through the protein too",
           "[simulation][hiv]") {
     Simulation simulation = load_simulation(hiv_scene({"A_d=1e9"}));
-    TouchModel felt = build_touch_model(simulation, {});
+    TouchModel felt = build_touch(simulation, {}).model;
 
     for (int step = 0; step < 60; ++step) {
         const double angle = 0.7 * step, far = 0.05 * step;
@@ -184,8 +185,8 @@ TEST_CASE("a start beside the place of rest is measured from it", "[simulation][
     const Simulation outside =
         load_simulation(hiv_scene({"hand.start_offset_angstrom=[30, 1, -2]"}));
 
-    const Vec3 moved = build_touch_model(outside, {}).molecule_angstrom -
-                       build_touch_model(inside, {}).molecule_angstrom;
+    const Vec3 moved = build_touch(outside, {}).model.molecule_angstrom -
+                       build_touch(inside, {}).model.molecule_angstrom;
 
     CHECK((moved - Vec3(30, 1, -2)).norm() < 1e-12);
     CHECK(grabbed_distance(inside) == 0);

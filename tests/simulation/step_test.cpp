@@ -1,4 +1,5 @@
 #include "simulation/step.h"
+#include "simulation/touch.h"
 
 #include "core/units.h"
 #include "simulation/probe.h"
@@ -23,7 +24,7 @@ HandPose hand_at(double travel_m) {
 TEST_CASE("the molecule goes the handle's travel divided by A_d, step by step",
           "[simulation][step]") {
     Simulation simulation = load_simulation(test::water_scene({"mode=2"}));
-    TouchModel felt = build_touch_model(simulation, {});
+    TouchModel felt = build_touch(simulation, {}).model;
 
     // 25 mm / 0.25e9 = 1 Å; travel counts from the last step, across the axis it does nothing.
     felt = step_simulation(simulation, hand_at(-0.025), felt).touch;
@@ -53,7 +54,7 @@ TEST_CASE("a touch model tells force, stiffness and energy of the line in SI",
     Simulation simulation = load_simulation(test::water_scene());
     move_grabbed(simulation, 3.1);
 
-    const TouchModel touch = build_touch_model(simulation, {});
+    const TouchModel touch = build_touch(simulation, {}).model;
 
     CHECK(touch.force_newton.x() == Approx(-0.322e-9).epsilon(0.005));
     CHECK(touch.force_newton.y() == 0);
@@ -74,7 +75,7 @@ TEST_CASE("a touch model tells force, stiffness and energy of the line in SI",
 
 TEST_CASE("a hand pose that is no number moves nothing and is reported", "[simulation][step]") {
     Simulation simulation = load_simulation(test::water_scene());
-    const TouchModel felt = build_touch_model(simulation, {});
+    const TouchModel felt = build_touch(simulation, {}).model;
 
     const StepReport report =
         step_simulation(simulation, hand_at(std::numeric_limits<double>::quiet_NaN()), felt);

@@ -26,7 +26,7 @@ struct Screen {
         int width = 0, height = 0;
         io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
         Simulation simulation = load_simulation(scene);
-        readout.touch = build_touch_model(simulation, {});
+        readout.touch = simulation.touch.model;
         ServoTick tick;
         tick.touch = readout.touch;
         for (int i = 0; i < 100; ++i) overlay.add_tick(tick);

@@ -1,0 +1,139 @@
+#include "haptics/guarded.h"
+
+#include "core/units.h"
+#include "haptics/device.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpa {
+namespace {
+
+constexpr double tick_s = 1 / servo_rate_hz;
+
+// Velocity is the difference between two readings through a low-pass of first order.
+constexpr double velocity_filter_s = 0.002;
+
+// Laws that are exchanged while they are felt glide in this time.
+constexpr double law_glide_s = 0.1;
+
+// The molecule's way in one tick, Å: a part of the clearance, and of what it may go until the next
+// model comes.
+double farthest_step(const Touch& touch, const GuardedState& state) noexcept {
+    constexpr double in_contact = 0.02, in_contact_per_model = 0.2;  // Å
+    // A tangent knows no wall.
+    const double trusted = touch.field.has_atoms ? 1 : 0.15;
+    const double clearance = state.at_place.clearance_angstrom;
+    const double period = std::max({touch.model.period_s, state.interval_s, state.since_arrival_s});
+    return std::min(in_contact + 0.1 * clearance,
+                    (in_contact_per_model + trusted * clearance) * tick_s / period);
+}
+
+// Goes to a place if no atom is pushed too hard there, or less than before.
+bool try_place(const GuardedSettings& settings, const Touch& touch, const Vec3& place,
+               GuardedState& state) noexcept {
+    const LocalForce there = evaluate_local(touch.model, touch.field, place);
+    const bool is_allowed = there.largest_newton <= settings.stop_newton ||
+                            there.largest_newton < state.at_place.largest_newton;
+    if (!is_allowed) return false;
+    state.place_angstrom = place;
+    state.at_place = there;
+    return true;
+}
+
+// Handle travel of which the molecule follows what the stop allows; returns that. Where it may not
+// go on, it may slide: across the force.
+Vec3 follow(const GuardedSettings& settings, const Touch& touch, const Vec3& travel_m,
+            double angstrom_per_m, GuardedState& state) noexcept {
+    const Vec3 from = state.place_angstrom;
+    if (travel_m.isZero()) return travel_m;
+    if (try_place(settings, touch, from + travel_m * angstrom_per_m, state)) return travel_m;
+    const Vec3 force = state.at_place.force_newton;
+    const double along = travel_m.dot(force), norm2 = force.squaredNorm();
+    if (along >= 0 || norm2 == 0) return Vec3::Zero();
+    const Vec3 across = travel_m - along / norm2 * force;
+    if (across.squaredNorm() < 1e-6 * travel_m.squaredNorm()) return Vec3::Zero();
+    return try_place(settings, touch, from + across * angstrom_per_m, state) ? across
+                                                                             : Vec3(Vec3::Zero());
+}
+
+}  // namespace
+
+double guarded_cap(double viscosity_N_s_per_m, double damping_N_s_per_m) noexcept {
+    return 0.5 * (viscosity_N_s_per_m + damping_N_s_per_m) / (1.5 * tick_s);
+}
+
+double guarded_gain(const GuardedSettings& settings, const Vec3& force_newton,
+                    const Mat3& stiffness) noexcept {
+    const double A_d = displacement_gain(settings.displacement_law, force_newton.norm(),
+                                         std::abs(extreme_stiffness(stiffness)));
+    return capped_gain(A_d, largest_felt(settings.force_law, force_newton, stiffness),
+                       settings.cap_N_per_m);
+}
+
+void take_touch(const Touch& touch, GuardedState& state) noexcept {
+    const TouchModel& model = touch.model;
+    const Vec3 felt = state.at_place.force_newton + state.jump_newton;
+    const bool goes_on = state.is_placed && state.start == model.start && !model.is_still;
+    if (!goes_on) {
+        state.place_angstrom = model.molecule_angstrom;
+        state.kept_m.setZero();
+    }
+    state.at_place = evaluate_local(model, touch.field, state.place_angstrom);
+    state.jump_newton.setZero();
+    if (goes_on) state.jump_newton = felt - state.at_place.force_newton;
+    state.interval_s = goes_on ? state.since_arrival_s : model.period_s;
+    state.since_arrival_s = 0;
+    state.start = model.start;
+    state.is_placed = true;
+}
+
+GuardedTick step_guarded(const GuardedSettings& settings, const Touch& touch, const Vec3& handle_m,
+                         const Vec3& moved_m, bool is_clutched, GuardedState& state) noexcept {
+    GuardedTick tick;
+    const TouchModel& model = touch.model;
+    const double keep = velocity_filter_s / (velocity_filter_s + tick_s);
+    state.handle_m_per_s = keep * state.handle_m_per_s + (1 - keep) / tick_s * moved_m;
+    if (!state.is_placed || model.is_still) return tick;
+
+    const Vec3 before = state.at_place.force_newton + state.jump_newton;
+    const Mat3& stiffness = state.at_place.stiffness_N_per_m;
+    const double A_d = guarded_gain(settings, before, stiffness);
+    tick.displacement_gain = A_d;
+    tick.felt_N_per_m = largest_felt(settings.force_law, before, stiffness) / A_d;
+
+    const double angstrom_per_m = units::angstrom_per_metre / A_d;
+    Vec3 own = Vec3::Zero();
+    if (!is_clutched) {
+        own = model.projector * (moved_m + extra_travel(settings.workspace, handle_m, moved_m,
+                                                        settings.half_workspace_m, tick_s));
+    }
+    const Vec3 wanted = own + state.kept_m;
+    const double length = wanted.norm() * angstrom_per_m, most = farthest_step(touch, state);
+    const double share = length > most ? most / length : 1;
+    const Vec3 followed =
+        follow(settings, touch, share * wanted, angstrom_per_m, state);
+    tick.is_stopped = followed != share * wanted;
+    // What the stop held back is kept; what the limits cut off is not, but for what was kept.
+    const Vec3 cut = (1 - share) * wanted;
+    const double kept_norm = state.kept_m.norm(), cut_norm = cut.norm();
+    const Vec3 kept_cut = cut_norm > kept_norm ? Vec3(cut * (kept_norm / cut_norm)) : cut;
+    tick.dropped_m = cut - kept_cut;
+    state.kept_m = share * wanted - followed + kept_cut;
+
+    state.jump_newton *= std::exp(-4 * tick_s / std::max(state.interval_s, tick_s));
+    tick.force_newton = state.at_place.force_newton + state.jump_newton;
+    const Vec3 law = hand_force(settings.force_law, tick.force_newton);
+    if (settings.revision != state.revision) {
+        state.law_jump_newton += state.law_newton - law;
+        state.revision = settings.revision;
+    }
+    state.law_jump_newton *= std::exp(-tick_s / law_glide_s);
+    state.law_newton = law + state.law_jump_newton;
+    tick.hand_newton = state.law_newton - settings.cap_N_per_m * state.kept_m -
+                       settings.damping_N_s_per_m * state.handle_m_per_s;
+    state.since_arrival_s += tick_s;
+    return tick;
+}
+
+}  // namespace palpa

@@ -1,0 +1,70 @@
+// Guarded coupling: the servo moves the molecule itself, in the field as the last step left it, so
+// that force and stiffness are of this very moment whatever the period of the simulation.
+#pragma once
+#include "haptics/exchange.h"
+#include "haptics/gains.h"
+#include "haptics/workspace.h"
+#include "math/vec.h"
+
+#include <cstdint>
+
+namespace palpa {
+
+struct GuardedSettings {
+    ForceLaw force_law = PrintedForceLaw({});
+    DisplacementLaw displacement_law = RepairedDisplacementLaw({});
+    WorkspaceMap workspace = {};
+    // What a hand may feel of a stiffness at most: A_d is raised until that holds. By default half
+    // of what a device and this damping keep stable, 0.5 (B_h + B)/(1.5 T).
+    double cap_N_per_m = 200;
+    double damping_N_s_per_m = 0.5;  // B
+    double stop_newton = 10e-9;      // on one atom; the molecule goes no further in
+    Vec3 half_workspace_m = Vec3::Constant(0.1);  // of the device
+    std::uint32_t revision = 0;      // another number: laws changed, the force glides to theirs
+};
+
+// Half of the stiffness that a device of this viscosity, with this damping added, keeps stable at
+// the servo's own period.
+double guarded_cap(double viscosity_N_s_per_m, double damping_N_s_per_m) noexcept;
+
+// A_d where the molecule feels this force (N) and stiffness (N/m): the law's, raised until the cap
+// holds.
+double guarded_gain(const GuardedSettings& settings, const Vec3& force_newton,
+                    const Mat3& stiffness) noexcept;
+
+// Everything that one tick leaves to the next.
+struct GuardedState {
+    bool is_placed = false;
+    std::uint32_t start = 0;          // of the touch model
+    Vec3 place_angstrom = Vec3::Zero();
+    Vec3 kept_m = Vec3::Zero();       // handle travel that the stop did not let the molecule follow
+    LocalForce at_place;
+    Vec3 jump_newton = Vec3::Zero();  // what is left of the old model's force over the new one's
+    double since_arrival_s = 0, interval_s = 0;  // of touch models: the last, between the last two
+    Vec3 handle_m_per_s = Vec3::Zero();          // filtered
+    Vec3 law_newton = Vec3::Zero();              // that the force law gave
+    Vec3 law_jump_newton = Vec3::Zero();         // what is left of the old law's over the new one's
+    std::uint32_t revision = 0;
+};
+
+// What a tick found.
+struct GuardedTick {
+    Vec3 hand_newton = Vec3::Zero();      // for the hand
+    Vec3 force_newton = Vec3::Zero();     // on the molecule
+    double displacement_gain = 0;         // A_d
+    double felt_N_per_m = 0;              // of the molecule's stiffness, where it is largest
+    Vec3 dropped_m = Vec3::Zero();        // handle travel that the limits of a step did away with
+    bool is_stopped = false;              // by the force on an atom
+};
+
+// A touch model has come, in place of `before`'s. To be called in the tick in which it is first
+// seen, before step_guarded.
+void take_touch(const Touch& touch, GuardedState& state) noexcept;
+
+// Moves the molecule with the handle, as far as limits let it. In one tick of 1 ms the handle went
+// by `moved_m` to `handle_m`; clutched, that is none of the molecule's. `touch` is the one taken
+// last.
+GuardedTick step_guarded(const GuardedSettings& settings, const Touch& touch, const Vec3& handle_m,
+                         const Vec3& moved_m, bool is_clutched, GuardedState& state) noexcept;
+
+}  // namespace palpa
