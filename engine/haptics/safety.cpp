@@ -52,8 +52,11 @@ bool update_frozen(const SafetySettings& settings, SafetyState& state, bool has_
     }
     const double limit_s = settings.frozen_s - rounding_s;
     if (has_moved) {
-        state.still_newton = state.sent_newton;
-        state.pushed_s = 0;
+        state.still_s = state.pushed_s = 0;
+    } else if (state.still_s < limit_s) {
+        state.still_s += elapsed_s;
+        const Vec3 change = state.sent_newton - state.still_newton;
+        state.still_newton += change * (elapsed_s / state.still_s);
     } else if (state.pushed_s < limit_s) {
         const double change = (state.sent_newton - state.still_newton).norm();
         state.pushed_s = change > settings.frozen_newton ? state.pushed_s + elapsed_s : 0;
@@ -76,9 +79,9 @@ SafetyStage update_reading(const SafetySettings& settings, SafetyState& state,
         state.handle_m = reading.position_m;
         state.stamp_s = reading.time_s;
         state.stamp_runs = false;
-        state.hung_newton = state.still_newton = state.sent_newton;
+        state.hung_newton = state.sent_newton;
         state.hung_changed = false;
-        state.hung_s = state.pushed_s = 0;
+        state.hung_s = state.still_s = state.pushed_s = 0;
         return SafetyStage::None;
     }
     const double way_m = (reading.position_m - state.handle_m).norm();

@@ -25,11 +25,12 @@ struct SafetySettings {
     double ending_s = 0.010;         // fade when the program ends
 
     // A reading that stands still while the force changes. If the device's own time stamp stands
-    // still too, after having run, any change of the force counts. Else only a force that stays
-    // `frozen_newton` away from what it was when the handle last moved: twice the friction of
-    // 0.26 N is lost on turning round, and the 1.48 N left move the stiffest thing that holds a
-    // handle, a stop of 20 N/mm with a firm hand, by 0.07 mm, more than an encoder step of
-    // 0.055 mm; a firm hand of 0.5 N/mm by 50 steps. Infinity on a device without motors.
+    // still too, after having run, any change of the force counts. Else the position must have
+    // stood still for `frozen_s`, and then for as long under forces that all differ by more than
+    // `frozen_newton` from the mean before: twice the friction of 0.26 N is lost on turning round,
+    // and the 1.48 N left move the stiffest thing that holds a handle, a stop of 20 N/mm with a
+    // firm hand, by 0.07 mm, more than an encoder step of 0.055 mm; a firm hand of 0.5 N/mm by 50
+    // steps. Infinity for both on a device without motors.
     double frozen_s = 0.05;
     double frozen_newton = 2;
 
@@ -103,8 +104,9 @@ struct SafetyState {
     Vec3 hung_newton = Vec3::Zero();   // sent when stamp or position last changed
     bool hung_changed = false;         // another force was sent since
     double hung_s = 0;                 // since then
-    Vec3 still_newton = Vec3::Zero();  // sent when the position last changed
-    double pushed_s = 0;               // the force has been `frozen_newton` away from it
+    double still_s = 0;                // the position has not changed; up to frozen_s
+    Vec3 still_newton = Vec3::Zero();  // mean of what was sent in that time
+    double pushed_s = 0;               // the force has been `frozen_newton` away from it since
     // stale model
     double faded = 0;  // 0 to 1
     // end

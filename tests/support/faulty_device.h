@@ -11,7 +11,6 @@ namespace palpa::test {
 enum class Fault {
     NotANumber,  // position
     Frozen,      // position and time stamp as when it began
-    Stuck,       // the position only; the time stamp goes on
     Jump,        // position off by `size_m` along x
     Invalid,     // nothing to say
     Late         // each tick takes `late_s` longer, as the servo's clock shows
@@ -45,10 +44,6 @@ public:
                     break;
                 case Fault::Frozen:
                     reading = last_;
-                    is_frozen = true;
-                    break;
-                case Fault::Stuck:
-                    reading.position_m = last_.position_m;
                     is_frozen = true;
                     break;
                 case Fault::Jump:
