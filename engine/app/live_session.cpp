@@ -105,11 +105,17 @@ ServoHealth LiveSession::servo_health() const noexcept { return {overruns_, real
 void LiveSession::run_servo(ServoOrder order) {
     real_time_ = ask_for_real_time();
     ServoState state;
-    Clock::time_point next = Clock::now();
-    while (!stopping_) {
+    const Clock::time_point start = Clock::now();
+    Clock::time_point next = start;
+    // The force fades before the last tick.
+    constexpr int last_ticks = 12;
+    for (int ending = 0; ending < last_ticks; ending += order.settings.is_ending ? 1 : 0) {
         const std::uint32_t restarts = order.restarts;
-        if (servo_orders_.read(order) && order.restarts != restarts) state.stopped = false;
-        const ServoTick tick = step_servo(order.settings, state, exchange_, device_.read());
+        if (servo_orders_.read(order) && order.restarts != restarts) release(state.safety);
+        order.settings.is_ending = stopping_;
+        const std::chrono::duration<double> now_s = Clock::now() - start;
+        const ServoTick tick =
+            step_servo(order.settings, state, exchange_, device_.read(), now_s.count());
         device_.write(tick.sent_newton);
         ticks_.push(tick);
         next += servo_tick;

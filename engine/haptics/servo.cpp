@@ -7,6 +7,8 @@
 namespace palpa {
 namespace {
 
+constexpr double tick_s = 1 / servo_rate_hz;
+
 // What the handle did since the last valid reading, clutched or not.
 Vec3 take_reading(ServoState& state, const DeviceReading& reading) noexcept {
     if (!reading.valid || !reading.position_m.allFinite()) return Vec3::Zero();
@@ -29,33 +31,32 @@ TouchModel touch_now(TouchModel touch, const GuardedState& state,
     return touch;
 }
 
-// The last stages before the device. A force that is no number stops the session's forces for good.
-Vec3 safe_force(const ServoSettings& settings, ServoState& state, const Vec3& force,
-                bool& clamped) noexcept {
-    if (!force.allFinite()) {
-        state.stopped = true;
-        state.under_way.fill(Vec3::Zero());
-    }
-    if (state.stopped) return Vec3::Zero();
-    const double norm = force.norm();
-    clamped = norm > settings.clamp_newton;
-    return clamped ? Vec3(force * (settings.clamp_newton / norm)) : force;
+// The force that left `delay` ticks ago; before the first has arrived that at once rather than
+// nothing. What is no number does not wait.
+Vec3 delayed(const ServoSettings& settings, ServoState& state, const Vec3& wanted) noexcept {
+    constexpr std::uint64_t slots = max_servo_delay_ticks + 1;
+    const std::uint64_t delay = static_cast<std::uint64_t>(settings.delay_ticks);
+    state.under_way[state.tick % slots] = wanted;
+    const std::uint64_t sent = state.tick < delay ? 0 : state.tick - delay;
+    ++state.tick;
+    return wanted.allFinite() ? state.under_way[sent % slots] : wanted;
+}
+
+// A hand that had no hold takes hold anew, quietly.
+void follow_stillness(const TouchModel& touch, ServoState& state) noexcept {
+    if (touch.is_still == state.was_still) return;
+    state.was_still = touch.is_still;
+    touch.is_still ? disengage(state.safety) : engage(state.safety);
 }
 
 }  // namespace
 
 ServoTick step_servo(const ServoSettings& settings, ServoState& state, Exchange& exchange,
-                     const DeviceReading& reading) noexcept {
+                     const DeviceReading& reading, double now_s) noexcept {
     PALPA_ASSERT(settings.delay_ticks >= 0 && settings.delay_ticks <= max_servo_delay_ticks);
-    constexpr std::uint64_t slots = max_servo_delay_ticks + 1;
-    const std::uint64_t delay = static_cast<std::uint64_t>(settings.delay_ticks);
-
     const Vec3 moved = take_reading(state, reading);
     // What the last force did while the handle went from there to here.
-    if (state.tick > 0) {
-        const std::uint64_t last = state.tick - 1 < delay ? 0 : state.tick - 1 - delay;
-        state.hand_energy_J += state.under_way[last % slots].dot(moved);
-    }
+    state.hand_energy_J += state.safety.sent_newton.dot(moved);
     // A clutched handle moves, the molecule does not: that travel does not count.
     const bool clutched = is_pressed(reading.buttons, Button::Clutch);
     if (!clutched) state.travel_m += moved;
@@ -63,38 +64,45 @@ ServoTick step_servo(const ServoSettings& settings, ServoState& state, Exchange&
     const bool is_new = exchange.touch.take();
     const Touch& touch = exchange.touch.taken();
     if (is_new) state.touch = touch.model;
+    follow_stillness(state.touch, state);
+    state.has_touch = state.has_touch || is_new;
+    state.model_age_s = is_new || !state.has_touch ? 0 : state.model_age_s + tick_s;
+
     ServoTick tick;
     tick.reading = reading;
     tick.clutched = clutched;
+    tick.touch = state.touch;
     HandPose pose{reading.time_s, state.travel_m};
     Vec3 wanted = Vec3::Zero();
     if (settings.guarded) {
-        if (is_new) take_touch(touch, state.guarded);
+        GuardedState& guarded = state.guarded;
+        if (is_new || (state.has_touch && !guarded.is_placed)) take_touch(touch, guarded);
         const GuardedTick done =
-            step_guarded(*settings.guarded, touch, state.handle_m, moved, clutched, state.guarded);
+            step_guarded(*settings.guarded, touch, state.handle_m, moved, clutched, guarded);
         wanted = done.hand_newton;
         tick.felt_N_per_m = done.felt_N_per_m;
         tick.dropped_m = done.dropped_m;
-        tick.kept_m = state.guarded.kept_m;
-        tick.touch = touch_now(state.touch, state.guarded, done);
-        if (state.guarded.is_placed) pose.place_angstrom = state.guarded.place_angstrom;
+        tick.kept_m = guarded.kept_m;
+        tick.touch = touch_now(state.touch, guarded, done);
+        if (guarded.is_placed) pose.place_angstrom = guarded.place_angstrom;
     } else {
         state.guarded = {};
         wanted = hand_force(settings.force_law, state.touch.force_newton);
-        tick.touch = state.touch;
     }
     exchange.hand.post(pose);
 
-    const Vec3 force = safe_force(settings, state, wanted, tick.clamped);
-    state.under_way[state.tick % slots] = force;
-    // Before the first force has arrived the device plays it at once rather than nothing.
-    const std::uint64_t sent = state.tick < delay ? 0 : state.tick - delay;
-    ++state.tick;
-    tick.sent_newton = state.under_way[sent % slots];
+    const SafetyResult safe =
+        guard_force(settings.safety, state.safety,
+                    {delayed(settings, state, wanted), reading, now_s, state.model_age_s,
+                     state.touch.period_s, state.guarded.handle_m_per_s, settings.is_ending});
+    tick.sent_newton = safe.newton;
+    tick.stage = safe.stage;
+    tick.reason = safe.reason;
+    tick.stopped = is_latched(state.safety);
+    tick.clamped = safe.stage == SafetyStage::Clamped || safe.stage == SafetyStage::Hot;
     const ForceLaw& law = settings.guarded ? settings.guarded->force_law : settings.force_law;
     tick.force_gain = force_gain(law, tick.touch.force_newton.norm());
     tick.hand_energy_J = state.hand_energy_J;
-    tick.stopped = state.stopped;
     return tick;
 }
 

@@ -4,6 +4,7 @@
 #include "haptics/exchange.h"
 #include "haptics/gains.h"
 #include "haptics/guarded.h"
+#include "haptics/safety.h"
 #include "math/vec.h"
 
 #include <array>
@@ -16,9 +17,10 @@ inline constexpr int max_servo_delay_ticks = 7;
 
 struct ServoSettings {
     ForceLaw force_law = ConstantForceLaw{};  // the paper's coupling, force held between two steps
-    double clamp_newton = 3.0;                // on the norm of the force
+    SafetySettings safety = {.is_full = false};
     int delay_ticks = 0;  // between a force and its sending, 0 to max_servo_delay_ticks
     std::optional<GuardedSettings> guarded = {};  // instead of the paper's
+    bool is_ending = false;                       // exit was asked for
 };
 
 // Everything that one tick leaves to the next.
@@ -29,12 +31,15 @@ struct ServoState {
     bool has_reading = false;
     // touch model
     TouchModel touch;  // the newest that came
+    bool has_touch = false;
+    double model_age_s = 0;  // since it came
     GuardedState guarded;
-    // safety
-    bool stopped = false;  // a force was not finite; latched
     // sending
     std::array<Vec3, max_servo_delay_ticks + 1> under_way{};  // ring of forces, by tick
     std::uint64_t tick = 0;
+    // safety
+    SafetyState safety;
+    bool was_still = false;
     // energy observer
     double hand_energy_J = 0;  // work done on the hand so far; + = given to it
 };
@@ -50,7 +55,9 @@ struct ServoTick {
     double hand_energy_J = 0;
     bool clutched = false;
     bool clamped = false;  // the clamp acted
-    bool stopped = false;
+    bool stopped = false;  // a force was not finite; latched
+    SafetyStage stage = SafetyStage::None;   // the gravest that acted
+    SafetyStage reason = SafetyStage::None;  // why the force is not back in full
     // Guarded coupling alone.
     double felt_N_per_m = 0;          // of the molecule's stiffness, where it is largest
     Vec3 kept_m = Vec3::Zero();       // handle travel that the stop holds back
@@ -59,8 +66,10 @@ struct ServoTick {
 
 // Takes the newest touch model out of the exchange, puts the hand's pose in, returns the force that
 // the device is to play until the next tick. The force law acts on the norm of the molecular force,
-// along its direction. Never throws, locks, waits or allocates.
+// along its direction. `now_s` is the servo's own monotonic clock. Never throws, locks, waits or
+// allocates.
 [[nodiscard]] ServoTick step_servo(const ServoSettings& settings, ServoState& state,
-                                   Exchange& exchange, const DeviceReading& reading) noexcept;
+                                   Exchange& exchange, const DeviceReading& reading,
+                                   double now_s) noexcept;
 
 }  // namespace palpa

@@ -16,7 +16,8 @@ void run_lockstep(const LockstepSettings& settings, const ServoSettings& servo, 
             felt = next.model;
         }
 
-        const ServoTick done = step_servo(servo, state, exchange, device.read());
+        const ServoTick done = step_servo(servo, state, exchange, device.read(),
+                                          static_cast<double>(tick) / servo_rate_hz);
         on_tick(done);
         device.write(done.sent_newton);
 

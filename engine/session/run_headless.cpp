@@ -38,7 +38,8 @@ WorkspaceMap build_workspace(WorkspaceChoice choice) {
 
 ServoSettings build_servo_settings(const SceneDescription& scene, const Simulation& simulation) {
     const CouplingDescription& c = scene.coupling;
-    ServoSettings settings{simulation.laws.force, c.clamp_N,
+    ServoSettings settings{simulation.laws.force,
+                           {.clamp_newton = c.clamp_N, .is_full = simulation.is_guarded},
                            static_cast<int>(scene.device.servo_delay_ticks)};
     if (!simulation.is_guarded) return settings;
     GuardedSettings& guarded = settings.guarded.emplace();

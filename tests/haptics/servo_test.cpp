@@ -23,12 +23,13 @@ TouchModel touch_of(const Vec3& force_newton) {
 }
 
 struct Servo {
-    ServoSettings settings{PrintedForceLaw({}), 3.0, 0};
+    ServoSettings settings{PrintedForceLaw({}), {.is_full = false}, 0};
+    double now_s = 0;
     ServoState state;
     Exchange exchange;
 
     ServoTick tick(const DeviceReading& reading) {
-        return step_servo(settings, state, exchange, reading);
+        return step_servo(settings, state, exchange, reading, now_s += 1e-3);
     }
 };
 
@@ -74,7 +75,7 @@ TEST_CASE("a force that is no number stops the device within the tick and for go
     servo.settings.force_law = ConstantForceLaw{1e9};
     servo.settings.delay_ticks = GENERATE(0, 2);
     servo.exchange.touch.post(touch_of({1e-9, 0, 0}));
-    for (int i = 0; i < 4; ++i) CHECK(servo.tick(reading_at(0)).sent_newton.x() == 1);
+    for (int i = 0; i < 4; ++i) CHECK(servo.tick(reading_at(0)).sent_newton.x() == Approx(1));
     servo.exchange.touch.post(touch_of({0, bad, 0}));
 
     const ServoTick tick = servo.tick(reading_at(0));

@@ -81,7 +81,7 @@ TEST_CASE("a scene says what it says, and defaults for the rest", "[scene][read]
     CHECK(scene.grab.measured_from == "fixed");
     CHECK(scene.hand.grip == 3);
     CHECK_FALSE(scene.hand.start_angstrom.has_value());
-    CHECK(scene.coupling.mode == CouplingMode::VariableForceConstantDisplacement);
+    CHECK(scene.coupling.mode == CouplingMode::Guarded);
     CHECK(scene.device.servo_delay_ticks == 1);
     CHECK(scene.period_ms == 1);
 }
@@ -334,7 +334,7 @@ TEST_CASE("fields that contradict each other are told at one of them", "[scene][
         // The other of the two is a default: told at the table that should hold it.
         {"[coupling]\nF_h1_N = 3.0", 17, 1, "'coupling.F_h2_N' is 3; expected more than F_h1_N, 3"},
         {"[coupling]\nA_d_max = 1.0", 18, 11, "expected A_d_min, 5000000, or more"},
-        {"[coupling]\nmode = \"guarded\"", 18, 8, "which is not built yet"},
+        {"[coupling]\nF_hi_nN = 0.03", 18, 11, "expected more than twice F_lo_pN, 20"},
         {"[run]\nperiod_ms = 1.5", 18, 13, "expected a whole number of servo ticks"},
         {"[hand]\ngrip = \"none\"", 17, 1, "nobody would move the handle"},
         {"[hand]\ngrip = \"none\"\nstroke = \"in-out\"", 19, 10, "nobody would move the handle"},

@@ -32,7 +32,7 @@ private:
 
 TEST_CASE("a step's answer is felt one period after its hand pose, and held for one",
           "[session][lockstep]") {
-    const ServoSettings servo{ConstantForceLaw{1e9}, 3.0, 0};
+    const ServoSettings servo{ConstantForceLaw{1e9}, {.is_full = false}, 0};
     Conveyor device;
     std::vector<double> poses, felt_by_step;
     int recorded = 0;

@@ -39,9 +39,9 @@ TEST_CASE("enough friction stops the shaking of a firm hand at 14 ms", "[session
     CHECK(test::run_water(held("14", "firm", "0.26")).ripple->rms < 0.02);
 }
 
-TEST_CASE("the default is calm, and the attraction of 0.322 nN is felt as 0.896 N",
+TEST_CASE("mode 2 at 1 ms is calm, and the attraction of 0.322 nN is felt as 0.896 N",
           "[session][coupling]") {
-    const Summary summary = test::run_water({});
+    const Summary summary = test::run_water({"mode=2"});
 
     CHECK(summary.ripple->rms < 0.02);
     CHECK_THAT(summary.largest_attraction_N, WithinAbs(0.896, 0.01));

@@ -27,7 +27,7 @@ bool shakes(double K, double viscosity, Grip grip, std::uint64_t period_ms, int 
     settings.script.kick_N_s = 1e-6;
     settings.script.path = {{0, 0}};
     EmulatedOmni omni(settings);
-    const ServoSettings servo{ConstantForceLaw{A_f}, 3.0, delay_ticks};
+    const ServoSettings servo{ConstantForceLaw{A_f}, {.is_full = false}, delay_ticks};
 
     double molecule_m = 0, travel = 0;
     const auto step = [&](const HandPose& hand, const TouchModel&) {

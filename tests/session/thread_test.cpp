@@ -35,9 +35,10 @@ TEST_CASE("the water scene runs on two threads without a race", "[session][threa
         }
     });
     ServoState state;
+    double now_s = 0;
     bool stopped = false;
     for (int tick = 0; tick < 5'000 || steps < 50; ++tick) {
-        const ServoTick servo = step_servo(settings, state, exchange, device.read());
+        const ServoTick servo = step_servo(settings, state, exchange, device.read(), now_s += 1e-3);
         device.write(servo.sent_newton);
         stopped = stopped || servo.stopped;
     }

@@ -1,0 +1,160 @@
+// The last stages before the device: what is wrong, fades, clamp, slew. SI units.
+#pragma once
+#include "haptics/device.h"
+#include "math/vec.h"
+
+#include <limits>
+#include <string_view>
+
+namespace palpa {
+
+// Times count from the event to the tick that sends zero.
+struct SafetySettings {
+    double clamp_newton = 3;  // on the norm of the force; lowered, it is reached within the slew
+    // False: only clamp and non-finite, as in the paper's loop. Nothing else of this struct, nor
+    // disengage() nor the end of the program, then acts.
+    bool is_full = true;
+    // True: the force is there from the first tick. A real hand starts with quiet cycles and ramp.
+    bool starts_engaged = true;
+
+    double slew_newton_per_s = 500;  // of the force sent; a tick of more than 1 ms counts as 1 ms
+    double fastest_m_per_s = 1.5;    // of the handle; faster, the force is zero at once
+    double farthest_jump_m = 0.005;  // between valid readings, for each millisecond between them
+    double late_s = 0.02;            // since the last tick
+    double gone_s = 0.010;           // without a valid reading
+    double ending_s = 0.010;         // fade when the program ends
+
+    // A reading that stands still while the force changes. If the device's own time stamp stands
+    // still too, after having run, any change of the force counts. Else the position must have
+    // stood still for `frozen_s`, and then for as long under forces that all differ by more than
+    // `frozen_newton` from the mean before: twice the friction of 0.26 N is lost on turning round,
+    // and the 1.48 N left move the stiffest thing that holds a handle, a stop of 20 N/mm with a
+    // firm hand, by 0.07 mm, more than an encoder step of 0.055 mm; a firm hand of 0.5 N/mm by 50
+    // steps. Infinity for both on a device without motors.
+    double frozen_s = 0.05;
+    double frozen_newton = 2;
+
+    // A touch model older than the larger of the two is stale; the force then fades.
+    double stale_periods = 3;
+    double stale_s = 0.1;
+    double fade_s = 0.1;
+
+    // Motors: once the leaky mean of F^2 over `heat_s` reaches hot_newton^2, the clamp glides to
+    // hot_newton, the force that the motors stand for ever; once the mean is below `cooled_share`
+    // of that, it glides back.
+    double hot_newton = 0.88;
+    double heat_s = 30;
+    double cooled_share = 0.8;
+    double glide_s = 1;
+
+    // Engaging: after more than `quiet_cycles` ticks in a row with |wanted force| < quiet_newton
+    // the force rises to its full size in `ramp_s`.
+    double quiet_newton = 0.2;
+    int quiet_cycles = 3;
+    double ramp_s = 2;
+};
+
+// From harmless to grave.
+enum class SafetyStage {
+    None,
+    Slewed,
+    Clamped,
+    Hot,         // clamped at less than the clamp
+    Engaging,    // the ramp
+    Waiting,     // for quiet cycles
+    Disengaged,  // by disengage()
+    Ending,
+    Stale,  // fading, or faded
+    TooFast,
+    Late,  // or the clock stands still, went back, or is no number
+    Frozen,
+    Jump,
+    Unplugged,
+    NotFinite
+};
+
+// What happened and what the user can do; empty for None.
+std::string_view words(SafetyStage stage) noexcept;
+
+// What one tick tells the guard.
+struct SafetyInput {
+    Vec3 wanted_newton = Vec3::Zero();
+    DeviceReading reading;
+    double now_s = 0;        // the servo's own monotonic clock
+    double model_age_s = 0;  // 0 before the first model
+    double period_s = 0;     // of the simulation
+    Vec3 velocity_m_per_s = Vec3::Zero();
+    bool is_ending = false;  // exit was asked for
+};
+
+// Everything that one tick leaves to the next. A fresh one starts anew.
+struct SafetyState {
+    // non-finite
+    bool not_finite = false;  // latched
+    // clock
+    double last_s = 0;
+    bool has_clock = false;
+    double stood_s = 0;  // without a tick of time; each tick counts as one
+    // reading
+    Vec3 handle_m = Vec3::Zero();  // last valid position
+    bool has_reading = false;
+    double unread_s = std::numeric_limits<double>::infinity();  // since the last valid reading
+    double stamp_s = 0;                                         // the device's own, last valid
+    bool stamp_runs = false;                                    // it has moved so far
+    Vec3 hung_newton = Vec3::Zero();   // sent when stamp or position last changed
+    bool hung_changed = false;         // another force was sent since
+    double hung_s = 0;                 // since then
+    double still_s = 0;                // the position has not changed; up to frozen_s
+    Vec3 still_newton = Vec3::Zero();  // mean of what was sent in that time
+    double pushed_s = 0;               // the force has been `frozen_newton` away from it since
+    // stale model
+    double faded = 0;  // 0 to 1
+    // end
+    double ending_s = 0;  // since it was asked for
+    // heat
+    double mean_square_newton2 = 0;  // leaky mean
+    bool is_hot = false;
+    double glided = 0;  // 0: clamp as set, 1: clamp at hot_newton
+    // engaging
+    enum class Engagement { Fresh, Off, Waiting, Rising, On };
+    Engagement engagement = Engagement::Fresh;
+    int quiet_cycles = 0;  // so far
+    double risen = 0;      // 0 to 1
+    SafetyStage reason =
+        SafetyStage::None;  // gravest that took the force away; None once it is back
+    // sending
+    Vec3 sent_newton = Vec3::Zero();
+};
+
+struct SafetyResult {
+    Vec3 newton = Vec3::Zero();             // to be sent
+    SafetyStage stage = SafetyStage::None;  // the gravest that acted in this tick
+    // Why the force is not back in full, while it waits or rises; else None.
+    SafetyStage reason = SafetyStage::None;
+    double share = 1;  // of the wanted force that fades and clamp let through; slew not counted
+};
+
+// The force that may be sent in this tick. Whatever comes in, it is finite and its norm is not
+// above the clamp. Not finite, jump, frozen, late, too fast, unplugged: zero in the tick that finds
+// it, whatever the slew; all other changes keep to the slew. What took the force to zero, once it
+// is over, is followed by quiet cycles and ramp; a force that is no number only after release(). A
+// late tick is found when it comes: what the device plays until then is up to its own watchdog. As
+// late counts a clock that stands still for as many ticks as `late_s` has milliseconds. Never
+// throws, locks, waits or allocates.
+[[nodiscard]] SafetyResult guard_force(const SafetySettings& settings, SafetyState& state,
+                                       const SafetyInput& input) noexcept;
+
+// Takes the force away, within the slew limit, until engage(): for a pause. Clock and handle may
+// stand still or jump in between. If no tick follows, the caller sends the zero.
+void disengage(SafetyState& state) noexcept;
+
+// After disengage(): back through quiet cycles and ramp. Nothing otherwise.
+void engage(SafetyState& state) noexcept;
+
+// Stopped until release().
+bool is_latched(const SafetyState& state) noexcept;
+
+// Ends a latched stop; quiet cycles and ramp follow.
+void release(SafetyState& state) noexcept;
+
+}  // namespace palpa
