@@ -15,6 +15,7 @@
 #include "simulation/step.h"
 #include "tools/bench_adaptive.h"
 #include "tools/bench_kernel.h"
+#include "tools/bench_servo.h"
 #include "tools/bench_row.h"
 #include "tools/bench_statics.h"
 #include "tools/bench_tree.h"
@@ -168,6 +169,7 @@ int bench_command(const BenchOptions& options) {
     std::string tables;
     bench_files(options, rows);
     if (options.kernel && options.scenes.empty()) bench_gas_kernels(rows);
+    if (options.servo) bench_made_up_servo(rows);
     for (const std::filesystem::path& path : options.scenes) {
         const SceneDescription scene = read_scene(path, options.settings);
         const std::filesystem::path folder = std::filesystem::absolute(scene.file).parent_path();
@@ -175,6 +177,10 @@ int bench_command(const BenchOptions& options) {
         fmt::print(stderr, "timing {}\n", name);
         if (options.kernel) {
             bench_kernels(name, scene, rows);
+            continue;
+        }
+        if (options.servo) {
+            bench_servo(name, scene, rows);
             continue;
         }
         if (options.render) {

@@ -10,6 +10,7 @@
 #include "tools/relax.h"
 #include "tools/render.h"
 #include "tools/run.h"
+#include "tools/scenarios.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -172,8 +173,8 @@ void add_bench(CLI::App& program, palpa::BenchOptions& options) {
                      "CHARMM topology and parameter files: time the reading of all together");
     bench.final_callback([&options] {
         if (options.scenes.empty() && options.structures.empty() && options.toppar.empty() &&
-            !options.kernel && !options.tree) {
-            throw CLI::RequiredError("a scene, --kernel, --load, --toppar or --tree");
+            !options.kernel && !options.tree && !options.servo) {
+            throw CLI::RequiredError("a scene, --kernel, --load, --servo, --toppar or --tree");
         }
     });
     bench.add_flag("--render", options.render, "time pictures instead of steps");
@@ -195,6 +196,12 @@ void add_bench(CLI::App& program, palpa::BenchOptions& options) {
         ->excludes("--kernel")
         ->excludes("--tree")
         ->needs("scenes");
+    bench
+        .add_flag("--servo", options.servo,
+                  "time ticks of guarded coupling, of made-up molecules and of the scenes', instead")
+        ->excludes("--render")
+        ->excludes("--kernel")
+        ->excludes("--tree");
     add_adaptive_options(bench, options);
     bench.add_flag("--json", options.json, "print JSON");
     add_set_option(bench, options.settings);
@@ -308,6 +315,17 @@ void add_relax(CLI::App& program, palpa::RelaxOptions& options) {
     add_set_option(relax, options.settings);
 }
 
+void add_scenarios(CLI::App& program, palpa::ScenarioOptions& options) {
+    CLI::App& scenarios = *program.add_subcommand(
+        "scenarios", "Random hands and devices on a scene of one axis: does any vibrate?");
+    scenarios.add_option("scene", options.scene, "scene folder or file")->required();
+    scenarios.add_option("--count", options.count, "10000 unless given")->check(in_range(1, 1e7));
+    scenarios.add_option("--first", options.first, "number of the first, 0 unless given");
+    scenarios.add_option("--seed", options.seed, "of everything random, 1 unless given");
+    scenarios.add_flag("--json", options.json, "print every scenario as JSON");
+    add_set_option(scenarios, options.settings);
+}
+
 int run_program(int argc, char** argv) {
     CLI::App program("Palpa: feel molecules", "palpa");
     program.require_subcommand(1);
@@ -319,6 +337,8 @@ int run_program(int argc, char** argv) {
     palpa::EnergyOptions energy;
     palpa::PrepareOptions prepare;
     palpa::RelaxOptions relax;
+    palpa::ScenarioOptions scenarios;
+    add_scenarios(program, scenarios);
     add_energy(program, energy);
     add_prepare(program, prepare);
     add_relax(program, relax);
@@ -344,6 +364,7 @@ int run_program(int argc, char** argv) {
     if (program.got_subcommand("energy")) return palpa::energy_command(energy);
     if (program.got_subcommand("prepare")) return palpa::prepare_command(prepare);
     if (program.got_subcommand("relax")) return palpa::relax_command(relax);
+    if (program.got_subcommand("scenarios")) return palpa::scenarios_command(scenarios);
     if (program.got_subcommand("render")) return palpa::render_command(render);
     return program.got_subcommand("run") ? palpa::run_command(run) : palpa::bench_command(bench);
 }

@@ -54,7 +54,7 @@ LiveSession::LiveSession(const SceneDescription& scene, const ViewSettings& view
       state_{load_simulation(scene), view, {}, {}, false, {}, {}} {
     order_.granted_ticks = ticks_of(scene.period_ms);
     exchange_.touch.post(state_.simulation.touch);
-    const ServoOrder order{build_servo_settings(scene, state_.simulation)};
+    const ServoOrder order = build_order(state_);
     servo_thread_ = std::thread([this, order] { run_servo(order); });
     simulation_thread_ = std::thread([this] { run_simulation(state_); });
 }
@@ -210,8 +210,18 @@ void LiveSession::reset(State& state) {
     order_servo(state);
 }
 
+// A hand takes hold quietly; laws that are exchanged glide.
+LiveSession::ServoOrder LiveSession::build_order(const State& state) {
+    ServoOrder order{build_servo_settings(scene_, state.simulation)};
+    order.settings.safety.starts_engaged = false;
+    if (order.settings.guarded) order.settings.guarded->revision = revision_++;
+    return order;
+}
+
 void LiveSession::order_servo(const State& state) {
-    servo_orders_.post({build_servo_settings(scene_, state.simulation), restarts_});
+    ServoOrder order = build_order(state);
+    order.restarts = restarts_;
+    servo_orders_.post(order);
 }
 
 void LiveSession::post_frame_if_wanted(const State& state) {

@@ -81,6 +81,7 @@ private:
     void hold(State& state);
     void obey(State& state, const Command& command);
     void reset(State& state);
+    ServoOrder build_order(const State& state);
     void order_servo(const State& state);
     void post_frame_if_wanted(const State& state);
 
@@ -92,7 +93,7 @@ private:
     HandOrder order_;  // as posted last
     Exchange exchange_;
     Mailbox<ServoOrder> servo_orders_;
-    std::uint32_t restarts_ = 0;
+    std::uint32_t restarts_ = 0, revision_ = 0;
     Mailbox<LiveFrame> frames_;
     Ring<ServoTick, ring_size> ticks_;
     std::atomic<bool> frame_wanted_{true};

@@ -14,6 +14,9 @@ constexpr double tick_s = 1 / servo_rate_hz;
 // Velocity is the difference between two readings through a low-pass of first order.
 constexpr double velocity_filter_s = 0.002;
 
+// Over this time it is averaged how much of the handle's travel the limits let pass.
+constexpr double share_filter_s = 0.01;
+
 // Laws that are exchanged while they are felt glide in this time.
 constexpr double law_glide_s = 0.1;
 
@@ -130,7 +133,15 @@ GuardedTick step_guarded(const GuardedSettings& settings, const Touch& touch, co
     }
     state.law_jump_newton *= std::exp(-tick_s / law_glide_s);
     state.law_newton = law + state.law_jump_newton;
-    tick.hand_newton = state.law_newton - settings.cap_N_per_m * state.kept_m -
+    // A force that drives the handle on where the molecule does not follow would do work from
+    // nothing: it drives by the share that does.
+    const double remember = share_filter_s / (share_filter_s + tick_s);
+    state.wanted_m = remember * state.wanted_m + wanted.norm();
+    state.allowed_m = remember * state.allowed_m + share * wanted.norm();
+    const bool drives = state.law_newton.dot(state.handle_m_per_s) > 0;
+    const double driven =
+        drives && state.wanted_m > 0 ? state.allowed_m / state.wanted_m : 1;
+    tick.hand_newton = driven * state.law_newton - settings.cap_N_per_m * state.kept_m -
                        settings.damping_N_s_per_m * state.handle_m_per_s;
     state.since_arrival_s += tick_s;
     return tick;

@@ -99,7 +99,7 @@ ServoTick step_servo(const ServoSettings& settings, ServoState& state, Exchange&
     tick.stage = safe.stage;
     tick.reason = safe.reason;
     tick.stopped = is_latched(state.safety);
-    tick.clamped = safe.stage == SafetyStage::Clamped || safe.stage == SafetyStage::Hot;
+    tick.clamped = safe.stage == SafetyStage::Clamped;
     const ForceLaw& law = settings.guarded ? settings.guarded->force_law : settings.force_law;
     tick.force_gain = force_gain(law, tick.touch.force_newton.norm());
     tick.hand_energy_J = state.hand_energy_J;

@@ -35,6 +35,7 @@ enum class Key {
     Digit3,
     Digit4,
     Digit5,
+    Digit6,
     A,
     C,
     F,

@@ -179,6 +179,7 @@ std::string format_summary(const SceneDescription& scene, const Summary& summary
         json["last_rmsd_angstrom"] = summary.journey->last_rmsd;
     }
     json["clamped_share"] = summary.clamped_share;
+    json["safety_share"] = summary.safety_share;
     json["stopped"] = summary.stopped;
     json["overruns"] = summary.overruns;
     json["neglected"] = nlohmann::ordered_json::array();  // rigid, all pairs: nothing

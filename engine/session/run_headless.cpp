@@ -146,6 +146,10 @@ std::vector<std::string> list_warnings(const SceneDescription& scene, const Simu
 }
 
 void warn_of_outcome(Summary& summary) {
+    if (summary.safety_share > 0) {
+        summary.warnings.push_back(fmt::format("for {:.1f} % of the time: {}",
+                                               100 * summary.safety_share, words(summary.gravest)));
+    }
     if (summary.went_through) {
         summary.warnings.emplace_back("the hand pushed the molecule through the other one");
     }

@@ -40,6 +40,8 @@ void Statistics::add(const ServoTick& tick) {
     running_.largest_repulsion_N = std::max(running_.largest_repulsion_N, tick.sent_newton.x());
     running_.stopped = tick.stopped;
     if (tick.clamped) ++clamped_ticks_;
+    if (tick.stage >= SafetyStage::Hot) ++safety_ticks_;
+    running_.gravest = std::max(running_.gravest, tick.stage);
     recent_force_[running_.ticks % recent_force_.size()] = tick.sent_newton.x();
     ++running_.ticks;
 }
@@ -65,6 +67,8 @@ Summary Statistics::summary() const {
     if (summary.ticks > 0) {
         summary.clamped_share =
             static_cast<double>(clamped_ticks_) / static_cast<double>(summary.ticks);
+        summary.safety_share =
+            static_cast<double>(safety_ticks_) / static_cast<double>(summary.ticks);
     }
     return summary;
 }

@@ -36,6 +36,9 @@ struct Summary {
     double last_angstrom = 0;                    // negative on the other side
     bool went_through = false;                   // the molecule came out on the other side
     double clamped_share = 0;                    // of the time
+    // Of the time in which more than slew and clamp held the force back, and the gravest reason.
+    double safety_share = 0;
+    SafetyStage gravest = SafetyStage::None;
     bool stopped = false;                        // a force was not finite
     std::uint64_t overruns = 0;                  // servo ticks that came too late; none in lockstep
     std::optional<Journey> journey;              // in space, where something moves by itself
@@ -60,7 +63,7 @@ private:
     double tick_s_;
     Summary running_;
     Vec3 first_place_angstrom_ = Vec3::Zero();
-    std::uint64_t clamped_ticks_ = 0;
+    std::uint64_t clamped_ticks_ = 0, safety_ticks_ = 0;
     std::vector<double> recent_force_;        // along x, N: a ring of the last 4 s
     std::vector<std::uint64_t> step_counts_;  // of step times, in classes 1 % wide
 };

@@ -39,7 +39,7 @@ StepReport step_simulation(Simulation& simulation, const HandPose& hand,
     const Guide* const guide = simulation.world.find<Guide>(grab->molecule);
     const Vec3 before = guide->place;
     const Move move = hand.place_angstrom
-                          ? Move{*hand.place_angstrom - before, felt.displacement_gain}
+                          ? Move{*hand.place_angstrom - before, 0}
                           : find_move(simulation, hand, felt, *grab, *guide);
     const Vec3 place = before + move.by;
     grab->travel_m = hand.travel_m;
@@ -58,7 +58,7 @@ StepReport step_simulation(Simulation& simulation, const HandPose& hand,
         report.finite = report.settled->is_finite;
     }
     update_touch(hand, simulation);
-    simulation.touch.model.displacement_gain = move.displacement_gain;
+    if (!hand.place_angstrom) simulation.touch.model.displacement_gain = move.displacement_gain;
     report.touch = simulation.touch.model;
     report.finite = report.finite && report.touch.force_newton.allFinite();
     if (!report.finite) place_grabbed(simulation, before);

@@ -25,10 +25,12 @@ constexpr ImU32 now_colour = IM_COL32(250, 170, 0, 255);
 constexpr ImGuiWindowFlags fixed_window =
     ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoSavedSettings;
 
-constexpr std::array<const char*, 5> mode_texts{
-    "1  variable force, variable displacement", "2  variable force, constant displacement",
-    "3  constant force, variable displacement", "4  constant force, constant displacement",
-    "5  no force"};
+constexpr std::array<const char*, 6> mode_texts{"1  variable force, variable displacement",
+                                                "2  variable force, constant displacement",
+                                                "3  constant force, variable displacement",
+                                                "4  constant force, constant displacement",
+                                                "5  no force",
+                                                "6  guarded"};
 
 // Width of the panels at either side of a window that wide.
 float column_of(float window_width) { return std::clamp(0.3F * window_width, 240.0F, 350.0F); }
@@ -78,8 +80,11 @@ Overlay::Overlay(const SceneDescription& scene, const ViewSettings& view)
 }
 
 void Overlay::update_limit() {
-    stiffness_limit_ = calm_stiffness(scene_, hand_model(static_cast<Grip>(scene_.hand.grip)),
-                                      settings_.period_ms * 1e-3);
+    stiffness_limit_ = is_guarded()
+                           ? guarded_cap(scene_.device.viscosity_N_s_per_m,
+                                         settings_.coupling.damping_N_s_per_m)
+                           : calm_stiffness(scene_, hand_model(static_cast<Grip>(scene_.hand.grip)),
+                                            settings_.period_ms * 1e-3);
 }
 
 void Overlay::add_tick(const ServoTick& tick) {
@@ -94,6 +99,11 @@ void Overlay::add_tick(const ServoTick& tick) {
     }
     clamped_ = tick.clamped;
     stopped_ = tick.stopped;
+    stage_ = tick.stage;
+    reason_ = tick.reason;
+    felt_N_per_m_ = tick.felt_N_per_m;
+    hand_energy_J_ = tick.hand_energy_J;
+    kept_m_ = tick.kept_m.norm();
     force_gain_ = tick.force_gain;
     history_.add(last_);
     lesson_.update(last_, settings_.coupling.mode);
@@ -138,7 +148,8 @@ bool Overlay::perform(Action action, std::vector<Command>& commands) {
         case Action::Mode2:
         case Action::Mode3:
         case Action::Mode4:
-        case Action::Mode5: {
+        case Action::Mode5:
+        case Action::Guarded: {
             const int mode = static_cast<int>(action) - static_cast<int>(Action::Mode1);
             set_mode(static_cast<CouplingMode>(mode), commands);
             return true;
@@ -174,6 +185,7 @@ bool Overlay::perform(Action action, std::vector<Command>& commands) {
 }
 
 bool Overlay::is_shaking(const Readout& readout) const {
+    if (is_guarded()) return false;
     const CouplingLaws laws = build_coupling_laws(settings_.coupling);
     return felt_stiffness(laws, readout.touch) > stiffness_limit_;
 }
@@ -228,8 +240,9 @@ void Overlay::draw_scene(const Readout& readout, const OverlayStatus& status,
         }
         ImGui::EndCombo();
     }
-    tip("The paper's five modes; keys 1 to 5. The force gain is F_h/F_m, the displacement gain "
-        "A_d = dx_handle/dx_molecule.");
+    tip("The paper's five modes, keys 1 to 5, and guarded coupling, 6: there the servo moves the "
+        "molecule itself, in the field around it, a thousand times a second. The force gain is "
+        "F_h/F_m, the displacement gain A_d = dx_handle/dx_molecule.");
     int period = static_cast<int>(std::lround(settings_.period_ms));
     const LiveSettings before = settings_;
     ImGui::SetNextItemWidth(-90);
@@ -239,8 +252,8 @@ void Overlay::draw_scene(const Readout& readout, const OverlayStatus& status,
         change_settings(settings, commands);
     }
     remember_edit(before);
-    tip("T_s, ms: how often the simulation answers the hand. The hand feels a force that is one "
-        "period old, and held for one: the longer, the more it vibrates.");
+    tip("T_s, ms: how often the simulation answers the hand. In the paper's modes the hand feels a "
+        "force that is one period old, and held for one: the longer, the more it vibrates.");
     draw_readings(readout, status);
     ImGui::End();
 }
@@ -263,10 +276,20 @@ void Overlay::draw_readings(const Readout& readout, const OverlayStatus& status)
             fmt::format("{:.3g}  ({:.2f} cm/Å)", last_.displacement_gain,
                         cm_per_angstrom(last_.displacement_gain)),
             "A_d = dx_handle/dx_molecule, m/m; eq. 3 of the paper in modes 1 and 3");
+    const double felt = is_guarded() ? felt_N_per_m_ : felt_stiffness(laws, touch);
     reading("spring felt",
-            fmt::format("{:.4g} of {:.4g} N/m", felt_stiffness(laws, touch), stiffness_limit_),
-            "K = (dF_h/dF_m) k / A_d, N/m, of the largest k that the hand keeps calm: about "
+            fmt::format("{:.4g} of {:.4g} N/m, {:.0f} % left", felt, stiffness_limit_,
+                        100 * std::max(0.0, 1 - felt / stiffness_limit_)),
+            "K = (dF_h/dF_m) k / A_d, N/m. Guarded: of the cap, half of what the device keeps calm; A_d "
+            "is raised until it holds. Else of the largest K that the hand keeps calm: about "
             "B/(1.5 T_s), found from the eigenvalues of hand, device, period and delay");
+    reading("work on hand", fmt::format("{:+.2f} mJ", 1e3 * hand_energy_J_),
+            "energy given to the hand so far, mJ: over a way there and back it should not be above 0");
+    if (is_guarded()) {
+        reading("held back", fmt::format("{:.1f} mm", 1e3 * kept_m_),
+                "handle travel that the molecule did not follow, since an atom would be pushed too "
+                "hard (coupling.stop_nN); it is felt, and has to be given back");
+    }
     reading("energy", fmt::format("{:.3f} kcal/mol", touch.potential_kcal_per_mol),
             "of the molecule in hand with all others: Lennard-Jones and Coulomb, kcal/mol");
     reading("moving",
@@ -315,8 +338,12 @@ void Overlay::draw_gains(std::vector<Command>& commands) {
     tip("Eq. 2: F_h = a1 atan(d1 F) + a2 [atan(d2 (F - F_0)) + atan(d2 (F + F_0))]; the point is "
         "where you are. Steep for weak forces, flat for strong ones, never cut off.");
     const std::array gain_lines{PlotLine{x_, z_, gain_colour, "A_d"}};
-    const std::array gain_points{PlotPoint{
-        now_nN, cm_per_angstrom(displacement_gain(laws.displacement, now_nN * 1e-9)), now_colour}};
+    const std::array gain_points{
+        PlotPoint{now_nN,
+                  cm_per_angstrom(is_guarded()
+                                      ? last_.displacement_gain
+                                      : displacement_gain(laws.displacement, now_nN * 1e-9)),
+                  now_colour}};
     PlotRange gains = range_around(z_, 1);
     gains.low = 0;
     draw_plot("displacement gain",
@@ -351,11 +378,25 @@ void Overlay::remember_edit(const LiveSettings& before) {
 
 void Overlay::draw_gain_sliders() {
     CouplingDescription& c = settings_.coupling;
-    const bool variable_force = c.mode == CouplingMode::VariableForceVariableDisplacement ||
-                                c.mode == CouplingMode::VariableForceConstantDisplacement;
-    const bool variable_displacement = c.mode == CouplingMode::VariableForceVariableDisplacement ||
-                                       c.mode == CouplingMode::ConstantForceVariableDisplacement;
-    if (variable_force) {
+    if (is_guarded()) choose_laws();
+    const bool is_perceptual = is_guarded() && c.force_law == ForceLawChoice::Perceptual;
+    const bool variable_force =
+        is_guarded() ? c.force_law == ForceLawChoice::Printed ||
+                           c.force_law == ForceLawChoice::Calibrated
+                     : c.mode == CouplingMode::VariableForceVariableDisplacement ||
+                           c.mode == CouplingMode::VariableForceConstantDisplacement;
+    const bool variable_displacement =
+        is_guarded() ? c.displacement_law != DisplacementLawChoice::Constant
+                     : c.mode == CouplingMode::VariableForceVariableDisplacement ||
+                           c.mode == CouplingMode::ConstantForceVariableDisplacement;
+    if (is_perceptual) {
+        slide("F_lo", c.F_lo_pN, 1, 1000, "%.0f pN", true,
+              "molecular force that is felt as 0.3 N, pN; the law is linear below");
+        slide("F_hi", c.F_hi_nN, 0.1, 100, "%.2f nN", true,
+              "molecular force that is felt as 3 N, nN; between, equally many noticeable steps a "
+              "decade");
+        c.F_hi_nN = std::max(c.F_hi_nN, 2.1e-3 * c.F_lo_pN);
+    } else if (variable_force) {
         slide("A_f max", c.A_f_max, 0.1e9, 50e9, "%.3g", true,
               "A_fmax of eq. 2: gain of weak forces, N on the hand per N on the molecule");
         slide("A_f min", c.A_f_min, 0.01e9, 5e9, "%.3g", true,
@@ -383,6 +424,31 @@ void Overlay::draw_gain_sliders() {
         slide("A_d", c.A_d, 0.005e9, 10e9, "%.3g", true,
               "constant displacement gain, handle metres per molecule metre; 0.25e9 is 2.5 cm/Å");
     }
+}
+
+void Overlay::choose_laws() {
+    CouplingDescription& c = settings_.coupling;
+    const auto choose = [&](const char* label, const auto& names, auto& choice, const char* text) {
+        const LiveSettings before = settings_;
+        int i = static_cast<int>(choice);
+        std::vector<const char*> items;
+        for (const std::string_view name : names) items.push_back(name.data());
+        ImGui::SetNextItemWidth(-80);
+        if (ImGui::Combo(label, &i, items.data(), static_cast<int>(items.size()))) {
+            undo_.push_back(before);
+            redo_.clear();
+            choice = static_cast<std::remove_reference_t<decltype(choice)>>(i);
+        }
+        tip(text);
+    };
+    choose("force", force_law_names, c.force_law,
+           "force law: eq. 2 as printed, or calibrated to its slopes, a constant gain, or equal "
+           "noticeable steps for each decade");
+    choose("travel", displacement_law_names, c.displacement_law,
+           "displacement law: eq. 3 that sees stiff places too, as printed, or a constant gain");
+    choose("reach", workspace_names, c.workspace,
+           "how far places are reached: the clutch alone; outside a bubble the molecule goes on by "
+           "itself; or the handle drifts back to its centre while it moves");
 }
 
 void Overlay::draw_history() {
@@ -474,6 +540,9 @@ void Overlay::draw_warnings(const Readout& readout, const OverlayStatus& status)
         if (left_s > 0) warnings.push_back(text());
     };
     if (stopped_) warnings.emplace_back("a force was not finite: no force until you reset (R)");
+    if (reason_ != SafetyStage::None && !stopped_) warnings.emplace_back(words(reason_));
+    if (stage_ >= SafetyStage::Hot && stage_ != reason_ && !stopped_)
+        warnings.emplace_back(words(stage_));
     warn(shaking_for_s_, is_shaking(readout), [&] {
         return fmt::format(
             "this setting vibrates: K > B/(1.5 T_s). This hand keeps {:.3g} N/m calm at T_s = {} "

@@ -51,6 +51,7 @@ private:
     void draw_readings(const Readout& readout, const OverlayStatus& status);
     void draw_gains(std::vector<Command>& commands);
     void draw_gain_sliders();
+    void choose_laws();
     void draw_history();
     void draw_lesson();
     void draw_warnings(const Readout& readout, const OverlayStatus& status);
@@ -64,6 +65,7 @@ private:
     void set_mode(CouplingMode mode, std::vector<Command>& commands);
     void change_settings(const LiveSettings& settings, std::vector<Command>& commands);
     void update_limit();
+    bool is_guarded() const noexcept { return settings_.coupling.mode == CouplingMode::Guarded; }
 
     SceneDescription scene_;
     LiveSettings settings_, before_edit_;
@@ -77,6 +79,8 @@ private:
     History history_;
     Reading last_;
     bool has_tick_ = false, clamped_ = false, stopped_ = false;
+    SafetyStage stage_ = SafetyStage::None, reason_ = SafetyStage::None;
+    double felt_N_per_m_ = 0, hand_energy_J_ = 0, kept_m_ = 0;
     double side_ = 0;  // of the counterpart, on one axis, where the molecule began
     bool went_through_ = false;
     bool wants_pause_ = false;

@@ -14,6 +14,7 @@ constexpr std::array list = std::to_array<Shortcut>({
     {Key::Digit3, false, Action::Mode3, "3", "variable displacement gain"},
     {Key::Digit4, false, Action::Mode4, "4", "constant gains"},
     {Key::Digit5, false, Action::Mode5, "5", "no force"},
+    {Key::Digit6, false, Action::Guarded, "6", "guarded coupling"},
     {Key::Z, true, Action::Undo, "Ctrl+Z", "undo a change of the settings"},
     {Key::Y, true, Action::Redo, "Ctrl+Y", "do it again"},
     {Key::V, false, Action::NextRepresentation, "V", "another representation"},

@@ -17,6 +17,7 @@ enum class Action {
     Mode3,
     Mode4,
     Mode5,
+    Guarded,
     Undo,
     Redo,
     NextRepresentation,

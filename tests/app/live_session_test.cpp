@@ -130,6 +130,7 @@ TEST_CASE("a push on the wall stays outside of it, and a reset brings the start 
 TEST_CASE("settings, view and reset reach the running scene", "[app][threads]") {
     Live live;
     LiveSettings settings{test::water_scene().coupling, 5};
+    settings.coupling.displacement_law = DisplacementLawChoice::Constant;
     settings.coupling.A_d = 1e9;
     live.session.send(settings);
     live.session.send(

@@ -57,11 +57,14 @@ class Cli(unittest.TestCase):
 
     # ---- running
 
-    def test_a_run_says_what_stands_in_for_guarded_mode(self):
-        result = self.run_water("--seconds", "0.1")
-        self.assertIn("guarded mode is not built yet: mode 2", result.stderr)
-        self.assertIn("T_s = 1 ms with 0.26 N", result.stderr)
-        self.assertNotIn("guarded", self.run_water("--seconds", "0.1", "--mode", "2").stderr)
+    def test_guarded_coupling_is_the_default(self):
+        self.assertIn("mode guarded", self.run_water("--seconds", "0.1").stdout)
+        self.assertIn("mode 2", self.run_water("--seconds", "0.1", "--mode", "2").stdout)
+
+    def test_laws_that_cannot_be_calibrated_are_refused(self):
+        result = self.palpa("run", WATER, "--headless", "--set", "coupling.force_law=calibrated",
+                            "--set", "coupling.F_0_nN=0")
+        self.assert_bad_input(result, "force_law", "cannot have the slopes")
 
     def test_the_options_are_the_scene_keys_they_name(self):
         by_option = self.run_water("--seconds", "0.5", "--mode", "3", "--period-ms", "14", "--hand",
@@ -148,8 +151,10 @@ class Cli(unittest.TestCase):
     def test_check_tells_what_the_line_is_like(self):
         result = self.palpa("run", "--check", WATER)
         for text in ("-6.594 kcal/mol at 2.767 Å, 29.3 N/m", "0.322 nN at 3.10 Å, felt as 0.896 N",
-                     "3 nN at 2.473 Å, felt as 2.120 N", "663 N/m felt at 2.760 Å"):
+                     "3 nN at 2.473 Å, felt as 2.120 N", "200 N/m felt at"):
             self.assertIn(text, result.stdout)
+        self.assertIn("663 N/m felt at 2.760 Å",
+                      self.palpa("run", "--check", WATER, "--mode", "2").stdout)
         self.assertIn("vibrates", self.palpa("run", "--check", WATER, "--mode", "1").stdout)
 
     def test_lost_output_is_no_success(self):
@@ -161,11 +166,6 @@ class Cli(unittest.TestCase):
                 self.assertIn("the output cannot be written", result.stderr)
 
     # ---- bad input: one line, exit code 2, nothing half-written
-
-    def test_guarded_mode_is_refused_in_a_sentence(self):
-        result = self.palpa("run", WATER, "--mode", "guarded", "--record", self.tmp / "r")
-        self.assert_bad_input(result, "guarded", "not built yet")
-        self.assertFalse((self.tmp / "r").exists())
 
     def test_a_scene_that_is_not_there(self):
         self.assert_bad_input(self.palpa("run", "nowhere"), "nowhere: no such scene")
