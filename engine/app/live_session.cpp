@@ -7,6 +7,7 @@
 
 #include <pthread.h>
 #include <sched.h>
+#include <sys/mman.h>
 #include <chrono>
 #include <cmath>
 #include <utility>
@@ -30,6 +31,19 @@ bool ask_for_real_time() noexcept {
     sched_param parameters{};
     parameters.sched_priority = 50;
     return pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters) == 0;
+}
+
+// So that no tick waits for a page.
+bool ask_for_locked_memory() noexcept {
+    return mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0;
+}
+
+// Until that moment: asleep, and awake for the last bit, since the system wakes us late.
+void wait_until(Clock::time_point moment) {
+    constexpr std::chrono::microseconds awake{80};
+    std::this_thread::sleep_until(moment - awake);
+    while (Clock::now() < moment) {
+    }
 }
 
 Clock::duration period_of(const Simulation& simulation) {
@@ -100,10 +114,13 @@ bool LiveSession::read_frame(LiveFrame& frame) {
     return is_new;
 }
 
-ServoHealth LiveSession::servo_health() const noexcept { return {overruns_, real_time_}; }
+ServoHealth LiveSession::servo_health() const noexcept {
+    return {overruns_, real_time_, locked_};
+}
 
 void LiveSession::run_servo(ServoOrder order) {
     real_time_ = ask_for_real_time();
+    locked_ = ask_for_locked_memory();
     ServoState state;
     const Clock::time_point start = Clock::now();
     Clock::time_point next = start;
@@ -124,7 +141,7 @@ void LiveSession::run_servo(ServoOrder order) {
             overruns_ += static_cast<std::uint64_t>((now - next) / servo_tick);
             next = now;
         }
-        std::this_thread::sleep_until(next);
+        wait_until(next);
     }
 }
 

@@ -98,7 +98,7 @@ private:
     Ring<ServoTick, ring_size> ticks_;
     std::atomic<bool> frame_wanted_{true};
     std::atomic<std::uint64_t> overruns_{0};
-    std::atomic<bool> real_time_{false};
+    std::atomic<bool> real_time_{false}, locked_{false};
 
     std::mutex mutex_;  // of the commands
     std::condition_variable has_command_;

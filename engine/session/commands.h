@@ -39,6 +39,7 @@ struct Readout {
 struct ServoHealth {
     std::uint64_t overruns = 0;  // ticks that were skipped because one began too late
     bool real_time = false;      // the system granted real-time priority
+    bool locked = false;         // and lets memory stay where it is
 };
 
 }  // namespace palpa

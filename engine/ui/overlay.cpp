@@ -304,9 +304,12 @@ void Overlay::draw_readings(const Readout& readout, const OverlayStatus& status)
             "time of a frame; the scale is lowered where the machine cannot hold 30 Hz");
     reading("servo",
             fmt::format("{} skipped{}", status.servo.overruns,
-                        status.servo.real_time ? "" : ", ordinary priority"),
-            "servo ticks that were skipped because the system was late; without real-time priority "
-            "that happens more often");
+                        !status.servo.real_time ? ", ordinary priority"
+                        : !status.servo.locked  ? ", memory not locked"
+                                                : ""),
+            "servo ticks that were skipped because the system was late. Without real-time priority "
+            "or locked memory that happens more often: allow rtprio 50 and memlock for yourself in "
+            "/etc/security/limits.conf.");
     ImGui::EndTable();
     ImGui::TextDisabled("%s", status.gpu_name.c_str());
 }

@@ -1,0 +1,218 @@
+#include "haptics/guarded.h"
+
+#include "core/units.h"
+#include "field/pair_field.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <vector>
+
+using namespace palpa;
+
+namespace {
+
+constexpr double newton = units::newton_per_kcal_per_mol_angstrom;
+
+// Two argon atoms with charges, one of them in the hand; along x.
+struct Pair {
+    std::vector<Vec3> own{Vec3(6, 0, 0)}, others{Vec3::Zero()};
+    std::vector<double> own_charge{0.3}, other_charge{-0.3}, sqrt_epsilon{0.5}, half_rmin{1.9};
+    std::vector<std::uint32_t> type{0};
+    double coulomb = units::charmm_coulomb_constant;
+
+    FieldPoints group(const std::vector<Vec3>& places) const {
+        return {places, own_charge, sqrt_epsilon, half_rmin, type};
+    }
+    FieldPoints environment() const {
+        return {others, other_charge, sqrt_epsilon, half_rmin, type};
+    }
+    FieldSum at(double x) const {
+        const std::vector<Vec3> place{Vec3(x, 0, 0)};
+        return evaluate_pair_field(group(place), environment(), {coulomb});
+    }
+    double force(double x) const { return newton * at(x).force.x(); }
+
+    Touch touch(double x) const {
+        Touch touch;
+        touch.model.molecule_angstrom = Vec3(x, 0, 0);
+        touch.model.projector = Vec3::UnitX().asDiagonal();
+        touch.model.force_newton = Vec3(force(x), 0, 0);
+        touch.model.period_s = 0.014;
+        touch.field.group = {Vec3(x, 0, 0)};
+        touch.field.centre = Vec3(x, 0, 0);
+        touch.field.frozen = build_frozen_field(group(touch.field.group), environment(), {coulomb});
+        touch.field.there = evaluate_frozen_field(touch.field.frozen, touch.field.group);
+        touch.field.has_atoms = true;
+        return touch;
+    }
+};
+
+struct Guarded {
+    GuardedSettings settings;
+    GuardedState state;
+    Touch touch;
+
+    explicit Guarded(const Touch& first) : touch(first) { take_touch(touch, state); }
+    GuardedTick move(const Vec3& by) {
+        return step_guarded(settings, touch, Vec3::Zero(), by, false, state);
+    }
+    void update(const Pair& pair) {
+        touch = pair.touch(x());
+        take_touch(touch, state);
+    }
+    double x() const { return state.place_angstrom.x(); }
+};
+
+}  // namespace
+
+TEST_CASE("the local field is the touch model's at its place, and knows the way from there",
+          "[haptics][guarded]") {
+    const Pair pair;
+    Touch touch = pair.touch(4);
+    touch.model.confirmed = GENERATE(0.0, 0.5, 1.0);
+    touch.model.force_newton.x() += 1e-10;  // that the field does not know of
+
+    const auto at = [&](double x) { return evaluate_local(touch.model, touch.field, {x, 0, 0}); };
+
+    CHECK(at(4).force_newton.x() == Approx(touch.model.force_newton.x()));
+    const double way = pair.force(3.6) - pair.force(4);
+    CHECK(at(3.6).force_newton.x() ==
+          Approx(touch.model.force_newton.x() + touch.model.confirmed * way).epsilon(1e-5));
+    const double slope = -(pair.force(3.601) - pair.force(3.599)) / (0.002 * 1e-10);
+    CHECK(at(3.6).stiffness_N_per_m(0, 0) ==
+          Approx(touch.model.confirmed * slope).epsilon(1e-4).margin(1e-12));
+    CHECK(at(4.5).clearance_angstrom == Approx(4.5 - 3.8).margin(1e-5));
+    CHECK(at(3.6).clearance_angstrom == 0);
+    CHECK(at(3.6).largest_newton == Approx(std::abs(pair.force(3.6))).epsilon(1e-5));
+}
+
+TEST_CASE("without atoms the local field is the tangent", "[haptics][guarded]") {
+    Touch touch;
+    touch.model.molecule_angstrom = Vec3(1, 2, 3);
+    touch.model.force_newton = Vec3(1e-9, 0, 0);
+    touch.model.stiffness_matrix_N_per_m = 10 * Mat3::Identity();
+    touch.model.clearance_angstrom = 0.5;
+
+    const LocalForce there = evaluate_local(touch.model, touch.field, Vec3(1, 2.2, 3));
+
+    CHECK((there.force_newton - Vec3(1e-9, -10 * 0.2e-10, 0)).norm() < 1e-20);
+    CHECK(there.clearance_angstrom == Approx(0.3));
+}
+
+TEST_CASE("a new touch model does not make the force jump", "[haptics][guarded]") {
+    const Pair pair;
+    Guarded guarded(pair.touch(3.9));
+    for (int i = 0; i < 13; ++i) (void)guarded.move(Vec3(-1e-4, 0, 0));
+    const double before = guarded.move(Vec3::Zero()).force_newton.x();
+    Touch next = pair.touch(guarded.x());
+    const double news = 0.5e-9;
+    next.model.force_newton.x() += news;
+    guarded.touch = next;
+    take_touch(next, guarded.state);
+
+    const double first = guarded.move(Vec3::Zero()).force_newton.x();
+    CHECK(std::abs(first - before) < 0.3 * news);
+    double last = first;
+    for (int i = 0; i < 14; ++i) last = guarded.move(Vec3::Zero()).force_newton.x();
+    CHECK(last == Approx(next.model.force_newton.x()).margin(0.03 * news));
+}
+
+TEST_CASE("laws that are exchanged while they are felt make no jump", "[haptics][guarded]") {
+    const Pair pair;
+    const std::vector<ForceLaw> laws{
+        PrintedForceLaw({}), ConstantForceLaw{0.64e9}, ConstantForceLaw{0}, PerceptualForceLaw({}),
+        PrintedForceLaw::find_calibrated({}).value()};
+    for (const ForceLaw& from : laws) {
+        for (const ForceLaw& to : laws) {
+            Guarded guarded(pair.touch(3.5));
+            guarded.settings.force_law = from;
+            double before = 0;
+            for (int i = 0; i < 20; ++i) before = guarded.move(Vec3::Zero()).hand_newton.x();
+            guarded.settings.force_law = to;
+            guarded.settings.displacement_law = ConstantDisplacementLaw{1e9};
+            ++guarded.settings.revision;
+            const double wanted = hand_force(to, pair.force(3.5));
+            double largest = 0, now = before;
+            for (int i = 0; i < 1000; ++i) {
+                const double next = guarded.move(Vec3::Zero()).hand_newton.x();
+                largest = std::max(largest, std::abs(next - now));
+                now = next;
+            }
+            CHECK(largest < 0.02 * std::abs(wanted - before) + 1e-12);
+            CHECK(now == Approx(wanted).margin(1e-3));
+        }
+    }
+}
+
+TEST_CASE("no atom is pushed harder than the stop allows, and what was held back comes back first",
+          "[haptics][guarded]") {
+    const Pair pair;
+    Guarded guarded(pair.touch(4));
+    double hardest = 0, held = 0;
+    for (int i = 0; i < 3000; ++i) {
+        if (i % 14 == 0) guarded.update(pair);
+        (void)guarded.move(Vec3(-1e-4, 0, 0));
+        hardest = std::max(hardest, pair.force(guarded.x()));
+        held = guarded.state.kept_m.norm();
+    }
+    const double innermost = guarded.x();
+    CHECK(hardest <= 10e-9);
+    CHECK(hardest > 5e-9);
+    REQUIRE(held > 0.05);
+    // The spring that it is felt as.
+    const GuardedTick pushed = guarded.move(Vec3::Zero());
+    CHECK(pushed.hand_newton.x() == Approx(hand_force(guarded.settings.force_law, hardest) +
+                                           guarded.settings.cap_N_per_m * held)
+                                        .epsilon(0.05));
+    for (int i = 0; i < static_cast<int>(0.9 * held / 1e-4); ++i)
+        (void)guarded.move(Vec3(1e-4, 0, 0));
+    CHECK(guarded.x() == Approx(innermost).margin(0.02));
+    for (int i = 0; i < 2000; ++i) {
+        if (i % 14 == 0) guarded.update(pair);
+        (void)guarded.move(Vec3(1e-4, 0, 0));
+    }
+    CHECK(guarded.x() > innermost + 1);
+}
+
+TEST_CASE("a step goes no farther than clearance and period allow, and stays on its line",
+          "[haptics][guarded]") {
+    const Pair pair;
+    Guarded guarded(pair.touch(8));
+    for (int i = 0; i < 400; ++i) {
+        const double before = guarded.x(), clearance = std::max(0.0, before - 3.8);
+        const GuardedTick tick = guarded.move(Vec3(-5e-3, 1e-3, -2e-3));
+        CHECK(before - guarded.x() <= std::min(0.02 + 0.1 * clearance,
+                                               (0.2 + clearance) * 1e-3 / 0.014) + 1e-5);
+        CHECK(tick.dropped_m.x() <= 0);
+        CHECK(guarded.state.place_angstrom.tail<2>().norm() == 0);
+    }
+}
+
+TEST_CASE("the felt stiffness stays under the cap", "[haptics][guarded]") {
+    const Pair pair;
+    const double x = GENERATE(3.2, 3.4, 3.6, 3.8, 4.2, 6.0);
+    Guarded guarded(pair.touch(x));
+    const GuardedTick tick = guarded.move(Vec3::Zero());
+    // By differences of hand force and place.
+    const auto hand = [&](double at) {
+        return hand_force(guarded.settings.force_law, pair.force(at));
+    };
+    const double handle_m = tick.displacement_gain * 2e-4 * 1e-10;
+    const double felt = -(hand(x + 1e-4) - hand(x - 1e-4)) / handle_m;
+
+    CHECK(tick.felt_N_per_m == Approx(std::max(0.0, felt)).epsilon(1e-3).margin(1e-6));
+    CHECK(tick.felt_N_per_m <= guarded.settings.cap_N_per_m * (1 + 1e-12));
+}
+
+TEST_CASE("a molecule that stands still is not moved, and is let go where it stands",
+          "[haptics][guarded]") {
+    const Pair pair;
+    Guarded guarded(pair.touch(5));
+    guarded.touch.model.is_still = true;
+    take_touch(guarded.touch, guarded.state);
+    for (int i = 0; i < 50; ++i) {
+        CHECK(guarded.move(Vec3(-1e-3, 0, 0)).hand_newton.norm() == 0);
+    }
+    CHECK(guarded.x() == 5);
+}

@@ -1,0 +1,105 @@
+// A servo tick takes no memory: every allocation of this program is counted.
+#include "core/units.h"
+#include "haptics/servo.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <new>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace {
+
+thread_local bool is_counting = false;
+thread_local int allocations = 0;
+
+void* allocate(std::size_t size) {
+    if (is_counting) ++allocations;
+    void* const memory = std::malloc(size == 0 ? 1 : size);  // NOLINT: what new is made of
+    if (!memory) throw std::bad_alloc();
+    return memory;
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) { return allocate(size); }
+void* operator new(std::size_t size, std::align_val_t alignment) {
+    if (is_counting) ++allocations;
+    const auto step = static_cast<std::size_t>(alignment);
+    void* const memory = std::aligned_alloc(step, (size + step - 1) / step * step);
+    if (!memory) throw std::bad_alloc();
+    return memory;
+}
+void operator delete(void* memory) noexcept { std::free(memory); }  // NOLINT
+void operator delete(void* memory, std::size_t /*size*/) noexcept { std::free(memory); }  // NOLINT
+void operator delete(void* memory, std::align_val_t /*alignment*/) noexcept {
+    std::free(memory);  // NOLINT
+}
+void operator delete(void* memory, std::size_t /*size*/, std::align_val_t /*alignment*/) noexcept {
+    std::free(memory);  // NOLINT
+}
+
+using namespace palpa;
+
+namespace {
+
+Touch touch_of(std::size_t atoms) {
+    std::vector<Vec3> places, own{Vec3(0, 0, 9), Vec3(1, 0, 10)};
+    for (std::size_t i = 0; i < atoms; ++i)
+        places.emplace_back(2.0 * static_cast<double>(i % 10), 2.0 * static_cast<double>(i / 10), 0);
+    const std::vector<double> charge(atoms + 2, 0.1), epsilon(atoms + 2, 0.3),
+        rmin(atoms + 2, 1.8);
+    const std::vector<std::uint32_t> type(atoms + 2, 0);
+    const auto of = [&](const std::vector<Vec3>& positions) {
+        const std::size_t n = positions.size();
+        return FieldPoints{positions, std::span(charge).first(n), std::span(epsilon).first(n),
+                           std::span(rmin).first(n), std::span(type).first(n)};
+    };
+    Touch touch;
+    touch.field.frozen =
+        build_frozen_field(of(own), of(places), {units::charmm_coulomb_constant});
+    touch.field.group = own;
+    touch.field.there = evaluate_frozen_field(touch.field.frozen, own);
+    touch.field.has_atoms = atoms > 0;
+    touch.model.period_s = 0.005;
+    return touch;
+}
+
+}  // namespace
+
+static_assert(noexcept(step_servo(std::declval<const ServoSettings&>(), std::declval<ServoState&>(),
+                                  std::declval<Exchange&>(), std::declval<const DeviceReading&>(),
+                                  0.0)));
+
+TEST_CASE("a servo tick allocates nothing, whatever it feels", "[haptics][servo]") {
+    ServoSettings settings;
+    settings.safety.is_full = GENERATE(false, true);
+    const bool is_guarded = GENERATE(false, true);
+    if (is_guarded) settings.guarded.emplace();
+    Exchange exchange;
+    ServoState state;
+    // The counter counts.
+    is_counting = true;
+    allocations = 0;
+    ::operator delete(::operator new(8));
+    const int counted = allocations;
+    is_counting = false;
+    for (int tick = 0; tick < 500; ++tick) {
+        // Fields of many sizes, no field, and one that single precision cannot do.
+        if (tick % 5 == 0) {
+            Touch touch = touch_of(static_cast<std::size_t>(tick % 40) * 5);
+            if (tick % 35 == 0 && touch.field.has_atoms) touch.field.group[0] = Vec3(0, 0, 0.1);
+            exchange.touch.post(touch);
+        }
+        const double time_s = 1e-3 * tick;
+        const DeviceReading reading{time_s, Vec3(1e-3 * std::sin(time_s), 0, 0), 0, tick % 7 != 0};
+        is_counting = true;
+        allocations = 0;
+        (void)step_servo(settings, state, exchange, reading, time_s);
+        is_counting = false;
+        CHECK(allocations == 0);
+    }
+    CHECK(counted == 1);
+}
