@@ -29,7 +29,8 @@ Lesson play_water(const std::vector<std::string>& settings, Lesson lesson) {
     Simulation simulation = load_simulation(scene);
     EmulatedOmni device(build_emulated_omni(scene, simulation));
     const auto step = [&](const HandPose& hand, const TouchModel& felt) {
-        return step_simulation(simulation, hand, felt).touch;
+        (void)step_simulation(simulation, hand, felt);
+        return simulation.touch;
     };
     run_lockstep(
         {static_cast<std::uint64_t>(scene.seconds * servo_rate_hz), 1},
