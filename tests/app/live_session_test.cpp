@@ -59,7 +59,7 @@ struct Live {
 }  // namespace
 
 TEST_CASE("the mouse's hand draws the molecule near, and the hand feels it", "[app][threads]") {
-    Live live;
+    Live live({"mode=2"});
     REQUIRE(live.wait_for_steps(10));
     CHECK(live.distance() == Approx(7).margin(0.01));
     CHECK(live.frame.picture.spheres.size() == 6);
@@ -72,7 +72,7 @@ TEST_CASE("the mouse's hand draws the molecule near, and the hand feels it", "[a
 }
 
 TEST_CASE("while paused nothing moves and going on nothing jumps", "[app][threads]") {
-    Live live({"start_angstrom=3.1"});
+    Live live({"mode=2", "start_angstrom=3.1"});
     REQUIRE(live.wait_until([&](const LiveFrame&) { return live.last.sent_newton.x() < -0.5; }));
     live.session.send(Pause{true});
     REQUIRE(live.wait_until([](const LiveFrame& f) { return f.readout.paused; }));

@@ -12,7 +12,7 @@ const char* const water = PALPA_ROOT "/scenes/water";
 }  // namespace
 
 TEST_CASE("500 random hands on two waters: no energy from nothing, no vibration, none goes through",
-          "[session][coupling][slow]") {
+          "[session][coupling]") {
     const std::vector<ScenarioResult> results =
         play_scenarios({.scene = water, .settings = {}, .count = 500}, {});
 
