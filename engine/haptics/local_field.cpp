@@ -42,7 +42,7 @@ LocalForce evaluate_local(const TouchModel& model, const LocalField& field,
     result.stiffness_N_per_m =
         model.confirmed * newton_per_metre * (free * sum.stiffness * free);
     result.clearance_angstrom = std::max(0.0, sum.clearance);
-    result.largest_newton = newton * sum.largest_force;
+    result.largest_newton = std::max(newton * sum.largest_force, result.force_newton.norm());
     return result;
 }
 
