@@ -49,7 +49,7 @@ void check_stroke(const GuardedCase& c, double largest_error_N) {
 }
 
 // The quicker the stroke, the more the one tick of delay shows.
-double largest_error_N(double stroke_s) { return stroke_s < 2 ? 0.02 : 0.01; }
+double allowed_error(double stroke_s) { return stroke_s < 2 ? 0.02 : 0.01; }
 
 // Every period from 5 ms to ten times that, where 14 ms were declared.
 DueFunction jittered(unsigned seed) {
@@ -74,11 +74,11 @@ void check_unsteady(DueFunction (*draw)(unsigned seed)) {
     for (const double stroke_s : {3.0, 1.0})
         for (const Grip grip : hands) {
             INFO(stroke_s << " s");
-            const double depth = depth_to_3_nN({.grip = grip}, stroke_s);
+            const double depth = depth_to_peak({.grip = grip}, stroke_s);
             for (const double friction : frictions_newton) {
                 GuardedCase c = stroke(grip, friction, 14, stroke_s, depth);
                 c.draw = draw(1);
-                check_stroke(c, largest_error_N(stroke_s));
+                check_stroke(c, allowed_error(stroke_s));
             }
         }
 }
@@ -86,11 +86,11 @@ void check_unsteady(DueFunction (*draw)(unsigned seed)) {
 // In and out to 3 nN, each hand at every period.
 void check_strokes(double stroke_s) {
     for (const Grip grip : hands) {
-        const double depth = depth_to_3_nN({.grip = grip}, stroke_s);
+        const double depth = depth_to_peak({.grip = grip}, stroke_s);
         for (const std::uint64_t period_ms : periods_ms)
             for (const double friction : frictions_newton)
                 check_stroke(stroke(grip, friction, period_ms, stroke_s, depth),
-                             largest_error_N(stroke_s));
+                             allowed_error(stroke_s));
     }
 }
 
@@ -192,7 +192,7 @@ TEST_CASE("guarded, a molecule drifts by 0.1 Å at most each time it goes in and
 TEST_CASE("guarded, a target on a spring is felt as it gives way", "[session][coupling]") {
     const double spring_N_per_m = GENERATE(20.0, 100.0);
     for (const Grip grip : hands) {
-        const double depth = depth_to_3_nN({.grip = grip, .spring_N_per_m = spring_N_per_m}, 3);
+        const double depth = depth_to_peak({.grip = grip, .spring_N_per_m = spring_N_per_m}, 3);
         for (const double friction : frictions_newton) {
             GuardedCase c = stroke(grip, friction, 14, 3, depth);
             c.spring_N_per_m = spring_N_per_m;

@@ -128,11 +128,11 @@ inline EmulatedOmni guarded_omni(const GuardedCase& c) {
     return EmulatedOmni(settings);
 }
 
-// As run_lockstep, at periods of any kind. What is lost never arrives; the next step starts all the
-// same.
+// As run_lockstep, at periods of any kind, and no longer than `on_tick` says yes. What is lost
+// never arrives; the next step starts all the same.
 inline void run_unsteady(std::uint64_t ticks, const DueFunction& draw, const ServoSettings& servo,
                          Device& device, const Touch& first, const StepFunction& step,
-                         const TickFunction& on_tick) {
+                         const std::function<bool(const ServoTick&)>& on_tick) {
     Exchange exchange;
     ServoState state;
     TouchModel felt;
@@ -149,7 +149,7 @@ inline void run_unsteady(std::uint64_t ticks, const DueFunction& draw, const Ser
 
         const ServoTick done = step_servo(servo, state, exchange, device.read(),
                                           static_cast<double>(tick) / servo_rate_hz);
-        on_tick(done);
+        if (!on_tick(done)) return;
         device.write(done.sent_newton);
 
         exchange.hand.read(hand);
@@ -224,7 +224,10 @@ inline Measured run_guarded(const GuardedCase& c) {
     const auto step = [&](const HandPose& hand, const TouchModel& felt) {
         return dimer.step(hand, felt);
     };
-    const auto on_tick = [&](const ServoTick& tick) { watch.add(tick); };
+    const auto on_tick = [&](const ServoTick& tick) {
+        watch.add(tick);
+        return true;
+    };
     const auto ticks = static_cast<std::uint64_t>(std::lround(c.seconds * servo_rate_hz));
     const Touch& first = dimer.simulation().touch;
     if (c.draw) {
@@ -255,7 +258,7 @@ inline GuardedCase stroke(Grip grip, double friction_newton, std::uint64_t perio
 
 // How deep (m), to half a millimetre, the stroke of a case goes to reach 3 nN at 1 ms without
 // friction.
-inline double depth_to_3_nN(const GuardedCase& c, double stroke_s) {
+inline double depth_to_peak(const GuardedCase& c, double stroke_s) {
     double less = 0.08, more = 0.2;
     for (int halving = 0; halving < 8; ++halving) {
         const double depth = 0.5 * (less + more);
