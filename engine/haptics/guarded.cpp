@@ -114,8 +114,7 @@ GuardedTick step_guarded(const GuardedSettings& settings, const Touch& touch, co
     const Vec3 wanted = own + state.kept_m;
     const double length = wanted.norm() * angstrom_per_m, most = farthest_step(touch, state);
     const double share = length > most ? most / length : 1;
-    const Vec3 followed =
-        follow(settings, touch, share * wanted, angstrom_per_m, state);
+    const Vec3 followed = follow(settings, touch, share * wanted, angstrom_per_m, state);
     tick.is_stopped = followed != share * wanted;
     // What the stop held back is kept; what the limits cut off is not, but for what was kept.
     const Vec3 cut = (1 - share) * wanted;

@@ -18,7 +18,7 @@ struct GuardedSettings {
     // of what a device and this damping keep stable, 0.5 (B_h + B)/(1.5 T).
     double cap_N_per_m = 200;
     double damping_N_s_per_m = 0.5;  // B
-    double stop_newton = 10e-9;      // on one atom; the molecule goes no further in
+    double stop_newton = 10e-9;      // on it or on one atom; the molecule goes no further in
     Vec3 half_workspace_m = Vec3::Constant(0.1);  // of the device
     std::uint32_t revision = 0;      // another number: laws changed, the force glides to theirs
 };

@@ -39,10 +39,9 @@ LocalForce evaluate_local(const TouchModel& model, const LocalField& field,
     result.torque_newton_metre =
         model.torque_newton_metre +
         model.confirmed_torque * joule * (torque - field.there.torque_about(field.centre));
-    result.stiffness_N_per_m =
-        model.confirmed * newton_per_metre * (free * sum.stiffness * free);
+    result.stiffness_N_per_m = model.confirmed * newton_per_metre * (free * sum.stiffness * free);
     result.clearance_angstrom = std::max(0.0, sum.clearance);
-    result.largest_newton = newton * sum.largest_force;
+    result.largest_newton = std::max(newton * sum.largest_force, result.force_newton.norm());
     return result;
 }
 

@@ -49,7 +49,7 @@ struct LocalForce {
     Mat3 stiffness_N_per_m = Mat3::Zero();       // -d(force)/d(place), of what it may do
     // To the nearest place where a pair repels, Å, 0 or more.
     double clearance_angstrom = std::numeric_limits<double>::infinity();
-    double largest_newton = 0;  // on any atom of it, or on it
+    double largest_newton = 0;  // on any atom of it, or on it as a whole, whichever is more
 };
 
 // At a place near the touch model's: its force and what the field says of the way from there, the

@@ -373,7 +373,7 @@ void visit_coupling(FieldVisitor& v, CouplingDescription& c) {
             .highest = 5},
            c.damping_N_s_per_m);
     v.real({.key = "stop_nN",
-            .meaning = "guarded: force on an atom beyond which the molecule goes no further in",
+            .meaning = "guarded: force on the molecule or one atom of it beyond which it goes no further in",
             .lowest = positive,
             .highest = 1e3},
            c.stop_nN);

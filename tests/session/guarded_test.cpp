@@ -1,0 +1,233 @@
+// What guarded coupling must keep to on the dimer: six hands, four periods, with the device's
+// friction and without. Each bar and its number come from a study of this loop in another program.
+#include "tests/support/guarded_loop.h"
+
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <random>
+#include <string>
+
+using namespace palpa;
+using namespace palpa::test;
+
+namespace {
+
+constexpr std::array grips{Grip::None,   Grip::Light, Grip::Slack,
+                           Grip::Medium, Grip::Firm,  Grip::FirmGrip};
+constexpr std::array hands{Grip::Light, Grip::Slack, Grip::Medium, Grip::Firm, Grip::FirmGrip};
+constexpr std::array<std::uint64_t, 4> periods_ms{1, 5, 14, 83};
+constexpr std::array frictions_newton{0.0, 0.26};
+
+std::string words_of(const GuardedCase& c) {
+    return std::string(grip_names[static_cast<std::size_t>(c.grip)]) + ", " +
+           std::to_string(c.period_ms) + " ms, friction " + std::to_string(c.friction_newton) +
+           " N";
+}
+
+void check_held(const GuardedCase& c) {
+    INFO(words_of(c));
+    const Measured measured = run_guarded(c);
+    CHECK(measured.ripple_N < 0.02);
+    CHECK(std::abs(measured.last_angstrom - rest_angstrom) < 0.3);
+    CHECK(measured.stage <= SafetyStage::Slewed);
+}
+
+void check_stroke(const GuardedCase& c, double largest_error_N) {
+    INFO(words_of(c));
+    const Measured measured = run_guarded(c);
+    CHECK(measured.energy_J <= 0.001);
+    CHECK(measured.error_N <= largest_error_N);
+    CHECK(measured.attraction_N >= 0.85);
+    CHECK(measured.largest_nN <= 3);
+    CHECK(measured.at_clamp == 0);
+    CHECK(measured.stage <= SafetyStage::Slewed);
+}
+
+// The quicker the stroke, the more the one tick of delay shows.
+double allowed_error(double stroke_s) { return stroke_s < 2 ? 0.02 : 0.01; }
+
+// Every period from 5 ms to ten times that, where 14 ms were declared.
+DueFunction jittered(unsigned seed) {
+    const auto random = std::make_shared<std::mt19937>(seed);
+    return [random] { return Due{5 + (*random)() % 46, false}; };
+}
+
+// Every 14 ms, but one result of five never arrives.
+DueFunction lossy(unsigned seed) {
+    const auto random = std::make_shared<std::mt19937>(seed);
+    return [random] { return Due{14, (*random)() % 5 == 0}; };
+}
+
+// At rest, and in strokes of 3 s and 1 s.
+void check_unsteady(DueFunction (*draw)(unsigned seed)) {
+    for (const double friction : frictions_newton)
+        for (const Grip grip : grips) {
+            GuardedCase c = held(grip, friction, 14);
+            c.draw = draw(1);
+            check_held(c);
+        }
+    for (const double stroke_s : {3.0, 1.0})
+        for (const Grip grip : hands) {
+            INFO(stroke_s << " s");
+            const double depth = depth_to_peak({.grip = grip}, stroke_s);
+            for (const double friction : frictions_newton) {
+                GuardedCase c = stroke(grip, friction, 14, stroke_s, depth);
+                c.draw = draw(1);
+                check_stroke(c, allowed_error(stroke_s));
+            }
+        }
+}
+
+// In and out to 3 nN, each hand at every period.
+void check_strokes(double stroke_s) {
+    for (const Grip grip : hands) {
+        const double depth = depth_to_peak({.grip = grip}, stroke_s);
+        for (const std::uint64_t period_ms : periods_ms)
+            for (const double friction : frictions_newton)
+                check_stroke(stroke(grip, friction, period_ms, stroke_s, depth),
+                             allowed_error(stroke_s));
+    }
+}
+
+}  // namespace
+
+TEST_CASE("guarded, a knocked hand stays at rest without a ripple", "[session][coupling]") {
+    for (const Grip grip : grips)
+        for (const std::uint64_t period_ms : periods_ms)
+            for (const double friction : frictions_newton)
+                check_held(held(grip, friction, period_ms));
+}
+
+TEST_CASE("guarded, ten times the force gain leaves rest without a ripple", "[session][coupling]") {
+    for (const Grip grip : {Grip::None, Grip::Light, Grip::Medium, Grip::Firm})
+        for (const std::uint64_t period_ms : periods_ms)
+            for (const double friction : frictions_newton) {
+                GuardedCase c = held(grip, friction, period_ms);
+                c.settings = {"coupling.A_f_max=51e9", "coupling.A_f_min=6.4e9"};
+                check_held(c);
+            }
+}
+
+// No energy for the hand, the law at rest, its attraction, nothing cut off.
+TEST_CASE("guarded, slow strokes to 3 nN feel as the law at rest", "[session][coupling]") {
+    check_strokes(3);
+}
+
+TEST_CASE("guarded, quick strokes to 3 nN feel as the law at rest", "[session][coupling]") {
+    check_strokes(1);
+}
+
+TEST_CASE("guarded, no hand is too quick for the wall", "[session][coupling]") {
+    const double mean_m_per_s = GENERATE(0.03, 0.1, 0.3, 0.6);
+    for (const std::uint64_t period_ms : periods_ms)
+        for (const double friction : frictions_newton)
+            // At eight places and moments within a period.
+            for (int phase = 0; phase < 8; ++phase) {
+                GuardedCase c{Grip::Firm, friction, period_ms, 10 + 0.15 * phase};
+                const double out = 0.3 + 0.003 * phase, stroke_s = 0.09 / mean_m_per_s;
+                c.script.path = {{out, 0},
+                                 {out + stroke_s, -0.09},
+                                 {out + stroke_s + 0.5, -0.09},
+                                 {out + 2 * stroke_s + 0.5, 0}};
+                c.seconds = out + 2 * stroke_s + 1;
+                INFO(words_of(c) << ", " << mean_m_per_s << " m/s, phase " << phase);
+
+                const Measured measured = run_guarded(c);
+
+                CHECK(measured.closest_angstrom > 2.6);
+                CHECK(measured.largest_nN < 1);
+                CHECK(measured.stage <= SafetyStage::Slewed);
+            }
+}
+
+TEST_CASE("guarded, no push goes through the wall", "[session][coupling]") {
+    // 9.5 cm lead to 3 nN.
+    const double too_far_m = GENERATE(0.03, 0.06, 0.12), stroke_s = GENERATE(0.5, 2.0);
+    for (const std::uint64_t period_ms : periods_ms)
+        for (const double friction : frictions_newton) {
+            const GuardedCase c =
+                stroke(Grip::Firm, friction, period_ms, stroke_s, 0.095 + too_far_m, 0.5);
+            INFO(words_of(c) << ", " << too_far_m << " m too far in " << stroke_s << " s");
+
+            const Measured measured = run_guarded(c);
+
+            CHECK(measured.closest_angstrom >= 2.32);
+            CHECK(measured.largest_nN <= 10);
+            CHECK(measured.energy_J <= 0);
+            CHECK(measured.stage <= SafetyStage::Clamped);
+        }
+}
+
+TEST_CASE("guarded, a molecule drifts by 0.1 Å at most each time it goes in and out",
+          "[session][coupling]") {
+    constexpr int cycles = 10;
+    const double stroke_s = GENERATE(2.0, 0.7);
+    for (const std::uint64_t period_ms : periods_ms)
+        for (const double friction : frictions_newton) {
+            GuardedCase c{Grip::Firm, friction, period_ms};
+            c.hand = HandModel{0.3, 500, 2e4};  // hardly gives way
+            // What ten strokes without a rest heat is not what is asked here.
+            c.hot_newton = std::numeric_limits<double>::infinity();
+            double time = 0.2;
+            c.script.path = {{time, 0}};
+            for (int cycle = 0; cycle < cycles; ++cycle) {
+                c.script.path.push_back({time += stroke_s, -0.1});
+                c.script.path.push_back({time += stroke_s, 0});
+            }
+            c.seconds = time + 0.5;
+            INFO(words_of(c) << ", " << stroke_s << " s");
+
+            const Measured measured = run_guarded(c);
+
+            CHECK(std::abs(measured.last_angstrom - c.start_angstrom) <= 0.1 * cycles);
+            CHECK(measured.stage <= SafetyStage::Slewed);
+        }
+}
+
+TEST_CASE("guarded, a target on a spring is felt as it gives way", "[session][coupling]") {
+    const double spring_N_per_m = GENERATE(20.0, 100.0);
+    for (const Grip grip : hands) {
+        const double depth = depth_to_peak({.grip = grip, .spring_N_per_m = spring_N_per_m}, 3);
+        for (const double friction : frictions_newton) {
+            GuardedCase c = stroke(grip, friction, 14, 3, depth);
+            c.spring_N_per_m = spring_N_per_m;
+            INFO(words_of(c) << ", " << spring_N_per_m << " N/m");
+
+            const Measured measured = run_guarded(c);
+
+            CHECK(measured.error_N <= 0.05);
+            CHECK(measured.energy_J <= 0);
+            CHECK(measured.attraction_N >= 0.85);
+            CHECK(measured.at_clamp == 0);
+            CHECK(measured.stage <= SafetyStage::Slewed);
+            GuardedCase at_rest = held(grip, friction, 14);
+            at_rest.spring_N_per_m = spring_N_per_m;
+            check_held(at_rest);
+        }
+    }
+}
+
+TEST_CASE("guarded, periods that vary tenfold change nothing of that", "[session][coupling]") {
+    check_unsteady(jittered);
+}
+
+TEST_CASE("guarded, steps that are lost change nothing of that", "[session][coupling]") {
+    check_unsteady(lossy);
+}
+
+TEST_CASE("the loop of varying periods is the other loop where they do not vary",
+          "[session][coupling]") {
+    GuardedCase c = stroke(Grip::Medium, 0.26, 14, 1, 0.1);
+    const Measured steady = run_guarded(c);
+    c.draw = [] { return Due{14, false}; };
+    const Measured drawn = run_guarded(c);
+
+    CHECK(drawn.energy_J == steady.energy_J);
+    CHECK(drawn.error_N == steady.error_N);
+    CHECK(drawn.last_angstrom == steady.last_angstrom);
+}
