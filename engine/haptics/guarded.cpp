@@ -20,16 +20,41 @@ constexpr double share_filter_s = 0.01;
 // Laws that are exchanged while they are felt glide in this time.
 constexpr double law_glide_s = 0.1;
 
-// The molecule's way in one tick, Å: a part of the clearance, and of what it may go until the next
-// model comes.
-double farthest_step(const Touch& touch, const GuardedState& state) noexcept {
+// What the molecule may go in this tick, Å: a part of the clearance, and on average no more than it
+// may go until the next model comes. What it did not need is saved up to the former: at long periods
+// the average is less than an encoder step.
+double update_allowance(const Touch& touch, GuardedState& state) noexcept {
     constexpr double in_contact = 0.02, in_contact_per_model = 0.2;  // Å
     // A tangent knows no wall.
     const double trusted = touch.field.has_atoms ? 1 : 0.15;
     const double clearance = state.at_place.clearance_angstrom;
     const double period = std::max({touch.model.period_s, state.interval_s, state.since_arrival_s});
-    return std::min(in_contact + 0.1 * clearance,
-                    (in_contact_per_model + trusted * clearance) * tick_s / period);
+    const double refill = (in_contact_per_model + trusted * clearance) * tick_s / period;
+    state.allowance_angstrom =
+        std::min(in_contact + 0.1 * clearance, state.allowance_angstrom + refill);
+    return state.allowance_angstrom;
+}
+
+// Where limits cut off travel the force still acts on the handle, and what it does there comes from
+// nothing; the servo's own damping takes some of it again, and of that no more than this is saved.
+constexpr double most_saved_J = 3e-3;
+
+void update_debt(const GuardedSettings& settings, const Vec3& dropped_m,
+                 GuardedState& state) noexcept {
+    const double damped =
+        settings.damping_N_s_per_m * state.handle_m_per_s.squaredNorm() * tick_s;
+    state.debt_J =
+        std::max(-most_saved_J, state.debt_J + state.law_newton.dot(dropped_m) - damped);
+}
+
+// Of the law's force: where it has done too much of that, it drives the handle by the share that the
+// molecule follows.
+double driven_share(const GuardedState& state) noexcept {
+    constexpr double allowed_J = 0.2e-3, too_much_J = 0.4e-3;
+    const bool drives = state.law_newton.dot(state.handle_m_per_s) > 0;
+    if (!drives || !(state.wanted_m > 0) || state.debt_J < allowed_J) return 1;
+    const double grip = std::min(1.0, (state.debt_J - allowed_J) / (too_much_J - allowed_J));
+    return 1 - grip * (1 - state.allowed_m / state.wanted_m);
 }
 
 // Goes to a place if no atom is pushed too hard there, or less than before.
@@ -112,9 +137,11 @@ GuardedTick step_guarded(const GuardedSettings& settings, const Touch& touch, co
                                                         settings.half_workspace_m, tick_s));
     }
     const Vec3 wanted = own + state.kept_m;
-    const double length = wanted.norm() * angstrom_per_m, most = farthest_step(touch, state);
+    const double length = wanted.norm() * angstrom_per_m, most = update_allowance(touch, state);
     const double share = length > most ? most / length : 1;
     const Vec3 followed = follow(settings, touch, share * wanted, angstrom_per_m, state);
+    state.allowance_angstrom =
+        std::max(0.0, state.allowance_angstrom - followed.norm() * angstrom_per_m);
     tick.is_stopped = followed != share * wanted;
     // What the stop held back is kept; what the limits cut off is not, but for what was kept.
     const Vec3 cut = (1 - share) * wanted;
@@ -132,16 +159,12 @@ GuardedTick step_guarded(const GuardedSettings& settings, const Touch& touch, co
     }
     state.law_jump_newton *= std::exp(-tick_s / law_glide_s);
     state.law_newton = law + state.law_jump_newton;
-    // A force that drives the handle on where the molecule does not follow would do work from
-    // nothing: it drives by the share that does.
     const double remember = share_filter_s / (share_filter_s + tick_s);
     state.wanted_m = remember * state.wanted_m + wanted.norm();
     state.allowed_m = remember * state.allowed_m + share * wanted.norm();
-    const bool drives = state.law_newton.dot(state.handle_m_per_s) > 0;
-    const double driven =
-        drives && state.wanted_m > 0 ? state.allowed_m / state.wanted_m : 1;
-    tick.hand_newton = driven * state.law_newton - settings.cap_N_per_m * state.kept_m -
+    tick.hand_newton = driven_share(state) * state.law_newton - settings.cap_N_per_m * state.kept_m -
                        settings.damping_N_s_per_m * state.handle_m_per_s;
+    update_debt(settings, tick.dropped_m, state);
     state.since_arrival_s += tick_s;
     return tick;
 }

@@ -39,11 +39,13 @@ struct GuardedState {
     Vec3 place_angstrom = Vec3::Zero();
     Vec3 kept_m = Vec3::Zero();       // handle travel that the stop did not let the molecule follow
     LocalForce at_place;
+    double allowance_angstrom = 0;    // that it may go at once
     Vec3 jump_newton = Vec3::Zero();  // what is left of the old model's force over the new one's
     double since_arrival_s = 0, interval_s = 0;  // of touch models: the last, between the last two
     Vec3 handle_m_per_s = Vec3::Zero();          // filtered
     // Of late, m: handle travel that the molecule was to follow, and what the limits left of it.
     double wanted_m = 0, allowed_m = 0;
+    double debt_J = 0;  // work on the hand where the molecule did not follow, less what was damped
     Vec3 law_newton = Vec3::Zero();              // that the force law gave
     Vec3 law_jump_newton = Vec3::Zero();         // what is left of the old law's over the new one's
     std::uint32_t revision = 0;

@@ -49,6 +49,8 @@ ServoSettings build_servo_settings(const SceneDescription& scene, const Simulati
     guarded.cap_N_per_m = guarded_cap(scene.device.viscosity_N_s_per_m, c.damping_N_s_per_m);
     guarded.damping_N_s_per_m = c.damping_N_s_per_m;
     guarded.stop_newton = c.stop_nN * 1e-9;
+    // Friction is lost twice on turning round (haptics/safety.h).
+    settings.safety.frozen_newton = 1.48 + 2 * scene.device.friction_N;
     return settings;
 }
 
