@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace palpa {
 namespace {
@@ -20,16 +21,17 @@ constexpr double share_filter_s = 0.01;
 // Laws that are exchanged while they are felt glide in this time.
 constexpr double law_glide_s = 0.1;
 
-// What the molecule may go in this tick, Å: a part of the clearance, and on average no more than it
-// may go until the next model comes. What it did not need is saved up to the former: at long periods
-// the average is less than an encoder step.
+// What the molecule may go in this tick, Å: a part of the clearance, and on average, where the
+// field is one of the last step only, no more than until the next model comes. What it did not need
+// is saved up to the former: at long periods the average is less than an encoder step.
 double update_allowance(const Touch& touch, GuardedState& state) noexcept {
     constexpr double in_contact = 0.02, in_contact_per_model = 0.2;  // Å
     // A tangent knows no wall.
     const double trusted = touch.field.has_atoms ? 1 : 0.15;
     const double clearance = state.at_place.clearance_angstrom;
     const double period = std::max({touch.model.period_s, state.interval_s, state.since_arrival_s});
-    const double refill = (in_contact_per_model + trusted * clearance) * tick_s / period;
+    double refill = (in_contact_per_model + trusted * clearance) * tick_s / period;
+    if (!touch.model.gives_way) refill = std::numeric_limits<double>::infinity();
     state.allowance_angstrom =
         std::min(in_contact + 0.1 * clearance, state.allowance_angstrom + refill);
     return state.allowance_angstrom;
@@ -41,14 +43,12 @@ constexpr double most_saved_J = 3e-3;
 
 void update_debt(const GuardedSettings& settings, const Vec3& dropped_m,
                  GuardedState& state) noexcept {
-    const double damped =
-        settings.damping_N_s_per_m * state.handle_m_per_s.squaredNorm() * tick_s;
-    state.debt_J =
-        std::max(-most_saved_J, state.debt_J + state.law_newton.dot(dropped_m) - damped);
+    const double damped = settings.damping_N_s_per_m * state.handle_m_per_s.squaredNorm() * tick_s;
+    state.debt_J = std::max(-most_saved_J, state.debt_J + state.law_newton.dot(dropped_m) - damped);
 }
 
-// Of the law's force: where it has done too much of that, it drives the handle by the share that the
-// molecule follows.
+// Of the law's force: where it has done too much of that, it drives the handle by the share that
+// the molecule follows.
 double driven_share(const GuardedState& state) noexcept {
     constexpr double allowed_J = 0.2e-3, too_much_J = 0.4e-3;
     const bool drives = state.law_newton.dot(state.handle_m_per_s) > 0;
@@ -162,7 +162,8 @@ GuardedTick step_guarded(const GuardedSettings& settings, const Touch& touch, co
     const double remember = share_filter_s / (share_filter_s + tick_s);
     state.wanted_m = remember * state.wanted_m + wanted.norm();
     state.allowed_m = remember * state.allowed_m + share * wanted.norm();
-    tick.hand_newton = driven_share(state) * state.law_newton - settings.cap_N_per_m * state.kept_m -
+    tick.hand_newton = driven_share(state) * state.law_newton -
+                       settings.cap_N_per_m * state.kept_m -
                        settings.damping_N_s_per_m * state.handle_m_per_s;
     update_debt(settings, tick.dropped_m, state);
     state.since_arrival_s += tick_s;

@@ -28,6 +28,9 @@ struct TouchModel {
     // The share of what a frozen environment would change in force and torque that the one that
     // gives way did change, 0 to 1.
     double confirmed = 1, confirmed_torque = 1;
+    // Whether what is around the molecule moves from step to step. Where it does not, the field is as
+    // good far from the touch model's place as there.
+    bool gives_way = true;
     std::uint32_t start = 0;  // another number: the molecule was put there, not by the hand
     bool is_still = false;    // nothing moves: the hand has no hold
 };

@@ -153,6 +153,7 @@ TouchModel build_model(const Simulation& simulation, const HandPose& hand, const
     if (simulation.flexible)
         touch.active_freedom += static_cast<int>(find_active_freedom(*simulation.flexible));
     touch.period_s = simulation.period_s;
+    touch.gives_way = simulation.flexible.has_value();
     return touch;
 }
 
@@ -208,6 +209,8 @@ void update_touch(const HandPose& hand, Simulation& simulation) noexcept {
     Touch touch = build_touch(simulation, hand);
     touch.model.start = simulation.touch.model.start;
     update_confirmed(simulation.touch, touch);
+    constexpr double stands_still = 0.95;
+    if (touch.model.confirmed < stands_still) touch.model.gives_way = true;
     simulation.touch = std::move(touch);
 }
 
