@@ -121,8 +121,10 @@ void add_run(CLI::App& program, palpa::RunOptions& options) {
         },
         "list the keys of scene files, and do nothing else");
     std::vector<std::string>& settings = options.settings;
-    add_setting(run, "--mode", "coupling.mode", "1 to 5, as in the paper", settings);
+    add_setting(run, "--mode", "coupling.mode", "1 to 5, as in the paper, or guarded", settings);
     add_setting(run, "--period-ms", "run.period_ms", "declared period of the simulation", settings);
+    add_setting(run, "--engage", "coupling.engage",
+                "at-once, or ramp: guarded, the force comes after quiet ticks, in 2 s", settings);
     add_setting(run, "--hand", "hand.grip", "none, light, slack, medium, firm or firm-grip",
                 settings);
     add_setting(run, "--friction", "device.friction_N", "Coulomb friction of the device", settings);

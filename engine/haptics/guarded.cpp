@@ -50,7 +50,7 @@ void update_debt(const GuardedSettings& settings, const Vec3& dropped_m,
 // Of the law's force: where it has done too much of that, it drives the handle by the share that
 // the molecule follows.
 double driven_share(const GuardedState& state) noexcept {
-    constexpr double allowed_J = 0.2e-3, too_much_J = 0.4e-3;
+    constexpr double allowed_J = 0.1e-3, too_much_J = 0.2e-3;
     const bool drives = state.law_newton.dot(state.handle_m_per_s) > 0;
     if (!drives || !(state.wanted_m > 0) || state.debt_J < allowed_J) return 1;
     const double grip = std::min(1.0, (state.debt_J - allowed_J) / (too_much_J - allowed_J));
@@ -87,8 +87,13 @@ Vec3 follow(const GuardedSettings& settings, const Touch& touch, const Vec3& tra
 
 }  // namespace
 
-double guarded_cap(double viscosity_N_s_per_m, double damping_N_s_per_m) noexcept {
-    return 0.5 * (viscosity_N_s_per_m + damping_N_s_per_m) / (1.5 * tick_s);
+double guarded_cap(double viscosity_N_s_per_m, double damping_N_s_per_m,
+                   int delay_ticks) noexcept {
+    const double stable = 0.5 * (viscosity_N_s_per_m + damping_N_s_per_m) / (1.5 * tick_s);
+    const double lossless = damping_N_s_per_m > 0
+                                ? damping_N_s_per_m / ((1.5 + delay_ticks) * tick_s)
+                                : stable;
+    return std::max(1.0, std::min(stable, lossless));
 }
 
 double guarded_gain(const GuardedSettings& settings, const Vec3& force_newton,

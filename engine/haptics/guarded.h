@@ -23,9 +23,11 @@ struct GuardedSettings {
     std::uint32_t revision = 0;      // another number: laws changed, the force glides to theirs
 };
 
-// Half of the stiffness that a device of this viscosity, with this damping added, keeps stable at
-// the servo's own period.
-double guarded_cap(double viscosity_N_s_per_m, double damping_N_s_per_m) noexcept;
+// The stiffness (N/m) that a hand may feel: half of what a device of this viscosity, with this
+// damping added, keeps stable at the servo's own period, 0.5 (B_h + B)/(1.5 T); and no more than so
+// that the damping takes what a force that is half a tick, one of holding and the delay late gives,
+// B/((1.5 + delay) T). At least 1.
+double guarded_cap(double viscosity_N_s_per_m, double damping_N_s_per_m, int delay_ticks) noexcept;
 
 // A_d where the molecule feels this force (N) and stiffness (N/m): the law's, raised until the cap
 // holds.

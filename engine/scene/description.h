@@ -61,6 +61,10 @@ inline constexpr std::array<std::string_view, 3> displacement_law_names{"repaire
 enum class WorkspaceChoice { Clutch, Bubble, Drift };
 inline constexpr std::array<std::string_view, 3> workspace_names{"clutch", "bubble", "drift"};
 
+// How a hand takes hold when nobody looks: a window always has the ramp.
+enum class Engage { AtOnce, Ramp };
+inline constexpr std::array<std::string_view, 2> engage_names{"at-once", "ramp"};
+
 // In the order of haptics' Grip.
 inline constexpr std::array<std::string_view, 6> hand_names{"none",   "light", "slack",
                                                             "medium", "firm",  "firm-grip"};
@@ -154,6 +158,7 @@ struct CouplingDescription {
     double damping_N_s_per_m = 0.5;
     double stop_nN = 10;
     std::int64_t pairs_per_tick = 130'000;
+    Engage engage = Engage::AtOnce;
 
     friend bool operator==(const CouplingDescription&, const CouplingDescription&) = default;
 };

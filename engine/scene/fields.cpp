@@ -382,6 +382,11 @@ void visit_coupling(FieldVisitor& v, CouplingDescription& c) {
                .lowest = 1000,
                .highest = 10'000'000},
               c.pairs_per_tick);
+    choose(v,
+           {.key = "engage",
+            .meaning = "guarded, headless: the force is there at once, or after quiet ticks in a "
+                       "ramp of 2 s, as in a window"},
+           engage_names, c.engage);
     v.leave_table();
 }
 

@@ -41,16 +41,18 @@ ServoSettings build_servo_settings(const SceneDescription& scene, const Simulati
     ServoSettings settings{simulation.laws.force,
                            {.clamp_newton = c.clamp_N, .is_full = simulation.is_guarded},
                            static_cast<int>(scene.device.servo_delay_ticks)};
+    settings.safety.starts_engaged = c.engage == Engage::AtOnce;
     if (!simulation.is_guarded) return settings;
     GuardedSettings& guarded = settings.guarded.emplace();
     guarded.force_law = simulation.laws.force;
     guarded.displacement_law = simulation.laws.displacement;
     guarded.workspace = build_workspace(c.workspace);
-    guarded.cap_N_per_m = guarded_cap(scene.device.viscosity_N_s_per_m, c.damping_N_s_per_m);
+    guarded.cap_N_per_m = guarded_cap(scene.device.viscosity_N_s_per_m, c.damping_N_s_per_m,
+                                      settings.delay_ticks);
     guarded.damping_N_s_per_m = c.damping_N_s_per_m;
     guarded.stop_newton = c.stop_nN * 1e-9;
-    // Friction is lost twice on turning round (haptics/safety.h).
-    settings.safety.frozen_newton = 1.48 + 2 * scene.device.friction_N;
+    // Friction is lost twice on turning round, and the rest has to show (haptics/safety.h).
+    settings.safety.frozen_newton = 2 + 2 * scene.device.friction_N;
     return settings;
 }
 

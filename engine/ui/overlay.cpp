@@ -82,7 +82,8 @@ Overlay::Overlay(const SceneDescription& scene, const ViewSettings& view)
 void Overlay::update_limit() {
     stiffness_limit_ = is_guarded()
                            ? guarded_cap(scene_.device.viscosity_N_s_per_m,
-                                         settings_.coupling.damping_N_s_per_m)
+                                         settings_.coupling.damping_N_s_per_m,
+                                         static_cast<int>(scene_.device.servo_delay_ticks))
                            : calm_stiffness(scene_, hand_model(static_cast<Grip>(scene_.hand.grip)),
                                             settings_.period_ms * 1e-3);
 }

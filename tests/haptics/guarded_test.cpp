@@ -211,6 +211,16 @@ TEST_CASE("the felt stiffness stays under the cap", "[haptics][guarded]") {
     CHECK(tick.felt_N_per_m <= guarded.settings.cap_N_per_m * (1 + 1e-12));
 }
 
+TEST_CASE("the cap is what a device keeps calm, and what the damping pays for",
+          "[haptics][guarded]") {
+    CHECK(guarded_cap(0.1, 0.5, 1) == Approx(200));
+    CHECK(guarded_cap(0, 0.5, 1) == Approx(166.7).epsilon(1e-3));
+    CHECK(guarded_cap(5, 0.5, 1) == Approx(200));
+    CHECK(guarded_cap(5, 0.5, 0) == Approx(333.3).epsilon(1e-3));
+    CHECK(guarded_cap(0.3, 0, 1) == Approx(100));
+    CHECK(guarded_cap(0, 0, 1) == 1);
+}
+
 TEST_CASE("a molecule that stands still is not moved, and is let go where it stands",
           "[haptics][guarded]") {
     const Pair pair;
