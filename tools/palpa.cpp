@@ -322,7 +322,8 @@ void add_scenarios(CLI::App& program, palpa::ScenarioOptions& options) {
         "scenarios", "Random hands and devices on a scene of one axis: does any vibrate?");
     scenarios.add_option("scene", options.scene, "scene folder or file")->required();
     scenarios.add_option("--count", options.count, "10000 unless given")->check(in_range(1, 1e7));
-    scenarios.add_option("--first", options.first, "number of the first, 0 unless given");
+    scenarios.add_option("--first", options.first, "number of the first, 0 unless given")
+        ->check(in_range(0, 1e12));
     scenarios.add_option("--seed", options.seed, "of everything random, 1 unless given");
     scenarios.add_flag("--json", options.json, "print every scenario as JSON");
     add_set_option(scenarios, options.settings);

@@ -122,19 +122,28 @@ void LiveSession::run_servo(ServoOrder order) {
     real_time_ = ask_for_real_time();
     locked_ = ask_for_locked_memory();
     ServoState state;
-    const Clock::time_point start = Clock::now();
-    Clock::time_point next = start;
+    ServoTick last;
+    Clock::time_point start = Clock::now(), before = start, next = start;
     // The force fades before the last tick.
     constexpr int last_ticks = 12;
     for (int ending = 0; ending < last_ticks; ending += order.settings.is_ending ? 1 : 0) {
         const std::uint32_t restarts = order.restarts;
         if (servo_orders_.read(order) && order.restarts != restarts) release(state.safety);
         order.settings.is_ending = stopping_;
-        const std::chrono::duration<double> now_s = Clock::now() - start;
-        const ServoTick tick =
-            step_servo(order.settings, state, exchange_, device_.read(), now_s.count());
-        device_.write(tick.sent_newton);
-        ticks_.push(tick);
+        const DeviceReading reading = device_.read();
+        // While a device that can stand still does, so does the servo's clock.
+        const bool stands_still =
+            order.is_paused && !stopping_ && reading.time_s == last.reading.time_s;
+        const Clock::time_point begin = Clock::now();
+        if (stands_still) {
+            start += begin - before;
+        } else {
+            const std::chrono::duration<double> now_s = begin - start;
+            last = step_servo(order.settings, state, exchange_, reading, now_s.count());
+            ticks_.push(last);
+        }
+        before = begin;
+        device_.write(last.sent_newton);
         next += servo_tick;
         const Clock::time_point now = Clock::now();
         if (now - next > servo_tick) {
@@ -195,7 +204,13 @@ void LiveSession::step(State& state) {
 
 void LiveSession::obey(State& state, const Command& command) {
     if (const auto* const settings = std::get_if<LiveSettings>(&command)) {
-        scene_.coupling = settings->coupling;
+        state.readout.problem.clear();
+        if (can_build_laws(settings->coupling)) {
+            scene_.coupling = settings->coupling;
+        } else {
+            state.readout.problem =
+                "eq. 2 of these numbers cannot have these slopes: the law from before stays";
+        }
         scene_.period_ms = settings->period_ms;
         set_coupling(scene_.coupling, state.simulation);
         state.simulation.period_s = scene_.period_ms * 1e-3;
@@ -205,8 +220,10 @@ void LiveSession::obey(State& state, const Command& command) {
     } else if (const auto* const pause = std::get_if<Pause>(&command)) {
         if (!orders_) hold(state);  // not what was travelled since the last look
         state.readout.paused = pause->paused;
+        order_servo(state);
     } else if (std::holds_alternative<StepOnce>(command)) {
         state.readout.paused = state.step_once = true;
+        order_servo(state);
     } else {
         reset(state);
     }
@@ -229,7 +246,9 @@ void LiveSession::reset(State& state) {
 
 // A hand takes hold quietly; laws that are exchanged glide.
 LiveSession::ServoOrder LiveSession::build_order(const State& state) {
-    ServoOrder order{build_servo_settings(scene_, state.simulation)};
+    ServoOrder order{
+        build_servo_settings(scene_, state.simulation, device_.spec().half_workspace_m)};
+    order.is_paused = orders_ && state.readout.paused;
     order.settings.safety.starts_engaged = false;
     if (order.settings.guarded) order.settings.guarded->revision = revision_++;
     return order;

@@ -73,6 +73,7 @@ private:
     struct ServoOrder {
         ServoSettings settings;
         std::uint32_t restarts = 0;  // another number ends a latched stop
+        bool is_paused = false;      // on a device that stands still
     };
 
     void run_servo(ServoOrder order);

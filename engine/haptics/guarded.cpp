@@ -31,7 +31,7 @@ double update_allowance(const Touch& touch, GuardedState& state) noexcept {
     const double clearance = state.at_place.clearance_angstrom;
     const double period = std::max({touch.model.period_s, state.interval_s, state.since_arrival_s});
     double refill = (in_contact_per_model + trusted * clearance) * tick_s / period;
-    if (!touch.model.gives_way) refill = std::numeric_limits<double>::infinity();
+    if (touch.field.has_atoms && !touch.model.gives_way) refill = std::numeric_limits<double>::infinity();
     state.allowance_angstrom =
         std::min(in_contact + 0.1 * clearance, state.allowance_angstrom + refill);
     return state.allowance_angstrom;
@@ -55,6 +55,18 @@ double driven_share(const GuardedState& state) noexcept {
     if (!drives || !(state.wanted_m > 0) || state.debt_J < allowed_J) return 1;
     const double grip = std::min(1.0, (state.debt_J - allowed_J) / (too_much_J - allowed_J));
     return 1 - grip * (1 - state.allowed_m / state.wanted_m);
+}
+
+// Travel beyond the handle's own carries a molecule through free space. Where a force is felt it fades:
+// nobody would have done the work.
+Vec3 find_extra_travel(const GuardedSettings& settings, const Vec3& handle_m, const Vec3& moved_m,
+                       const GuardedState& state) noexcept {
+    constexpr double felt_newton = 0.1, owed_J = 0.1e-3;
+    const Vec3 force = state.at_place.force_newton + state.jump_newton;
+    const double free = 1 - hand_force(settings.force_law, force).norm() / felt_newton;
+    if (!(free > 0) || state.debt_J > owed_J) return Vec3::Zero();
+    return free * extra_travel(settings.workspace, handle_m, moved_m, settings.half_workspace_m,
+                               tick_s);
 }
 
 // Goes to a place if no atom is pushed too hard there, or less than before.
@@ -111,6 +123,9 @@ void take_touch(const Touch& touch, GuardedState& state) noexcept {
     if (!goes_on) {
         state.place_angstrom = model.molecule_angstrom;
         state.kept_m.setZero();
+        state.law_newton.setZero();
+        state.law_jump_newton.setZero();
+        state.wanted_m = state.allowed_m = state.debt_J = 0;
     }
     state.at_place = evaluate_local(model, touch.field, state.place_angstrom);
     state.jump_newton.setZero();
@@ -136,10 +151,10 @@ GuardedTick step_guarded(const GuardedSettings& settings, const Touch& touch, co
     tick.felt_N_per_m = largest_felt(settings.force_law, before, stiffness) / A_d;
 
     const double angstrom_per_m = units::angstrom_per_metre / A_d;
-    Vec3 own = Vec3::Zero();
+    Vec3 own = Vec3::Zero(), extra = Vec3::Zero();
     if (!is_clutched) {
-        own = model.projector * (moved_m + extra_travel(settings.workspace, handle_m, moved_m,
-                                                        settings.half_workspace_m, tick_s));
+        extra = model.projector * find_extra_travel(settings, handle_m, moved_m, state);
+        own = model.projector * moved_m + extra;
     }
     const Vec3 wanted = own + state.kept_m;
     const double length = wanted.norm() * angstrom_per_m, most = update_allowance(touch, state);
@@ -159,7 +174,8 @@ GuardedTick step_guarded(const GuardedSettings& settings, const Touch& touch, co
     tick.force_newton = state.at_place.force_newton + state.jump_newton;
     const Vec3 law = hand_force(settings.force_law, tick.force_newton);
     if (settings.revision != state.revision) {
-        state.law_jump_newton += state.law_newton - law;
+        const Vec3 jump = state.law_newton - law;
+        if (jump.allFinite()) state.law_jump_newton += jump;
         state.revision = settings.revision;
     }
     state.law_jump_newton *= std::exp(-tick_s / law_glide_s);
@@ -170,7 +186,7 @@ GuardedTick step_guarded(const GuardedSettings& settings, const Touch& touch, co
     tick.hand_newton = driven_share(state) * state.law_newton -
                        settings.cap_N_per_m * state.kept_m -
                        settings.damping_N_s_per_m * state.handle_m_per_s;
-    update_debt(settings, tick.dropped_m, state);
+    update_debt(settings, tick.dropped_m - extra, state);
     state.since_arrival_s += tick_s;
     return tick;
 }

@@ -49,11 +49,25 @@ void follow_stillness(const TouchModel& touch, ServoState& state) noexcept {
     touch.is_still ? disengage(state.safety) : engage(state.safety);
 }
 
+// The chain that begins to watch knows nothing of before; what is felt goes on.
+void follow_safety(const SafetySettings& settings, ServoState& state) noexcept {
+    if (settings.is_full && !state.was_full && state.tick > 0) {
+        SafetyState fresh;
+        fresh.not_finite = state.safety.not_finite;
+        fresh.sent_newton = state.safety.sent_newton;
+        fresh.engagement = SafetyState::Engagement::On;
+        fresh.risen = 1;
+        state.safety = fresh;
+    }
+    state.was_full = settings.is_full;
+}
+
 }  // namespace
 
 ServoTick step_servo(const ServoSettings& settings, ServoState& state, Exchange& exchange,
                      const DeviceReading& reading, double now_s) noexcept {
     PALPA_ASSERT(settings.delay_ticks >= 0 && settings.delay_ticks <= max_servo_delay_ticks);
+    follow_safety(settings.safety, state);
     const Vec3 moved = take_reading(state, reading);
     // What the last force did while the handle went from there to here.
     state.hand_energy_J += state.safety.sent_newton.dot(moved);

@@ -39,7 +39,7 @@ struct ServoState {
     std::uint64_t tick = 0;
     // safety
     SafetyState safety;
-    bool was_still = false;
+    bool was_still = false, was_full = false;
     // energy observer
     double hand_energy_J = 0;  // work done on the hand so far; + = given to it
 };

@@ -36,7 +36,8 @@ WorkspaceMap build_workspace(WorkspaceChoice choice) {
 
 }  // namespace
 
-ServoSettings build_servo_settings(const SceneDescription& scene, const Simulation& simulation) {
+ServoSettings build_servo_settings(const SceneDescription& scene, const Simulation& simulation,
+                                   const Vec3& half_workspace_m) {
     const CouplingDescription& c = scene.coupling;
     ServoSettings settings{simulation.laws.force,
                            {.clamp_newton = c.clamp_N, .is_full = simulation.is_guarded},
@@ -47,6 +48,7 @@ ServoSettings build_servo_settings(const SceneDescription& scene, const Simulati
     guarded.force_law = simulation.laws.force;
     guarded.displacement_law = simulation.laws.displacement;
     guarded.workspace = build_workspace(c.workspace);
+    guarded.half_workspace_m = half_workspace_m;
     guarded.cap_N_per_m = guarded_cap(scene.device.viscosity_N_s_per_m, c.damping_N_s_per_m,
                                       settings.delay_ticks);
     guarded.damping_N_s_per_m = c.damping_N_s_per_m;
@@ -233,7 +235,7 @@ Summary run_headless(const SceneDescription& scene, Simulation& simulation, Devi
             progress(static_cast<double>(done) / static_cast<double>(ticks));
         }
     };
-    run_lockstep({ticks, ticks_per_step}, build_servo_settings(scene, simulation), device,
+    run_lockstep({ticks, ticks_per_step}, build_servo_settings(scene, simulation, device.spec().half_workspace_m), device,
                  simulation.touch, step, on_tick);
 
     if (progress) progress(1);

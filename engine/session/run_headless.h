@@ -25,7 +25,9 @@ struct FrameClock {
     std::function<void()> draw;
 };
 
-ServoSettings build_servo_settings(const SceneDescription& scene, const Simulation& simulation);
+// `half_workspace_m`: of the device, for what carries a small one over a large scene.
+ServoSettings build_servo_settings(const SceneDescription& scene, const Simulation& simulation,
+                                   const Vec3& half_workspace_m = Vec3::Constant(0.1));
 
 // Where along the line the hand feels the stiffest spring, K = A_f k_e / A_d, up to the scene's
 // peak force: in space the largest eigenvalue of sym(J k_e)/A_d, J the Jacobian of the force law on

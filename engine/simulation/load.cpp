@@ -244,7 +244,7 @@ ForceLaw guarded_force_law(const CouplingDescription& c,
             break;
         case ForceLawChoice::Calibrated:
             if (const auto law = PrintedForceLaw::find_calibrated(parameters)) return *law;
-            break;  // load_simulation lets no other pass
+            break;  // see can_build_laws
         case ForceLawChoice::Constant:
             return ConstantForceLaw{c.A_f};
         case ForceLawChoice::Perceptual:
@@ -275,16 +275,18 @@ PrintedForceLaw::Parameters force_parameters(const CouplingDescription& c) {
 }
 
 void check_laws(const SceneDescription& scene) {
-    const CouplingDescription& c = scene.coupling;
-    if (c.mode != CouplingMode::Guarded || c.force_law != ForceLawChoice::Calibrated ||
-        PrintedForceLaw::find_calibrated(force_parameters(c)))
-        return;
+    if (can_build_laws(scene.coupling)) return;
     throw LoadError(scene.place_of("coupling.force_law"),
                     "eq. 2 of these F_h1_N, F_h2_N, F_0_nN cannot have the slopes A_f_max at 0 and "
                     "A_f_min at F_0; expected others, or coupling.force_law = \"printed\"");
 }
 
 }  // namespace
+
+bool can_build_laws(const CouplingDescription& c) {
+    return c.mode != CouplingMode::Guarded || c.force_law != ForceLawChoice::Calibrated ||
+           PrintedForceLaw::find_calibrated(force_parameters(c)).has_value();
+}
 
 CouplingLaws build_coupling_laws(const CouplingDescription& c) {
     const PrintedForceLaw printed_force(force_parameters(c));

@@ -57,6 +57,9 @@ struct Simulation {
 // The laws that a scene's mode asks for.
 CouplingLaws build_coupling_laws(const CouplingDescription& coupling);
 
+// Whether there are such laws: eq. 2 cannot be calibrated to any numbers.
+bool can_build_laws(const CouplingDescription& coupling);
+
 // Makes the scene's coupling that of a simulation.
 void set_coupling(const CouplingDescription& coupling, Simulation& simulation);
 

@@ -57,6 +57,7 @@ StepReport step_simulation(Simulation& simulation, const HandPose& hand,
         copy_positions(*simulation.flexible, simulation.atoms.positions);
         report.finite = report.settled->is_finite;
     }
+    if (!report.finite) place_grabbed(simulation, before);
     update_touch(hand, simulation);
     if (!hand.place_angstrom) simulation.touch.model.displacement_gain = move.displacement_gain;
     report.touch = simulation.touch.model;

@@ -350,6 +350,8 @@ void Overlay::draw_gains(std::vector<Command>& commands) {
                   now_colour}};
     PlotRange gains = range_around(z_, 1);
     gains.low = 0;
+    if (is_guarded())
+        gains.high = std::max(gains.high, 1.1 * cm_per_angstrom(last_.displacement_gain));
     draw_plot("displacement gain",
               {"F_m (nN)", "handle per molecule (cm/Å)", forces, gains, gain_lines, gain_points},
               118);
@@ -432,6 +434,11 @@ void Overlay::draw_gain_sliders() {
 
 void Overlay::choose_laws() {
     CouplingDescription& c = settings_.coupling;
+    if (!ImGui::TreeNode("laws", "laws: %s, %s, %s",
+                         force_law_names[static_cast<std::size_t>(c.force_law)].data(),
+                         displacement_law_names[static_cast<std::size_t>(c.displacement_law)].data(),
+                         workspace_names[static_cast<std::size_t>(c.workspace)].data()))
+        return;
     const auto choose = [&](const char* label, const auto& names, auto& choice, const char* text) {
         const LiveSettings before = settings_;
         int i = static_cast<int>(choice);
@@ -453,6 +460,7 @@ void Overlay::choose_laws() {
     choose("reach", workspace_names, c.workspace,
            "how far places are reached: the clutch alone; outside a bubble the molecule goes on by "
            "itself; or the handle drifts back to its centre while it moves");
+    ImGui::TreePop();
 }
 
 void Overlay::draw_history() {

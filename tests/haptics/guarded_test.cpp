@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 using namespace palpa;
@@ -209,6 +210,58 @@ TEST_CASE("the felt stiffness stays under the cap", "[haptics][guarded]") {
 
     CHECK(tick.felt_N_per_m == Approx(std::max(0.0, felt)).epsilon(1e-3).margin(1e-6));
     CHECK(tick.felt_N_per_m <= guarded.settings.cap_N_per_m * (1 + 1e-12));
+}
+
+TEST_CASE("on a tangent the molecule goes no farther than its model may be trusted",
+          "[haptics][guarded]") {
+    Touch touch;
+    touch.model.projector = Vec3::UnitX().asDiagonal();
+    touch.model.gives_way = GENERATE(false, true);
+    touch.model.period_s = 0.1;
+    touch.model.clearance_angstrom = 1;
+    Guarded guarded(touch);
+    for (int i = 0; i < 100; ++i) (void)guarded.move(Vec3(-5e-3, 0, 0));
+
+    // 0.2 Å and a sixth of the clearance, and what was saved up.
+    CHECK(-guarded.x() <= 0.2 + 0.15 + 0.12);
+}
+
+TEST_CASE("a start anew forgets a force that was no number", "[haptics][guarded]") {
+    const Pair pair;
+    Guarded guarded(pair.touch(4));
+    Touch bad = pair.touch(4);
+    bad.model.force_newton.x() = std::numeric_limits<double>::quiet_NaN();
+    guarded.touch = bad;
+    take_touch(bad, guarded.state);
+    CHECK_FALSE(guarded.move(Vec3::Zero()).hand_newton.allFinite());
+
+    Touch anew = pair.touch(4);
+    anew.model.start = 1;
+    ++guarded.settings.revision;
+    guarded.touch = anew;
+    take_touch(anew, guarded.state);
+
+    double felt = 0;
+    for (int i = 0; i < 1500; ++i) felt = guarded.move(Vec3::Zero()).hand_newton.x();
+    CHECK(felt == Approx(hand_force(guarded.settings.force_law, pair.force(4))).epsilon(1e-3));
+}
+
+TEST_CASE("what carries a workspace carries nothing where a force is felt", "[haptics][guarded]") {
+    const Pair pair;
+    const WorkspaceMap map = GENERATE(WorkspaceMap(BubbleMap{}), WorkspaceMap(DriftMap{}));
+    const auto carried = [&](double from) {
+        Guarded guarded(pair.touch(from));
+        guarded.settings.workspace = map;
+        guarded.settings.displacement_law = ConstantDisplacementLaw{1e9};
+        for (int i = 0; i < 20; ++i) {
+            const Vec3 moved(i % 2 == 0 ? 1e-5 : -1e-5, 0, 0);
+            (void)step_guarded(guarded.settings, guarded.touch, Vec3(0.09, 0, 0), moved, false,
+                               guarded.state);
+        }
+        return std::abs(guarded.x() - from);
+    };
+    CHECK(carried(3.6) < 1e-12);
+    CHECK(carried(40) > 1e-5);
 }
 
 TEST_CASE("the cap is what a device keeps calm, and what the damping pays for",

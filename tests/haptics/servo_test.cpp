@@ -134,6 +134,24 @@ TEST_CASE("a reading that is not valid moves nothing", "[haptics][servo]") {
     CHECK(std::isfinite(servo.state.hand_energy_J));
 }
 
+TEST_CASE("the safety chain begins to watch where the paper's coupling left off", "[haptics][servo]") {
+    Servo servo;
+    servo.settings.force_law = ConstantForceLaw{1e9};
+    servo.exchange.touch.post(touch_of({2e-9, 0, 0}));
+    double last = 0;
+    for (int i = 0; i < 500; ++i) last = servo.tick(reading_at(0.01)).sent_newton.x();
+    CHECK(last == Approx(2));
+
+    servo.settings.safety.is_full = true;
+    servo.settings.safety.starts_engaged = false;
+    servo.exchange.touch.post(touch_of({2e-9, 0, 0}));
+    for (int i = 0; i < 20; ++i) {
+        const ServoTick tick = servo.tick(reading_at(0.01));
+        CHECK(tick.stage == SafetyStage::None);
+        CHECK(tick.sent_newton.x() == Approx(2));
+    }
+}
+
 TEST_CASE("the energy observer sums the force sent times the way it went", "[haptics][servo]") {
     Servo servo;
     servo.settings.force_law = ConstantForceLaw{1e9};
