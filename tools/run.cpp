@@ -180,6 +180,8 @@ int run_in_window(const SceneDescription& scene, const Simulation& simulation,
         settings.script = {};
         // A mouse has no workspace: half a metre either way stands for that.
         settings.half_workspace_m = Vec3::Constant(0.5);
+        // A person who sees the molecule lag overcomes the handle's friction; a mouse has none.
+        settings.friction_newton = 0;
     }
     const double reach_m = live_hand_newton / std::max(stiffness, 1.0);
     EmulatedOmni device(settings);

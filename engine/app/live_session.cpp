@@ -123,7 +123,8 @@ void LiveSession::run_servo(ServoOrder order) {
     locked_ = ask_for_locked_memory();
     ServoState state;
     ServoTick last;
-    Clock::time_point start = Clock::now(), before = start, next = start;
+    const Clock::time_point start = Clock::now();
+    Clock::time_point next = start;
     // The force fades before the last tick.
     constexpr int last_ticks = 12;
     for (int ending = 0; ending < last_ticks; ending += order.settings.is_ending ? 1 : 0) {
@@ -131,18 +132,15 @@ void LiveSession::run_servo(ServoOrder order) {
         if (servo_orders_.read(order) && order.restarts != restarts) release(state.safety);
         order.settings.is_ending = stopping_;
         const DeviceReading reading = device_.read();
-        // While a device that can stand still does, so does the servo's clock.
+        // An emulated device lives on the servo's ticks, however late they come, and can stand still.
+        const std::chrono::duration<double> real_s = Clock::now() - start;
         const bool stands_still =
             order.is_paused && !stopping_ && reading.time_s == last.reading.time_s;
-        const Clock::time_point begin = Clock::now();
-        if (stands_still) {
-            start += begin - before;
-        } else {
-            const std::chrono::duration<double> now_s = begin - start;
-            last = step_servo(order.settings, state, exchange_, reading, now_s.count());
+        if (!stands_still) {
+            last = step_servo(order.settings, state, exchange_, reading,
+                              orders_ ? reading.time_s : real_s.count());
             ticks_.push(last);
         }
-        before = begin;
         device_.write(last.sent_newton);
         next += servo_tick;
         const Clock::time_point now = Clock::now();

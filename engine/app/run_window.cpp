@@ -137,6 +137,7 @@ private:
     OrbitCamera camera_;
     Vec3 hand_m_ = Vec3::Zero();    // where the mouse wants the handle
     Vec3 handle_m_ = Vec3::Zero();  // where it is
+    double displacement_gain_ = 0;  // A_d at this moment
     VkExtent2D drawn_size_{};       // of the last picture
     bool holding_ = false;
     RenderScale scale_;
@@ -232,6 +233,7 @@ void Sandbox::look_at_grabbed() {
 void Sandbox::take_ticks() {
     for (ServoTick tick; session_.pop_tick(tick);) {
         handle_m_ = tick.reading.position_m;
+        if (tick.touch.displacement_gain > 0) displacement_gain_ = tick.touch.displacement_gain;
         if (frame_.readout.paused) continue;
         statistics_.add(tick);
         overlay_.add_tick(tick);
@@ -276,7 +278,7 @@ void Sandbox::move_hand(const Input& input) {
     const glm::vec3 way = scale * (static_cast<float>(input.mouse_dx) * rightward(camera_) -
                                    static_cast<float>(input.mouse_dy) * upward(camera_)) -
                           static_cast<float>(input.wheel * angstrom_per_notch) * backward(camera_);
-    const double gain = frame_.readout.touch.displacement_gain;
+    const double gain = displacement_gain_;
     hand_m_ += Vec3(way.x, way.y, way.z) * units::metre_per_angstrom * gain;
     // Never further ahead than the hand pulls: so that coming back is felt at once.
     const double ahead = (hand_m_ - handle_m_).norm();

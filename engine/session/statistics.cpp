@@ -20,6 +20,16 @@ std::size_t class_of(double time_us) {
 
 }  // namespace
 
+namespace {
+
+// What held the force back beside slew, clamp, and a hand that takes hold for the first time.
+SafetyStage trouble_of(const ServoTick& tick) {
+    if (tick.stage == SafetyStage::Hot || tick.stage > SafetyStage::Disengaged) return tick.stage;
+    return tick.reason;
+}
+
+}  // namespace
+
 Statistics::Statistics(double tick_s) : tick_s_(tick_s), step_counts_(class_count, 0) {
     recent_force_.resize(static_cast<std::size_t>(std::lround(ripple_window_s / tick_s)), 0.0);
 }
@@ -40,8 +50,10 @@ void Statistics::add(const ServoTick& tick) {
     running_.largest_repulsion_N = std::max(running_.largest_repulsion_N, tick.sent_newton.x());
     running_.stopped = tick.stopped;
     if (tick.clamped) ++clamped_ticks_;
-    if (tick.stage >= SafetyStage::Hot) ++safety_ticks_;
-    running_.gravest = std::max(running_.gravest, tick.stage);
+    if (const SafetyStage trouble = trouble_of(tick); trouble != SafetyStage::None) {
+        ++safety_ticks_;
+        running_.gravest = std::max(running_.gravest, trouble);
+    }
     recent_force_[running_.ticks % recent_force_.size()] = tick.sent_newton.x();
     ++running_.ticks;
 }

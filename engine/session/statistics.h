@@ -36,7 +36,7 @@ struct Summary {
     double last_angstrom = 0;                    // negative on the other side
     bool went_through = false;                   // the molecule came out on the other side
     double clamped_share = 0;                    // of the time
-    // Of the time in which more than slew and clamp held the force back, and the gravest reason.
+    // Of the time in which something was wrong that held the force back, and the gravest of that.
     double safety_share = 0;
     SafetyStage gravest = SafetyStage::None;
     bool stopped = false;                        // a force was not finite
