@@ -23,9 +23,10 @@ BenchRow time_servo(std::string name, const ServoSettings& settings, const Touch
         if (tick % ticks_per_model == 0) exchange.touch.post(touch);
         const double time_s = 1e-3 * tick;
         const Vec3 handle(1e-3 * std::sin(5 * time_s), 1e-3 * std::cos(3 * time_s), 0);
-        row.samples.push_back(1e6 * seconds_of([&] {
-            (void)step_servo(settings, state, exchange, {time_s, handle, 0, true}, time_s);
-        }));
+        row.samples.push_back(
+            1e6 * seconds_of([&] {
+                (void)step_servo(settings, state, exchange, {time_s, handle, 0, true}, time_s);
+            }));
     }
     row.reference = fmt::format("p99 {:.4g}, most {:.4g}", quantile(row.samples, 0.99),
                                 quantile(row.samples, 1));
@@ -51,8 +52,8 @@ Atoms make_up(std::size_t count, const Vec3& middle, std::mt19937& random) {
                         static_cast<double>(i / side / side));
         const Vec3 jitter(uniform(random), uniform(random), uniform(random));
         atoms.positions.emplace_back(
-            middle +
-            spacing * (cell - Vec3::Constant(0.5 * static_cast<double>(side))) + 0.2 * jitter);
+            middle + spacing * (cell - Vec3::Constant(0.5 * static_cast<double>(side))) +
+            0.2 * jitter);
         atoms.charge.push_back(0.3 * uniform(random));
         atoms.sqrt_epsilon.push_back(std::sqrt(0.1));
         atoms.half_rmin.push_back(1.7);
@@ -71,8 +72,7 @@ Touch make_up_touch(std::size_t group, std::size_t environment) {
     touch.field.group = own.positions;
     touch.field.there = evaluate_frozen_field(touch.field.frozen, own.positions);
     touch.field.has_atoms = true;
-    touch.model.force_newton =
-        touch.field.there.force * units::newton_per_kcal_per_mol_angstrom;
+    touch.model.force_newton = touch.field.there.force * units::newton_per_kcal_per_mol_angstrom;
     touch.model.period_s = 1e-3 * ticks_per_model;
     return touch;
 }
@@ -83,11 +83,10 @@ void bench_made_up_servo(std::vector<BenchRow>& rows) {
     ServoSettings settings;
     settings.safety.is_full = true;
     settings.guarded.emplace();
-    for (const auto& [group, environment] :
-         {std::pair{3, 3}, {50, 300}, {80, 1500}, {130, 1000}}) {
-        rows.push_back(time_servo(fmt::format("servo/{}x{}", group, environment), settings,
-                                  make_up_touch(static_cast<std::size_t>(group),
-                                                static_cast<std::size_t>(environment))));
+    for (const auto& [group, environment] : {std::pair{3, 3}, {50, 300}, {80, 1500}, {130, 1000}}) {
+        rows.push_back(time_servo(
+            fmt::format("servo/{}x{}", group, environment), settings,
+            make_up_touch(static_cast<std::size_t>(group), static_cast<std::size_t>(environment))));
     }
 }
 

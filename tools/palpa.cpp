@@ -199,8 +199,9 @@ void add_bench(CLI::App& program, palpa::BenchOptions& options) {
         ->excludes("--tree")
         ->needs("scenes");
     bench
-        .add_flag("--servo", options.servo,
-                  "time ticks of guarded coupling, of made-up molecules and of the scenes', instead")
+        .add_flag(
+            "--servo", options.servo,
+            "time ticks of guarded coupling, of made-up molecules and of the scenes', instead")
         ->excludes("--render")
         ->excludes("--kernel")
         ->excludes("--tree");

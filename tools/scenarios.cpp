@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <unistd.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,7 +18,6 @@
 #include <numeric>
 #include <optional>
 #include <random>
-#include <unistd.h>
 
 namespace palpa {
 namespace {
@@ -59,9 +59,10 @@ std::vector<std::string> draw_settings(Draws& draws) {
     const double way_s = 15.0 / 8 * depth_mm / fastest_mm_per_s, pause_s = draws.between(0, 1);
     const double far = depth_mm / 2;
     const double in_s = lead_s + way_s, out_s = in_s + pause_s + 1e-3, end_s = out_s + way_s;
-    settings.push_back(fmt::format("hand.path=[[{:.6f}, {:.4f}], [{:.6f}, {:.4f}], [{:.6f}, {:.4f}], "
-                                   "[{:.6f}, {:.4f}]]",
-                                   lead_s, far, in_s, -far, out_s, -far, end_s, far));
+    settings.push_back(
+        fmt::format("hand.path=[[{:.6f}, {:.4f}], [{:.6f}, {:.4f}], [{:.6f}, {:.4f}], "
+                    "[{:.6f}, {:.4f}]]",
+                    lead_s, far, in_s, -far, out_s, -far, end_s, far));
     set("run.seconds", fmt::format("{:.3f}", end_s + rest_s));
     return settings;
 }
@@ -154,12 +155,13 @@ int scenarios_command(const ScenarioOptions& options) {
         play_scenarios(options, [&](std::size_t number, const ScenarioResult& result) {
             if (is_watched && number % 50 == 0) fmt::print(stderr, "\r{} of {} ", number, last);
             if (result.is_calm() || options.json) return;
-            fmt::print("scenario {}: {:+.5f} J generated, ripple {:.3f} N, {:.3f} Å at the "
-                       "closest{}{}\n  palpa run --headless {} --set \"{}\"\n",
-                       number, result.generated_J, result.ripple_N, result.closest_angstrom,
-                       result.went_through ? ", went through" : "",
-                       result.was_held_back ? ", held back by the safety chain" : "",
-                       options.scene.string(), fmt::join(result.settings, "\" --set \""));
+            fmt::print(
+                "scenario {}: {:+.5f} J generated, ripple {:.3f} N, {:.3f} Å at the "
+                "closest{}{}\n  palpa run --headless {} --set \"{}\"\n",
+                number, result.generated_J, result.ripple_N, result.closest_angstrom,
+                result.went_through ? ", went through" : "",
+                result.was_held_back ? ", held back by the safety chain" : "",
+                options.scene.string(), fmt::join(result.settings, "\" --set \""));
         });
     if (is_watched) fmt::print(stderr, "\r{:30}\r", "");
     const auto failed = static_cast<std::size_t>(
@@ -173,22 +175,20 @@ int scenarios_command(const ScenarioOptions& options) {
         if (result.clamped_share > 0) ++clamped;
     }
     if (options.json) {
-        nlohmann::ordered_json report{{"count", results.size()},
-                                      {"seed", options.seed},
-                                      {"failed", failed},
-                                      {"most_generated_J", generated},
-                                      {"most_ripple_N", ripple},
-                                      {"closest_angstrom", closest},
+        nlohmann::ordered_json report{{"count", results.size()}, {"seed", options.seed},
+                                      {"failed", failed},        {"most_generated_J", generated},
+                                      {"most_ripple_N", ripple}, {"closest_angstrom", closest},
                                       {"clamped", clamped}};
         for (std::size_t i = 0; i < results.size(); ++i)
             report["scenarios"].push_back(as_json(options.first + i, results[i]));
         fmt::print("{}\n", report.dump(2));
     } else {
-        fmt::print("{} scenarios, {} missed a bar\n  generated   {:+.5f} J at most (bar {})\n"
-                   "  ripple      {:.4f} N at most (bar {})\n  molecule    {:.3f} Å at the closest\n"
-                   "  clamped     in {}\n",
-                   results.size(), failed, generated, most_generated_J, ripple, most_ripple_N,
-                   closest, clamped);
+        fmt::print(
+            "{} scenarios, {} missed a bar\n  generated   {:+.5f} J at most (bar {})\n"
+            "  ripple      {:.4f} N at most (bar {})\n  molecule    {:.3f} Å at the closest\n"
+            "  clamped     in {}\n",
+            results.size(), failed, generated, most_generated_J, ripple, most_ripple_N, closest,
+            clamped);
     }
     return failed == 0 ? 0 : 1;
 }

@@ -114,9 +114,7 @@ bool LiveSession::read_frame(LiveFrame& frame) {
     return is_new;
 }
 
-ServoHealth LiveSession::servo_health() const noexcept {
-    return {overruns_, real_time_, locked_};
-}
+ServoHealth LiveSession::servo_health() const noexcept { return {overruns_, real_time_, locked_}; }
 
 void LiveSession::run_servo(ServoOrder order) {
     real_time_ = ask_for_real_time();
@@ -132,7 +130,8 @@ void LiveSession::run_servo(ServoOrder order) {
         if (servo_orders_.read(order) && order.restarts != restarts) release(state.safety);
         order.settings.is_ending = stopping_;
         const DeviceReading reading = device_.read();
-        // An emulated device lives on the servo's ticks, however late they come, and can stand still.
+        // An emulated device lives on the servo's ticks, however late they come, and can stand
+        // still.
         const std::chrono::duration<double> real_s = Clock::now() - start;
         const bool stands_still =
             order.is_paused && !stopping_ && reading.time_s == last.reading.time_s;
@@ -262,8 +261,8 @@ void LiveSession::post_frame_if_wanted(const State& state) {
     if (!frame_wanted_.exchange(false)) return;
     const auto grabbed =
         static_cast<std::uint32_t>(grabbed_points(state.simulation).positions.size());
-    LiveFrame frame{build_frame(state.simulation, state.simulation.touch.model, state.view), grabbed,
-                    grabbed_place(state.simulation), state.readout};
+    LiveFrame frame{build_frame(state.simulation, state.simulation.touch.model, state.view),
+                    grabbed, grabbed_place(state.simulation), state.readout};
     frame.readout.touch = state.simulation.touch.model;
     frames_.post(frame);
 }

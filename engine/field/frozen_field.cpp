@@ -326,11 +326,11 @@ FrozenSum evaluate_in_double(const FrozenField& field, std::span<const Vec3> gro
     FrozenSum sum;
     for (std::size_t i = 0; i < group.size(); ++i) {
         const Vec3 place = group[i] + shift;
-        const FieldSum one = evaluate_pair_field(
-            view(field.group_numbers, std::span(&place, 1), i, 1),
-            view(field.environment, field.environment.positions, 0,
-                 field.environment.positions.size()),
-            {field.coulomb_constant, field.replaced});
+        const FieldSum one =
+            evaluate_pair_field(view(field.group_numbers, std::span(&place, 1), i, 1),
+                                view(field.environment, field.environment.positions, 0,
+                                     field.environment.positions.size()),
+                                {field.coulomb_constant, field.replaced});
         sum.van_der_waals += one.van_der_waals;
         sum.electrostatic += one.electrostatic;
         sum.force += one.force;

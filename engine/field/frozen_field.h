@@ -69,10 +69,11 @@ struct FrozenSum : FieldSum {
     double largest_force = 0;  // on any point of the group, kcal/mol/Å
 };
 
-// As `evaluate_pair_field`, of the group moved by `shift`. Pairs are in single precision, sums over more than some hundreds in
-// double; with two points nearer than `nearest_single_precision`, or one further than
-// `farthest_single_precision` from the middle of the environment (field/pair_kernel.h), all is the
-// twin's. Repeats to the bit on the same kind of processor. Without allocation or lock.
+// As `evaluate_pair_field`, of the group moved by `shift`. Pairs are in single precision, sums over
+// more than some hundreds in double; with two points nearer than `nearest_single_precision`, or one
+// further than `farthest_single_precision` from the middle of the environment
+// (field/pair_kernel.h), all is the twin's. Repeats to the bit on the same kind of processor.
+// Without allocation or lock.
 //
 // Against the twin: force, torque (about the origin of the frozen field, in a lever of 1 Å at
 // least) and stiffness within 2e-6 of the sum of all pairs' magnitudes, the energy within 1e-6; the

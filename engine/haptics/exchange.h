@@ -13,8 +13,8 @@ namespace palpa {
 struct HandPose {
     double time_s = 0;
     Vec3 travel_m = Vec3::Zero();  // handle travel so far, but for what was travelled clutched
-    // Where guarded coupling has put the molecule: its reference atom, from its counterpart. Without
-    // it the simulation moves the molecule by the travel.
+    // Where guarded coupling has put the molecule: its reference atom, from its counterpart.
+    // Without it the simulation moves the molecule by the travel.
     std::optional<Vec3> place_angstrom = {};
 };
 

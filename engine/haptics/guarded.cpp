@@ -31,7 +31,8 @@ double update_allowance(const Touch& touch, GuardedState& state) noexcept {
     const double clearance = state.at_place.clearance_angstrom;
     const double period = std::max({touch.model.period_s, state.interval_s, state.since_arrival_s});
     double refill = (in_contact_per_model + trusted * clearance) * tick_s / period;
-    if (touch.field.has_atoms && !touch.model.gives_way) refill = std::numeric_limits<double>::infinity();
+    if (touch.field.has_atoms && !touch.model.gives_way)
+        refill = std::numeric_limits<double>::infinity();
     state.allowance_angstrom =
         std::min(in_contact + 0.1 * clearance, state.allowance_angstrom + refill);
     return state.allowance_angstrom;
@@ -57,16 +58,16 @@ double driven_share(const GuardedState& state) noexcept {
     return 1 - grip * (1 - state.allowed_m / state.wanted_m);
 }
 
-// Travel beyond the handle's own carries a molecule through free space. Where a force is felt it fades:
-// nobody would have done the work.
+// Travel beyond the handle's own carries a molecule through free space. Where a force is felt it
+// fades: nobody would have done the work.
 Vec3 find_extra_travel(const GuardedSettings& settings, const Vec3& handle_m, const Vec3& moved_m,
                        const GuardedState& state) noexcept {
     constexpr double felt_newton = 0.1, owed_J = 0.1e-3;
     const Vec3 force = state.at_place.force_newton + state.jump_newton;
     const double free = 1 - hand_force(settings.force_law, force).norm() / felt_newton;
     if (!(free > 0) || state.debt_J > owed_J) return Vec3::Zero();
-    return free * extra_travel(settings.workspace, handle_m, moved_m, settings.half_workspace_m,
-                               tick_s);
+    return free *
+           extra_travel(settings.workspace, handle_m, moved_m, settings.half_workspace_m, tick_s);
 }
 
 // Goes to a place if no atom is pushed too hard there, or less than before.
@@ -99,12 +100,10 @@ Vec3 follow(const GuardedSettings& settings, const Touch& touch, const Vec3& tra
 
 }  // namespace
 
-double guarded_cap(double viscosity_N_s_per_m, double damping_N_s_per_m,
-                   int delay_ticks) noexcept {
+double guarded_cap(double viscosity_N_s_per_m, double damping_N_s_per_m, int delay_ticks) noexcept {
     const double stable = 0.5 * (viscosity_N_s_per_m + damping_N_s_per_m) / (1.5 * tick_s);
-    const double lossless = damping_N_s_per_m > 0
-                                ? damping_N_s_per_m / ((1.5 + delay_ticks) * tick_s)
-                                : stable;
+    const double lossless =
+        damping_N_s_per_m > 0 ? damping_N_s_per_m / ((1.5 + delay_ticks) * tick_s) : stable;
     return std::max(1.0, std::min(stable, lossless));
 }
 

@@ -20,7 +20,7 @@ struct GuardedSettings {
     double damping_N_s_per_m = 0.5;  // B
     double stop_newton = 10e-9;      // on it or on one atom; the molecule goes no further in
     Vec3 half_workspace_m = Vec3::Constant(0.1);  // of the device
-    std::uint32_t revision = 0;      // another number: laws changed, the force glides to theirs
+    std::uint32_t revision = 0;  // another number: laws changed, the force glides to theirs
 };
 
 // The stiffness (N/m) that a hand may feel: half of what a device of this viscosity, with this
@@ -37,9 +37,9 @@ double guarded_gain(const GuardedSettings& settings, const Vec3& force_newton,
 // Everything that one tick leaves to the next.
 struct GuardedState {
     bool is_placed = false;
-    std::uint32_t start = 0;          // of the touch model
+    std::uint32_t start = 0;  // of the touch model
     Vec3 place_angstrom = Vec3::Zero();
-    Vec3 kept_m = Vec3::Zero();       // handle travel that the stop did not let the molecule follow
+    Vec3 kept_m = Vec3::Zero();  // handle travel that the stop did not let the molecule follow
     LocalForce at_place;
     double allowance_angstrom = 0;    // that it may go at once
     Vec3 jump_newton = Vec3::Zero();  // what is left of the old model's force over the new one's
@@ -48,19 +48,19 @@ struct GuardedState {
     // Of late, m: handle travel that the molecule was to follow, and what the limits left of it.
     double wanted_m = 0, allowed_m = 0;
     double debt_J = 0;  // work on the hand where the molecule did not follow, less what was damped
-    Vec3 law_newton = Vec3::Zero();              // that the force law gave
-    Vec3 law_jump_newton = Vec3::Zero();         // what is left of the old law's over the new one's
+    Vec3 law_newton = Vec3::Zero();       // that the force law gave
+    Vec3 law_jump_newton = Vec3::Zero();  // what is left of the old law's over the new one's
     std::uint32_t revision = 0;
 };
 
 // What a tick found.
 struct GuardedTick {
-    Vec3 hand_newton = Vec3::Zero();      // for the hand
-    Vec3 force_newton = Vec3::Zero();     // on the molecule
-    double displacement_gain = 0;         // A_d
-    double felt_N_per_m = 0;              // of the molecule's stiffness, where it is largest
-    Vec3 dropped_m = Vec3::Zero();        // handle travel that the limits of a step did away with
-    bool is_stopped = false;              // by the force on an atom
+    Vec3 hand_newton = Vec3::Zero();   // for the hand
+    Vec3 force_newton = Vec3::Zero();  // on the molecule
+    double displacement_gain = 0;      // A_d
+    double felt_N_per_m = 0;           // of the molecule's stiffness, where it is largest
+    Vec3 dropped_m = Vec3::Zero();     // handle travel that the limits of a step did away with
+    bool is_stopped = false;           // by the force on an atom
 };
 
 // A touch model has come, in place of `before`'s. To be called in the tick in which it is first

@@ -22,14 +22,14 @@ struct TouchModel {
     double period_s = 0;                // of the simulation
 
     // What follows is for guarded coupling alone.
-    Mat3 projector = Mat3::Identity();              // onto what the molecule may do
-    Mat3 stiffness_matrix_N_per_m = Mat3::Zero();   // of that
+    Mat3 projector = Mat3::Identity();             // onto what the molecule may do
+    Mat3 stiffness_matrix_N_per_m = Mat3::Zero();  // of that
     double clearance_angstrom = std::numeric_limits<double>::infinity();  // as in LocalForce
     // The share of what a frozen environment would change in force and torque that the one that
     // gives way did change, 0 to 1.
     double confirmed = 1, confirmed_torque = 1;
-    // Whether what is around the molecule moves from step to step. Where it does not, the field is as
-    // good far from the touch model's place as there.
+    // Whether what is around the molecule moves from step to step. Where it does not, the field is
+    // as good far from the touch model's place as there.
     bool gives_way = true;
     std::uint32_t start = 0;  // another number: the molecule was put there, not by the hand
     bool is_still = false;    // nothing moves: the hand has no hold
@@ -39,17 +39,17 @@ struct TouchModel {
 // model is all that is known.
 struct LocalField {
     FrozenField frozen;
-    std::vector<Vec3> group;        // Å, of the molecule in the hand
-    Vec3 centre = Vec3::Zero();     // Å, of its mass
-    FrozenSum there;                // of the field on the group where it is
+    std::vector<Vec3> group;     // Å, of the molecule in the hand
+    Vec3 centre = Vec3::Zero();  // Å, of its mass
+    FrozenSum there;             // of the field on the group where it is
     bool has_atoms = false;
 };
 
 // What the molecule feels at a place.
 struct LocalForce {
     Vec3 force_newton = Vec3::Zero();
-    Vec3 torque_newton_metre = Vec3::Zero();     // about the centre of mass
-    Mat3 stiffness_N_per_m = Mat3::Zero();       // -d(force)/d(place), of what it may do
+    Vec3 torque_newton_metre = Vec3::Zero();  // about the centre of mass
+    Mat3 stiffness_N_per_m = Mat3::Zero();    // -d(force)/d(place), of what it may do
     // To the nearest place where a pair repels, Å, 0 or more.
     double clearance_angstrom = std::numeric_limits<double>::infinity();
     double largest_newton = 0;  // on any atom of it, or on it as a whole, whichever is more

@@ -54,14 +54,14 @@ struct ServoTick {
     double force_gain = 0;            // F_h/F_m of the force law at this tick
     double hand_energy_J = 0;
     bool clutched = false;
-    bool clamped = false;  // the clamp acted
-    bool stopped = false;  // a force was not finite; latched
+    bool clamped = false;                    // the clamp acted
+    bool stopped = false;                    // a force was not finite; latched
     SafetyStage stage = SafetyStage::None;   // the gravest that acted
     SafetyStage reason = SafetyStage::None;  // why the force is not back in full
     // Guarded coupling alone.
-    double felt_N_per_m = 0;          // of the molecule's stiffness, where it is largest
-    Vec3 kept_m = Vec3::Zero();       // handle travel that the stop holds back
-    Vec3 dropped_m = Vec3::Zero();    // that the limits of a step did away with in this tick
+    double felt_N_per_m = 0;        // of the molecule's stiffness, where it is largest
+    Vec3 kept_m = Vec3::Zero();     // handle travel that the stop holds back
+    Vec3 dropped_m = Vec3::Zero();  // that the limits of a step did away with in this tick
 };
 
 // Takes the newest touch model out of the exchange, puts the hand's pose in, returns the force that

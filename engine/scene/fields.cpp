@@ -343,11 +343,12 @@ void visit_coupling(FieldVisitor& v, CouplingDescription& c) {
             .lowest = 1,
             .highest = 1e15},
            c.A_d);
-    choose(v,
-           {.key = "force_law",
-            .meaning = "guarded: eq. 2 as printed, or calibrated to the slopes A_f_max and A_f_min, "
-                       "constant A_f, or perceptual: equal noticeable steps a decade"},
-           force_law_names, c.force_law);
+    choose(
+        v,
+        {.key = "force_law",
+         .meaning = "guarded: eq. 2 as printed, or calibrated to the slopes A_f_max and A_f_min, "
+                    "constant A_f, or perceptual: equal noticeable steps a decade"},
+        force_law_names, c.force_law);
     choose(v,
            {.key = "displacement_law",
             .meaning = "guarded: eq. 3 repaired to see stiff places too, as printed, constant A_d"},
@@ -372,11 +373,13 @@ void visit_coupling(FieldVisitor& v, CouplingDescription& c) {
             .lowest = 0,
             .highest = 5},
            c.damping_N_s_per_m);
-    v.real({.key = "stop_nN",
-            .meaning = "guarded: force on the molecule or one atom of it beyond which it goes no further in",
-            .lowest = positive,
-            .highest = 1e3},
-           c.stop_nN);
+    v.real(
+        {.key = "stop_nN",
+         .meaning =
+             "guarded: force on the molecule or one atom of it beyond which it goes no further in",
+         .lowest = positive,
+         .highest = 1e3},
+        c.stop_nN);
     v.integer({.key = "pairs_per_tick",
                .meaning = "guarded: pairs of atoms that the servo has time for in a tick",
                .lowest = 1000,

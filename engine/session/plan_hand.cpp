@@ -42,8 +42,7 @@ double handle_travel(const SceneDescription& scene, const Simulation& simulation
     const auto steps = constant ? 1 : static_cast<int>(std::ceil((far - near) / fineness));
     const double width = (far - near) / steps;
     double sum = 0;
-    for (int i = 0; i < steps; ++i)
-        sum += gain_at(simulation, guarded, near + (i + 0.5) * width);
+    for (int i = 0; i < steps; ++i) sum += gain_at(simulation, guarded, near + (i + 0.5) * width);
     return sum * width * units::metre_per_angstrom;
 }
 

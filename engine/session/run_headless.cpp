@@ -49,8 +49,8 @@ ServoSettings build_servo_settings(const SceneDescription& scene, const Simulati
     guarded.displacement_law = simulation.laws.displacement;
     guarded.workspace = build_workspace(c.workspace);
     guarded.half_workspace_m = half_workspace_m;
-    guarded.cap_N_per_m = guarded_cap(scene.device.viscosity_N_s_per_m, c.damping_N_s_per_m,
-                                      settings.delay_ticks);
+    guarded.cap_N_per_m =
+        guarded_cap(scene.device.viscosity_N_s_per_m, c.damping_N_s_per_m, settings.delay_ticks);
     guarded.damping_N_s_per_m = c.damping_N_s_per_m;
     guarded.stop_newton = c.stop_nN * 1e-9;
     // Friction is lost twice on turning round, and the rest has to show (haptics/safety.h).
@@ -235,7 +235,8 @@ Summary run_headless(const SceneDescription& scene, Simulation& simulation, Devi
             progress(static_cast<double>(done) / static_cast<double>(ticks));
         }
     };
-    run_lockstep({ticks, ticks_per_step}, build_servo_settings(scene, simulation, device.spec().half_workspace_m), device,
+    run_lockstep({ticks, ticks_per_step},
+                 build_servo_settings(scene, simulation, device.spec().half_workspace_m), device,
                  simulation.touch, step, on_tick);
 
     if (progress) progress(1);

@@ -39,9 +39,9 @@ struct Summary {
     // Of the time in which something was wrong that held the force back, and the gravest of that.
     double safety_share = 0;
     SafetyStage gravest = SafetyStage::None;
-    bool stopped = false;                        // a force was not finite
-    std::uint64_t overruns = 0;                  // servo ticks that came too late; none in lockstep
-    std::optional<Journey> journey;              // in space, where something moves by itself
+    bool stopped = false;            // a force was not finite
+    std::uint64_t overruns = 0;      // servo ticks that came too late; none in lockstep
+    std::optional<Journey> journey;  // in space, where something moves by itself
     std::optional<Activity> activity;
     std::vector<std::string> warnings;
 };

@@ -20,8 +20,7 @@ struct Move {
 
 Move find_move(const Simulation& simulation, const HandPose& hand, const TouchModel& felt,
                const Grab& grab, const Guide& guide) noexcept {
-    const double gain =
-        displacement_gain(simulation.laws.displacement, felt.force_newton.norm());
+    const double gain = displacement_gain(simulation.laws.displacement, felt.force_newton.norm());
     const Vec3 handle_m = guide.projector * (hand.travel_m - grab.travel_m);
     return {handle_m / gain * units::angstrom_per_metre, gain};
 }
@@ -38,9 +37,8 @@ StepReport step_simulation(Simulation& simulation, const HandPose& hand,
     Grab* const grab = simulation.world.find<Grab>(simulation.hand);
     const Guide* const guide = simulation.world.find<Guide>(grab->molecule);
     const Vec3 before = guide->place;
-    const Move move = hand.place_angstrom
-                          ? Move{*hand.place_angstrom - before, 0}
-                          : find_move(simulation, hand, felt, *grab, *guide);
+    const Move move = hand.place_angstrom ? Move{*hand.place_angstrom - before, 0}
+                                          : find_move(simulation, hand, felt, *grab, *guide);
     const Vec3 place = before + move.by;
     grab->travel_m = hand.travel_m;
     StepReport report;

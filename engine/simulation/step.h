@@ -11,7 +11,7 @@ namespace palpa {
 // finite, so that the servo stops, unless it was the hand's pose or on the way to rest.
 struct [[nodiscard]] StepReport {
     TouchModel touch;  // for the hand, one period later; with its field it is the simulation's
-    double move = 0;                      // Å, how far the hand moved what it holds
+    double move = 0;   // Å, how far the hand moved what it holds
     std::optional<SettleReport> settled;  // what moved by itself
     bool finite = true;
 };

@@ -69,9 +69,7 @@ struct PickedPoints {
             type.push_back(all.type[i]);
         }
     }
-    FieldPoints view() const noexcept {
-        return {positions, charge, sqrt_epsilon, half_rmin, type};
-    }
+    FieldPoints view() const noexcept { return {positions, charge, sqrt_epsilon, half_rmin, type}; }
 };
 
 // Of the atoms nearby, or of all where they were not chosen or are too many for a servo tick.
@@ -84,14 +82,14 @@ LocalField build_local_field(const Simulation& simulation) {
         is_whole ? build_frozen_field(group, all, pair_rule(simulation))
                  : build_frozen_field(group, PickedPoints(all, near).view(), pair_rule(simulation));
     field.group.assign(group.positions.begin(), group.positions.end());
-    const AtomRange range = simulation.world
-                                .find<Molecule>(simulation.world.find<Grab>(simulation.hand)->molecule)
-                                ->atoms;
+    const AtomRange range =
+        simulation.world.find<Molecule>(simulation.world.find<Grab>(simulation.hand)->molecule)
+            ->atoms;
     field.centre = centre_of_mass(simulation.atoms, range);
     field.there = evaluate_frozen_field(field.frozen, field.group);
-    field.has_atoms = simulation.is_guarded &&
-                      field.frozen.environment.positions.size() <=
-                          std::max(most_neighbours(simulation), fewest_neighbours);
+    field.has_atoms =
+        simulation.is_guarded && field.frozen.environment.positions.size() <=
+                                     std::max(most_neighbours(simulation), fewest_neighbours);
     return field;
 }
 
@@ -106,15 +104,15 @@ struct Pull {
 Pull find_spring_pull(const Flexible& flexible) {
     const Tether& tether = *flexible.state.tether;
     Pull pull;
-    pull.force = tether.k * (find_tethered(flexible.model, tether, flexible.state.positions) -
-                             tether.place);
+    pull.force =
+        tether.k * (find_tethered(flexible.model, tether, flexible.state.positions) - tether.place);
     pull.stiffness = tether.k * Mat3::Identity();
     pull.energy = flexible.state.energy();
     return pull;
 }
 
-// One that moves a molecule feels what all others do to it, with the stiffness that it would have if
-// they stayed where they are.
+// One that moves a molecule feels what all others do to it, with the stiffness that it would have
+// if they stayed where they are.
 Pull find_pull(const Simulation& simulation, const LocalField& field) {
     const Vec3 centre = field.centre;
     Pull pull;
@@ -158,7 +156,8 @@ TouchModel build_model(const Simulation& simulation, const HandPose& hand, const
 }
 
 // The share of what was foretold that came, 0 to 1, or nothing where too little was.
-std::optional<double> find_confirmed(const Vec3& came, const Vec3& foretold, double least) noexcept {
+std::optional<double> find_confirmed(const Vec3& came, const Vec3& foretold,
+                                     double least) noexcept {
     const double norm2 = foretold.squaredNorm();
     if (!(norm2 > least * least)) return {};
     return std::clamp(came.dot(foretold) / norm2, 0.0, 1.0);
@@ -172,11 +171,11 @@ void update_confirmed(const Touch& last, Touch& touch) noexcept {
     if (!last.field.has_atoms || !touch.field.has_atoms) return;
     const FrozenSum sum = evaluate_frozen_field(last.field.frozen, touch.field.group);
     const Mat3& free = touch.model.projector;
-    const Vec3 force = units::newton_per_kcal_per_mol_angstrom *
-                       (free * (sum.force - last.field.there.force));
+    const Vec3 force =
+        units::newton_per_kcal_per_mol_angstrom * (free * (sum.force - last.field.there.force));
     const Vec3 torque =
-        units::joule_per_kcal_per_mol * (sum.torque_about(touch.field.centre) -
-                                         last.field.there.torque_about(last.field.centre));
+        units::joule_per_kcal_per_mol *
+        (sum.torque_about(touch.field.centre) - last.field.there.torque_about(last.field.centre));
     if (const auto share =
             find_confirmed(touch.model.force_newton - last.model.force_newton, force, least_newton))
         touch.model.confirmed += slowness * (*share - touch.model.confirmed);
@@ -216,7 +215,7 @@ void update_touch(const HandPose& hand, Simulation& simulation) noexcept {
 
 void update_near(Simulation& simulation) noexcept {
     if (is_on_spring(simulation) || !(simulation.is_guarded || simulation.flexible)) return;
-    constexpr double moved = 0.5;       // Å
+    constexpr double moved = 0.5;        // Å
     constexpr std::size_t rarely = 500;  // steps
     NearAtoms& near = simulation.near;
     const std::size_t most = most_neighbours(simulation);
@@ -225,9 +224,8 @@ void update_near(Simulation& simulation) noexcept {
                           (place - near.place).norm() < moved;
     ++near.steps;
     if (is_known) return;
-    near = {find_nearest(simulation, most < fewest_neighbours
-                                         ? std::numeric_limits<std::size_t>::max()
-                                         : most),
+    near = {find_nearest(simulation,
+                         most < fewest_neighbours ? std::numeric_limits<std::size_t>::max() : most),
             place, 0, most};
 }
 

@@ -80,12 +80,12 @@ Overlay::Overlay(const SceneDescription& scene, const ViewSettings& view)
 }
 
 void Overlay::update_limit() {
-    stiffness_limit_ = is_guarded()
-                           ? guarded_cap(scene_.device.viscosity_N_s_per_m,
-                                         settings_.coupling.damping_N_s_per_m,
-                                         static_cast<int>(scene_.device.servo_delay_ticks))
-                           : calm_stiffness(scene_, hand_model(static_cast<Grip>(scene_.hand.grip)),
-                                            settings_.period_ms * 1e-3);
+    stiffness_limit_ =
+        is_guarded()
+            ? guarded_cap(scene_.device.viscosity_N_s_per_m, settings_.coupling.damping_N_s_per_m,
+                          static_cast<int>(scene_.device.servo_delay_ticks))
+            : calm_stiffness(scene_, hand_model(static_cast<Grip>(scene_.hand.grip)),
+                             settings_.period_ms * 1e-3);
 }
 
 void Overlay::add_tick(const ServoTick& tick) {
@@ -281,11 +281,13 @@ void Overlay::draw_readings(const Readout& readout, const OverlayStatus& status)
     reading("spring felt",
             fmt::format("{:.4g} of {:.4g} N/m, {:.0f} % left", felt, stiffness_limit_,
                         100 * std::max(0.0, 1 - felt / stiffness_limit_)),
-            "K = (dF_h/dF_m) k / A_d, N/m. Guarded: of the cap, half of what the device keeps calm; A_d "
+            "K = (dF_h/dF_m) k / A_d, N/m. Guarded: of the cap, half of what the device keeps "
+            "calm; A_d "
             "is raised until it holds. Else of the largest K that the hand keeps calm: about "
             "B/(1.5 T_s), found from the eigenvalues of hand, device, period and delay");
-    reading("work on hand", fmt::format("{:+.2f} mJ", 1e3 * hand_energy_J_),
-            "energy given to the hand so far, mJ: over a way there and back it should not be above 0");
+    reading(
+        "work on hand", fmt::format("{:+.2f} mJ", 1e3 * hand_energy_J_),
+        "energy given to the hand so far, mJ: over a way there and back it should not be above 0");
     if (is_guarded()) {
         reading("held back", fmt::format("{:.1f} mm", 1e3 * kept_m_),
                 "handle travel that the molecule did not follow, since an atom would be pushed too "
@@ -342,12 +344,11 @@ void Overlay::draw_gains(std::vector<Command>& commands) {
     tip("Eq. 2: F_h = a1 atan(d1 F) + a2 [atan(d2 (F - F_0)) + atan(d2 (F + F_0))]; the point is "
         "where you are. Steep for weak forces, flat for strong ones, never cut off.");
     const std::array gain_lines{PlotLine{x_, z_, gain_colour, "A_d"}};
-    const std::array gain_points{
-        PlotPoint{now_nN,
-                  cm_per_angstrom(is_guarded()
-                                      ? last_.displacement_gain
-                                      : displacement_gain(laws.displacement, now_nN * 1e-9)),
-                  now_colour}};
+    const std::array gain_points{PlotPoint{
+        now_nN,
+        cm_per_angstrom(is_guarded() ? last_.displacement_gain
+                                     : displacement_gain(laws.displacement, now_nN * 1e-9)),
+        now_colour}};
     PlotRange gains = range_around(z_, 1);
     gains.low = 0;
     if (is_guarded())
@@ -387,10 +388,10 @@ void Overlay::draw_gain_sliders() {
     if (is_guarded()) choose_laws();
     const bool is_perceptual = is_guarded() && c.force_law == ForceLawChoice::Perceptual;
     const bool variable_force =
-        is_guarded() ? c.force_law == ForceLawChoice::Printed ||
-                           c.force_law == ForceLawChoice::Calibrated
-                     : c.mode == CouplingMode::VariableForceVariableDisplacement ||
-                           c.mode == CouplingMode::VariableForceConstantDisplacement;
+        is_guarded()
+            ? c.force_law == ForceLawChoice::Printed || c.force_law == ForceLawChoice::Calibrated
+            : c.mode == CouplingMode::VariableForceVariableDisplacement ||
+                  c.mode == CouplingMode::VariableForceConstantDisplacement;
     const bool variable_displacement =
         is_guarded() ? c.displacement_law != DisplacementLawChoice::Constant
                      : c.mode == CouplingMode::VariableForceVariableDisplacement ||
@@ -434,10 +435,11 @@ void Overlay::draw_gain_sliders() {
 
 void Overlay::choose_laws() {
     CouplingDescription& c = settings_.coupling;
-    if (!ImGui::TreeNode("laws", "laws: %s, %s, %s",
-                         force_law_names[static_cast<std::size_t>(c.force_law)].data(),
-                         displacement_law_names[static_cast<std::size_t>(c.displacement_law)].data(),
-                         workspace_names[static_cast<std::size_t>(c.workspace)].data()))
+    if (!ImGui::TreeNode(
+            "laws", "laws: %s, %s, %s",
+            force_law_names[static_cast<std::size_t>(c.force_law)].data(),
+            displacement_law_names[static_cast<std::size_t>(c.displacement_law)].data(),
+            workspace_names[static_cast<std::size_t>(c.workspace)].data()))
         return;
     const auto choose = [&](const char* label, const auto& names, auto& choice, const char* text) {
         const LiveSettings before = settings_;

@@ -121,9 +121,9 @@ TEST_CASE("a new touch model does not make the force jump", "[haptics][guarded]"
 
 TEST_CASE("laws that are exchanged while they are felt make no jump", "[haptics][guarded]") {
     const Pair pair;
-    const std::vector<ForceLaw> laws{
-        PrintedForceLaw({}), ConstantForceLaw{0.64e9}, ConstantForceLaw{0}, PerceptualForceLaw({}),
-        PrintedForceLaw::find_calibrated({}).value()};
+    const std::vector<ForceLaw> laws{PrintedForceLaw({}), ConstantForceLaw{0.64e9},
+                                     ConstantForceLaw{0}, PerceptualForceLaw({}),
+                                     PrintedForceLaw::find_calibrated({}).value()};
     for (const ForceLaw& from : laws) {
         for (const ForceLaw& to : laws) {
             Guarded guarded(pair.touch(3.5));

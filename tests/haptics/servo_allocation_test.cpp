@@ -32,7 +32,7 @@ void* operator new(std::size_t size, std::align_val_t alignment) {
     if (!memory) throw std::bad_alloc();
     return memory;
 }
-void operator delete(void* memory) noexcept { std::free(memory); }  // NOLINT
+void operator delete(void* memory) noexcept { std::free(memory); }                        // NOLINT
 void operator delete(void* memory, std::size_t /*size*/) noexcept { std::free(memory); }  // NOLINT
 void operator delete(void* memory, std::align_val_t /*alignment*/) noexcept {
     std::free(memory);  // NOLINT
@@ -48,9 +48,9 @@ namespace {
 Touch touch_of(std::size_t atoms) {
     std::vector<Vec3> places, own{Vec3(0, 0, 9), Vec3(1, 0, 10)};
     for (std::size_t i = 0; i < atoms; ++i)
-        places.emplace_back(2.0 * static_cast<double>(i % 10), 2.0 * static_cast<double>(i / 10), 0);
-    const std::vector<double> charge(atoms + 2, 0.1), epsilon(atoms + 2, 0.3),
-        rmin(atoms + 2, 1.8);
+        places.emplace_back(2.0 * static_cast<double>(i % 10), 2.0 * static_cast<double>(i / 10),
+                            0);
+    const std::vector<double> charge(atoms + 2, 0.1), epsilon(atoms + 2, 0.3), rmin(atoms + 2, 1.8);
     const std::vector<std::uint32_t> type(atoms + 2, 0);
     const auto of = [&](const std::vector<Vec3>& positions) {
         const std::size_t n = positions.size();
@@ -58,8 +58,7 @@ Touch touch_of(std::size_t atoms) {
                            std::span(rmin).first(n), std::span(type).first(n)};
     };
     Touch touch;
-    touch.field.frozen =
-        build_frozen_field(of(own), of(places), {units::charmm_coulomb_constant});
+    touch.field.frozen = build_frozen_field(of(own), of(places), {units::charmm_coulomb_constant});
     touch.field.group = own;
     touch.field.there = evaluate_frozen_field(touch.field.frozen, own);
     touch.field.has_atoms = atoms > 0;

@@ -134,7 +134,8 @@ TEST_CASE("a reading that is not valid moves nothing", "[haptics][servo]") {
     CHECK(std::isfinite(servo.state.hand_energy_J));
 }
 
-TEST_CASE("the safety chain begins to watch where the paper's coupling left off", "[haptics][servo]") {
+TEST_CASE("the safety chain begins to watch where the paper's coupling left off",
+          "[haptics][servo]") {
     Servo servo;
     servo.settings.force_law = ConstantForceLaw{1e9};
     servo.exchange.touch.post(touch_of({2e-9, 0, 0}));

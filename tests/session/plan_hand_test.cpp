@@ -45,9 +45,8 @@ TEST_CASE("without friction or delay a slow stroke peaks at the force it was pla
 
 TEST_CASE("a stroke longer than the workspace brings the molecule in by clutching",
           "[session][hand]") {
-    const Summary summary =
-        test::run_water({"mode=2", "hand.start_angstrom=14", "stroke_s=10",
-                                            "seconds=40", "friction_N=0"});
+    const Summary summary = test::run_water(
+        {"mode=2", "hand.start_angstrom=14", "stroke_s=10", "seconds=40", "friction_N=0"});
 
     CHECK(summary.closest_angstrom == Approx(2.473).margin(0.01));
     CHECK(summary.last_angstrom == Approx(14).margin(0.3));
@@ -68,8 +67,9 @@ TEST_CASE("a force that the molecules never reach is an error", "[session][hand]
 TEST_CASE("a fast path beyond the workspace takes the molecule all its way", "[session][hand]") {
     // 0.5 m at 0.25e9 are 20 Å; the handle lags a little behind the hand when the clutch is
     // pressed.
-    const Summary summary = test::run_water(
-        {"mode=2", "stroke=path", "hand.path=[[0.5, 0], [1.5, 500]]", "seconds=12", "friction_N=0"});
+    const Summary summary =
+        test::run_water({"mode=2", "stroke=path", "hand.path=[[0.5, 0], [1.5, 500]]", "seconds=12",
+                         "friction_N=0"});
 
     CHECK(summary.last_angstrom == Approx(27).margin(0.1));
 }

@@ -66,8 +66,9 @@ TEST_CASE("a run that is too short for its stroke, or goes through, says so",
     };
 
     CHECK_THAT(warnings({"stroke_s=20"}), Contains("the stroke takes 41.6 s, the run only 10 s"));
-    CHECK_THAT(warnings({"mode=2", "grip=firm", "stroke=path", "hand.path=[[0, 60], [3, -70], [4, -70]]",
-                         "hand.start_angstrom=4", "clamp_N=1"}),
-               Contains("through the other one"));
+    CHECK_THAT(
+        warnings({"mode=2", "grip=firm", "stroke=path", "hand.path=[[0, 60], [3, -70], [4, -70]]",
+                  "hand.start_angstrom=4", "clamp_N=1"}),
+        Contains("through the other one"));
     CHECK(warnings({}).empty());
 }

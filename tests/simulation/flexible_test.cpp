@@ -209,8 +209,7 @@ TEST_CASE("what the hand moves is the base, and nobody else", "[simulation][flex
     }
     move_held(flexible, -by);
 
-    const StepReport report =
-        step_simulation(simulation, hand_at(by), simulation.touch.model);
+    const StepReport report = step_simulation(simulation, hand_at(by), simulation.touch.model);
     CHECK(report.move == Approx(by.norm()));
     CHECK((place_of(simulation) - place - by).norm() < 1e-12);
     CHECK((find_held(flexible) - held - by).norm() < 1e-12);

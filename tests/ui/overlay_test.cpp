@@ -139,7 +139,7 @@ TEST_CASE("every mode and size of window can be drawn, whatever the values", "[u
 
 TEST_CASE("a spring stiffer than the hand keeps calm is called out", "[ui][overlay]") {
     const bool shakes = GENERATE(true, false);
-    Screen screen(
-        test::water_scene({"mode=2", shakes ? "period_ms=14" : "period_ms=1", "start_angstrom=2.77"}));
+    Screen screen(test::water_scene(
+        {"mode=2", shakes ? "period_ms=14" : "period_ms=1", "start_angstrom=2.77"}));
     CHECK(screen.overlay.is_shaking(screen.readout) == shakes);
 }
