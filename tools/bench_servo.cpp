@@ -23,10 +23,10 @@ BenchRow time_servo(std::string name, const ServoSettings& settings, const Touch
         if (tick % ticks_per_model == 0) exchange.touch.post(touch);
         const double time_s = 1e-3 * tick;
         const Vec3 handle(1e-3 * std::sin(5 * time_s), 1e-3 * std::cos(3 * time_s), 0);
-        row.samples.push_back(
-            1e6 * seconds_of([&] {
-                (void)step_servo(settings, state, exchange, {time_s, handle, 0, true}, time_s);
-            }));
+        row.samples.push_back(1e6 * seconds_of([&] {
+                                  (void)step_servo(settings, state, exchange,
+                                                   {time_s, handle, 0, true}, time_s);
+                              }));
     }
     row.reference = fmt::format("p99 {:.4g}, most {:.4g}", quantile(row.samples, 0.99),
                                 quantile(row.samples, 1));

@@ -40,9 +40,9 @@ struct Simulation {
     double period_s = 0;                       // declared
     bool is_guarded = false;                   // the servo moves the molecule
     std::size_t pairs_per_tick = 130'000;      // that it has time for
-    Vec3 anchor = Vec3::Zero();       // Å, where places of the grabbed molecule are told from
-    std::vector<Vec3> grabbed_shape;  // Å, the grabbed molecule's atoms from its reference atom,
-                                      // where it is rigid
+    Vec3 anchor = Vec3::Zero();          // Å, where places of the grabbed molecule are told from
+    std::vector<Vec3> grabbed_shape;     // Å, the grabbed molecule's atoms from its reference atom,
+                                         // where it is rigid
     std::optional<RelaxReport> relaxed;  // how the rigid grabbed molecule came to rest, if it did
     Entity hand;                         // has a Grab
 

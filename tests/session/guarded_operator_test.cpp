@@ -146,10 +146,7 @@ Found seek(int trials, Grip grip, double friction_newton,
             return !seeker.is_done();
         };
         run_unsteady(
-            static_cast<std::uint64_t>(longest_s * servo_rate_hz),
-            [] {
-                return Due{14, false};
-            },
+            static_cast<std::uint64_t>(longest_s * servo_rate_hz), [] { return Due{14, false}; },
             build_servo_settings(scene, simulation), omni, simulation.touch, step, on_tick);
         found.off_angstrom += std::abs(distance - rest_angstrom) / trials;
         found.seconds += static_cast<double>(ticks) * tick_s / trials;
