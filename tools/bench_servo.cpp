@@ -48,8 +48,9 @@ Atoms make_up(std::size_t count, const Vec3& middle, std::mt19937& random) {
     const auto side = static_cast<std::size_t>(std::ceil(std::cbrt(static_cast<double>(count))));
     Atoms atoms;
     for (std::size_t i = 0; i < count; ++i) {
-        const Vec3 cell(static_cast<double>(i % side), static_cast<double>(i / side % side),
-                        static_cast<double>(i / side / side));
+        const std::size_t row = i / side % side, layer = i / side / side;
+        const Vec3 cell(static_cast<double>(i % side), static_cast<double>(row),
+                        static_cast<double>(layer));
         const Vec3 jitter(uniform(random), uniform(random), uniform(random));
         atoms.positions.emplace_back(
             middle + spacing * (cell - Vec3::Constant(0.5 * static_cast<double>(side))) +

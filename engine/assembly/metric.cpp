@@ -28,7 +28,7 @@ struct Joined {
           parts{PartInertia(tree, state, *sides[0].node), PartInertia(tree, state, *sides[1].node)},
           beta(parts[0].b(sides[0].joined()) - parts[1].b(sides[1].joined())) {}
 
-    const Mat6& L(std::uint32_t handle) const {
+    const Mat6& phi_to_joint(std::uint32_t handle) const {
         const std::uint32_t side = node.side[handle];
         return parts[side].phi(node.number[handle], sides[side].joined());
     }
@@ -60,7 +60,7 @@ void join_psi(const Joined& joined, const JointInertia& joint, double weight,
     std::array<Mat6, 3> M, N;
     for (std::uint32_t j = 0; j < node.handles; ++j) {
         const Side& side_j = sides[node.side[j]];
-        const Mat6& L_j = joined.L(j);
+        const Mat6& L_j = joined.phi_to_joint(j);
         N[j].setZero();
         if (!side_j.node->is_leaf()) {
             N[j] =
@@ -71,7 +71,7 @@ void join_psi(const Joined& joined, const JointInertia& joint, double weight,
             const Side& side_i = sides[node.side[i]];
             Mat6& psi = metric.psi[node.first_pair + pair_number(i, j)];
             psi = M[i].lazyProduct(L_j.transpose());
-            psi -= joined.L(i).lazyProduct(N[j].transpose());
+            psi -= joined.phi_to_joint(i).lazyProduct(N[j].transpose());
             if (node.side[i] != node.side[j]) {
                 psi = -psi;
             } else if (!side_i.node->is_leaf()) {
@@ -101,7 +101,7 @@ void join_bias(const Joined& joined, const JointInertia& joint, double weight,
     for (std::uint32_t j = 0; j < node.handles; ++j) {
         const Side& side = sides[node.side[j]];
         Vec6& p = metric.p[node.first_handle + j];
-        p = side.sign * (joined.L(j) * (2 * K_beta + r));
+        p = side.sign * (joined.phi_to_joint(j) * (2 * K_beta + r));
         if (side.node->is_leaf()) continue;
         const Mat6& psi = psi_of(metric, *side.node, node.number[j], side.joined());
         p += metric.p[side.node->first_handle + node.number[j]] - 2 * side.sign * (psi * W_beta);

@@ -101,8 +101,7 @@ struct Pull {
 };
 
 // A hand on a spring feels the spring.
-Pull find_spring_pull(const Flexible& flexible) {
-    const Tether& tether = *flexible.state.tether;
+Pull find_spring_pull(const Flexible& flexible, const Tether& tether) {
     Pull pull;
     pull.force =
         tether.k * (find_tethered(flexible.model, tether, flexible.state.positions) - tether.place);
@@ -189,8 +188,10 @@ void update_confirmed(const Touch& last, Touch& touch) noexcept {
 
 Touch build_touch(const Simulation& simulation, const HandPose& hand) noexcept {
     Touch touch;
-    if (is_on_spring(simulation)) {
-        touch.model = build_model(simulation, hand, find_spring_pull(*simulation.flexible));
+    if (simulation.flexible && simulation.flexible->state.tether) {
+        const Flexible& flexible = *simulation.flexible;
+        touch.model = build_model(simulation, hand,
+                                  find_spring_pull(flexible, *simulation.flexible->state.tether));
         return touch;
     }
     if (simulation.is_guarded || simulation.flexible) touch.field = build_local_field(simulation);
