@@ -435,12 +435,11 @@ void Overlay::draw_gain_sliders() {
 
 void Overlay::choose_laws() {
     CouplingDescription& c = settings_.coupling;
-    if (!ImGui::TreeNode(
-            "laws", "laws: %s, %s, %s",
-            force_law_names[static_cast<std::size_t>(c.force_law)].data(),
-            displacement_law_names[static_cast<std::size_t>(c.displacement_law)].data(),
-            workspace_names[static_cast<std::size_t>(c.workspace)].data()))
-        return;
+    const std::string laws = fmt::format(
+        "laws: {}, {}, {}###laws", force_law_names[static_cast<std::size_t>(c.force_law)],
+        displacement_law_names[static_cast<std::size_t>(c.displacement_law)],
+        workspace_names[static_cast<std::size_t>(c.workspace)]);
+    if (!ImGui::TreeNode(laws.c_str())) return;
     const auto choose = [&](const char* label, const auto& names, auto& choice, const char* text) {
         const LiveSettings before = settings_;
         int i = static_cast<int>(choice);
