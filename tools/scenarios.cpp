@@ -71,17 +71,14 @@ std::vector<std::string> draw_settings(Draws& draws) {
 // another: the integral of f(F) A_d.
 double static_work(const SceneDescription& scene, const Simulation& simulation, double from,
                    double to) {
-    const std::optional<GuardedSettings> guarded = build_servo_settings(scene, simulation).guarded;
+    const ServoSettings servo = build_servo_settings(scene, simulation);
     const auto steps = static_cast<int>(std::ceil(std::abs(to - from) / 1e-3)) + 1;
     const double width = (to - from) / steps;
     double sum = 0;
     for (int i = 0; i < steps; ++i) {
         const LineForce line = force_along_line_at(simulation, from + (i + 0.5) * width);
         const double F_m = line.force * units::newton_per_kcal_per_mol_angstrom;
-        Mat3 stiffness = Mat3::Zero();
-        stiffness(0, 0) = line.stiffness * units::newton_per_metre_per_kcal_per_mol_angstrom2;
-        const double A_d = guarded ? guarded_gain(*guarded, Vec3(F_m, 0, 0), stiffness)
-                                   : displacement_gain(simulation.laws.displacement, F_m);
+        const double A_d = gain_where(servo, simulation, line);
         sum += hand_force(simulation.laws.force, F_m) * A_d;
     }
     return sum * width * units::metre_per_angstrom;

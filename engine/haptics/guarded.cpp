@@ -107,12 +107,13 @@ double guarded_cap(double viscosity_N_s_per_m, double damping_N_s_per_m, int del
     return std::max(1.0, std::min(stable, lossless));
 }
 
-double guarded_gain(const GuardedSettings& settings, const Vec3& force_newton,
-                    const Mat3& stiffness) noexcept {
-    const double A_d = displacement_gain(settings.displacement_law, force_newton.norm(),
+GuardedGain guarded_gain(const GuardedSettings& settings, const Vec3& force_newton,
+                         const Mat3& stiffness) noexcept {
+    const double law = displacement_gain(settings.displacement_law, force_newton.norm(),
                                          std::abs(extreme_stiffness(stiffness)));
-    return capped_gain(A_d, largest_felt(settings.force_law, force_newton, stiffness),
-                       settings.cap_N_per_m);
+    const double felt = largest_felt(settings.force_law, force_newton, stiffness);
+    const double A_d = capped_gain(law, felt, settings.cap_N_per_m);
+    return {A_d, felt / A_d};
 }
 
 void take_touch(const Touch& touch, GuardedState& state) noexcept {
@@ -145,9 +146,9 @@ GuardedTick step_guarded(const GuardedSettings& settings, const Touch& touch, co
 
     const Vec3 before = state.at_place.force_newton + state.jump_newton;
     const Mat3& stiffness = state.at_place.stiffness_N_per_m;
-    const double A_d = guarded_gain(settings, before, stiffness);
+    const auto [A_d, felt] = guarded_gain(settings, before, stiffness);
     tick.displacement_gain = A_d;
-    tick.felt_N_per_m = largest_felt(settings.force_law, before, stiffness) / A_d;
+    tick.felt_N_per_m = felt;
 
     const double angstrom_per_m = units::angstrom_per_metre / A_d;
     Vec3 own = Vec3::Zero(), extra = Vec3::Zero();

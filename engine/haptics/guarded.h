@@ -29,10 +29,15 @@ struct GuardedSettings {
 // B/((1.5 + delay) T). At least 1.
 double guarded_cap(double viscosity_N_s_per_m, double damping_N_s_per_m, int delay_ticks) noexcept;
 
-// A_d where the molecule feels this force (N) and stiffness (N/m): the law's, raised until the cap
+struct GuardedGain {
+    double A_d = 0;
+    double felt_N_per_m = 0;  // of the stiffness, where it is largest
+};
+
+// Where the molecule feels this force (N) and stiffness (N/m): the law's A_d, raised until the cap
 // holds.
-double guarded_gain(const GuardedSettings& settings, const Vec3& force_newton,
-                    const Mat3& stiffness) noexcept;
+GuardedGain guarded_gain(const GuardedSettings& settings, const Vec3& force_newton,
+                         const Mat3& stiffness) noexcept;
 
 // Everything that one tick leaves to the next.
 struct GuardedState {

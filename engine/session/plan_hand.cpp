@@ -19,30 +19,21 @@ namespace {
 constexpr double first_rest_s = 0.3;  // before the hand sets out, and between cycles
 constexpr double fastest_hand_m_per_s = 3;
 
-// A_d where the molecule stands at a distance.
-double gain_at(const Simulation& simulation, const std::optional<GuardedSettings>& guarded,
-               double distance) {
-    const LineForce line = force_along_line_at(simulation, distance);
-    const double F_m = line.force * units::newton_per_kcal_per_mol_angstrom;
-    if (!guarded) return displacement_gain(simulation.laws.displacement, F_m);
-    Mat3 stiffness = Mat3::Zero();
-    stiffness(0, 0) = line.stiffness * units::newton_per_metre_per_kcal_per_mol_angstrom2;
-    return guarded_gain(*guarded, Vec3(F_m, 0, 0), stiffness);
-}
-
 // Handle travel (m) that takes the molecule from `far` in to `near` (Å): midpoint sum of A_d.
 double handle_travel(const SceneDescription& scene, const Simulation& simulation, double near,
                      double far) {
-    const std::optional<GuardedSettings> guarded = build_servo_settings(scene, simulation).guarded;
+    const ServoSettings servo = build_servo_settings(scene, simulation);
     // Where A_d does not vary one step tells all, and a look at a large molecule takes
     // milliseconds.
-    const bool constant =
-        !guarded && std::holds_alternative<ConstantDisplacementLaw>(simulation.laws.displacement);
+    const bool constant = !servo.guarded && std::holds_alternative<ConstantDisplacementLaw>(
+                                                simulation.laws.displacement);
     const double fineness = moves_in_space(simulation) ? 0.02 : 1e-3;  // Å
     const auto steps = constant ? 1 : static_cast<int>(std::ceil((far - near) / fineness));
     const double width = (far - near) / steps;
     double sum = 0;
-    for (int i = 0; i < steps; ++i) sum += gain_at(simulation, guarded, near + (i + 0.5) * width);
+    for (int i = 0; i < steps; ++i)
+        sum += gain_where(servo, simulation,
+                          force_along_line_at(simulation, near + (i + 0.5) * width));
     return sum * width * units::metre_per_angstrom;
 }
 

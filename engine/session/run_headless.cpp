@@ -6,7 +6,6 @@
 #include "molecule/coincident_atoms.h"
 #include "session/lockstep.h"
 #include "simulation/components.h"
-#include "simulation/probe.h"
 #include "simulation/step.h"
 
 #include <fmt/format.h>
@@ -58,16 +57,29 @@ ServoSettings build_servo_settings(const SceneDescription& scene, const Simulati
     return settings;
 }
 
+double gain_where(const ServoSettings& servo, const Simulation& simulation,
+                  const Vec3& force_newton, const Mat3& stiffness) noexcept {
+    if (servo.guarded) return guarded_gain(*servo.guarded, force_newton, stiffness).A_d;
+    return displacement_gain(simulation.laws.displacement, force_newton.norm());
+}
+
+double gain_where(const ServoSettings& servo, const Simulation& simulation,
+                  const LineForce& line) noexcept {
+    Mat3 stiffness = Mat3::Zero();
+    stiffness(0, 0) = line.stiffness * units::newton_per_metre_per_kcal_per_mol_angstrom2;
+    return gain_where(servo, simulation,
+                      Vec3(line.force * units::newton_per_kcal_per_mol_angstrom, 0, 0), stiffness);
+}
+
 FeltStiffness stiffest_place(const SceneDescription& scene, const Simulation& simulation) {
     const Grab& grab = *simulation.world.find<Grab>(simulation.hand);
     const Guide& guide = *simulation.world.find<Guide>(grab.molecule);
-    const std::optional<GuardedSettings> guarded = build_servo_settings(scene, simulation).guarded;
+    const ServoSettings servo = build_servo_settings(scene, simulation);
     FeltStiffness stiffest;
     if (simulation.flexible && simulation.flexible->state.tether) {
         const double k = simulation.flexible->state.tether->k *
                          units::newton_per_metre_per_kcal_per_mol_angstrom2;
-        const double A_d = guarded ? guarded_gain(*guarded, Vec3::Zero(), k * Mat3::Identity())
-                                   : displacement_gain(simulation.laws.displacement, 0);
+        const double A_d = gain_where(servo, simulation, Vec3::Zero(), k * Mat3::Identity());
         return {force_gain(simulation.laws.force, 0) * k / A_d, grabbed_distance(simulation)};
     }
     // False where the hand does not go: further in than its peak.
@@ -79,8 +91,7 @@ FeltStiffness stiffest_place(const SceneDescription& scene, const Simulation& si
         if (F_m > scene.hand.peak_nN * 1e-9 && !pulls_outward) return false;
         const Mat3 stiffness = guide.projector * field.stiffness * guide.projector *
                                units::newton_per_metre_per_kcal_per_mol_angstrom2;
-        const double A_d = guarded ? guarded_gain(*guarded, force, stiffness)
-                                   : displacement_gain(simulation.laws.displacement, F_m);
+        const double A_d = gain_where(servo, simulation, force, stiffness);
         const double K = largest_felt(simulation.laws.force, force, stiffness) / A_d;
         if (K > stiffest.newton_per_metre) stiffest = {K, distance};
         return true;

@@ -6,6 +6,7 @@
 #include "scene/description.h"
 #include "session/recording.h"
 #include "session/statistics.h"
+#include "simulation/probe.h"
 #include "simulation/simulation.h"
 
 #include <functional>
@@ -28,6 +29,14 @@ struct FrameClock {
 // `half_workspace_m`: of the device, for what carries a small one over a large scene.
 ServoSettings build_servo_settings(const SceneDescription& scene, const Simulation& simulation,
                                    const Vec3& half_workspace_m = Vec3::Constant(0.1));
+
+// A_d of the scene's coupling, the paper's or guarded, where the molecule feels this force (N) and
+// stiffness (N/m).
+double gain_where(const ServoSettings& servo, const Simulation& simulation,
+                  const Vec3& force_newton, const Mat3& stiffness) noexcept;
+// The same on a line.
+double gain_where(const ServoSettings& servo, const Simulation& simulation,
+                  const LineForce& line) noexcept;
 
 // Where along the line the hand feels the stiffest spring, K = A_f k_e / A_d, up to the scene's
 // peak force: in space the largest eigenvalue of sym(J k_e)/A_d, J the Jacobian of the force law on

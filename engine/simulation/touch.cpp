@@ -24,6 +24,11 @@ const Guide& guide_of(const Simulation& simulation) noexcept {
     return *simulation.world.find<Guide>(grab->molecule);
 }
 
+AtomRange grabbed_atoms(const Simulation& simulation) noexcept {
+    const Grab* const grab = simulation.world.find<Grab>(simulation.hand);
+    return simulation.world.find<Molecule>(grab->molecule)->atoms;
+}
+
 bool is_on_spring(const Simulation& simulation) noexcept {
     return simulation.flexible && simulation.flexible->state.tether;
 }
@@ -82,10 +87,6 @@ LocalField build_local_field(const Simulation& simulation) {
         is_whole ? build_frozen_field(group, all, pair_rule(simulation))
                  : build_frozen_field(group, PickedPoints(all, near).view(), pair_rule(simulation));
     field.group.assign(group.positions.begin(), group.positions.end());
-    const AtomRange range =
-        simulation.world.find<Molecule>(simulation.world.find<Grab>(simulation.hand)->molecule)
-            ->atoms;
-    field.centre = centre_of_mass(simulation.atoms, range);
     field.there = evaluate_frozen_field(field.frozen, field.group);
     field.has_atoms =
         simulation.is_guarded && field.frozen.environment.positions.size() <=
@@ -195,10 +196,7 @@ Touch build_touch(const Simulation& simulation, const HandPose& hand) noexcept {
         return touch;
     }
     if (simulation.is_guarded || simulation.flexible) touch.field = build_local_field(simulation);
-    touch.field.centre = centre_of_mass(
-        simulation.atoms,
-        simulation.world.find<Molecule>(simulation.world.find<Grab>(simulation.hand)->molecule)
-            ->atoms);
+    touch.field.centre = centre_of_mass(simulation.atoms, grabbed_atoms(simulation));
     touch.model = build_model(simulation, hand, find_pull(simulation, touch.field));
     touch.model.clearance_angstrom = touch.field.there.clearance;
     return touch;

@@ -58,14 +58,10 @@ void reading(const char* name, const std::string& value, const char* explanation
 // Centimetres that the handle goes for one Å of the molecule.
 double cm_per_angstrom(double displacement_gain) { return displacement_gain * 1e-8; }
 
-// The spring that the hand feels at this moment (N/m), at most: along the force the law's slope
-// counts, across it, in three dimensions, its gain.
+// The spring that the hand feels at this moment (N/m), at most, in the paper's modes.
 double felt_stiffness(const CouplingLaws& laws, const TouchModel& touch) {
-    const double force = touch.force_newton.norm();
-    const double slope = hand_force_slope(laws.force, force);
-    const double steepest =
-        touch.active_freedom > 1 ? std::max(slope, force_gain(laws.force, force)) : slope;
-    return steepest * touch.stiffness_N_per_m / displacement_gain(laws.displacement, force);
+    return largest_felt(laws.force, touch.force_newton, touch.stiffness_matrix_N_per_m) /
+           displacement_gain(laws.displacement, touch.force_newton.norm());
 }
 
 }  // namespace
