@@ -6,6 +6,7 @@
 #include "field/pair_kernel.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -20,14 +21,14 @@ HWY_BEFORE_NAMESPACE();
 namespace palpa::HWY_NAMESPACE {
 namespace {
 
-// In single precision, of one point with some hundred others.
+// In single precision, of one point with some hundred others; of the curvature a third.
 struct Partial {
     HWY_INLINE Partial() {
-        lj12 = coulomb = fx = fy = fz = hn::Zero(floats);
+        fx = fy = fz = hn::Zero(floats);
         kxx = kxy = kxz = kyy = kyz = kzz = gradients = hn::Zero(floats);
     }
 
-    V lj12, coulomb, fx, fy, fz, kxx, kxy, kxz, kyy, kyz, kzz, gradients;
+    V fx, fy, fz, kxx, kxy, kxz, kyy, kyz, kzz, gradients;
 };
 
 HWY_INLINE W both_halves(V v) { return hn::Add(lower_half(v), upper_half(v)); }
@@ -36,14 +37,12 @@ HWY_INLINE W both_halves(V v) { return hn::Add(lower_half(v), upper_half(v)); }
 class Total {
 public:
     HWY_INLINE Total() {
-        lj12_ = coulomb_ = fx_ = fy_ = fz_ = tx_ = ty_ = tz_ = hn::Zero(doubles);
+        fx_ = fy_ = fz_ = tx_ = ty_ = tz_ = hn::Zero(doubles);
         kxx_ = kxy_ = kxz_ = kyy_ = kyz_ = kzz_ = gradients_ = hn::Zero(doubles);
         own_x_ = own_y_ = own_z_ = hn::Zero(doubles);
     }
 
     HWY_INLINE void add(const Partial& part, const Vec3& place) {
-        lj12_ = hn::Add(lj12_, both_halves(part.lj12));
-        coulomb_ = hn::Add(coulomb_, both_halves(part.coulomb));
         const W fx = both_halves(part.fx), fy = both_halves(part.fy), fz = both_halves(part.fz);
         fx_ = hn::Add(fx_, fx);
         fy_ = hn::Add(fy_, fy);
@@ -75,18 +74,17 @@ public:
     FrozenSum sum() const {
         FrozenSum sum;
         sum.largest_force = std::sqrt(largest2_);
-        sum.van_der_waals = sum_of(lj12_) / 12;
-        sum.electrostatic = sum_of(coulomb_);
         sum.force = Vec3(sum_of(fx_), sum_of(fy_), sum_of(fz_));
         sum.torque = Vec3(sum_of(tx_), sum_of(ty_), sum_of(tz_));
         const double xy = sum_of(kxy_), xz = sum_of(kxz_), yz = sum_of(kyz_);
         sum.stiffness << sum_of(kxx_), xy, xz, xy, sum_of(kyy_), yz, xz, yz, sum_of(kzz_);
+        sum.stiffness *= 3;
         sum.stiffness.diagonal().array() -= sum_of(gradients_);
         return sum;
     }
 
 private:
-    W lj12_, coulomb_, fx_, fy_, fz_, tx_, ty_, tz_;
+    W fx_, fy_, fz_, tx_, ty_, tz_;
     W kxx_, kxy_, kxz_, kyy_, kyz_, kzz_, gradients_;
     W own_x_, own_y_, own_z_;  // of the point at hand
     double largest2_ = 0;
@@ -104,42 +102,75 @@ struct Point {
     V high_x, high_y, high_z, low_x, low_y, low_z, charge, epsilon12, half_rmin;
 };
 
+// Vectors side by side: one alone waits for itself.
+constexpr std::size_t abreast = lane_count < 16 ? 2 : 1;
+using Row = std::array<V, abreast>;
+
+template <typename F>
+HWY_INLINE Row row_of(F&& element) {
+    Row row;
+    for (std::size_t k = 0; k < abreast; ++k) row[k] = element(k);
+    return row;
+}
+
+HWY_INLINE Row load_row(const FrozenPoints::Column& column, std::size_t at) {
+    return row_of([&](std::size_t k)
+                      HWY_ATTR { return hn::Load(floats, column.data() + at + k * lane_count); });
+}
+
 // d from the environment's points to the group's: as in field/pair_field.cpp.
 HWY_INLINE void add_pairs(const Point& point, const FrozenPoints& others, std::size_t at,
-                          V epsilon12, V rmin, Nearest& nearest, Partial& sum) {
-    const auto column = [&](const FrozenPoints::Column& c)
-                            HWY_ATTR { return hn::Load(floats, c.data() + at); };
-    const V dx = hn::Add(hn::Sub(point.high_x, column(others.high[0])),
-                         hn::Sub(point.low_x, column(others.low[0])));
-    const V dy = hn::Add(hn::Sub(point.high_y, column(others.high[1])),
-                         hn::Sub(point.low_y, column(others.low[1])));
-    const V dz = hn::Add(hn::Sub(point.high_z, column(others.high[2])),
-                         hn::Sub(point.low_z, column(others.low[2])));
-    const V r2 = hn::MulAdd(dz, dz, hn::MulAdd(dy, dy, hn::Mul(dx, dx)));
-    nearest.r2 = hn::Min(nearest.r2, r2);
-    const V inverse_r = inverse_root(r2), inverse_r2 = hn::Mul(inverse_r, inverse_r);
-    nearest.clearance = hn::Min(nearest.clearance, hn::MulSub(r2, inverse_r, rmin));
-    const V s = hn::Mul(rmin, inverse_r), s2 = hn::Mul(s, s);
-    const V s6 = hn::Mul(hn::Mul(s2, s2), s2), well = hn::Mul(epsilon12, s6);
-    const V coulomb = hn::Mul(hn::Mul(point.charge, column(others.charge)), inverse_r);
-    sum.lj12 = hn::MulAdd(well, hn::Sub(s6, all(2)), sum.lj12);
-    sum.coulomb = hn::Add(sum.coulomb, coulomb);
-    const V gradient = hn::Mul(hn::MulAdd(well, hn::Sub(s6, all(1)), coulomb), inverse_r2);
-    const V curvature =
-        hn::Mul(hn::Mul(hn::MulAdd(well, hn::MulSub(s6, all(14), all(8)), hn::Mul(coulomb, all(3))),
-                        inverse_r2),
-                inverse_r2);
-    sum.fx = hn::MulAdd(gradient, dx, sum.fx);
-    sum.fy = hn::MulAdd(gradient, dy, sum.fy);
-    sum.fz = hn::MulAdd(gradient, dz, sum.fz);
-    sum.gradients = hn::Add(sum.gradients, gradient);
-    const V cx = hn::Mul(curvature, dx), cy = hn::Mul(curvature, dy), cz = hn::Mul(curvature, dz);
-    sum.kxx = hn::MulAdd(cx, dx, sum.kxx);
-    sum.kxy = hn::MulAdd(cx, dy, sum.kxy);
-    sum.kxz = hn::MulAdd(cx, dz, sum.kxz);
-    sum.kyy = hn::MulAdd(cy, dy, sum.kyy);
-    sum.kyz = hn::MulAdd(cy, dz, sum.kyz);
-    sum.kzz = hn::MulAdd(cz, dz, sum.kzz);
+                          const Row& epsilon12, const Row& rmin, Nearest& nearest, Partial& sum) {
+    const auto difference = [&](V own_high, V own_low, std::size_t axis) HWY_ATTR {
+        const Row high = load_row(others.high[axis], at), low = load_row(others.low[axis], at);
+        return row_of([&](std::size_t k) HWY_ATTR {
+            return hn::Add(hn::Sub(own_high, high[k]), hn::Sub(own_low, low[k]));
+        });
+    };
+    const Row dx = difference(point.high_x, point.low_x, 0);
+    const Row dy = difference(point.high_y, point.low_y, 1);
+    const Row dz = difference(point.high_z, point.low_z, 2);
+    const Row r2 = row_of([&](std::size_t k) HWY_ATTR {
+        return hn::MulAdd(dz[k], dz[k], hn::MulAdd(dy[k], dy[k], hn::Mul(dx[k], dx[k])));
+    });
+    const Row inverse_r = row_of([&](std::size_t k) HWY_ATTR { return inverse_root(r2[k]); });
+    for (std::size_t k = 0; k < abreast; ++k) {
+        nearest.r2 = hn::Min(nearest.r2, r2[k]);
+        nearest.clearance = hn::Min(nearest.clearance, hn::MulSub(r2[k], inverse_r[k], rmin[k]));
+    }
+    const Row inverse_r2 =
+        row_of([&](std::size_t k) HWY_ATTR { return hn::Mul(inverse_r[k], inverse_r[k]); });
+    const Row s6 = row_of([&](std::size_t k) HWY_ATTR {
+        const V s = hn::Mul(rmin[k], inverse_r[k]), s2 = hn::Mul(s, s);
+        return hn::Mul(hn::Mul(s2, s2), s2);
+    });
+    const Row well = row_of([&](std::size_t k) HWY_ATTR { return hn::Mul(epsilon12[k], s6[k]); });
+    const Row charge = load_row(others.charge, at);
+    const Row coulomb = row_of([&](std::size_t k) HWY_ATTR {
+        return hn::Mul(hn::Mul(point.charge, charge[k]), inverse_r[k]);
+    });
+    const Row gradient = row_of([&](std::size_t k) HWY_ATTR {
+        return hn::Mul(hn::MulAdd(well[k], hn::Sub(s6[k], all(1)), coulomb[k]), inverse_r2[k]);
+    });
+    const Row curvature = row_of([&](std::size_t k) HWY_ATTR {
+        const V third =
+            hn::MulAdd(well[k], hn::MulSub(s6[k], all(14.0 / 3), all(8.0 / 3)), coulomb[k]);
+        return hn::Mul(hn::Mul(third, inverse_r2[k]), inverse_r2[k]);
+    });
+    for (std::size_t k = 0; k < abreast; ++k) {
+        sum.fx = hn::MulAdd(gradient[k], dx[k], sum.fx);
+        sum.fy = hn::MulAdd(gradient[k], dy[k], sum.fy);
+        sum.fz = hn::MulAdd(gradient[k], dz[k], sum.fz);
+        sum.gradients = hn::Add(sum.gradients, gradient[k]);
+        const V cx = hn::Mul(curvature[k], dx[k]), cy = hn::Mul(curvature[k], dy[k]),
+                cz = hn::Mul(curvature[k], dz[k]);
+        sum.kxx = hn::MulAdd(cx, dx[k], sum.kxx);
+        sum.kxy = hn::MulAdd(cx, dy[k], sum.kxy);
+        sum.kxz = hn::MulAdd(cx, dz[k], sum.kxz);
+        sum.kyy = hn::MulAdd(cy, dy[k], sum.kyy);
+        sum.kyz = hn::MulAdd(cy, dz[k], sum.kyz);
+        sum.kzz = hn::MulAdd(cz, dz[k], sum.kzz);
+    }
 }
 
 // Sixteens of points between two sums in double.
@@ -166,21 +197,23 @@ FrozenJobSum sum_field(const FrozenField& field, std::span<const Vec3> group, co
             Partial part;
             if (numbers) {
                 for (; p < end; ++p) {
-                    for (std::size_t at = 0; at < 16; at += lane_count) {
-                        add_pairs(point, field.points[p], at,
-                                  hn::Load(floats, numbers[p].epsilon12.data() + at),
-                                  hn::Load(floats, numbers[p].rmin.data() + at), nearest, part);
+                    for (std::size_t at = 0; at < 16; at += abreast * lane_count) {
+                        add_pairs(point, field.points[p], at, load_row(numbers[p].epsilon12, at),
+                                  load_row(numbers[p].rmin, at), nearest, part);
                     }
                 }
             } else {
                 for (; p < end; ++p) {
                     const FrozenPoints& others = field.points[p];
-                    for (std::size_t at = 0; at < 16; at += lane_count) {
-                        add_pairs(point, others, at,
-                                  hn::Mul(point.epsilon12,
-                                          hn::Load(floats, others.sqrt_epsilon.data() + at)),
-                                  hn::Add(point.half_rmin,
-                                          hn::Load(floats, others.half_rmin.data() + at)),
+                    for (std::size_t at = 0; at < 16; at += abreast * lane_count) {
+                        const Row epsilon = load_row(others.sqrt_epsilon, at);
+                        const Row radius = load_row(others.half_rmin, at);
+                        add_pairs(point, others, at, row_of([&](std::size_t k) HWY_ATTR {
+                                      return hn::Mul(point.epsilon12, epsilon[k]);
+                                  }),
+                                  row_of([&](std::size_t k) HWY_ATTR {
+                                      return hn::Add(point.half_rmin, radius[k]);
+                                  }),
                                   nearest, part);
                     }
                 }
@@ -331,8 +364,6 @@ FrozenSum evaluate_in_double(const FrozenField& field, std::span<const Vec3> gro
                                 view(field.environment, field.environment.positions, 0,
                                      field.environment.positions.size()),
                                 {field.coulomb_constant, field.replaced});
-        sum.van_der_waals += one.van_der_waals;
-        sum.electrostatic += one.electrostatic;
         sum.force += one.force;
         sum.torque += one.torque;
         sum.stiffness += one.stiffness;

@@ -62,11 +62,17 @@ struct FrozenField {
 FrozenField build_frozen_field(const FieldPoints& group, const FieldPoints& environment,
                                const PairRule& rule);
 
-// And what limits how far the group may go.
-struct FrozenSum : FieldSum {
+// What the environment does to the group as a whole, as in FieldSum, and what limits how far the
+// group may go.
+struct FrozenSum {
+    Vec3 force = Vec3::Zero();      // kcal/mol/Å
+    Vec3 torque = Vec3::Zero();     // about the origin, kcal/mol
+    Mat3 stiffness = Mat3::Zero();  // kcal/mol/Å^2
     // The least of r - Rmin of all pairs, Å, below 0 where they repel; infinite without pairs.
     double clearance = std::numeric_limits<double>::infinity();
     double largest_force = 0;  // on any point of the group, kcal/mol/Å
+
+    Vec3 torque_about(const Vec3& place) const noexcept { return torque - place.cross(force); }
 };
 
 // As `evaluate_pair_field`, of the group moved by `shift`. Pairs are in single precision, sums over
@@ -76,8 +82,8 @@ struct FrozenSum : FieldSum {
 // Without allocation or lock.
 //
 // Against the twin: force, torque (about the origin of the frozen field, in a lever of 1 Å at
-// least) and stiffness within 2e-6 of the sum of all pairs' magnitudes, the energy within 1e-6; the
-// clearance within 1e-5 Å, the largest force within 2e-6 of the sum of the point's pairs.
+// least) and stiffness within 2e-6 of the sum of all pairs' magnitudes; the clearance within 1e-5
+// Å, the largest force within 2e-6 of the sum of the point's pairs.
 FrozenSum evaluate_frozen_field(const FrozenField& field, std::span<const Vec3> group,
                                 const Vec3& shift = Vec3::Zero()) noexcept;
 
