@@ -40,6 +40,11 @@ Mat3 turned(const Vec3& eigenvalues, const Eigen::Quaterniond& turn) {
     return axes * eigenvalues.asDiagonal() * axes.transpose();
 }
 
+std::vector<ForceLaw> force_laws() {
+    return {PrintedForceLaw({}), calibrated_law(), ConstantForceLaw{0.64e9}, PerceptualForceLaw({}),
+            PerceptualForceLaw({1e-9, 2.5e-9})};
+}
+
 }  // namespace
 
 TEST_CASE("eq. 2 gives the paper's hand force and its slope", "[haptics][gains]") {
@@ -284,9 +289,7 @@ TEST_CASE("the perceptual law's pieces join in value and slope", "[haptics][gain
 }
 
 TEST_CASE("force laws are odd and monotone, and slopes are their derivatives", "[haptics][gains]") {
-    const auto law = GENERATE(ForceLaw(PrintedForceLaw({})), ForceLaw(calibrated_law()),
-                              ForceLaw(ConstantForceLaw{0.64e9}), ForceLaw(PerceptualForceLaw({})),
-                              ForceLaw(PerceptualForceLaw({1e-9, 2.5e-9})));
+    const auto law = GENERATE(from_range(force_laws()));
     INFO("law " << law.index());
 
     for (const double F : forces_of_all_sizes()) {
@@ -304,9 +307,7 @@ TEST_CASE("force laws are odd and monotone, and slopes are their derivatives", "
 }
 
 TEST_CASE("the inverse of a force law gives back the molecular force", "[haptics][gains]") {
-    const auto law = GENERATE(ForceLaw(PrintedForceLaw({})), ForceLaw(calibrated_law()),
-                              ForceLaw(ConstantForceLaw{0.64e9}), ForceLaw(PerceptualForceLaw({})),
-                              ForceLaw(PerceptualForceLaw({1e-9, 2.5e-9})));
+    const auto law = GENERATE(from_range(force_laws()));
     INFO("law " << law.index());
 
     for (const double F : forces_of_all_sizes()) {
