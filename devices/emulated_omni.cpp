@@ -7,9 +7,8 @@
 namespace palpa {
 namespace {
 
-constexpr double tick_s = 1 / servo_rate_hz;
 constexpr int sub_steps = 4;
-constexpr double sub_step_s = tick_s / sub_steps;
+constexpr double sub_step_s = servo_tick_s / sub_steps;
 
 // What the ends of the workspace feel like.
 constexpr double stop_stiffness_N_per_m = 2e4;
@@ -68,14 +67,14 @@ void EmulatedOmni::write(const Vec3& force_newton) noexcept {
     const Vec3 motors = norm > peak ? Vec3(force_newton * (peak / norm)) : force_newton;
 
     if (!take_orders()) return;
-    const double now_s = static_cast<double>(tick_ - start_tick_) * tick_s;
+    const double now_s = static_cast<double>(tick_ - start_tick_) * servo_tick_s;
     // Half a nanosecond keeps the tick from hanging on rounding.
     if (!released_ && now_s > settings_.script.release_s.value_or(INFINITY) - 5e-10) let_go();
     Vec3 hand_drive = Vec3::Zero();
     if (settings_.live) {
         hand_drive = follow_live_target();
     } else if (!released_) {
-        const ScriptedHand::Wish wish = operator_.step(tick_s);
+        const ScriptedHand::Wish wish = operator_.step(servo_tick_s);
         buttons_ = wish.buttons;
         if (settings_.hand) {
             hand_drive.x() = settings_.hand->stiffness_N_per_m * wish.x_m +
@@ -125,14 +124,15 @@ Vec3 EmulatedOmni::follow_live_target() noexcept {
     const Vec3 handle = true_position_m();
     const double w = live_hand_rad_per_s;
     const Vec3 before = wish_m_;
-    wish_m_per_s_ += tick_s * (w * w * (order_.target_m - wish_m_) - 2 * w * wish_m_per_s_);
+    wish_m_per_s_ += servo_tick_s * (w * w * (order_.target_m - wish_m_) - 2 * w * wish_m_per_s_);
     wish_m_per_s_ *= std::min(1.0, live_hand_m_per_s / std::max(wish_m_per_s_.norm(), 1e-12));
-    wish_m_ += tick_s * wish_m_per_s_;
+    wish_m_ += servo_tick_s * wish_m_per_s_;
     const Vec3 ahead = wish_m_ - handle;
     const double pull = stiffness * ahead.norm();
     if (pull > live_hand_newton) wish_m_ = handle + ahead * (live_hand_newton / pull);
     wish_m_ = wish_m_.cwiseMax(-reach).cwiseMin(reach);
-    wish_m_per_s_ = (wish_m_ - before) / tick_s;  // held back, the damper pulls no more either
+    wish_m_per_s_ =
+        (wish_m_ - before) / servo_tick_s;  // held back, the damper pulls no more either
     return stiffness * wish_m_ + settings_.hand->damping_N_s_per_m * wish_m_per_s_;
 }
 

@@ -22,7 +22,6 @@ constexpr std::array<std::optional<double>, 2> cutoffs{std::nullopt, 12.0};
 constexpr double local_shift = 0.1;  // Å
 constexpr std::size_t local_steps = 300;
 constexpr double apart = 0.001;  // Å, of the two runs that make the floor
-constexpr double pN = 1e12 * units::newton_per_kcal_per_mol_angstrom;
 
 // ---- what is compared --------------------------------------------------------------------------
 
@@ -205,13 +204,19 @@ void add_rows(const std::string& name, const Result& result, const References& r
     };
     const std::vector<Vec3> same = changes_of(references.poses, &Pose::same_steps);
     const std::vector<Vec3> rest = changes_of(references.poses, &Pose::at_rest);
-    add("local-force", result.local_force, pN * rms_norm(same), "pN",
-        fmt::format("{}, as many steps: {:.0f} pN", exact, pN * rms_norm(same)));
-    add("local-rest", result.local_rest, pN * rms_norm(rest), "pN",
-        fmt::format("{}, at rest: {:.0f} pN", exact, pN * rms_norm(rest)));
+    add("local-force", result.local_force,
+        units::piconewton_per_kcal_per_mol_angstrom * rms_norm(same), "pN",
+        fmt::format("{}, as many steps: {:.0f} pN", exact,
+                    units::piconewton_per_kcal_per_mol_angstrom * rms_norm(same)));
+    add("local-rest", result.local_rest,
+        units::piconewton_per_kcal_per_mol_angstrom * rms_norm(rest), "pN",
+        fmt::format("{}, at rest: {:.0f} pN", exact,
+                    units::piconewton_per_kcal_per_mol_angstrom * rms_norm(rest)));
     add("local-position", result.local_position, 1, "A", exact);
-    add("path", result.path, pN * rms_norm(references.path), "pN",
-        fmt::format("{}: {:.0f} pN", exact, pN * rms_norm(references.path)));
+    add("path", result.path,
+        units::piconewton_per_kcal_per_mol_angstrom * rms_norm(references.path), "pN",
+        fmt::format("{}: {:.0f} pN", exact,
+                    units::piconewton_per_kcal_per_mol_angstrom * rms_norm(references.path)));
 }
 
 std::string table_line(const Result& result, double all_us) {

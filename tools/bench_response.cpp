@@ -11,7 +11,6 @@ namespace palpa {
 namespace {
 
 constexpr double step = 2e-4;  // rad and Å
-constexpr double pN = 1e12 * units::newton_per_kcal_per_mol_angstrom;
 
 // Forces on the coordinates, then on the hand.
 using Pull = Eigen::VectorXd;
@@ -103,7 +102,8 @@ std::string bench_best_joints(const std::string& scene_name, const SceneDescript
     const std::vector<Vec3> responses = find_responses(find_slopes(flexible));
 
     const Vec3& relaxed = responses.back();
-    const std::string reference = fmt::format("all at rest: {:.1f} pN/A", pN * relaxed.norm());
+    const std::string reference = fmt::format(
+        "all at rest: {:.1f} pN/A", units::piconewton_per_kcal_per_mol_angstrom * relaxed.norm());
     std::string table = "| come to rest | the hand finds, pN/Å | wrong, % |\n| --- | --- | --- |\n";
     for (const std::size_t active : active_counts) {
         const std::size_t count = std::min(active, responses.size() - 1);
@@ -111,12 +111,13 @@ std::string bench_best_joints(const std::string& scene_name, const SceneDescript
         const std::string name = active == everything ? "all" : fmt::format("{}", active);
         const double error = (responses[count] - relaxed).norm();
         rows.push_back({fmt::format("adaptive/{}/best/active={}", scene_name, name),
-                        {pN * responses[count].norm()},
+                        {units::piconewton_per_kcal_per_mol_angstrom * responses[count].norm()},
                         "pN/A",
                         error / relaxed.norm(),
                         "relative",
                         reference});
-        table += fmt::format("| {} | {:.1f} | {:.3g} |\n", name, pN * responses[count].norm(),
+        table += fmt::format("| {} | {:.1f} | {:.3g} |\n", name,
+                             units::piconewton_per_kcal_per_mol_angstrom * responses[count].norm(),
                              100 * error / relaxed.norm());
     }
     return table;

@@ -11,10 +11,10 @@ namespace {
 
 constexpr std::size_t none = ResidueInstance::none;
 
-class Builder {
+class InstanceBuilder {
 public:
-    Builder(const ForceField& force_field, const Structure& structure,
-            const GenerateSettings& settings, Missing& missing)
+    InstanceBuilder(const ForceField& force_field, const Structure& structure,
+                    const GenerateSettings& settings, Missing& missing)
         : force_field_(force_field),
           structure_(structure),
           settings_(settings),
@@ -254,7 +254,7 @@ std::string ResidueInstance::label() const {
 
 ResidueInstances build_residue_instances(const ForceField& force_field, const Structure& structure,
                                          const GenerateSettings& settings, Missing& missing) {
-    return Builder(force_field, structure, settings, missing).build();
+    return InstanceBuilder(force_field, structure, settings, missing).build();
 }
 
 AtomReference find_reference(const ResidueInstances& residues, const TemplateUse& use,

@@ -13,6 +13,8 @@ inline constexpr double joule_per_kcal_per_mol = joule_per_kcal / avogadro_per_m
 // 1 kcal/mol/Å = 69.477 pN
 inline constexpr double newton_per_kcal_per_mol_angstrom =
     joule_per_kcal_per_mol / metre_per_angstrom;
+inline constexpr double piconewton_per_kcal_per_mol_angstrom =
+    1e12 * newton_per_kcal_per_mol_angstrom;
 // 1 kcal/mol/Å^2 = 0.69477 N/m
 inline constexpr double newton_per_metre_per_kcal_per_mol_angstrom2 =
     newton_per_kcal_per_mol_angstrom / metre_per_angstrom;

@@ -385,6 +385,7 @@ private:
                              std::uint64_t second_pairs) {
         const ClusterAtoms& a = atoms_[first];
         const ClusterAtoms& b = atoms_[second];
+        HWY_UNROLL(1)
         for (std::size_t column = 0; column < cluster_size; column += lane_count) {
             const auto place = [&](std::size_t k) HWY_ATTR {
                 return hn::Add(hn::Sub(load_columns(a.high[k], b.high[k], column),
@@ -432,8 +433,9 @@ private:
                 add_force(gradient, dy, fy, rows_.fy[r]);
                 add_force(gradient, dz, fz, rows_.fz[r]);
             };
-            if (!IsMasked && rows == 0xff) {
-                // Most tiles: without looking for the next row.
+            if (lane_count >= cluster_size && !IsMasked && rows == 0xff) {
+                // Most tiles: without looking for the next row. Narrow vectors gain little by it
+                // and take minutes to compile.
                 HWY_UNROLL(8)
                 for (std::uint32_t r = 0; r < cluster_size; ++r) add_row(r);
             } else {

@@ -101,9 +101,9 @@ std::optional<std::int32_t> find_formal_charge(std::string_view text) {
     return (text[sign] == '-' ? -1 : 1) * (digit - '0');
 }
 
-class Reader {
+class PdbReader {
 public:
-    Reader(std::string_view text, const std::string& file)
+    PdbReader(std::string_view text, const std::string& file)
         : file_(file),
           lines_(text),
           builder_(file, count_lines(text, "ATOM") + count_lines(text, "HETATM")),
@@ -384,7 +384,7 @@ std::string format_atom(const Structure& structure, std::size_t atom, std::size_
 }  // namespace
 
 Structure parse_pdb(std::string_view text, const std::string& file) {
-    return Reader(text, file).read();
+    return PdbReader(text, file).read();
 }
 
 Structure read_pdb(const std::filesystem::path& path) {

@@ -31,9 +31,9 @@ constexpr std::array known_flags =
 // Of an atom's line: nine fields of one letter, and what is between them.
 constexpr std::size_t shortest_atom = 18;
 
-class Reader {
+class PsfReader {
 public:
-    Reader(std::string_view text, const std::string& file) : lines_(text), text_(text) {
+    PsfReader(std::string_view text, const std::string& file) : lines_(text), text_(text) {
         connectivity_.file = file;
     }
 
@@ -313,7 +313,7 @@ void append_tuples(const std::vector<std::array<std::uint32_t, Size>>& tuples, s
 }  // namespace
 
 Connectivity parse_psf(std::string_view text, const std::string& file) {
-    return Reader(text, file).read();
+    return PsfReader(text, file).read();
 }
 
 Connectivity read_psf(const std::filesystem::path& path) {

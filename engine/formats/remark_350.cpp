@@ -14,7 +14,7 @@
 namespace palpa {
 namespace {
 
-constexpr std::size_t most_operators = 1000;  // of one part
+constexpr std::size_t most_of_part = 1000;  // of one part
 constexpr std::array<std::string_view, 3> row_names{"BIOMT1", "BIOMT2", "BIOMT3"};
 
 // What stands behind `beginning`, or nothing where the text begins in another way.
@@ -95,9 +95,9 @@ void Remark350::add_row(const std::vector<std::string_view>& words, std::size_t 
     }
     std::vector<std::uint32_t>& list = assemblies_.back().parts.back().operators[0];
     if (rows_ == row_names.size()) {
-        if (list.size() == most_operators) {
-            fail(line, fmt::format("more than {} operators for the chains of line {}",
-                                   most_operators, part_line_));
+        if (list.size() == most_of_part) {
+            fail(line, fmt::format("more than {} operators for the chains of line {}", most_of_part,
+                                   part_line_));
         }
         list.push_back(static_cast<std::uint32_t>(operators_.size()));
         operators_.push_back({std::string(words[1]), Mat3::Zero(), Vec3::Zero(), line});

@@ -9,6 +9,7 @@ namespace palpa {
 
 // The servo ticks this often, on every device so far.
 inline constexpr double servo_rate_hz = 1000;
+inline constexpr double servo_tick_s = 1 / servo_rate_hz;
 
 // Limits as the maker or the driver states them. SI; axes: x right, y up, z towards the user.
 struct DeviceSpec {

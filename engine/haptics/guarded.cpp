@@ -10,8 +10,6 @@
 namespace palpa {
 namespace {
 
-constexpr double tick_s = 1 / servo_rate_hz;
-
 // Velocity is the difference between two readings through a low-pass of first order.
 constexpr double velocity_filter_s = 0.002;
 
@@ -30,7 +28,7 @@ double update_allowance(const Touch& touch, GuardedState& state) noexcept {
     const double trusted = touch.field.has_atoms ? 1 : 0.15;
     const double clearance = state.at_place.clearance_angstrom;
     const double period = std::max({touch.model.period_s, state.interval_s, state.since_arrival_s});
-    double refill = (in_contact_per_model + trusted * clearance) * tick_s / period;
+    double refill = (in_contact_per_model + trusted * clearance) * servo_tick_s / period;
     if (touch.field.has_atoms && !touch.model.gives_way)
         refill = std::numeric_limits<double>::infinity();
     state.allowance_angstrom =
@@ -44,7 +42,8 @@ constexpr double most_saved_J = 3e-3;
 
 void update_debt(const GuardedSettings& settings, const Vec3& dropped_m,
                  GuardedState& state) noexcept {
-    const double damped = settings.damping_N_s_per_m * state.handle_m_per_s.squaredNorm() * tick_s;
+    const double damped =
+        settings.damping_N_s_per_m * state.handle_m_per_s.squaredNorm() * servo_tick_s;
     state.debt_J = std::max(-most_saved_J, state.debt_J + state.law_newton.dot(dropped_m) - damped);
 }
 
@@ -66,8 +65,8 @@ Vec3 find_extra_travel(const GuardedSettings& settings, const Vec3& handle_m, co
     const Vec3 force = state.at_place.force_newton + state.jump_newton;
     const double free = 1 - hand_force(settings.force_law, force).norm() / felt_newton;
     if (!(free > 0) || state.debt_J > owed_J) return Vec3::Zero();
-    return free *
-           extra_travel(settings.workspace, handle_m, moved_m, settings.half_workspace_m, tick_s);
+    return free * extra_travel(settings.workspace, handle_m, moved_m, settings.half_workspace_m,
+                               servo_tick_s);
 }
 
 // Goes to a place if no atom is pushed too hard there, or less than before.
@@ -101,9 +100,9 @@ Vec3 follow(const GuardedSettings& settings, const Touch& touch, const Vec3& tra
 }  // namespace
 
 double guarded_cap(double viscosity_N_s_per_m, double damping_N_s_per_m, int delay_ticks) noexcept {
-    const double stable = 0.5 * (viscosity_N_s_per_m + damping_N_s_per_m) / (1.5 * tick_s);
+    const double stable = 0.5 * (viscosity_N_s_per_m + damping_N_s_per_m) / (1.5 * servo_tick_s);
     const double lossless =
-        damping_N_s_per_m > 0 ? damping_N_s_per_m / ((1.5 + delay_ticks) * tick_s) : stable;
+        damping_N_s_per_m > 0 ? damping_N_s_per_m / ((1.5 + delay_ticks) * servo_tick_s) : stable;
     return std::max(1.0, std::min(stable, lossless));
 }
 
@@ -140,8 +139,8 @@ GuardedTick step_guarded(const GuardedSettings& settings, const Touch& touch, co
                          const Vec3& moved_m, bool is_clutched, GuardedState& state) noexcept {
     GuardedTick tick;
     const TouchModel& model = touch.model;
-    const double keep = velocity_filter_s / (velocity_filter_s + tick_s);
-    state.handle_m_per_s = keep * state.handle_m_per_s + (1 - keep) / tick_s * moved_m;
+    const double keep = velocity_filter_s / (velocity_filter_s + servo_tick_s);
+    state.handle_m_per_s = keep * state.handle_m_per_s + (1 - keep) / servo_tick_s * moved_m;
     if (!state.is_placed || model.is_still) return tick;
 
     const Vec3 before = state.at_place.force_newton + state.jump_newton;
@@ -170,7 +169,7 @@ GuardedTick step_guarded(const GuardedSettings& settings, const Touch& touch, co
     tick.dropped_m = cut - kept_cut;
     state.kept_m = share * wanted - followed + kept_cut;
 
-    state.jump_newton *= std::exp(-4 * tick_s / std::max(state.interval_s, tick_s));
+    state.jump_newton *= std::exp(-4 * servo_tick_s / std::max(state.interval_s, servo_tick_s));
     tick.force_newton = state.at_place.force_newton + state.jump_newton;
     const Vec3 law = hand_force(settings.force_law, tick.force_newton);
     if (settings.revision != state.revision) {
@@ -178,16 +177,16 @@ GuardedTick step_guarded(const GuardedSettings& settings, const Touch& touch, co
         if (jump.allFinite()) state.law_jump_newton += jump;
         state.revision = settings.revision;
     }
-    state.law_jump_newton *= std::exp(-tick_s / law_glide_s);
+    state.law_jump_newton *= std::exp(-servo_tick_s / law_glide_s);
     state.law_newton = law + state.law_jump_newton;
-    const double remember = share_filter_s / (share_filter_s + tick_s);
+    const double remember = share_filter_s / (share_filter_s + servo_tick_s);
     state.wanted_m = remember * state.wanted_m + wanted.norm();
     state.allowed_m = remember * state.allowed_m + share * wanted.norm();
     tick.hand_newton = driven_share(state) * state.law_newton -
                        settings.cap_N_per_m * state.kept_m -
                        settings.damping_N_s_per_m * state.handle_m_per_s;
     update_debt(settings, tick.dropped_m - extra, state);
-    state.since_arrival_s += tick_s;
+    state.since_arrival_s += servo_tick_s;
     return tick;
 }
 

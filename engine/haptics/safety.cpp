@@ -8,27 +8,27 @@ namespace {
 
 using Engagement = SafetyState::Engagement;
 
-constexpr double tick_s = 1 / servo_rate_hz;
-constexpr double shortest_tick_s = tick_s / 10;  // less is no time for a tick
-constexpr double rounding_s = 1e-6;              // of a sum of ticks
+constexpr double shortest_tick_s = servo_tick_s / 10;  // less is no time for a tick
+constexpr double rounding_s = 1e-6;                    // of a sum of ticks
 
 struct Elapsed {
-    double s = tick_s;  // since the last tick, bounded both ways so that every watch below goes on
+    double s =
+        servo_tick_s;  // since the last tick, bounded both ways so that every watch below goes on
     SafetyStage fault = SafetyStage::None;
 };
 
 Elapsed update_clock(const SafetySettings& settings, SafetyState& state, double now_s) noexcept {
     if (!std::isfinite(now_s)) {
         state.has_clock = false;
-        return {tick_s, SafetyStage::Late};
+        return {servo_tick_s, SafetyStage::Late};
     }
-    const double elapsed_s = state.has_clock ? now_s - state.last_s : tick_s;
+    const double elapsed_s = state.has_clock ? now_s - state.last_s : servo_tick_s;
     state.has_clock = true;
     state.last_s = now_s;
-    if (elapsed_s < 0) return {tick_s, SafetyStage::Late};
+    if (elapsed_s < 0) return {servo_tick_s, SafetyStage::Late};
     const double late_s = settings.late_s - rounding_s;
     if (elapsed_s < shortest_tick_s) {
-        state.stood_s += tick_s;
+        state.stood_s += servo_tick_s;
         return {shortest_tick_s, state.stood_s > late_s ? SafetyStage::Late : SafetyStage::None};
     }
     state.stood_s = 0;
@@ -85,7 +85,7 @@ SafetyStage update_reading(const SafetySettings& settings, SafetyState& state,
         return SafetyStage::None;
     }
     const double way_m = (reading.position_m - state.handle_m).norm();
-    const double ticks = std::max(1.0, state.unread_s / tick_s);
+    const double ticks = std::max(1.0, state.unread_s / servo_tick_s);
     state.unread_s = 0;
     state.handle_m = reading.position_m;
     const bool is_frozen = update_frozen(settings, state, way_m != 0, reading.time_s, elapsed_s);
@@ -170,7 +170,7 @@ Vec3 clamped(const Vec3& force, double clamp_newton, double& share) noexcept {
 
 Vec3 slewed(const SafetySettings& settings, const Vec3& from, const Vec3& to, double elapsed_s,
             SafetyStage& stage) noexcept {
-    const double farthest = settings.slew_newton_per_s * std::min(elapsed_s, tick_s);
+    const double farthest = settings.slew_newton_per_s * std::min(elapsed_s, servo_tick_s);
     const Vec3 change = to - from;
     const double norm = change.norm();
     if (norm <= farthest) return to;

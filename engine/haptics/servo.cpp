@@ -7,8 +7,6 @@
 namespace palpa {
 namespace {
 
-constexpr double tick_s = 1 / servo_rate_hz;
-
 // What the handle did since the last valid reading, clutched or not.
 Vec3 take_reading(ServoState& state, const DeviceReading& reading) noexcept {
     if (!reading.valid || !reading.position_m.allFinite()) return Vec3::Zero();
@@ -80,7 +78,7 @@ ServoTick step_servo(const ServoSettings& settings, ServoState& state, Exchange&
     if (is_new) state.touch = touch.model;
     follow_stillness(state.touch, state);
     state.has_touch = state.has_touch || is_new;
-    state.model_age_s = is_new || !state.has_touch ? 0 : state.model_age_s + tick_s;
+    state.model_age_s = is_new || !state.has_touch ? 0 : state.model_age_s + servo_tick_s;
 
     ServoTick tick;
     tick.reading = reading;

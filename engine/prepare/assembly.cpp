@@ -20,7 +20,7 @@
 namespace palpa {
 namespace {
 
-constexpr std::string_view heading = "Biological assembly";
+constexpr std::string_view assembly_heading = "Biological assembly";
 constexpr std::size_t most_atoms = 10'000'000;
 constexpr double overlap = 1.5;  // Å; atoms that are bonded are hardly nearer
 
@@ -166,8 +166,9 @@ public:
                             "in the file");
         }
         if (waters_ > 0) {
-            report_.add(heading, fmt::format("{} cop{} of waters on a symmetry axis left out",
-                                             waters_, waters_ == 1 ? "y" : "ies"));
+            report_.add(assembly_heading,
+                        fmt::format("{} cop{} of waters on a symmetry axis left out", waters_,
+                                    waters_ == 1 ? "y" : "ies"));
         }
         return std::move(result_);
     }
@@ -252,8 +253,9 @@ private:
         const SymmetryOperator& one = operators_[operator_index];
         if (is_new && !is_identity(one)) {
             found->second = names_.next();
-            report_.add(heading, fmt::format("chain {}: chain {} by operator {}", found->second,
-                                             chain.empty() ? "without a name" : chain, one.name));
+            report_.add(assembly_heading,
+                        fmt::format("chain {}: chain {} by operator {}", found->second,
+                                    chain.empty() ? "without a name" : chain, one.name));
         }
         return found->second;
     }
@@ -307,7 +309,7 @@ private:
             "it by operator {}; only the original is kept{}",
             residue_label(structure_, residue), count, of, overlap, operators_[operator_index].name,
             is_half ? "; its occupancy is 1/2, as on a two-fold axis" : "");
-        report_.add(heading, text);
+        report_.add(assembly_heading, text);
         if (2 * count >= of) return;
         report_.warn(
             fmt::format("{}: wrong, if the file holds half of it, bonded to its copy", text));

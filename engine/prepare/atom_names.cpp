@@ -24,7 +24,7 @@
 namespace palpa {
 namespace {
 
-constexpr std::string_view heading = "Atom names";
+constexpr std::string_view names_heading = "Atom names";
 using std::numbers::pi;
 
 // What a residue is to consist of, once its patches are in.
@@ -227,8 +227,8 @@ private:
         // The end of a chain that is closed in another way.
         if (name == "OXT") {
             kept_[atom] = false;
-            report_.add(heading, fmt::format("{}: left out OXT, which its end does not have",
-                                             residue_label(structure_, residue)));
+            report_.add(names_heading, fmt::format("{}: left out OXT, which its end does not have",
+                                                   residue_label(structure_, residue)));
             return;
         }
         std::vector<std::string_view> names;
@@ -397,11 +397,13 @@ private:
 
     void tell() {
         for (const auto& [what, count] : renamed_) {
-            report_.add(heading, fmt::format("{} ({} atom{})", what, count, count == 1 ? "" : "s"));
+            report_.add(names_heading,
+                        fmt::format("{} ({} atom{})", what, count, count == 1 ? "" : "s"));
         }
         if (renamed_hydrogens_ > 0) {
-            report_.add(heading, fmt::format("{} hydrogens named by the atom that they are on",
-                                             renamed_hydrogens_));
+            report_.add(
+                names_heading,
+                fmt::format("{} hydrogens named by the atom that they are on", renamed_hydrogens_));
         }
         if (!dropped_.empty()) {
             report_.warn(fmt::format("left out hydrogens that the chosen residues do not have: {}",

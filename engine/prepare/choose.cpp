@@ -17,7 +17,7 @@
 namespace palpa {
 namespace {
 
-constexpr std::string_view heading = "Chosen atoms";
+constexpr std::string_view choice_heading = "Chosen atoms";
 
 constexpr auto waters = std::to_array<std::string_view>(
     {"HOH", "WAT", "H2O", "DOD", "SOL", "TIP", "TIP3", "TIP4", "TP3M", "SPC", "OH2"});
@@ -33,7 +33,7 @@ Structure choose_model(const Structure& structure, const PrepareSettings& settin
                         fmt::format("no model {} (only {})", model, fmt::join(models, ", ")));
     }
     if (models.size() == 1) return structure;
-    report.add(heading,
+    report.add(choice_heading,
                fmt::format("model {} of {} (--model N takes another)", model, models.size()));
     std::vector<bool> kept;
     for (const AtomRecord& record : structure.records) kept.push_back(record.model == model);
@@ -109,14 +109,15 @@ Structure leave_out(const Structure& structure, const PrepareSettings& settings,
     }
     left_out.check_all_used(names);
     for (const auto& [name, count] : dropped) {
-        report.add(heading, fmt::format("left out as asked: {} ({} residue{})", name, count,
-                                        count == 1 ? "" : "s"));
+        report.add(choice_heading, fmt::format("left out as asked: {} ({} residue{})", name, count,
+                                               count == 1 ? "" : "s"));
     }
     if (water_count > 0) {
-        report.add(heading,
+        report.add(choice_heading,
                    fmt::format("left out {} waters (--keep-waters keeps them)", water_count));
     }
-    if (ion_count > 0) report.add(heading, fmt::format("left out {} ions as asked", ion_count));
+    if (ion_count > 0)
+        report.add(choice_heading, fmt::format("left out {} ions as asked", ion_count));
     return keep_atoms(structure, kept);
 }
 
@@ -152,8 +153,8 @@ char choose_location(const Structure& structure, const ResidueRange& residue,
     }
     std::string all;
     for (const auto& entry : locations) all += fmt::format(" {}", entry.first);
-    report.add(heading, fmt::format("{}: location {} of{} ({})", residue_label(structure, residue),
-                                    chosen, all, reason));
+    report.add(choice_heading, fmt::format("{}: location {} of{} ({})",
+                                           residue_label(structure, residue), chosen, all, reason));
     return chosen;
 }
 

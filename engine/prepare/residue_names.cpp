@@ -26,7 +26,7 @@ constexpr std::string_view heading = "Residue names";
 constexpr std::string_view protonation_heading = "Protonation";
 
 // What other programs and the PDB call residues that CHARMM has.
-constexpr auto aliases = std::to_array<Pair>(
+constexpr auto residue_aliases = std::to_array<Pair>(
     {{"HID", "HSD"},  {"HIE", "HSE"},  {"HIP", "HSP"},  {"HISD", "HSD"}, {"HISE", "HSE"},
      {"HISH", "HSP"}, {"CYX", "CYS"},  {"CYS2", "CYS"}, {"ASH", "ASP"},  {"ASPH", "ASP"},
      {"GLH", "GLU"},  {"GLUH", "GLU"}, {"LYN", "LYS"},  {"LYSN", "LYS"}, {"LSN", "LYS"},
@@ -255,8 +255,8 @@ private:
         // "NA+", "CL-", "MG2"
         const std::string plain =
             residue.count == 1 ? before.substr(0, before.find_first_of("+-0123456789")) : before;
-        auto alias =
-            is_water(before) ? std::optional<std::string_view>("TIP3") : look_up(aliases, plain);
+        auto alias = is_water(before) ? std::optional<std::string_view>("TIP3")
+                                      : look_up(residue_aliases, plain);
         if (!alias && is_known(plain)) alias = plain;
         if (alias == before) return;
         if (!alias || !is_known(*alias)) return;
@@ -280,7 +280,7 @@ private:
     void choose_state(const ResidueRange& residue, const std::string& state) {
         const std::string label = residue_label(structure_, residue);
         const auto patch = look_up(protonated, state);
-        const auto other = look_up(aliases, state);
+        const auto other = look_up(residue_aliases, state);
         const std::string residue_name(other ? *other : state);
         const std::string patch_name(patch ? *patch : state);
         if (force_field_.patches.contains(patch_name)) {

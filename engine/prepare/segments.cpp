@@ -22,7 +22,7 @@
 namespace palpa {
 namespace {
 
-constexpr std::string_view heading = "Chains and their ends";
+constexpr std::string_view segments_heading = "Chains and their ends";
 constexpr std::string_view disulphide_heading = "Disulphides";
 constexpr double longest_link = 2.5;  // Å, between atoms taken as bonded
 
@@ -149,11 +149,12 @@ private:
                         settings.first, used_first_);
         choose_as_asked(settings_.last, {end_name, is_before_gap ? end_name : chain_name}, last,
                         settings.last, used_last_);
-        report_.add(heading, fmt::format("segment {}: {} to {}, {} residues; first {}, last {}",
-                                         segment, residue_label(structure_, residues_[first]),
-                                         residue_label(structure_, residues_[last]), end - first,
-                                         shown(settings.first, residue_of(first).first_patch),
-                                         shown(settings.last, residue_of(last).last_patch)));
+        report_.add(segments_heading,
+                    fmt::format("segment {}: {} to {}, {} residues; first {}, last {}", segment,
+                                residue_label(structure_, residues_[first]),
+                                residue_label(structure_, residues_[last]), end - first,
+                                shown(settings.first, residue_of(first).first_patch),
+                                shown(settings.last, residue_of(last).last_patch)));
         for (std::size_t i = first; i < end; ++i) set_segment(i, segment);
         result_.segments.push_back(std::move(settings));
     }
@@ -241,16 +242,16 @@ private:
             auto [found, is_new] = gathered_.try_emplace(key);
             if (is_new) {
                 found->second = unique_segment(key);
-                report_.add(heading, fmt::format("segment {}: {}", found->second,
-                                                 is_water_here ? "waters" : "ions"));
+                report_.add(segments_heading, fmt::format("segment {}: {}", found->second,
+                                                          is_water_here ? "waters" : "ions"));
                 result_.segments.push_back({found->second, "NONE", "NONE", !is_water_here});
             }
             set_segment(index, found->second);
             return;
         }
         const std::string segment = unique_segment(name.residue.substr(0, 4));
-        report_.add(heading, fmt::format("segment {}: {}", segment,
-                                         residue_label(structure_, residues_[index])));
+        report_.add(segments_heading, fmt::format("segment {}: {}", segment,
+                                                  residue_label(structure_, residues_[index])));
         result_.segments.push_back({segment, {}, {}});
         set_segment(index, segment);
     }

@@ -5,8 +5,6 @@
 namespace palpa {
 namespace {
 
-constexpr double tick_s = 1 / servo_rate_hz;
-
 double value_of(LessonQuantity quantity, const Reading& reading, CouplingMode mode) noexcept {
     switch (quantity) {
         case LessonQuantity::Distance:
@@ -29,9 +27,9 @@ void Lesson::update(const Reading& reading, CouplingMode mode) noexcept {
     const double value = value_of(step.quantity, reading, mode);
     const bool holds =
         (!step.at_least || value >= *step.at_least) && (!step.at_most || value <= *step.at_most);
-    held_s_ = holds ? held_s_ + tick_s : 0;
+    held_s_ = holds ? held_s_ + servo_tick_s : 0;
     // Half a tick keeps the count from hanging on rounding.
-    if (holds && held_s_ > step.for_s - 0.5 * tick_s) skip();
+    if (holds && held_s_ > step.for_s - 0.5 * servo_tick_s) skip();
 }
 
 double Lesson::share() const noexcept {

@@ -18,7 +18,6 @@
 namespace palpa {
 namespace {
 
-constexpr double tick_s = 1 / servo_rate_hz;
 constexpr std::uint64_t ticks_between_progress = 100;
 
 WorkspaceMap build_workspace(WorkspaceChoice choice) {
@@ -114,10 +113,10 @@ double calm_stiffness(const SceneDescription& scene, const std::optional<HandMod
     DeviceDynamics device{scene.device.inertia_kg, scene.device.viscosity_N_s_per_m};
     if (scene.coupling.mode == CouplingMode::Guarded) {
         device.viscosity_N_s_per_m += scene.coupling.damping_N_s_per_m;
-        period_s = tick_s;
+        period_s = servo_tick_s;
     }
     return critical_stiffness(build_plant(device, hand), period_s,
-                              static_cast<double>(scene.device.servo_delay_ticks) * tick_s);
+                              static_cast<double>(scene.device.servo_delay_ticks) * servo_tick_s);
 }
 
 std::vector<std::string> list_warnings(const SceneDescription& scene, const Simulation& simulation,
@@ -214,10 +213,10 @@ private:
 Summary run_headless(const SceneDescription& scene, Simulation& simulation, Device& device,
                      const std::vector<std::string>& warnings, Recording* recording,
                      const ProgressFunction& progress, const FrameClock& frames) {
-    const auto ticks = static_cast<std::uint64_t>(std::ceil(scene.seconds / tick_s - 1e-9));
+    const auto ticks = static_cast<std::uint64_t>(std::ceil(scene.seconds / servo_tick_s - 1e-9));
     const auto ticks_per_step =
-        static_cast<std::uint64_t>(std::lround(simulation.period_s / tick_s));
-    Statistics statistics(tick_s);
+        static_cast<std::uint64_t>(std::lround(simulation.period_s / servo_tick_s));
+    Statistics statistics(servo_tick_s);
     ActivityLog activity;
     std::optional<JourneyLog> journey;
     if (simulation.flexible) journey.emplace(simulation);
@@ -234,7 +233,7 @@ Summary run_headless(const SceneDescription& scene, Simulation& simulation, Devi
     };
     std::uint64_t done = 0, drawn = 0;
     const auto on_tick = [&](const ServoTick& tick) {
-        const double now_s = static_cast<double>(done) * tick_s;
+        const double now_s = static_cast<double>(done) * servo_tick_s;
         if (frames.draw && now_s >= static_cast<double>(drawn) / frames.per_second - 1e-9) {
             frames.draw();
             ++drawn;

@@ -15,7 +15,7 @@ using test::TorsionShape;
 
 namespace {
 
-AssemblyTree tree_of(const TorsionCase& c) {
+AssemblyTree case_tree(const TorsionCase& c) {
     return build_assembly_tree(c.bodies, c.masses, c.positions);
 }
 
@@ -43,7 +43,7 @@ TEST_CASE("an assembly tree joins every body by every joint, once", "[assembly][
         INFO(bodies << " bodies of shape " << static_cast<int>(shape));
         const TorsionCase c = test::torsion_case(7, bodies, shape);
 
-        const AssemblyTree tree = tree_of(c);
+        const AssemblyTree tree = case_tree(c);
 
         std::vector<int> joined(tree.links, 0);
         std::vector<double> leaves(bodies, 0);
@@ -71,7 +71,7 @@ TEST_CASE("an assembly tree is about as deep as it must be", "[assembly][tree]")
     const auto shape =
         GENERATE(TorsionShape::Tree, TorsionShape::Chain, TorsionShape::Comb, TorsionShape::Star);
     for (const std::size_t bodies : {10, 100, 1000, 10000}) {
-        const AssemblyTree tree = tree_of(test::torsion_case(3, bodies, shape));
+        const AssemblyTree tree = case_tree(test::torsion_case(3, bodies, shape));
         const double leaves = (static_cast<double>(tree.nodes.size()) + 1) / 2;
         INFO(bodies << " bodies of shape " << static_cast<int>(shape));
         CHECK(static_cast<double>(tree.depth) <= 2 * std::log2(leaves) + 1);
@@ -81,7 +81,7 @@ TEST_CASE("an assembly tree is about as deep as it must be", "[assembly][tree]")
 TEST_CASE("bodies share the mass of the bonds between them", "[assembly][tree]") {
     const TorsionCase c = test::torsion_case(5, 50, TorsionShape::Tree);
 
-    const AssemblyTree tree = tree_of(c);
+    const AssemblyTree tree = case_tree(c);
 
     std::vector<double> mass(c.masses.size(), 0);
     for (const AtomShare& share : tree.shares) mass[share.atom] += share.mass;
@@ -102,7 +102,7 @@ TEST_CASE("a joint beside which all atoms are in line is refused", "[assembly][t
     c.masses = {16, 1, 1, 12, 14};
     c.positions = {{0, 0, 0}, {-0.5, 0.8, 0}, {-0.5, -0.8, 0}, {1.4, 0, 0}, {2.6, 0, 0}};
 
-    CHECK_THAT(test::load_error_of([&] { tree_of(c); }), Contains("next to atom 4"));
+    CHECK_THAT(test::load_error_of([&] { case_tree(c); }), Contains("next to atom 4"));
     c.positions[4] = {2, 1, 0};
-    CHECK_NOTHROW(tree_of(c));
+    CHECK_NOTHROW(case_tree(c));
 }

@@ -41,14 +41,16 @@ SOD 0.0 -0.0469 1.41075
 CLA 0.0 -0.150 2.27
 )";
 
-ForceField parsed(const std::string& text) { return test::force_field_of(text + "END\n", "a.str"); }
+ForceField small_force_field(const std::string& text) {
+    return test::force_field_of(text + "END\n", "a.str");
+}
 
 ForceField water_with(const std::string& more = "") {
-    return parsed(std::string(water_and_ions) + more + "END\n");
+    return small_force_field(std::string(water_and_ions) + more + "END\n");
 }
 
 // Behind the three lines that CHARMM's coordinates begin with.
-Structure structure_of(const std::vector<AtomName>& names) {
+Structure small_structure(const std::vector<AtomName>& names) {
     return test::structure_of(names, "s.crd", 4);
 }
 
@@ -59,8 +61,8 @@ const std::vector<AtomName> two_waters{{"A", "TIP3", "1", "OH2"}, {"A", "TIP3", 
 std::string error_of(const ForceField& force_field, const std::vector<AtomName>& names,
                      const std::string& segment) {
     AtomTable table;
-    const std::string error =
-        load_error_of([&] { add_segment_atoms(force_field, structure_of(names), segment, table); });
+    const std::string error = load_error_of(
+        [&] { add_segment_atoms(force_field, small_structure(names), segment, table); });
     // A failure adds nothing.
     if (error != "no error") CHECK(table.size() == 0);
     return error;
@@ -71,8 +73,8 @@ std::string error_of(const ForceField& force_field, const std::vector<AtomName>&
 TEST_CASE("atoms get their numbers by name, in the order of the structure", "[charmm][assign]") {
     AtomTable table;
 
-    const AtomRange b = add_segment_atoms(water_with(), structure_of(two_waters), "B", table);
-    const AtomRange a = add_segment_atoms(water_with(), structure_of(two_waters), "A", table);
+    const AtomRange b = add_segment_atoms(water_with(), small_structure(two_waters), "B", table);
+    const AtomRange a = add_segment_atoms(water_with(), small_structure(two_waters), "A", table);
 
     CHECK(b.first == 0);
     CHECK(b.count == 3);
@@ -132,7 +134,7 @@ TEST_CASE("a residue that is there only in part is told", "[charmm][assign]") {
 }
 
 TEST_CASE("all that is missing is told at once, each thing once", "[charmm][assign]") {
-    const ForceField force_field = parsed(
+    const ForceField force_field = small_force_field(
         "MASS -1 CG331 12.011 C\nMASS -1 HG 1.008 H\nRESI LIG 0.0\nATOM C1 CG332 0.0\nATOM C2 "
         "CG332 0.0\n"
         "ATOM H1 HG 0.0\nEND\nread para\nNONBONDED\nCG331 0.0 -0.1 2.0\nCG332 0.0 -0.1 2.0\n");
@@ -152,8 +154,8 @@ TEST_CASE("all that is missing is told at once, each thing once", "[charmm][assi
 
 TEST_CASE("each type is named once in the table, and its atoms point to it", "[charmm][assign]") {
     AtomTable table;
-    add_segment_atoms(water_with(), structure_of(two_waters), "B", table);
-    add_segment_atoms(water_with(), structure_of(two_waters), "A", table);
+    add_segment_atoms(water_with(), small_structure(two_waters), "B", table);
+    add_segment_atoms(water_with(), small_structure(two_waters), "A", table);
 
     CHECK(table.type_names == std::vector<std::string>{"HT", "OT"});
     CHECK(table.type == std::vector<std::uint32_t>{0, 1, 0, 1, 0, 0});
@@ -177,7 +179,7 @@ TEST_CASE("with a connectivity, numbers and order are its own and places are fou
 
     SECTION("as they are") {
         const AtomRange range =
-            add_segment_atoms(force_field, connectivity, structure_of(two_waters), "A", table);
+            add_segment_atoms(force_field, connectivity, small_structure(two_waters), "A", table);
 
         CHECK(range.count == 3);
         CHECK(table.charge == std::vector<double>{0.4, -0.9, 0.5});
@@ -192,7 +194,7 @@ TEST_CASE("with a connectivity, numbers and order are its own and places are fou
         numbered.types.at("HT").number = 4;
         numbered.types.at("OT").number = 75;
         connectivity.type = {"75", "4", "75", "4"};
-        add_segment_atoms(numbered, connectivity, structure_of(two_waters), "A", table);
+        add_segment_atoms(numbered, connectivity, small_structure(two_waters), "A", table);
 
         CHECK(table.type_names == std::vector<std::string>{"HT", "OT"});
     }
@@ -201,7 +203,7 @@ TEST_CASE("with a connectivity, numbers and order are its own and places are fou
         connectivity.names[3].number = "2";
 
         CHECK(load_error_of([&] {
-                  add_segment_atoms(force_field, connectivity, structure_of(two_waters), "A",
+                  add_segment_atoms(force_field, connectivity, small_structure(two_waters), "A",
                                     table);
               }) ==
               "t.psf:6: unknown atom type 'HX': no MASS line; did you mean 'HT'?; t.psf:6: atom "
@@ -209,8 +211,8 @@ TEST_CASE("with a connectivity, numbers and order are its own and places are fou
               "place in s.crd; s.crd:5: atom A TIP3 1 H1 is not in t.psf");
         CHECK(table.size() == 0);
         CHECK_THAT(load_error_of([&] {
-                       add_segment_atoms(force_field, connectivity, structure_of(two_waters), "X",
-                                         table);
+                       add_segment_atoms(force_field, connectivity, small_structure(two_waters),
+                                         "X", table);
                    }),
                    Contains("t.psf: no segment 'X' (only A, B)"));
     }
@@ -220,6 +222,6 @@ TEST_CASE("a residue whose atoms do not add up to its charge is told", "[charmm]
     std::string text(water_and_ions);
     text.replace(text.find("ATOM H2 HT 0.417"), 16, "ATOM H2 HT 0.451");
 
-    CHECK(error_of(parsed(text + "END\n"), two_waters, "A") ==
+    CHECK(error_of(small_force_field(text + "END\n"), two_waters, "A") ==
           "a.str:6: residue 'TIP3' is given 0 e, but its atoms add up to 0.0340 e");
 }

@@ -17,9 +17,9 @@ using namespace palpa;
 
 namespace {
 
-constexpr double coulomb = units::charmm_coulomb_constant;
+constexpr double coulomb_constant = units::charmm_coulomb_constant;
 
-struct Points {
+struct PointSet {
     std::vector<Vec3> positions;
     std::vector<double> charge, sqrt_epsilon, half_rmin;
     std::vector<std::uint32_t> type;
@@ -28,10 +28,10 @@ struct Points {
 };
 
 // A box of places 2.5 Å apart, shaken; as dense as a protein is without its hydrogens.
-Points random_points(std::mt19937& random, int x_count, int y_count, int z_count,
-                     const Vec3& corner) {
+PointSet random_points(std::mt19937& random, int x_count, int y_count, int z_count,
+                       const Vec3& corner) {
     std::uniform_real_distribution<double> uniform(-1, 1);
-    Points points;
+    PointSet points;
     for (int i = 0; i < x_count * y_count * z_count; ++i) {
         const int row = i / x_count % y_count, layer = i / x_count / y_count;
         const Vec3 cell(i % x_count, row, layer);
@@ -50,7 +50,7 @@ Points random_points(std::mt19937& random, int x_count, int y_count, int z_count
 struct Magnitude {
     double force = 0, torque = 0, stiffness = 0;
 };
-Magnitude sum_magnitudes(const Points& group, const Points& environment, const Vec3& origin) {
+Magnitude sum_magnitudes(const PointSet& group, const PointSet& environment, const Vec3& origin) {
     Magnitude sum;
     for (std::size_t i = 0; i < group.positions.size(); ++i) {
         for (std::size_t j = 0; j < environment.positions.size(); ++j) {
@@ -58,7 +58,8 @@ Magnitude sum_magnitudes(const Points& group, const Points& environment, const V
             const double rmin = group.half_rmin[i] + environment.half_rmin[j];
             const double s6 = std::pow(rmin / r, 6);
             const double well = group.sqrt_epsilon[i] * environment.sqrt_epsilon[j] * s6;
-            const double charges = std::abs(coulomb * group.charge[i] * environment.charge[j]) / r;
+            const double charges =
+                std::abs(coulomb_constant * group.charge[i] * environment.charge[j]) / r;
             const double force = (12 * well * (s6 + 1) + charges) / r;
             sum.force += force;
             sum.torque += force * std::max(1.0, (group.positions[i] - origin).norm());
@@ -72,7 +73,7 @@ Magnitude sum_magnitudes(const Points& group, const Points& environment, const V
 struct Nearness {
     double clearance = std::numeric_limits<double>::infinity(), largest_force = 0;
 };
-Nearness find_nearness(const Points& group, const Points& environment, const PairRule& rule) {
+Nearness find_nearness(const PointSet& group, const PointSet& environment, const PairRule& rule) {
     Nearness nearness;
     for (std::size_t i = 0; i < group.positions.size(); ++i) {
         Vec3 force = Vec3::Zero();
@@ -87,7 +88,7 @@ Nearness find_nearness(const Points& group, const Points& environment, const Pai
                 epsilon = pair.epsilon;
             }
             const double r = d.norm(), s6 = std::pow(rmin / r, 6);
-            const double charges = coulomb * group.charge[i] * environment.charge[j];
+            const double charges = coulomb_constant * group.charge[i] * environment.charge[j];
             force += (12 * epsilon * s6 * (s6 - 1) + charges / r) / (r * r) * d;
             nearness.clearance = std::min(nearness.clearance, r - rmin);
         }
@@ -101,12 +102,12 @@ Nearness find_nearness(const Points& group, const Points& environment, const Pai
 TEST_CASE("a frozen field agrees with the twin on every kind of processor", "[field][frozen]") {
     std::mt19937 random(11);
     const Vec3 corner(100, -50, 20);  // of the molecule in its frame
-    const Points environment = random_points(random, 10, 10, GENERATE(1, 10, 23), corner);
-    const Points group = random_points(random, 5, 5, 5, corner + Vec3(5, 4, -14.5));
+    const PointSet environment = random_points(random, 10, 10, GENERATE(1, 10, 23), corner);
+    const PointSet group = random_points(random, 5, 5, 5, corner + Vec3(5, 4, -14.5));
     const bool with_replaced = GENERATE(false, true);
     std::vector<ReplacedPair> replaced;
     if (with_replaced) replaced = {{1, 2, 0.02, 4.1}, {3, 3, 0.3, 2.2}};
-    const PairRule rule{coulomb, replaced};
+    const PairRule rule{coulomb_constant, replaced};
     const FrozenField field = build_frozen_field(group.view(), environment.view(), rule);
     const FieldSum expected = evaluate_pair_field(group.view(), environment.view(), rule);
     const Magnitude scale = sum_magnitudes(group, environment, field.origin);
@@ -132,10 +133,10 @@ TEST_CASE("a frozen field agrees with the twin on every kind of processor", "[fi
 
 TEST_CASE("the frozen field of nothing, or on nothing, is none", "[field][frozen]") {
     std::mt19937 random(12);
-    const Points some = random_points(random, 2, 2, 2, Vec3::Zero()), none;
+    const PointSet some = random_points(random, 2, 2, 2, Vec3::Zero()), none;
 
-    const FrozenField of_none = build_frozen_field(some.view(), none.view(), {coulomb});
-    const FrozenField on_none = build_frozen_field(none.view(), some.view(), {coulomb});
+    const FrozenField of_none = build_frozen_field(some.view(), none.view(), {coulomb_constant});
+    const FrozenField on_none = build_frozen_field(none.view(), some.view(), {coulomb_constant});
 
     CHECK(evaluate_frozen_field(of_none, some.positions).force == Vec3(Vec3::Zero()));
     CHECK(evaluate_frozen_field(on_none, none.positions).stiffness == Mat3(Mat3::Zero()));
@@ -143,9 +144,10 @@ TEST_CASE("the frozen field of nothing, or on nothing, is none", "[field][frozen
 
 TEST_CASE("a group that is moved feels what one that stands there feels", "[field][frozen]") {
     std::mt19937 random(14);
-    const Points environment = random_points(random, 4, 4, 4, Vec3::Zero());
-    Points group = random_points(random, 2, 2, 2, Vec3(3, 3, 9));
-    const FrozenField field = build_frozen_field(group.view(), environment.view(), {coulomb});
+    const PointSet environment = random_points(random, 4, 4, 4, Vec3::Zero());
+    PointSet group = random_points(random, 2, 2, 2, Vec3(3, 3, 9));
+    const FrozenField field =
+        build_frozen_field(group.view(), environment.view(), {coulomb_constant});
     const Vec3 shift(0.3, -0.2, 1);
 
     const FrozenSum moved = evaluate_frozen_field(field, group.positions, shift);
@@ -159,18 +161,20 @@ TEST_CASE("a group that is moved feels what one that stands there feels", "[fiel
 
 TEST_CASE("where single precision does not do, a frozen field is the twin's", "[field][frozen]") {
     std::mt19937 random(13);
-    const Points environment = random_points(random, 3, 3, 3, Vec3::Zero());
-    Points group = random_points(random, 2, 2, 2, Vec3(0, 0, 9));
+    const PointSet environment = random_points(random, 3, 3, 3, Vec3::Zero());
+    PointSet group = random_points(random, 2, 2, 2, Vec3(0, 0, 9));
     SECTION("two points near each other") {
         group.positions[5] = environment.positions[6] + Vec3(0.3, 0, 0);
     }
     SECTION("two points at one place") { group.positions[5] = environment.positions[6]; }
     SECTION("a point far off") { group.positions[5].x() = 1e5; }
 
-    const FrozenField field = build_frozen_field(group.view(), environment.view(), {coulomb});
+    const FrozenField field =
+        build_frozen_field(group.view(), environment.view(), {coulomb_constant});
     const FrozenSum sum = evaluate_frozen_field(field, group.positions);
-    const FieldSum expected = evaluate_pair_field(group.view(), environment.view(), {coulomb});
-    const Nearness near = find_nearness(group, environment, {coulomb});
+    const FieldSum expected =
+        evaluate_pair_field(group.view(), environment.view(), {coulomb_constant});
+    const Nearness near = find_nearness(group, environment, {coulomb_constant});
 
     CHECK((sum.force - expected.force).norm() <= 1e-12 * expected.force.norm());
     CHECK((sum.stiffness - expected.stiffness).norm() <= 1e-12 * expected.stiffness.norm());

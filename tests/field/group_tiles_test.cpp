@@ -13,10 +13,10 @@ using namespace palpa;
 
 namespace {
 
-using Pair = std::array<std::uint32_t, 2>;
+using AtomPair = std::array<std::uint32_t, 2>;
 
-std::vector<Pair> sorted_pairs(const ClusterList& list) {
-    std::vector<Pair> pairs = list_pairs(list);
+std::vector<AtomPair> sorted_pairs(const ClusterList& list) {
+    std::vector<AtomPair> pairs = list_pairs(list);
     for (auto& [a, b] : pairs) {
         if (a > b) std::swap(a, b);
     }
@@ -34,7 +34,7 @@ TEST_CASE("tiles between groups hold each pair of two groups once", "[field][lis
     std::uniform_real_distribution<double> place(-8, 8);
     std::vector<Vec3> places;
     std::vector<std::uint32_t> groups;
-    std::vector<Pair> left_out;
+    std::vector<AtomPair> left_out;
     for (std::uint32_t i = 0; i < count; ++i) {
         const double x = place(random), y = place(random), z = place(random);
         places.emplace_back(x, y, z);
@@ -48,12 +48,12 @@ TEST_CASE("tiles between groups hold each pair of two groups once", "[field][lis
 
     const ClusterList selected = select_tiles_between_groups(whole, groups);
 
-    const std::vector<Pair> all = sorted_pairs(whole), found = sorted_pairs(selected);
+    const std::vector<AtomPair> all = sorted_pairs(whole), found = sorted_pairs(selected);
     CHECK(std::ranges::adjacent_find(found) == found.end());
     CHECK(std::ranges::includes(sorted_pairs(build_full_cluster_list(count, left_out)), found));
-    std::vector<Pair> left;
+    std::vector<AtomPair> left;
     std::ranges::set_difference(all, found, std::back_inserter(left));
-    CHECK(std::ranges::all_of(left, [&](const Pair& p) {
+    CHECK(std::ranges::all_of(left, [&](const AtomPair& p) {
         return groups[p[0]] == groups[p[1]] ||
                // Of a tile whose rows and columns are exchanged, others are too far.
                (ends && (places[p[0]] - places[p[1]]).norm() > 6);

@@ -13,7 +13,7 @@ using namespace palpa;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 const std::array bonds{Bond{0, 1, 300, 1.5}, Bond{2, 1, 250, 1.1}};
 const std::array urey_bradleys{UreyBradley{0, 2, 22.5, 2.2}};

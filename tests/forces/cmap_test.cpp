@@ -15,7 +15,7 @@ using namespace palpa;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 double angle_of(std::size_t point) { return -pi + static_cast<double>(point) * pi / 12; }
 

@@ -56,11 +56,11 @@ double worst_force(const std::vector<Vec3>& forces, const std::vector<Vec3>& ref
     return worst;
 }
 
-// Worst errors of a case so far: energies relative, forces as above.
-using Worst = std::map<std::string, double>;
+// WorstErrors errors of a case so far: energies relative, forces as above.
+using WorstErrors = std::map<std::string, double>;
 
 void check_frame(const test::ReferenceCase& reference, const test::ReferenceFrame& frame,
-                 Worst& worst) {
+                 WorstErrors& worst) {
     INFO("frame " << frame.name);
     const Topology& topology = reference.topology;
     std::vector<Vec3> forces(topology.size(), Vec3::Zero());
@@ -84,7 +84,7 @@ void check_frame(const test::ReferenceCase& reference, const test::ReferenceFram
 
 // Forces of single terms, which the files of small cases hold as well.
 void check_forces_by_term(const test::ReferenceCase& reference, const test::ReferenceFrame& frame,
-                          Worst& worst) {
+                          WorstErrors& worst) {
     const Topology& t = reference.topology;
     const auto check = [&](std::vector<const char*> names, const auto& add) {
         INFO("frame " << frame.name << ", forces of " << names.front());
@@ -123,7 +123,7 @@ void check_case(const fs::path& folder, const std::string& name) {
         CHECK(found.pairs14 == reference.topology.exclusions.pairs14);
     }
 
-    Worst worst;
+    WorstErrors worst;
     int frames = 0;
     for (const auto& entry : fs::directory_iterator(folder)) {
         const std::string file = entry.path().filename().string();

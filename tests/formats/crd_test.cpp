@@ -31,7 +31,7 @@ const std::string normal =
     "    4    2 ALA  CA  -999.99999-999.99999-999.99999 PROA 27A    1.00000\n";
 
 // (2I10,2X,A8,2X,A8,3F20.10,2X,A8,2X,A8,F20.10)
-const std::string extended =
+const std::string extended_crd =
     "* TITLE\n"
     "*\n"
     "         2  EXT\n"
@@ -65,7 +65,7 @@ TEST_CASE("the normal form is read by its columns", "[formats][crd]") {
 }
 
 TEST_CASE("the extended form is read by its columns", "[formats][crd]") {
-    const Structure structure = parse_crd(extended, "w.crd");
+    const Structure structure = parse_crd(extended_crd, "w.crd");
 
     REQUIRE(structure.names.size() == 2);
     CHECK(to_string(structure.names[1]) == "WATERSEG TIP3 1 H1");
@@ -132,7 +132,7 @@ TEST_CASE("what is written reads back: names exactly, places to ten decimals", "
 }
 
 TEST_CASE("CHARMM's own extended lines are written back letter by letter", "[formats][crd]") {
-    CHECK(format_crd(parse_crd(extended, "w.crd"), "TITLE") == extended);
+    CHECK(format_crd(parse_crd(extended_crd, "w.crd"), "TITLE") == extended_crd);
 }
 
 TEST_CASE("residues are numbered in their order, over all segments", "[formats][crd]") {
@@ -162,7 +162,7 @@ TEST_CASE("a number that does not parse is told with line and column", "[formats
     CHECK_THAT(error_of(replaced(normal, "   1.95720", bad)),
                StartsWith("w.crd:5:21: ") && Contains("is not a coordinate"));
     CHECK_THAT(error_of(replaced(normal, "  -1.57337", bad)), StartsWith("w.crd:6:31: "));
-    CHECK_THAT(error_of(replaced(extended, "        1.9572000000", "          " + bad)),
+    CHECK_THAT(error_of(replaced(extended_crd, "        1.9572000000", "          " + bad)),
                StartsWith("w.crd:5:41: "));
 }
 
@@ -220,7 +220,7 @@ TEST_CASE("a huge count of atoms costs no memory, only an error", "[formats][crd
     // Room for so many atoms ahead of time would be a bad_alloc or length_error.
     CHECK(error_of(replaced(normal, "    4\n", count + "\n")) ==
           "w.crd:7: ends after 4 of the " + count + " atoms announced on line 3");
-    CHECK(error_of(replaced(extended, "2  EXT", count + " EXT")) ==
+    CHECK(error_of(replaced(extended_crd, "2  EXT", count + " EXT")) ==
           "w.crd:5: ends after 2 of the " + count + " atoms announced on line 3");
 }
 

@@ -86,7 +86,7 @@ _atom_site.label_asym_id W
 _atom_site.label_atom_id ZN
 )";
 
-std::string error_of(const std::string& cif) {
+std::string mmcif_error_of(const std::string& cif) {
     return load_error_of([&] { parse_mmcif(cif, "w.cif"); });
 }
 
@@ -134,7 +134,7 @@ TEST_CASE("one atom may stand outside of a loop", "[formats][mmcif]") {
     CHECK(to_string(structure.names[0]) == "W ZN 7 ZN");
     CHECK(structure.positions[0] == Vec3(1, 2, 3));
     CHECK(structure.records[0].element == "ZN");
-    CHECK_THAT(error_of(replaced(single, " ZN\n_atom_site.label_asym_id W", "\n")),
+    CHECK_THAT(mmcif_error_of(replaced(single, " ZN\n_atom_site.label_asym_id W", "\n")),
                StartsWith("w.cif:"));
 }
 
@@ -179,19 +179,23 @@ TEST_CASE("what is wrong in an mmCIF file is told with its line and column", "[f
     }));
     INFO(row.old << " -> " << row.by);
 
-    CHECK_THAT(error_of(replaced(text, row.old, row.by)), StartsWith(row.error));
+    CHECK_THAT(mmcif_error_of(replaced(text, row.old, row.by)), StartsWith(row.error));
 }
 
 TEST_CASE("one table of atoms is expected, and one there must be", "[formats][mmcif]") {
-    CHECK_THAT(error_of(""), StartsWith("w.cif: ends without any atom"));
-    CHECK_THAT(error_of("data_x\n_entry.id x\n"), StartsWith("w.cif:2: ends without any atom"));
-    CHECK_THAT(error_of(small + small.substr(7)), StartsWith("w.cif:13:1: atoms again, first on "
-                                                             "line 3"));
-    CHECK_THAT(error_of(small + single), StartsWith("w.cif:13:1: atoms again, first on line 3"));
-    CHECK_THAT(error_of("data_x\nloop_\n_atom_site.id\n"), StartsWith("w.cif:"));
+    CHECK_THAT(mmcif_error_of(""), StartsWith("w.cif: ends without any atom"));
+    CHECK_THAT(mmcif_error_of("data_x\n_entry.id x\n"),
+               StartsWith("w.cif:2: ends without any atom"));
+    CHECK_THAT(mmcif_error_of(small + small.substr(7)),
+               StartsWith("w.cif:13:1: atoms again, first on "
+                          "line 3"));
+    CHECK_THAT(mmcif_error_of(small + single),
+               StartsWith("w.cif:13:1: atoms again, first on line 3"));
+    CHECK_THAT(mmcif_error_of("data_x\nloop_\n_atom_site.id\n"), StartsWith("w.cif:"));
     // A dictionary's residue has coordinates as well.
-    CHECK_THAT(error_of("data_comp_X\nloop_\n_chem_comp_atom.atom_id\n_chem_comp_atom.x\nC1 0.5\n"),
-               StartsWith("w.cif:3: no structure but a dictionary"));
+    CHECK_THAT(
+        mmcif_error_of("data_comp_X\nloop_\n_chem_comp_atom.atom_id\n_chem_comp_atom.x\nC1 0.5\n"),
+        StartsWith("w.cif:3: no structure but a dictionary"));
 }
 
 TEST_CASE("an mmCIF file cut off within its atoms is refused, or the cut is noted",
@@ -199,7 +203,7 @@ TEST_CASE("an mmCIF file cut off within its atoms is refused, or the cut is note
     for (std::size_t length = 0; length < text.find("\n#\n"); ++length) {
         INFO(length);
         const std::string cut = text.substr(0, length);
-        const std::string error = error_of(cut);
+        const std::string error = mmcif_error_of(cut);
         if (error == "no error") {
             CHECK_THAT(parse_mmcif(cut, "w.cif").notes.front(), StartsWith("ends with its last"));
         } else {

@@ -20,7 +20,7 @@ namespace {
 
 // Typed by hand after the format's description 3.3: alternate locations, an insertion code, a
 // chain's end, calcium beside a C-alpha, a charge, coordinates that touch.
-const std::string text = R"(HEADER    TYPED BY HAND
+const std::string pdb_text = R"(HEADER    TYPED BY HAND
 REMARK   1 ATOM  IS NO ATOM HERE
 ATOM      1  N   ALA A  27      11.104   6.134  -6.504  1.00 10.50           N
 ATOM      2  CA AALA A  27      11.639   6.071  -5.147  0.60 11.00           C
@@ -40,7 +40,7 @@ std::string atom_line(const std::string& serial, const std::string& number, cons
     return fmt::format("ATOM  {:>5}  N   ALA A{:>4}    {:>8}{}\n", serial, number, x, rest);
 }
 
-std::string error_of(const std::string& pdb) {
+std::string pdb_error_of(const std::string& pdb) {
     return load_error_of([&] { parse_pdb(pdb, "w.pdb"); });
 }
 
@@ -63,7 +63,7 @@ void check_same(const Structure& a, const Structure& b) {
 }  // namespace
 
 TEST_CASE("a PDB file is read by its columns", "[formats][pdb]") {
-    const Structure structure = parse_pdb(text, "w.pdb");
+    const Structure structure = parse_pdb(pdb_text, "w.pdb");
 
     REQUIRE(structure.names.size() == 7);
     REQUIRE(structure.records.size() == 7);
@@ -91,7 +91,7 @@ TEST_CASE("a PDB file is read by its columns", "[formats][pdb]") {
 }
 
 TEST_CASE("what a user must decide is noted", "[formats][pdb]") {
-    const std::vector<std::string> notes = parse_pdb(text, "w.pdb").notes;
+    const std::vector<std::string> notes = parse_pdb(pdb_text, "w.pdb").notes;
     REQUIRE(notes.size() == 5);
     CHECK(notes[0] ==
           "2 atoms in alternate locations, the first on line 4: chain A ALA 27 CA (location A)");
@@ -120,15 +120,15 @@ TEST_CASE("models are read one behind the other", "[formats][pdb]") {
     CHECK((structure.records[0].model == 1 && structure.records[1].model == 3));
     CHECK(structure.notes.front() == "2 models, numbers 1 to 3");
     check_same(parse_pdb(format_pdb(structure, ""), "back.pdb"), structure);
-    CHECK_THAT(error_of(replaced(models, "MODEL        3\n", "")),
+    CHECK_THAT(pdb_error_of(replaced(models, "MODEL        3\n", "")),
                StartsWith("w.pdb:4: ENDMDL") || StartsWith("w.pdb:4: atom"));
-    CHECK_THAT(error_of(replaced(models, "ENDMDL\nMODEL", "MODEL")),
+    CHECK_THAT(pdb_error_of(replaced(models, "ENDMDL\nMODEL", "MODEL")),
                StartsWith("w.pdb:3: a model within the model of line 1"));
-    CHECK_THAT(error_of(replaced(models, "       3", "       1")),
+    CHECK_THAT(pdb_error_of(replaced(models, "       3", "       1")),
                StartsWith("w.pdb:4: model 1 again"));
-    CHECK_THAT(error_of(replaced(models, "       3", "       x")),
+    CHECK_THAT(pdb_error_of(replaced(models, "       3", "       x")),
                StartsWith("w.pdb:4:11: 'x' in columns 11 to 14 is no number of a model"));
-    CHECK_THAT(error_of(replaced(models, "ENDMDL\nEND\n", "END\n")),
+    CHECK_THAT(pdb_error_of(replaced(models, "ENDMDL\nEND\n", "END\n")),
                StartsWith("w.pdb:6: ends within the model of line 4"));
 }
 
@@ -217,19 +217,19 @@ TEST_CASE("what is wrong in a PDB file is told with line, columns and what would
     }));
     INFO(row.old << " -> " << row.by);
 
-    CHECK_THAT(error_of(replaced(text, row.old, row.by)), StartsWith(row.error));
+    CHECK_THAT(pdb_error_of(replaced(pdb_text, row.old, row.by)), StartsWith(row.error));
 }
 
 TEST_CASE("a PDB file without atoms is refused", "[formats][pdb]") {
-    CHECK(error_of("") == "w.pdb: ends without any atom");
-    CHECK(error_of("HEADER\nEND\n") == "w.pdb:2: ends without any atom");
+    CHECK(pdb_error_of("") == "w.pdb: ends without any atom");
+    CHECK(pdb_error_of("HEADER\nEND\n") == "w.pdb:2: ends without any atom");
 }
 
 TEST_CASE("a PDB file cut off within an atom is refused, or the cut is noted", "[formats][pdb]") {
-    for (std::size_t length = 0; length + 4 < text.size(); ++length) {
-        const std::string cut = text.substr(0, length);
+    for (std::size_t length = 0; length + 4 < pdb_text.size(); ++length) {
+        const std::string cut = pdb_text.substr(0, length);
         INFO(length);
-        const std::string error = error_of(cut);
+        const std::string error = pdb_error_of(cut);
         if (error != "no error") {
             CHECK_THAT(error, StartsWith("w.pdb:"));
             continue;
@@ -252,7 +252,7 @@ TEST_CASE("the same atom in another segment is another atom", "[formats][pdb]") 
 }
 
 TEST_CASE("a PDB file that is written reads the same", "[formats][pdb]") {
-    const Structure structure = parse_pdb(text, "w.pdb");
+    const Structure structure = parse_pdb(pdb_text, "w.pdb");
 
     const std::string written = format_pdb(structure, "one\ntwo");
 
@@ -274,7 +274,7 @@ TEST_CASE("a structure from a CRD file is written with segments, without chains"
 }
 
 TEST_CASE("what does not fit the columns is not written", "[formats][pdb]") {
-    Structure structure = parse_pdb(text, "w.pdb");
+    Structure structure = parse_pdb(pdb_text, "w.pdb");
     std::string error;
     SECTION("coordinate") {
         structure.positions[1].y() = 10000;

@@ -125,7 +125,7 @@ const std::string namd = R"(PSF NAMD
        0       0 !NGRP
 )";
 
-std::string error_of(const std::string& text) {
+std::string psf_error_of(const std::string& text) {
     return load_error_of([&] { parse_psf(text, "w.psf"); });
 }
 
@@ -221,19 +221,19 @@ TEST_CASE("what is wrong in a PSF file is told with its line", "[formats][psf]")
     }));
     INFO(row.old << " -> " << row.by);
 
-    CHECK_THAT(error_of(replaced(charmm, row.old, row.by)), Contains(row.error));
+    CHECK_THAT(psf_error_of(replaced(charmm, row.old, row.by)), Contains(row.error));
 }
 
 TEST_CASE("a PSF file that is cut off anywhere is refused", "[formats][psf]") {
     // Without its last line end nothing is lost.
     for (std::size_t length = 0; length + 1 < charmm.size(); ++length) {
-        const std::string error = error_of(charmm.substr(0, length));
+        const std::string error = psf_error_of(charmm.substr(0, length));
         // Of the last number any first digits are a number.
         if (length + 2 >= charmm.size()) continue;
         INFO(length);
         CHECK_THAT(error, StartsWith("w.psf:"));
     }
-    CHECK_THAT(error_of(""), StartsWith("w.psf:1: no PSF file"));
+    CHECK_THAT(psf_error_of(""), StartsWith("w.psf:1: no PSF file"));
 }
 
 TEST_CASE("CHARMM's trialanine is read", "[formats][psf]") {

@@ -23,8 +23,9 @@ using test::load_error_of;
 
 namespace {
 
-constexpr std::string_view pdb = "ATOM      1  C   ALA A   1       1.000   2.000   3.000\nEND\n";
-constexpr std::string_view cif =
+constexpr std::string_view one_atom_pdb =
+    "ATOM      1  C   ALA A   1       1.000   2.000   3.000\nEND\n";
+constexpr std::string_view one_atom_cif =
     "data_x\n_atom_site.Cartn_x 1\n_atom_site.Cartn_y 2\n_atom_site.Cartn_z 3\n"
     "_atom_site.label_seq_id 1\n_atom_site.label_comp_id ALA\n_atom_site.label_asym_id A\n"
     "_atom_site.label_atom_id C\n";
@@ -103,12 +104,13 @@ std::string unpacked(const std::filesystem::path& path) {
 
 TEST_CASE("a structure file is read as its name says", "[formats][structure]") {
     const test::TemporaryFolder folder;
-    const auto [name, text] = GENERATE(table<std::string, std::string_view>({{"a.pdb", pdb},
-                                                                             {"a.ENT", pdb},
-                                                                             {"a.cif", cif},
-                                                                             {"a.mmCIF", cif},
-                                                                             {"a.crd", crd},
-                                                                             {"a.Cor", crd}}));
+    const auto [name, text] =
+        GENERATE(table<std::string, std::string_view>({{"a.pdb", one_atom_pdb},
+                                                       {"a.ENT", one_atom_pdb},
+                                                       {"a.cif", one_atom_cif},
+                                                       {"a.mmCIF", one_atom_cif},
+                                                       {"a.crd", crd},
+                                                       {"a.Cor", crd}}));
     INFO(name);
 
     const Structure structure = read_structure(folder.add_file(name, text));

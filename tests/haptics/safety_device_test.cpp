@@ -16,9 +16,7 @@ using test::FaultyDevice;
 
 namespace {
 
-constexpr double tick_s = 1e-3;
-
-const Vec3 zero = Vec3::Zero();
+const Vec3 no_force = Vec3::Zero();
 
 // A hand that follows its path into a wall of 200 N/m at x = 0, on a device with faults.
 struct WallRun {
@@ -39,16 +37,16 @@ struct WallRun {
         FaultyDevice faulty(omni, faults);
         const SafetySettings settings;
         SafetyState state;
-        Vec3 last = zero, model = zero;
+        Vec3 last = no_force, model = no_force;
         double model_s = 0;
         std::vector<Row> rows;
         for (int i = 0; i < ticks; ++i) {
             SafetyInput input;
             input.now_s = faulty.now_s();
             input.reading = faulty.read();
-            input.velocity_m_per_s = (input.reading.position_m - last) / tick_s;
+            input.velocity_m_per_s = (input.reading.position_m - last) / servo_tick_s;
             if (!input.velocity_m_per_s.allFinite() || !input.reading.valid) {
-                input.velocity_m_per_s = zero;
+                input.velocity_m_per_s = no_force;
             }
             last = input.reading.position_m;
             if (i < simulation_dies_tick) {
@@ -72,7 +70,7 @@ struct WallRun {
 int last_force(const std::vector<WallRun::Row>& rows) {
     int last = -1;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        if (rows[i].result.newton != zero) last = static_cast<int>(i);
+        if (rows[i].result.newton != no_force) last = static_cast<int>(i);
     }
     return last;
 }
@@ -97,7 +95,7 @@ TEST_CASE("no hand on the emulated device that holds still is taken for a frozen
     std::uniform_real_distribution<double> component(-3, 3);
     std::uniform_int_distribution<int> ticks(5, 400);
     const bool is_along_x = seed == 2;
-    Vec3 wanted = zero;
+    Vec3 wanted = no_force;
     int next = 0;
     bool tripped = false;
     double largest = 0;
@@ -110,7 +108,7 @@ TEST_CASE("no hand on the emulated device that holds still is taken for a frozen
         }
         SafetyInput input;
         input.wanted_newton = wanted;
-        input.now_s = i * tick_s;
+        input.now_s = i * servo_tick_s;
         input.reading = omni.read();
         const SafetyResult result = guard_force(settings, state, input);
         tripped = tripped || result.stage > SafetyStage::Hot;
@@ -137,7 +135,7 @@ TEST_CASE("faults of a device in contact take the force away in their time", "[h
         const auto rows = wall.run(3000);
         // The last good reading is that of tick 999.
         CHECK(rows[begin + 8].result.newton.x() < -1);
-        CHECK(rows[begin + 9].result.newton == zero);
+        CHECK(rows[begin + 9].result.newton == no_force);
         CHECK(rows[begin + 9].result.stage == SafetyStage::Unplugged);
         // Still in contact when it is back: the force waits.
         CHECK(last_force(rows) == begin + 8);
@@ -163,7 +161,7 @@ TEST_CASE("faults of a device in contact take the force away in their time", "[h
         const auto rows = wall.run(2000);
         // The reading, and so the force, stand still for far more than 50 ms before.
         CHECK(rows[early + 99].result.stage == SafetyStage::None);
-        CHECK(rows[early + 110].result.newton == zero);
+        CHECK(rows[early + 110].result.newton == no_force);
         CHECK(rows[early + 110].result.stage == SafetyStage::Frozen);
     }
     SECTION("a dead simulation: fades from 100 ms to 200 ms of its last model") {

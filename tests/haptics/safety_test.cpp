@@ -15,8 +15,6 @@ namespace {
 
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr double tick_s = 1e-3;
-
 const Vec3 zero = Vec3::Zero();
 
 // Ticks with nothing wrong: the handle trembles by an encoder step, clocks run.
@@ -33,7 +31,7 @@ struct Guard {
     }
     SafetyResult tick(const Vec3& wanted) {
         ++ticks;
-        input.now_s = ticks * tick_s;
+        input.now_s = ticks * servo_tick_s;
         input.reading.valid = true;
         input.reading.time_s = input.now_s;
         input.reading.position_m = Vec3(ticks % 2 == 0 ? 0 : 0.055e-3, 0, 0);
@@ -121,7 +119,7 @@ TEST_CASE("a jump of more than five millimetres takes the force away in its tick
     Guard guard;
     guard.tick(2, 100);
     ++guard.ticks;
-    guard.input.now_s = guard.ticks * tick_s;
+    guard.input.now_s = guard.ticks * servo_tick_s;
     guard.input.reading.position_m += Vec3(0, jump_m, 0);
 
     const SafetyResult result = guard.guard(Vec3(2, 0, 0));
@@ -137,12 +135,12 @@ TEST_CASE("a handle may go five millimetres for each tick that could not be read
     guard.tick(2, 100);
     for (int i = 0; i < 4; ++i) {
         ++guard.ticks;
-        guard.input.now_s = guard.ticks * tick_s;
+        guard.input.now_s = guard.ticks * servo_tick_s;
         guard.input.reading.valid = false;
         CHECK(guard.guard(Vec3(2, 0, 0)).newton.x() == 2);
     }
     ++guard.ticks;
-    guard.input.now_s = guard.ticks * tick_s;
+    guard.input.now_s = guard.ticks * servo_tick_s;
     guard.input.reading.valid = true;
 
     SECTION("24 mm in five ticks are none") {
@@ -225,8 +223,8 @@ TEST_CASE("a clock that is late, goes back or is no number takes the force away"
     const double from_s = std::isfinite(elapsed_s) ? guard.input.now_s : 5;
     if (std::abs(from_s) > 1e9) return;  // where a millisecond is less than a step of the clock
     for (int i = 1; i <= 3000; ++i) {
-        guard.input.now_s = from_s + i * tick_s;
-        guard.input.reading.time_s = i * tick_s;
+        guard.input.now_s = from_s + i * servo_tick_s;
+        guard.input.reading.time_s = i * servo_tick_s;
         const SafetyResult later = guard.guard(Vec3(0.1, 0, 0));
         REQUIRE(later.newton.x() <= 0.1);
         if (i == 3000) CHECK(later.newton.x() == 0.1);
@@ -282,7 +280,7 @@ TEST_CASE("three newtons are felt for 2.7 s, then 0.88 N for as long as wanted",
     // less than 6 ms.
     const double hot_s = -30 * std::log(1 - 0.7744 / 9);
     CHECK(hot_s == Approx(2.70).margin(0.005));
-    const auto at = [&](double s) { return sent[static_cast<std::size_t>(s / tick_s)]; };
+    const auto at = [&](double s) { return sent[static_cast<std::size_t>(s / servo_tick_s)]; };
     CHECK(at(hot_s - 0.005) == 3);
     CHECK(at(hot_s + 0.5) == Approx(3 - 0.5 * 2.12).margin(0.015));
     CHECK(at(hot_s + 1.01) == Approx(0.88));
@@ -327,7 +325,7 @@ TEST_CASE("a reading that stands still with its time stamp takes the force away 
     Guard guard;
     guard.tick(1, 100);
     const auto hung_tick = [&](double wanted) {
-        guard.input.now_s += tick_s;
+        guard.input.now_s += servo_tick_s;
         return guard.guard(Vec3(wanted, 0, 0));
     };
 
@@ -345,7 +343,7 @@ TEST_CASE("a reading that stands still with its time stamp takes the force away 
     SECTION("not on a device that has no time stamp") {
         Guard other;
         for (int i = 0; i < 1000; ++i) {
-            other.input.now_s += tick_s;
+            other.input.now_s += servo_tick_s;
             other.input.reading.valid = true;
             REQUIRE(other.guard(Vec3(1e-3 * i, 0, 0)).stage == SafetyStage::None);
         }
@@ -360,7 +358,7 @@ TEST_CASE("a position that withstands a change of two newtons for 50 ms is that 
     const Vec3 held = guard.input.reading.position_m;
     const auto still_tick = [&](double wanted) {
         ++guard.ticks;
-        guard.input.now_s = guard.input.reading.time_s = guard.ticks * tick_s;
+        guard.input.now_s = guard.input.reading.time_s = guard.ticks * servo_tick_s;
         guard.input.reading.position_m = held;
         return guard.guard(Vec3(wanted, 0, 0));
     };

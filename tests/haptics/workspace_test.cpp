@@ -1,5 +1,7 @@
 #include "haptics/workspace.h"
 
+#include "haptics/device.h"
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
@@ -11,7 +13,6 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-constexpr double tick_s = 0.001;
 const Vec3 half{0.080, 0.060, 0.035};
 
 // Random places out to 1.5 times the workspace.
@@ -21,13 +22,13 @@ Vec3 random_place(std::mt19937& random) {
 }
 
 Vec3 bubble_velocity(const Vec3& handle) {
-    return extra_travel(BubbleMap{}, handle, Vec3::Zero(), half, tick_s) / tick_s;
+    return extra_travel(BubbleMap{}, handle, Vec3::Zero(), half, servo_tick_s) / servo_tick_s;
 }
 
 }  // namespace
 
 TEST_CASE("with the clutch alone the handle's travel is all", "[haptics][workspace]") {
-    CHECK(extra_travel(ClutchMap{}, half, 0.1 * half, half, tick_s) == Vec3::Zero());
+    CHECK(extra_travel(ClutchMap{}, half, 0.1 * half, half, servo_tick_s) == Vec3::Zero());
 }
 
 TEST_CASE("a loop inside the bubble leaves the molecule where it was", "[haptics][workspace]") {
@@ -36,7 +37,7 @@ TEST_CASE("a loop inside the bubble leaves the molecule where it was", "[haptics
         const double angle = 2 * std::numbers::pi * i / 500;
         const Vec3 handle =
             half.cwiseProduct(Vec3(0.59 * std::cos(angle), 0.59 * std::sin(angle), 0.3));
-        sum += extra_travel(BubbleMap{}, handle, handle - before, half, tick_s);
+        sum += extra_travel(BubbleMap{}, handle, handle - before, half, servo_tick_s);
         before = handle;
     }
 
@@ -82,19 +83,21 @@ TEST_CASE("the bubble's rate is continuous, at its surface and all over", "[hapt
 }
 
 TEST_CASE("drift leaves a hand at rest and a handle at the centre alone", "[haptics][workspace]") {
-    CHECK(extra_travel(DriftMap{}, 0.9 * half, Vec3::Zero(), half, tick_s) == Vec3::Zero());
-    CHECK(extra_travel(DriftMap{}, Vec3::Zero(), {0.001, 0, 0}, half, tick_s) == Vec3::Zero());
+    CHECK(extra_travel(DriftMap{}, 0.9 * half, Vec3::Zero(), half, servo_tick_s) == Vec3::Zero());
+    CHECK(extra_travel(DriftMap{}, Vec3::Zero(), {0.001, 0, 0}, half, servo_tick_s) ==
+          Vec3::Zero());
 }
 
 TEST_CASE("drift is outward and never more than the hand's own way", "[haptics][workspace]") {
     std::mt19937 random(3);
     for (int i = 0; i < 1000; ++i) {
         const Vec3 handle = random_place(random), moved = 0.01 * random_place(random);
-        const Vec3 extra = extra_travel(DriftMap{}, handle, moved, half, tick_s);
+        const Vec3 extra = extra_travel(DriftMap{}, handle, moved, half, servo_tick_s);
         REQUIRE(extra.cwiseProduct(handle).minCoeff() >= 0);
         REQUIRE(extra.norm() < 0.15 * std::numbers::sqrt3 * (1 + 1e-12) * moved.norm());
     }
-    const Vec3 at_edge = extra_travel(DriftMap{}, {0, 0, -0.035}, {0.001, 0, 0}, half, tick_s);
+    const Vec3 at_edge =
+        extra_travel(DriftMap{}, {0, 0, -0.035}, {0.001, 0, 0}, half, servo_tick_s);
     CHECK((at_edge - Vec3(0, 0, -0.00015)).norm() < 1e-18);
 }
 
@@ -105,12 +108,12 @@ TEST_CASE("drift brings the hand that holds the molecule's place back to the cen
     const Vec3 start = handle;
     double way = 0;
     for (int i = 1; i <= 20000; ++i) {
-        const double place = 0.005 * std::sin(2 * std::numbers::pi * i * tick_s);
+        const double place = 0.005 * std::sin(2 * std::numbers::pi * i * servo_tick_s);
         const Vec3 wanted(place, 0, 0);
         const Vec3 moved = wanted - molecule;  // what drift added, this tick takes back
         handle += moved;
         way += moved.norm();
-        molecule += moved + extra_travel(DriftMap{}, handle, moved, half, tick_s);
+        molecule += moved + extra_travel(DriftMap{}, handle, moved, half, servo_tick_s);
         REQUIRE((molecule - wanted).norm() < 1e-5);
     }
 
@@ -130,11 +133,11 @@ TEST_CASE("extra travel has no preferred side", "[haptics][workspace]") {
 
     for (int i = 0; i < 1000; ++i) {
         const Vec3 handle = random_place(random), moved = 0.01 * random_place(random);
-        const Vec3 extra = extra_travel(map, handle, moved, half, tick_s);
-        REQUIRE(extra_travel(map, -handle, -moved, half, tick_s) == -extra);
+        const Vec3 extra = extra_travel(map, handle, moved, half, servo_tick_s);
+        REQUIRE(extra_travel(map, -handle, -moved, half, servo_tick_s) == -extra);
         const Vec3 mirror(-1, 1, 1);
         REQUIRE(extra_travel(map, handle.cwiseProduct(mirror), moved.cwiseProduct(mirror), half,
-                             tick_s) == extra.cwiseProduct(mirror));
+                             servo_tick_s) == extra.cwiseProduct(mirror));
     }
 }
 
@@ -144,15 +147,15 @@ TEST_CASE("extra travel is finite whatever comes in", "[haptics][workspace]") {
     const double nan = std::nan(""), infinity = INFINITY;
     const Vec3 zero = Vec3::Zero(), moved(0.001, 0, 0);
 
-    CHECK(extra_travel(map, zero, zero, half, tick_s) == zero);
+    CHECK(extra_travel(map, zero, zero, half, servo_tick_s) == zero);
     CHECK(extra_travel(map, zero, zero, zero, 0) == zero);
-    CHECK(extra_travel(map, half, moved, zero, tick_s) == zero);
-    CHECK(extra_travel(map, {nan, 0, 0}, moved, half, tick_s) == zero);
-    CHECK(extra_travel(map, {infinity, 0, 0}, moved, half, tick_s) == zero);
+    CHECK(extra_travel(map, half, moved, zero, servo_tick_s) == zero);
+    CHECK(extra_travel(map, {nan, 0, 0}, moved, half, servo_tick_s) == zero);
+    CHECK(extra_travel(map, {infinity, 0, 0}, moved, half, servo_tick_s) == zero);
     CHECK(extra_travel(map, half, {0, nan, 0}, half, nan) == zero);
     CHECK(extra_travel(map, half, {infinity, 0, 0}, half, infinity) == zero);
     // A device along x alone.
-    const Vec3 extra = extra_travel(map, {0.08, 1, 1}, moved, {0.08, 0, 0}, tick_s);
+    const Vec3 extra = extra_travel(map, {0.08, 1, 1}, moved, {0.08, 0, 0}, servo_tick_s);
     CHECK(extra.y() == 0);
     CHECK(extra.z() == 0);
 }

@@ -19,8 +19,6 @@ using namespace palpa::test;
 
 namespace {
 
-constexpr double tick_s = 1 / servo_rate_hz;
-
 // Goes in until there is repulsion, then after what is felt in ever smaller steps, and stops after
 // a second without force. Feels late, with noise, and nothing below a threshold; the hand trembles.
 class Seeker {
@@ -58,18 +56,18 @@ private:
     }
 
     double wander(double value, double size, double time_s) {
-        return value - value * tick_s / time_s +
-               size * std::sqrt(2 * tick_s / time_s) * normal_(random_);
+        return value - value * servo_tick_s / time_s +
+               size * std::sqrt(2 * servo_tick_s / time_s) * normal_(random_);
     }
 
     double perceive(double newton) {
-        smooth_N_ += (newton - smooth_N_) * tick_s / 0.03;
+        smooth_N_ += (newton - smooth_N_) * servo_tick_s / 0.03;
         const double late = under_way_[tick_ % under_way_.size()];
         under_way_[tick_++ % under_way_.size()] = smooth_N_;
         noise_N_ = wander(noise_N_, 0.02, 0.1);
         share_ = wander(share_, 0.07, 0.3);
         const double felt = late * (1 + share_) + noise_N_;
-        mean_N_ += (felt - mean_N_) * tick_s / 0.2;
+        mean_N_ += (felt - mean_N_) * servo_tick_s / 0.2;
         return felt;
     }
 
@@ -77,7 +75,7 @@ private:
     double follow() {
         const double beyond = std::abs(mean_N_) - threshold_N_;
         if (beyond <= 0) {
-            calm_s_ += tick_s;
+            calm_s_ += servo_tick_s;
             return 0;
         }
         calm_s_ = 0;
@@ -88,12 +86,13 @@ private:
     }
 
     void move(double speed) {
-        const double before = unsteady_m_, time_s = static_cast<double>(tick_) * tick_s;
+        const double before = unsteady_m_, time_s = static_cast<double>(tick_) * servo_tick_s;
         unsteady_m_ = wander(unsteady_m_, 0.0003, 0.5);
         const auto tremor = [&](double at_s) {
             return 0.00007 * std::sin(6.2832 * 9 * at_s + phase_);
         };
-        wish_m_ += speed * tick_s + unsteady_m_ - before + tremor(time_s + tick_s) - tremor(time_s);
+        wish_m_ += speed * servo_tick_s + unsteady_m_ - before + tremor(time_s + servo_tick_s) -
+                   tremor(time_s);
     }
 
     std::mt19937 random_;
@@ -149,7 +148,7 @@ Found seek(int trials, Grip grip, double friction_newton,
             static_cast<std::uint64_t>(longest_s * servo_rate_hz), [] { return Due{14, false}; },
             build_servo_settings(scene, simulation), omni, simulation.touch, step, on_tick);
         found.off_angstrom += std::abs(distance - rest_angstrom) / trials;
-        found.seconds += static_cast<double>(ticks) * tick_s / trials;
+        found.seconds += static_cast<double>(ticks) * servo_tick_s / trials;
         if (!seeker.is_done()) ++found.unfinished;
     }
     return found;

@@ -7,14 +7,14 @@ using namespace palpa;
 
 namespace {
 
-const char* const water = PALPA_ROOT "/scenes/water";
+const char* const two_waters = PALPA_ROOT "/scenes/water";
 
 }  // namespace
 
 TEST_CASE("500 random hands on two waters: no energy from nothing, no vibration, none goes through",
           "[session][coupling]") {
     const std::vector<ScenarioResult> results =
-        play_scenarios({.scene = water, .settings = {}, .count = 500}, {});
+        play_scenarios({.scene = two_waters, .settings = {}, .count = 500}, {});
 
     REQUIRE(results.size() == 500);
     for (std::size_t i = 0; i < results.size(); ++i) {
@@ -29,7 +29,7 @@ TEST_CASE("500 random hands on two waters: no energy from nothing, no vibration,
 
 TEST_CASE("the paper's coupling misses the bars of the scenarios", "[session][coupling]") {
     const std::vector<ScenarioResult> results =
-        play_scenarios({.scene = water, .settings = {"coupling.mode=2"}, .count = 20}, {});
+        play_scenarios({.scene = two_waters, .settings = {"coupling.mode=2"}, .count = 20}, {});
 
     std::size_t calm = 0;
     for (const ScenarioResult& result : results) calm += result.is_calm() ? 1 : 0;
@@ -37,7 +37,7 @@ TEST_CASE("the paper's coupling misses the bars of the scenarios", "[session][co
 }
 
 TEST_CASE("a scenario is the same whatever is played beside it", "[session][coupling]") {
-    const ScenarioOptions options{.scene = water, .settings = {"run.seconds=2"}};
+    const ScenarioOptions options{.scene = two_waters, .settings = {"run.seconds=2"}};
 
     const ScenarioResult one = play_scenario(options, 7), again = play_scenario(options, 7);
 

@@ -88,8 +88,9 @@ TEST_CASE("with a delayed servo the emulated loop shakes within 5 % of the K of 
         {Grip::Firm, 83, 1},
     }));
     INFO(grip_names[static_cast<std::size_t>(grip)] << ", " << period_ms << " ms, " << delay_ticks);
-    const double K = critical_stiffness(build_plant({}, hand_model(grip)),
-                                        static_cast<double>(period_ms) * 1e-3, delay_ticks * 1e-3);
+    const double K =
+        palpa::critical_stiffness(build_plant({}, hand_model(grip)),
+                                  static_cast<double>(period_ms) * 1e-3, delay_ticks * 1e-3);
 
     const double onset = find_onset(K / 1.5, K * 1.5, 0.1, grip, period_ms, delay_ticks);
 

@@ -17,13 +17,13 @@ namespace {
 using enum BaseFreedom;
 
 // Two peptides near each other.
-struct Peptides {
+struct PeptidePair {
     TorsionModel model;
     TorsionState state;
 };
 
-Peptides peptides(std::array<BaseFreedom, 2> bases) {
-    Peptides result{
+PeptidePair peptide_pair(std::array<BaseFreedom, 2> bases) {
+    PeptidePair result{
         test::model_of(test::with_copy(test::tetrapeptide(), {12, 5, -2}), {bases[0], bases[1]}),
         {}};
     result.state = test::state_after(result.model, 0.03, 21);
@@ -53,7 +53,7 @@ constexpr std::size_t everything = std::numeric_limits<std::size_t>::max();
 TEST_CASE("with everything active an adaptive step is a quasi-static one", "[statics][adaptive]") {
     const auto bases =
         GENERATE(std::array{Held, Free}, std::array{Turning, Free}, std::array{Turning, Held});
-    auto [model, state] = peptides(bases);
+    auto [model, state] = peptide_pair(bases);
     TorsionState other = state;
     const AdaptiveSettings settings = settings_of(everything, false, false);
     AdaptiveStatics adaptive = build_adaptive_statics(model);
@@ -80,7 +80,7 @@ TEST_CASE("work where something moves agrees with work on everything", "[statics
         GENERATE(std::array{Held, Free}, std::array{Turning, Free}, std::array{Turning, Held});
     const std::size_t active = GENERATE(std::size_t{0}, std::size_t{3}, std::size_t{9}, everything);
     const bool fast = GENERATE(false, true), ends = GENERATE(false, true);
-    auto [model, state] = peptides(bases);
+    auto [model, state] = peptide_pair(bases);
     const AdaptiveSettings settings = settings_of(active, fast, ends);
     AdaptiveStatics statics = build_adaptive_statics(model);
     if (bases[0] == Held) state.tether = Tether{{50, 51, 52}, 20, state.positions[51]};
@@ -115,7 +115,7 @@ TEST_CASE("work where something moves agrees with work on everything", "[statics
 }
 
 TEST_CASE("a base and a joint that are not chosen keep their places", "[statics][adaptive]") {
-    auto [model, state] = peptides({Held, Free});
+    auto [model, state] = peptide_pair({Held, Free});
     const TorsionState start = state;
     const AdaptiveSettings settings = settings_of(2, false, false);
     AdaptiveStatics statics = build_adaptive_statics(model);
@@ -133,7 +133,7 @@ TEST_CASE("a base and a joint that are not chosen keep their places", "[statics]
 }
 
 TEST_CASE("an adaptive step has the wrench of the others on a molecule", "[statics][adaptive]") {
-    auto [model, state] = peptides({Turning, Held});
+    auto [model, state] = peptide_pair({Turning, Held});
     const AdaptiveSettings settings = settings_of(6, false, false);
     AdaptiveStatics statics = build_adaptive_statics(model);
     for (int i = 0; i < 7; ++i) (void)step_adaptive(model, settings, state, statics);

@@ -11,7 +11,7 @@ using namespace palpa;
 
 namespace {
 
-constexpr std::uint32_t width = 320, height = 180;
+constexpr std::uint32_t view_width = 320, view_height = 180;
 constexpr float aspect = 320.0F / 180;
 
 // A long box of spheres, off the origin.
@@ -25,7 +25,7 @@ FrameScene long_box() {
 }
 
 glm::vec3 seen_at(const OrbitCamera& camera, const glm::vec3& place) {
-    return project(frame_camera(camera, {}), place, width, height);
+    return project(frame_camera(camera, {}), place, view_width, view_height);
 }
 
 }  // namespace
@@ -66,13 +66,13 @@ TEST_CASE("what is at the target follows a pan by as many pixels", "[view][camer
     OrbitCamera camera{.target = {1, 2, 3}, .distance = 20, .azimuth = 0.7F, .elevation = -0.4F};
     const glm::vec3 place = camera.target;
 
-    pan(camera, 45, -18, height);
+    pan(camera, 45, -18, view_height);
 
     const glm::vec3 there = seen_at(camera, place);
     CHECK(there.x == Approx(160 + 45).epsilon(0.001));
     CHECK(there.y == Approx(90 - 18).epsilon(0.001));
-    CHECK(angstrom_per_pixel(camera, camera.target, height) ==
-          Approx(2 * 20 * std::tan(0.3) / height));
+    CHECK(angstrom_per_pixel(camera, camera.target, view_height) ==
+          Approx(2 * 20 * std::tan(0.3) / view_height));
 }
 
 TEST_CASE("a zoom changes the distance by its factor, within limits", "[view][camera]") {
@@ -98,7 +98,7 @@ TEST_CASE("everything that is framed fits, from every side, and not with much to
     const FrameCamera built = frame_camera(camera, scene);
     float widest = 0;
     for (const SphereShape& sphere : scene.spheres) {
-        const glm::vec3 there = project(built, sphere.centre, width, height);
+        const glm::vec3 there = project(built, sphere.centre, view_width, view_height);
         const float radius = sphere.radius * 90 / std::tan(0.3F) / there.z;
         widest = std::max({widest, (std::abs(there.x - 160) + radius) / 160,
                            (std::abs(there.y - 90) + radius) / 90});
