@@ -18,11 +18,14 @@ using namespace palpa;
 
 namespace {
 
-// A live session of the water scene with a mouse's hand on the handle.
+// A live session of the water scene, with a mouse's hand on the handle or one that follows a path,
+// which is to the session like any device.
 struct Live {
     explicit Live(const std::vector<std::string>& settings = {})
         : device(make_settings(&orders)),
           session(test::water_scene(settings), {}, device, &orders) {}
+    Live(const std::vector<std::string>& settings, const std::vector<HandWaypoint>& path)
+        : device(make_settings(path)), session(test::water_scene(settings), {}, device, nullptr) {}
 
     static EmulatedOmniSettings make_settings(HandOrders* orders) {
         EmulatedOmniSettings settings;
@@ -30,6 +33,13 @@ struct Live {
         settings.orders = orders;
         settings.live = true;
         settings.half_workspace_m = Vec3::Constant(0.5);
+        return settings;
+    }
+
+    static EmulatedOmniSettings make_settings(const std::vector<HandWaypoint>& path) {
+        EmulatedOmniSettings settings;
+        settings.hand = hand_model(Grip::Medium);
+        settings.script.path = path;
         return settings;
     }
 
@@ -100,6 +110,30 @@ TEST_CASE("while paused nothing moves and going on nothing jumps", "[app][thread
     live.session.send(Pause{false});
     REQUIRE(live.wait_for_steps(2));
     CHECK(live.distance() == Approx(there).margin(0.1));  // not 8 Å further on
+}
+
+TEST_CASE("a device that goes on while paused moves nothing and feels nothing", "[app][threads]") {
+    const std::string mode = GENERATE("mode=guarded", "mode=2");
+    Live live({mode, "start_angstrom=3.1", "period_ms=14"}, {{0, 0}, {1.5, 0}, {2.5, 0.04}});
+    REQUIRE(live.wait_until([&](const LiveFrame&) { return live.last.reading.time_s > 0.5; }));
+    live.session.send(Pause{true});
+    REQUIRE(live.wait_until([](const LiveFrame& f) { return f.readout.paused; }));
+    const double there = live.distance();
+    const std::uint64_t steps = live.frame.readout.steps;
+
+    REQUIRE(live.wait_until([&](const LiveFrame&) { return live.last.reading.time_s > 3; }));
+    CHECK(live.last.reading.position_m.x() > 0.03);
+    CHECK(live.distance() == there);
+    CHECK(live.last.sent_newton.norm() < 0.05);  // but for the damping
+    live.session.send(StepOnce{});
+    REQUIRE(live.wait_until([&](const LiveFrame& f) { return f.readout.steps == steps + 1; }));
+    CHECK(live.frame.readout.paused);
+    CHECK(live.distance() == Approx(there).margin(0.02));
+
+    live.session.send(Pause{false});
+    REQUIRE(live.wait_for_steps(20));
+    // The bond pulls again, and the hand, which stands still, yields a little: 4 cm would be 1 Å.
+    CHECK(live.distance() == Approx(there).margin(0.3));
 }
 
 TEST_CASE("a push on the wall stays outside of it, and a reset brings the start back",
