@@ -116,9 +116,8 @@ ScenarioResult play_scenario(const ScenarioOptions& options, std::size_t number)
     Draws draws(options.seed, number);
     ScenarioResult result;
     result.settings = draw_settings(draws);
-    std::vector<std::string> settings = result.settings;
-    settings.insert(settings.end(), options.settings.begin(), options.settings.end());
-    const SceneDescription scene = read_scene(options.scene, settings);
+    result.settings.insert(result.settings.end(), options.settings.begin(), options.settings.end());
+    const SceneDescription scene = read_scene(options.scene, result.settings);
     Simulation simulation = load_simulation(scene);
     EmulatedOmni device(build_emulated_omni(scene, simulation));
     const double start = grabbed_distance(simulation);

@@ -91,7 +91,7 @@ public:
           window_("Palpa - " + scene.title, options.width, options.height),
           session_(scene, options.view, device, options.orders),
           overlay_(scene, options.view),
-          statistics_(1 / servo_rate_hz),
+          statistics_(servo_tick_s),
           device_name_(device.spec().name) {
         std::error_code error;
         if (!std::filesystem::is_directory(options.screenshots, error)) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace palpa {
 namespace {
@@ -100,10 +101,17 @@ Vec3 follow(const GuardedSettings& settings, const Touch& touch, const Vec3& tra
 }  // namespace
 
 double guarded_cap(double viscosity_N_s_per_m, double damping_N_s_per_m, int delay_ticks) noexcept {
-    const double stable = 0.5 * (viscosity_N_s_per_m + damping_N_s_per_m) / (1.5 * servo_tick_s);
+    const double stable = 0.5 * (viscosity_N_s_per_m + damping_N_s_per_m) /
+                          ((0.5 + std::max(1, delay_ticks)) * servo_tick_s);
     const double lossless =
         damping_N_s_per_m > 0 ? damping_N_s_per_m / ((1.5 + delay_ticks) * servo_tick_s) : stable;
     return std::max(1.0, std::min(stable, lossless));
+}
+
+double guarded_damping(double damping_N_s_per_m, double inertia_kg, int delay_ticks) noexcept {
+    constexpr double third_of_critical = std::numbers::pi / 6;
+    const double late_s = velocity_filter_s + (1.5 + delay_ticks) * servo_tick_s;
+    return std::min(damping_N_s_per_m, third_of_critical * inertia_kg / late_s);
 }
 
 GuardedGain guarded_gain(const GuardedSettings& settings, const Vec3& force_newton,
@@ -161,7 +169,6 @@ GuardedTick step_guarded(const GuardedSettings& settings, const Touch& touch, co
     const Vec3 followed = follow(settings, touch, share * wanted, angstrom_per_m, state);
     state.allowance_angstrom =
         std::max(0.0, state.allowance_angstrom - followed.norm() * angstrom_per_m);
-    tick.is_stopped = followed != share * wanted;
     // What the stop held back is kept; what the limits cut off is not, but for what was kept.
     const Vec3 cut = (1 - share) * wanted;
     const double kept_norm = state.kept_m.norm(), cut_norm = cut.norm();

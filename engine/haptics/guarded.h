@@ -24,10 +24,14 @@ struct GuardedSettings {
 };
 
 // The stiffness (N/m) that a hand may feel: half of what a device of this viscosity, with this
-// damping added, keeps stable at the servo's own period, 0.5 (B_h + B)/(1.5 T); and no more than so
-// that the damping takes what a force that is half a tick, one of holding and the delay late gives,
-// B/((1.5 + delay) T). At least 1.
+// damping added, keeps stable at the servo's own period, 0.5 (B_h + B)/(1.5 T), T longer by each
+// tick of delay beyond the first; and no more than so that the damping takes what a force that is
+// half a tick, one of holding and the delay late gives, B/((1.5 + delay) T). At least 1.
 double guarded_cap(double viscosity_N_s_per_m, double damping_N_s_per_m, int delay_ticks) noexcept;
+
+// What of a damping (N s/m) is played: late by its filter and the servo's delay it shakes a light
+// handle by itself from pi/2 m/lateness on, and a third of that is the most.
+double guarded_damping(double damping_N_s_per_m, double inertia_kg, int delay_ticks) noexcept;
 
 struct GuardedGain {
     double A_d = 0;
@@ -65,7 +69,6 @@ struct GuardedTick {
     double displacement_gain = 0;      // A_d
     double felt_N_per_m = 0;           // of the molecule's stiffness, where it is largest
     Vec3 dropped_m = Vec3::Zero();     // handle travel that the limits of a step did away with
-    bool is_stopped = false;           // by the force on an atom
 };
 
 // A touch model has come, in place of `before`'s. To be called in the tick in which it is first

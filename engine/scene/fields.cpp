@@ -264,7 +264,7 @@ void visit_device(FieldVisitor& v, DeviceDescription& d) {
     v.real({.key = "encoder_step_mm",
             .meaning = "step of the position sensor; 0 reads exactly",
             .lowest = 0,
-            .highest = 10},
+            .highest = 4},
            d.encoder_step_mm);
     v.integer({.key = "servo_delay_ticks",
                .meaning = "servo ticks from a force to its sending",

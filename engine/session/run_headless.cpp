@@ -47,9 +47,10 @@ ServoSettings build_servo_settings(const SceneDescription& scene, const Simulati
     guarded.displacement_law = simulation.laws.displacement;
     guarded.workspace = build_workspace(c.workspace);
     guarded.half_workspace_m = half_workspace_m;
-    guarded.cap_N_per_m =
-        guarded_cap(scene.device.viscosity_N_s_per_m, c.damping_N_s_per_m, settings.delay_ticks);
-    guarded.damping_N_s_per_m = c.damping_N_s_per_m;
+    guarded.damping_N_s_per_m =
+        guarded_damping(c.damping_N_s_per_m, scene.device.inertia_kg, settings.delay_ticks);
+    guarded.cap_N_per_m = guarded_cap(scene.device.viscosity_N_s_per_m, guarded.damping_N_s_per_m,
+                                      settings.delay_ticks);
     guarded.stop_newton = c.stop_nN * 1e-9;
     // Friction is lost twice on turning round, and the rest has to show (haptics/safety.h).
     settings.safety.frozen_newton = 2 + 2 * scene.device.friction_N;
@@ -112,7 +113,9 @@ double calm_stiffness(const SceneDescription& scene, const std::optional<HandMod
                       double period_s) {
     DeviceDynamics device{scene.device.inertia_kg, scene.device.viscosity_N_s_per_m};
     if (scene.coupling.mode == CouplingMode::Guarded) {
-        device.viscosity_N_s_per_m += scene.coupling.damping_N_s_per_m;
+        device.viscosity_N_s_per_m +=
+            guarded_damping(scene.coupling.damping_N_s_per_m, device.inertia_kg,
+                            static_cast<int>(scene.device.servo_delay_ticks));
         period_s = servo_tick_s;
     }
     return critical_stiffness(build_plant(device, hand), period_s,
@@ -151,6 +154,13 @@ std::vector<std::string> list_warnings(const SceneDescription& scene, const Simu
             "not at rest at the start: an rms force of {:.3g} kcal/mol per radian and Å is left "
             "after {} steps (statics.relax_steps, statics.rest_kcal_per_mol; palpa relax)",
             relaxed.rms_force, relaxed.steps));
+    }
+    if (simulation.is_guarded && scene.hand.peak_nN > scene.coupling.stop_nN) {
+        warnings.push_back(
+            fmt::format("the hand is to feel {:.6g} nN (hand.peak_nN), and the molecule is held "
+                        "back from {:.6g} "
+                        "nN on (coupling.stop_nN)",
+                        scene.hand.peak_nN, scene.coupling.stop_nN));
     }
     const double last_move = script.path.empty() ? 0 : script.path.back().time_s;
     if (last_move > scene.seconds) {

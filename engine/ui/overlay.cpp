@@ -76,12 +76,14 @@ Overlay::Overlay(const SceneDescription& scene, const ViewSettings& view)
 }
 
 void Overlay::update_limit() {
-    stiffness_limit_ =
-        is_guarded()
-            ? guarded_cap(scene_.device.viscosity_N_s_per_m, settings_.coupling.damping_N_s_per_m,
-                          static_cast<int>(scene_.device.servo_delay_ticks))
-            : calm_stiffness(scene_, hand_model(static_cast<Grip>(scene_.hand.grip)),
-                             settings_.period_ms * 1e-3);
+    const auto delay_ticks = static_cast<int>(scene_.device.servo_delay_ticks);
+    stiffness_limit_ = is_guarded()
+                           ? guarded_cap(scene_.device.viscosity_N_s_per_m,
+                                         guarded_damping(settings_.coupling.damping_N_s_per_m,
+                                                         scene_.device.inertia_kg, delay_ticks),
+                                         delay_ticks)
+                           : calm_stiffness(scene_, hand_model(static_cast<Grip>(scene_.hand.grip)),
+                                            settings_.period_ms * 1e-3);
 }
 
 void Overlay::add_tick(const ServoTick& tick) {

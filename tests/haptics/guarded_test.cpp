@@ -272,6 +272,10 @@ TEST_CASE("the cap is what a device keeps calm, and what the damping pays for",
     CHECK(guarded_cap(5, 0.5, 0) == Approx(333.3).epsilon(1e-3));
     CHECK(guarded_cap(0.3, 0, 1) == Approx(100));
     CHECK(guarded_cap(0, 0, 1) == 1);
+    CHECK(guarded_cap(0.1, 2, 7) == Approx(140));  // 0.5 x 2.1/7.5 ms
+    CHECK(guarded_damping(0.5, 0.045, 1) == 0.5);
+    // 2 ms of filter and 2.5 ms: pi/6 x 0.01/4.5 ms.
+    CHECK(guarded_damping(5, 0.01, 1) == Approx(1.1636).epsilon(1e-4));
 }
 
 TEST_CASE("a molecule that stands still is not moved, and is let go where it stands",

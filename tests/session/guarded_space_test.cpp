@@ -75,8 +75,7 @@ InSpace run_in_space(const GuardedCase& c, const Vec3& x) {
     for (const std::vector<double>& axis : sent) {
         const std::span<const double> end(
             axis.end() - std::min<std::ptrdiff_t>(std::ssize(axis), 4000), axis.end());
-        result.ripple_N =
-            std::max(result.ripple_N, measure_ripple(end, 1 / servo_rate_hz).value().rms);
+        result.ripple_N = std::max(result.ripple_N, measure_ripple(end, servo_tick_s).value().rms);
     }
     return result;
 }

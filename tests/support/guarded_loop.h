@@ -97,7 +97,7 @@ public:
         const auto last = std::min<std::size_t>(sent_.size(), 4000);
         const std::span<const double> end(sent_.end() - static_cast<std::ptrdiff_t>(last),
                                           sent_.end());
-        result.ripple_N = measure_ripple(end, 1 / servo_rate_hz).value_or(Ripple{}).rms;
+        result.ripple_N = measure_ripple(end, servo_tick_s).value_or(Ripple{}).rms;
         return result;
     }
 
