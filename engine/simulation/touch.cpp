@@ -189,7 +189,7 @@ void update_confirmed(const Touch& last, Touch& touch) noexcept {
 
 Touch build_touch(const Simulation& simulation, const HandPose& hand) noexcept {
     Touch touch;
-    if (is_on_spring(simulation)) {
+    if (simulation.flexible && simulation.flexible->state.tether) {
         const Flexible& flexible = *simulation.flexible;
         touch.model = build_model(simulation, hand,
                                   find_spring_pull(flexible, *simulation.flexible->state.tether));
