@@ -131,8 +131,8 @@ Vec3 EmulatedOmni::follow_live_target() noexcept {
     const double pull = stiffness * ahead.norm();
     if (pull > live_hand_newton) wish_m_ = handle + ahead * (live_hand_newton / pull);
     wish_m_ = wish_m_.cwiseMax(-reach).cwiseMin(reach);
-    wish_m_per_s_ =
-        (wish_m_ - before) / servo_tick_s;  // held back, the damper pulls no more either
+    // Held back, the damper pulls no more either.
+    wish_m_per_s_ = (wish_m_ - before) / servo_tick_s;
     return stiffness * wish_m_ + settings_.hand->damping_N_s_per_m * wish_m_per_s_;
 }
 

@@ -12,8 +12,8 @@ constexpr double shortest_tick_s = servo_tick_s / 10;  // less is no time for a 
 constexpr double rounding_s = 1e-6;                    // of a sum of ticks
 
 struct Elapsed {
-    double s =
-        servo_tick_s;  // since the last tick, bounded both ways so that every watch below goes on
+    // Since the last tick, bounded both ways so that every watch below goes on.
+    double s = servo_tick_s;
     SafetyStage fault = SafetyStage::None;
 };
 
