@@ -1,5 +1,8 @@
 #include "devices/emulated_omni.h"
 
+#include "core/units.h"
+#include "haptics/local_field.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -29,10 +32,16 @@ double stop_force(double position, double velocity, double half_width, double ma
     return -outward * std::max(stiffness * depth + damping * velocity * outward, 0.0);
 }
 
+// How far (m) a hand that goes by sight is ahead of a handle that does not come.
+double most_ahead(const std::optional<HandModel>& hand) noexcept {
+    return hand && hand->stiffness_N_per_m > 0 ? live_hand_newton / hand->stiffness_N_per_m : 0;
+}
+
 }  // namespace
 
 EmulatedOmni::EmulatedOmni(const EmulatedOmniSettings& settings)
-    : settings_(settings), operator_(settings.script, settings.half_workspace_m.x()) {
+    : settings_(settings),
+      operator_(settings.script, settings.half_workspace_m, most_ahead(settings.hand)) {
     spec_.name = "emulated Omni";
     spec_.peak_force_newton = settings.peak_force_newton;
     spec_.viscosity_N_s_per_m = settings.dynamics.viscosity_N_s_per_m;
@@ -43,10 +52,14 @@ EmulatedOmni::EmulatedOmni(const EmulatedOmniSettings& settings)
     relaxed_plant_ =
         sample_plant(build_plant(settings.dynamics, relaxed(settings.hand)), sub_step_s);
     handle_mass_kg_ = plant.handle_mass_kg;
-    for (PlantState& axis : state_) axis = PlantState::Zero(plant.A.rows());
     // Handle and hand begin at rest where the script begins.
-    state_[0](0) = operator_.start_m();
-    if (state_[0].size() > 2) state_[0](2) = operator_.start_m();
+    orientation_ = operator_.start_orientation();
+    for (std::size_t axis = 0; axis < state_.size(); ++axis) {
+        PlantState& state = state_[axis];
+        state = PlantState::Zero(plant.A.rows());
+        state(0) = operator_.start_m()(static_cast<Eigen::Index>(axis));
+        if (state.size() > 2) state(2) = state(0);
+    }
 }
 
 Vec3 EmulatedOmni::true_position_m() const noexcept {
@@ -58,7 +71,7 @@ DeviceReading EmulatedOmni::read() noexcept {
     if (const double step = settings_.encoder_step_m; step > 0) {
         position = step * (position / step).array().round();
     }
-    return {static_cast<double>(tick_) / spec_.rate_hz, position, buttons_, true};
+    return {static_cast<double>(tick_) / spec_.rate_hz, position, buttons_, true, orientation_};
 }
 
 void EmulatedOmni::write(const Vec3& force_newton) noexcept {
@@ -70,15 +83,18 @@ void EmulatedOmni::write(const Vec3& force_newton) noexcept {
     const double now_s = static_cast<double>(tick_ - start_tick_) * servo_tick_s;
     // Half a nanosecond keeps the tick from hanging on rounding.
     if (!released_ && now_s > settings_.script.release_s.value_or(INFINITY) - 5e-10) let_go();
-    Vec3 hand_drive = Vec3::Zero();
-    if (settings_.live) {
-        hand_drive = follow_live_target();
+    Vec3 drive = Vec3::Zero();
+    if (settings_.driver == HandDriver::Mouse) {
+        drive = follow_mouse();
+    } else if (settings_.driver == HandDriver::Operator) {
+        drive = follow_operator();
     } else if (!released_) {
         const ScriptedHand::Wish wish = operator_.step(servo_tick_s);
         buttons_ = wish.buttons;
+        orientation_ = wish.orientation;
         if (settings_.hand) {
-            hand_drive.x() = settings_.hand->stiffness_N_per_m * wish.x_m +
-                             settings_.hand->damping_N_s_per_m * wish.v_m_per_s;
+            drive = settings_.hand->stiffness_N_per_m * wish.place_m +
+                    settings_.hand->damping_N_s_per_m * wish.m_per_s;
         }
     }
     const double kick = operator_.kick_newton(now_s);
@@ -90,12 +106,17 @@ void EmulatedOmni::write(const Vec3& force_newton) noexcept {
             const auto i = static_cast<Eigen::Index>(axis);
             const double stop = stop_force(state_[axis](0), state_[axis](1),
                                            settings_.half_workspace_m(i), handle_mass_kg_);
-            const Eigen::Vector2d inputs(outside(i) + stop, hand_drive(i));
+            const Eigen::Vector2d inputs(outside(i) + stop, drive(i));
             state_[axis] = (plant_.A * state_[axis] + plant_.B * inputs).eval();
         }
         apply_friction(before);
     }
     ++tick_;
+}
+
+void EmulatedOmni::show(const TouchModel& touch) noexcept {
+    operator_.see({units::metre_per_angstrom * touch.molecule.place_angstrom,
+                   touch.displacement_gain, true_position_m()});
 }
 
 bool EmulatedOmni::take_orders() noexcept {
@@ -117,7 +138,7 @@ bool EmulatedOmni::take_orders() noexcept {
     return true;
 }
 
-Vec3 EmulatedOmni::follow_live_target() noexcept {
+Vec3 EmulatedOmni::follow_mouse() noexcept {
     if (!settings_.hand) return Vec3::Zero();
     const double stiffness = settings_.hand->stiffness_N_per_m;
     const Vec3& reach = settings_.half_workspace_m;
@@ -133,7 +154,18 @@ Vec3 EmulatedOmni::follow_live_target() noexcept {
     wish_m_ = wish_m_.cwiseMax(-reach).cwiseMin(reach);
     // Held back, the damper pulls no more either.
     wish_m_per_s_ = (wish_m_ - before) / servo_tick_s;
-    return stiffness * wish_m_ + settings_.hand->damping_N_s_per_m * wish_m_per_s_;
+    return drive_of(*settings_.hand);
+}
+
+Vec3 EmulatedOmni::follow_operator() noexcept {
+    if (!settings_.hand) return Vec3::Zero();
+    wish_m_per_s_ = (order_.target_m - wish_m_) / servo_tick_s;
+    wish_m_ = order_.target_m;
+    return drive_of(*settings_.hand);
+}
+
+Vec3 EmulatedOmni::drive_of(const HandModel& hand) const noexcept {
+    return hand.stiffness_N_per_m * wish_m_ + hand.damping_N_s_per_m * wish_m_per_s_;
 }
 
 void EmulatedOmni::let_go() noexcept {

@@ -1,6 +1,6 @@
 // A Phantom Omni that is not there, and the hand on it: inertia, viscosity, Coulomb friction,
 // encoder steps, saturating motors, stops at the ends of the workspace, buttons. The hand follows a
-// script, or a live person's mouse.
+// script, a live person's mouse, or what an emulated operator wants. Nothing resists a turn.
 #pragma once
 #include "devices/scripted_hand.h"
 #include "haptics/device.h"
@@ -17,6 +17,10 @@ namespace palpa {
 // Half of the nominal workspace of 160 x 120 x 70 mm.
 inline const Vec3 omni_half_workspace_m{0.080, 0.060, 0.035};
 
+// Who says where the hand wants the handle. A mouse's hand goes after the orders' target as a
+// muscle would, an operator's has it there already.
+enum class HandDriver { Script, Mouse, Operator };
+
 // Defaults as in the maker's data sheet for the Omni; inertia, friction and encoder step are quoted
 // from memory of it and are to be checked on a device.
 struct EmulatedOmniSettings {
@@ -26,8 +30,8 @@ struct EmulatedOmniSettings {
     double peak_force_newton = 3.3;    // motors give no more, whatever is written
     std::optional<HandModel> hand;     // nothing: the handle is free
     HandScript script;
-    HandOrders* orders = nullptr;  // of a window
-    bool live = false;             // the hand goes to the orders' target, not along the script
+    HandOrders* orders = nullptr;  // of a window or an operator
+    HandDriver driver = HandDriver::Script;
     Vec3 half_workspace_m = omni_half_workspace_m;
 };
 
@@ -40,6 +44,7 @@ public:
     const DeviceSpec& spec() const noexcept override { return spec_; }
     DeviceReading read() noexcept override;
     void write(const Vec3& force_newton) noexcept override;
+    void show(const TouchModel& touch) noexcept override;
 
     // What no device knows: where the handle is between two encoder steps.
     Vec3 true_position_m() const noexcept;
@@ -48,7 +53,10 @@ private:
     // False where time stands still.
     bool take_orders() noexcept;
     // What the hand's spring and damper are drawn to (N), by axis.
-    Vec3 follow_live_target() noexcept;
+    Vec3 follow_mouse() noexcept;
+    Vec3 follow_operator() noexcept;
+    // Of the present wish and its speed, by spring and damper.
+    Vec3 drive_of(const HandModel& hand) const noexcept;
 
     // From here on the hand wants no place any more.
     void let_go() noexcept;
@@ -69,6 +77,7 @@ private:
     Vec3 wish_m_ = Vec3::Zero(), wish_m_per_s_ = Vec3::Zero();
     std::uint64_t tick_ = 0, start_tick_ = 0;  // since the beginning; where the script began
     std::uint32_t buttons_ = 0;                // as pressed during the last tick
+    Quat orientation_ = Quat::Identity();      // of the handle: no motor turns it, the wrist does
 };
 
 }  // namespace palpa

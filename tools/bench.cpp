@@ -36,17 +36,6 @@
 namespace palpa {
 namespace {
 
-std::string machine_name() {
-    std::string model = "unknown processor";
-    std::ifstream processors("/proc/cpuinfo");  // Linux alone has it
-    for (std::string line; std::getline(processors, line);) {
-        if (!line.starts_with("model name")) continue;
-        model = trimmed(std::string_view(line).substr(line.find(':') + 1));
-        break;
-    }
-    return fmt::format("{}, {} threads", model, std::thread::hardware_concurrency());
-}
-
 // One simulation step, while the hand sweeps back and forth over 10 mm.
 BenchRow bench_step(const std::string& scene_name, Simulation simulation) {
     // Steps too short for the clock are timed together.
@@ -163,6 +152,17 @@ nlohmann::ordered_json as_json(const BenchRow& row) {
 }
 
 }  // namespace
+
+std::string machine_name() {
+    std::string model = "unknown processor";
+    std::ifstream processors("/proc/cpuinfo");  // Linux alone has it
+    for (std::string line; std::getline(processors, line);) {
+        if (!line.starts_with("model name")) continue;
+        model = trimmed(std::string_view(line).substr(line.find(':') + 1));
+        break;
+    }
+    return fmt::format("{}, {} threads", model, std::thread::hardware_concurrency());
+}
 
 int bench_command(const BenchOptions& options) {
     std::vector<BenchRow> rows;

@@ -26,6 +26,9 @@ struct BenchOptions {
     bool json = false;
 };
 
+// Its processor, as it calls itself, and how many threads that runs.
+std::string machine_name();
+
 // Throws LoadError on bad input. Returns the exit code.
 int bench_command(const BenchOptions& options);
 

@@ -94,13 +94,15 @@ Vec3 find_force(const Flexible& flexible) {
 
 double find_reach(const SceneDescription& scene) {
     double farthest = 0;
-    if (scene.hand.stroke == Stroke::Path) {
-        for (const auto& [time, place] : scene.hand.path) {
-            const double away = place - scene.hand.path.front()[1];
+    const bool leads = scene.hand.stroke == Stroke::Lead;
+    if (leads || scene.hand.stroke == Stroke::Path) {
+        for (const PathPoint& point : scene.hand.path) {
+            const double away = point.place[0] - scene.hand.path.front().place[0];
             if (std::abs(away) > std::abs(farthest)) farthest = away;
         }
     }
     if (farthest == 0) return 3;
+    if (leads) return farthest;
     return farthest * 1e-3 / scene.coupling.A_d * units::angstrom_per_metre;
 }
 

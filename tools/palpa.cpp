@@ -5,12 +5,20 @@
 #include "gpu/device.h"
 #include "platform/window.h"
 #include "tools/bench.h"
+#include "tools/devices.h"
 #include "tools/energy.h"
+#include "tools/feel.h"
+#include "tools/forced_choice.h"
+#include "tools/journey.h"
+#include "tools/loops.h"
 #include "tools/prepare.h"
 #include "tools/relax.h"
 #include "tools/render.h"
+#include "tools/replay.h"
+#include "tools/report.h"
 #include "tools/run.h"
 #include "tools/scenarios.h"
+#include "tools/study.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -93,6 +101,16 @@ void add_run(CLI::App& program, palpa::RunOptions& options) {
                  "in lockstep on a virtual clock, without a window");
     run.add_flag("--play", options.play,
                  "in a window: let the emulated hand play the scene's stroke, not the mouse");
+    run.add_option_function<std::string>(
+        "--device",
+        [&options](const std::string& name) {
+            if (name == "list") {
+                palpa::print_device_list();
+                throw CLI::Success();
+            }
+            options.device = name;
+        },
+        "emulated unless given; list tells which there are");
     run.add_flag("--check", options.check_only,
                  "only read the scene and say what is wrong with it");
     CLI::Option* const record = run.add_option(
@@ -308,6 +326,72 @@ void add_prepare(CLI::App& program, palpa::PrepareOptions& options) {
     prepare.add_flag("--json", options.json, "print counts and warnings as JSON");
 }
 
+void add_replay(CLI::App& program, palpa::ReplayOptions& options) {
+    CLI::App& replay = *program.add_subcommand(
+        "replay", "Plays a recorded session again; --verify demands the same to the last digit");
+    replay.add_option("recording", options.recording, "folder of palpa run --record")->required();
+    replay.add_flag("--verify", options.verify,
+                    "hold every row of the trace against what is found now; exit code 1 where one "
+                    "differs");
+    replay.add_flag("--json", options.json, "print the result as JSON");
+}
+
+void add_journey(CLI::App& program, palpa::JourneyOptions& options) {
+    CLI::App& journey = *program.add_subcommand(
+        "journey", "A molecule taken out of its pocket and brought back, by hand, period and mode");
+    journey.add_option("scene", options.scene, "flexible scene")->required();
+    journey.add_option("--periods", options.periods_ms, "declared T_s in ms, 1,14,83 unless given")
+        ->delimiter(',')
+        ->check(in_range(1, 1e4));
+    journey.add_option("--hands", options.grips, "medium,firm unless given")->delimiter(',');
+    journey.add_option("--modes", options.modes, "guarded,4 unless given")->delimiter(',');
+    journey.add_option("--active", options.active, "degrees of freedom, 40 unless given")
+        ->delimiter(',')
+        ->check(in_range(0, 1e6));
+    journey
+        .add_option("--random", options.random,
+                    "so many random hands, devices, periods, ways and numbers of active joints "
+                    "instead")
+        ->check(in_range(1, 1e6));
+    journey.add_option("--seed", options.seed, "of everything random, 1 unless given");
+    journey.add_flag("--json", options.json, "print every journey as JSON");
+    add_set_option(journey, options.settings);
+}
+
+void add_feel(CLI::App& program, palpa::FeelOptions& options) {
+    CLI::App& feel = *program.add_subcommand(
+        "feel", "A scene's stroke for ranges of forces to be felt and tolerances: what holds?");
+    feel.footer(
+        "Examples:\n"
+        "  palpa feel scenes/water --ranges 20:3000,50:400 --tolerances 0.001,1\n"
+        "  palpa feel scenes/hiv/flexible.toml --ranges 500:20000 --tolerances 100,1000 --samples "
+        "10\n");
+    feel.add_option("scene", options.scene, "scene folder or file")->required();
+    feel.add_option("--ranges", options.ranges,
+                    "WEAKEST:STRONGEST in pN, 20:3000,50:10000,200:5000 unless given")
+        ->delimiter(',');
+    feel.add_option("--tolerances", options.tolerances_pN, "pN, 50,150,500 unless given")
+        ->delimiter(',')
+        ->check(in_range(1e-9, 1e6));
+    feel.add_option("--samples", options.samples,
+                    "ticks of each stroke whose force is held against a reference, 20 unless given")
+        ->check(in_range(1, 1e6));
+    add_setting(feel, "--seconds", "run.seconds", "length of the run", options.settings);
+    feel.add_flag("--json", options.json, "print JSON");
+    add_set_option(feel, options.settings);
+}
+
+void add_devices(CLI::App& program, palpa::DevicesOptions& options) {
+    CLI::App& devices = *program.add_subcommand(
+        "devices", "What is plugged in, what works, what is wrong and how to mend it");
+    devices.add_option("device", options.name,
+                       "as --device of palpa run takes it; all unless given");
+    devices.add_flag("--force-test", options.tests_force, "push the handle a little, after asking");
+    devices.add_flag("--json", options.json, "print the result as JSON");
+    devices.footer(
+        "Exit code 0 if there is a device that can be used, emulated ones beside, else 1.");
+}
+
 void add_relax(CLI::App& program, palpa::RelaxOptions& options) {
     CLI::App& relax =
         *program.add_subcommand("relax", "Bring the flexible molecules of a scene to rest");
@@ -330,6 +414,99 @@ void add_scenarios(CLI::App& program, palpa::ScenarioOptions& options) {
     add_set_option(scenarios, options.settings);
 }
 
+void add_report(CLI::App& program, palpa::ReportOptions& options) {
+    CLI::App& report = *program.add_subcommand(
+        "report", "The paper's figures, the acceptance bars and more, computed anew: one page");
+    report.add_option("-o,--output", options.output, "page to write, report.html unless given");
+    report.add_option("--scene", options.scene, "of one axis, scenes/water unless given");
+    report.add_option(
+        "--hiv", options.flexible,
+        "with molecules that give way, scenes/hiv/flexible.toml unless given; left out "
+        "where it is not there");
+    report.add_flag("--quick", options.quick, "fewer and shorter runs: a minute");
+    report.add_option("--seed", options.seed, "of everything random, 1 unless given");
+    add_set_option(report, options.settings);
+}
+
+void add_loops(CLI::App& program, palpa::LoopOptions& options) {
+    CLI::App& loops = *program.add_subcommand(
+        "loops", "Random closed ways of hands in space: does the coupling give or take energy?");
+    loops.add_option("scene", options.scene, "scene folder or file")->required();
+    loops.add_option("--count", options.count, "1000 unless given")->check(in_range(1, 1e7));
+    loops.add_option("--first", options.first, "number of the first, 0 unless given")
+        ->check(in_range(0, 1e12));
+    loops.add_option("--seed", options.seed, "of everything random, 1 unless given");
+    loops.add_flag("--json", options.json, "print every loop as JSON");
+    loops.add_flag("--turn", options.turn, "the handle turns on its way (molecules with-handle)");
+    add_set_option(loops, options.settings);
+}
+
+void add_study(CLI::App& program, palpa::ForcedChoiceOptions& choice, bool& is_choice) {
+    palpa::StudyOptions& options = choice.study;
+    CLI::App& study = *program.add_subcommand(
+        "study", "The paper's experiment: who finds the place without force in which mode?");
+    study.footer(
+        "Examples:\n"
+        "  palpa study scenes/water -o people\n"
+        "  palpa study scenes/water --operators 20\n"
+        "  palpa study scenes/water --operators 20 --hand firm --modes 2,4,guarded -o study\n"
+        "  tools/plot_study study\n"
+        "  palpa study scenes/water --operators 5 --forced-choice attracts-more --modes 2,4\n");
+    study.add_option("scene", options.scene, "scene folder or file of one axis")->required();
+    options.operators = 0;
+    CLI::Option* const operators =
+        study
+            .add_option("--operators", options.operators,
+                        "emulated ones, headless; without them a person takes part, in a window")
+            ->check(in_range(1, 1e6));
+    CLI::Option* const rounds =
+        study.add_option("--rounds", options.rounds, "each with every mode once, 3 unless given")
+            ->check(in_range(1, 999));
+    study.add_option_function<std::string>(
+        "--modes",
+        [&options](const std::string& names) { options.modes = palpa::modes_called(names); },
+        "1 to 5 and guarded, with commas between; all unless given");
+    CLI::Option* const manner = study.add_option_function<std::string>(
+        "--operator",
+        [&options](const std::string& name) { options.manner = palpa::manner_called(name); },
+        "naive: follows the force; careful: then takes the middle of the range without force "
+        "(naive unless given)");
+    CLI::Option* const question = study.add_option_function<std::string>(
+        "--forced-choice",
+        [&](const std::string& name) {
+            choice.question = palpa::question_called(name);
+            is_choice = true;
+        },
+        "stiffer or attracts-more, instead: of two molecules, one with all forces larger, which "
+        "is it?");
+    question->excludes(rounds)->excludes(manner)->needs(operators);
+    manner->needs(operators);
+    study.add_option("--repeats", choice.repeats, "of each pair, 10 unless given")
+        ->check(in_range(1, 1e6))
+        ->needs(question);
+    study.add_option("--limit", options.limit_s, "seconds for a trial, 90 unless given")
+        ->check(in_range(1, 3600))
+        ->needs(operators)
+        ->excludes(question);
+    study.add_option("--seed", options.seed, "of everything random, 1 unless given");
+    study.add_option("-o,--output", options.folder,
+                     "new folder for trials.csv, summary.json and line.csv; of forced choices for "
+                     "choices.csv and summary.json; of people, each of whom adds to it, for "
+                     "trials.csv and line.csv");
+    study.add_flag("--json", options.json, "print the summary as JSON")->needs(operators);
+    study
+        .add_flag("--validation", options.validation,
+                  "let the Vulkan validation layer watch the window's drawing")
+        ->excludes(operators);
+    add_setting(study, "--period-ms", "run.period_ms",
+                "declared period of the simulation, 14 unless given", options.settings);
+    add_setting(study, "--hand", "hand.grip", "light, slack, medium, firm or firm-grip",
+                options.settings);
+    add_setting(study, "--friction", "device.friction_N", "Coulomb friction of the device",
+                options.settings);
+    add_set_option(study, options.settings);
+}
+
 int run_program(int argc, char** argv) {
     CLI::App program("Palpa: feel molecules", "palpa");
     program.require_subcommand(1);
@@ -342,13 +519,28 @@ int run_program(int argc, char** argv) {
     palpa::PrepareOptions prepare;
     palpa::RelaxOptions relax;
     palpa::ScenarioOptions scenarios;
+    palpa::LoopOptions loops;
+    palpa::ReportOptions report;
+    palpa::ForcedChoiceOptions choice;
+    bool is_choice = false;
+    add_study(program, choice, is_choice);
     add_scenarios(program, scenarios);
+    add_loops(program, loops);
+    add_report(program, report);
     add_energy(program, energy);
     add_prepare(program, prepare);
     add_relax(program, relax);
     add_run(program, run);
     add_bench(program, bench);
     add_render(program, render);
+    palpa::FeelOptions feel;
+    add_feel(program, feel);
+    palpa::DevicesOptions devices;
+    add_devices(program, devices);
+    palpa::JourneyOptions journey;
+    add_journey(program, journey);
+    palpa::ReplayOptions replay;
+    add_replay(program, replay);
     const std::vector<CLI::App*> commands = program.get_subcommands({});
     const bool known = std::any_of(commands.begin(), commands.end(), [&](const CLI::App* command) {
         return argc > 1 && command->check_name(argv[1]);
@@ -365,10 +557,19 @@ int run_program(int argc, char** argv) {
         fmt::print(stderr, "palpa: {}; see palpa --help\n", error.what());
         return bad_input;
     }
+    if (program.got_subcommand("devices")) return palpa::devices_command(devices);
     if (program.got_subcommand("energy")) return palpa::energy_command(energy);
     if (program.got_subcommand("prepare")) return palpa::prepare_command(prepare);
     if (program.got_subcommand("relax")) return palpa::relax_command(relax);
     if (program.got_subcommand("scenarios")) return palpa::scenarios_command(scenarios);
+    if (program.got_subcommand("feel")) return palpa::feel_command(feel);
+    if (program.got_subcommand("journey")) return palpa::journey_command(journey);
+    if (program.got_subcommand("replay")) return palpa::replay_command(replay);
+    if (program.got_subcommand("loops")) return palpa::loops_command(loops);
+    if (program.got_subcommand("report")) return palpa::report_command(report);
+    if (program.got_subcommand("study"))
+        return is_choice ? palpa::forced_choice_command(choice)
+                         : palpa::study_command(choice.study);
     if (program.got_subcommand("render")) return palpa::render_command(render);
     return program.got_subcommand("run") ? palpa::run_command(run) : palpa::bench_command(bench);
 }

@@ -4,9 +4,11 @@
 #include "core/load_error.h"
 #include "core/units.h"
 #include "devices/emulated_omni.h"
+#include "devices/open_device.h"
 #include "haptics/gains.h"
 #include "scene/fields.h"
 #include "scene/read_scene.h"
+#include "session/feel.h"
 #include "session/plan_hand.h"
 #include "session/recording.h"
 #include "session/run_headless.h"
@@ -56,6 +58,24 @@ void print_flexible(const Simulation& simulation, const Flexible& flexible) {
     const TouchModel start = simulation.touch.model;
     fmt::print("  start       {:.3f} kcal/mol, {:.3f} nN\n", start.potential_kcal_per_mol,
                start.force_newton.norm() * 1e9);
+}
+
+// How much of the handle's way a molecule takes where it is stiffest, along and across.
+void print_gains(const SceneDescription& scene, const Simulation& simulation, double distance) {
+    if (!simulation.is_guarded || !moves_in_space(simulation) || !scene.grab.atom.empty()) return;
+    const FieldSum field = field_on_grabbed_at(simulation, distance);
+    GuardedSettings guarded =
+        build_servo_settings(scene, simulation).guarded.value_or(GuardedSettings{});
+    guarded.gain_shape = GainShape::Tensor;
+    const GuardedGain gain =
+        guarded_gain(guarded, units::newton_per_kcal_per_mol_angstrom * field.force,
+                     units::newton_per_metre_per_kcal_per_mol_angstrom2 * field.stiffness);
+    const Eigen::SelfAdjointEigenSolver<Mat3> along(gain.tensor, Eigen::EigenvaluesOnly);
+    const Vec3 cm = along.eigenvalues() / units::angstrom_per_metre * 100;
+    fmt::print(
+        "  gain        {:.2f} cm of handle for an Å there; with coupling.gain_shape = \"tensor\" "
+        "{:.2f}, {:.2f} and {:.2f}\n",
+        cm.z(), cm.x(), cm.y(), cm.z());
 }
 
 // What the molecule will meet on its line, found by looking along it.
@@ -108,6 +128,32 @@ void print_line(const SceneDescription& scene, const Simulation& simulation) {
         calm_stiffness(scene, hand_model(static_cast<Grip>(scene.hand.grip)), simulation.period_s);
     fmt::print("  stiffest    {:.3g} N/m felt at {:.3f} Å, this hand keeps {:.3g} N/m calm\n",
                stiffest.newton_per_metre, stiffest.angstrom, calm);
+    print_gains(scene, simulation, stiffest.angstrom);
+}
+
+// What had to be felt, and what gave way for it.
+void print_feel(const Feel& f) {
+    if (const auto range = f.range_pN) {
+        fmt::print("  to feel     {:.6g} to {:.6g} pN, felt as {:.3f} to {:.3f} N\n", (*range)[0],
+                   (*range)[1], f.ends_newton[0], f.ends_newton[1]);
+    }
+    fmt::print("  stiffness   {:.1f} % of the cap felt at most\n", 100 * f.stiffest_share);
+    if (const auto within_pN = f.within_pN; within_pN && f.audits > 0) {
+        fmt::print(
+            "  exactness   {:.1f} % of the time within {:.6g} pN, by {} audits; half of it within "
+            "{:.3g}, nine tenths within {:.3g}\n",
+            100 * f.within_share, *within_pN, f.audits, f.median_pN, f.ninety_pN);
+        if (f.steps > 0) {
+            fmt::print(
+                "              {:.1f} degrees of freedom and {:.1f} steps in a period on average\n",
+                f.active, f.steps);
+        }
+    } else if (f.within_pN) {
+        fmt::print("  exactness   no audit: too short a run, or not guarded\n");
+    }
+    const std::vector<std::string> gave_way = find_yielding(f).all();
+    if (gave_way.empty()) fmt::print("  gave way    nothing\n");
+    for (const std::string& what : gave_way) fmt::print("  gave way    {}\n", what);
 }
 
 void print_summary(const SceneDescription& scene, const Summary& s) {
@@ -147,6 +193,7 @@ void print_summary(const SceneDescription& scene, const Summary& s) {
             "the budget\n",
             a.active, a.choices, 100 * a.neglected_share, 100 * a.within_budget);
     }
+    if (s.feel) print_feel(*s.feel);
     fmt::print("  clamped     {:.1f} % of the time\n", 100 * s.clamped_share);
     fmt::print("  step        {:.2f} µs median, {:.2f} µs p99 of {} steps\n", s.step_median_us,
                s.step_p99_us, s.steps);
@@ -163,6 +210,14 @@ void write_frame(std::unique_ptr<FrameWriter>& writer, const Simulation& simulat
     }
 }
 
+// What a person has to do although the device could be opened.
+void print_failed_checks(const OpenedDevice& opened) {
+    for (const DeviceCheck& check : opened.checks) {
+        if (check.outcome != CheckOutcome::Failed) continue;
+        fmt::print(stderr, "warning: {}: {}; {}\n", check.layer, check.found, check.remedy);
+    }
+}
+
 int run_in_window(const SceneDescription& scene, const Simulation& simulation,
                   EmulatedOmniSettings settings, const RunOptions& options) {
     if (options.record) {
@@ -170,29 +225,26 @@ int run_in_window(const SceneDescription& scene, const Simulation& simulation,
             {"--record"},
             "a session in a window cannot be recorded yet; expected --headless with it");
     }
+    const bool is_emulated = device_maker_called(options.device).is_emulated;
+    if (options.play && !is_emulated) {
+        throw LoadError({"--play"}, "is of the emulated hand; expected it without --device");
+    }
     HandOrders orders;
     settings.orders = &orders;
     // A window needs somebody.
     if (!settings.hand) settings.hand = hand_model(Grip::Medium);
-    const double stiffness = settings.hand ? settings.hand->stiffness_N_per_m : 0;
-    if (!options.play) {
-        settings.live = true;
-        settings.script = {};
-        // A mouse has no workspace: half a metre either way stands for that.
-        settings.half_workspace_m = Vec3::Constant(0.5);
-        // A person who sees the molecule lag overcomes the handle's friction; a mouse has none.
-        settings.friction_newton = 0;
-    }
-    const double reach_m = live_hand_newton / std::max(stiffness, 1.0);
-    EmulatedOmni device(settings);
-    const WindowReport report = run_window(scene, device,
+    if (!options.play) give_to_mouse(settings);
+    const double reach_m = mouse_reach_m(settings);
+    const OpenedDevice opened = open_device(options.device, {.emulated = settings});
+    print_failed_checks(opened);
+    const WindowReport report = run_window(scene, *opened.device,
                                            {.view = default_view(simulation),
                                             .width = options.width,
                                             .height = options.height,
                                             .screenshots = options.screenshots,
                                             .last_shot = options.last_shot,
                                             .last_shot_s = options.last_shot_s,
-                                            .orders = &orders,
+                                            .orders = is_emulated ? &orders : nullptr,
                                             .mouse_reach_m = options.play ? 0 : reach_m,
                                             .lose_device_at = options.lose_device_at,
                                             .validation = options.validation});
@@ -228,6 +280,25 @@ EmulatedOmniSettings build_emulated_omni(const SceneDescription& scene,
     };
 }
 
+void give_to_mouse(EmulatedOmniSettings& settings) {
+    settings.driver = HandDriver::Mouse;
+    settings.script = {};
+    // A mouse has no workspace: half a metre either way stands for that.
+    settings.half_workspace_m = Vec3::Constant(0.5);
+    // A person who sees the molecule lag overcomes the handle's friction; a mouse has none.
+    settings.friction_newton = 0;
+}
+
+double mouse_reach_m(const EmulatedOmniSettings& settings) {
+    const double stiffness = settings.hand ? settings.hand->stiffness_N_per_m : 0;
+    return live_hand_newton / std::max(stiffness, 1.0);
+}
+
+ProgressFunction find_progress(bool json) {
+    return isatty(STDERR_FILENO) != 0 && !json ? ProgressFunction(show_progress)
+                                               : ProgressFunction();
+}
+
 void print_scene_keys() {
     fmt::print("| key | value | unless given | meaning |\n| --- | --- | --- | --- |\n");
     for (const FieldNote& field : list_fields()) {
@@ -251,6 +322,10 @@ int run_command(const RunOptions& options) {
         throw LoadError({options.play ? "--play" : "--shot"},
                         "is of a window; expected it without --headless");
     }
+    if (options.headless && !device_maker_called(options.device).is_emulated) {
+        throw LoadError({fmt::format("--device {}", options.device)},
+                        "is held by a person and needs the window; expected it without --headless");
+    }
     if (!options.headless) return run_in_window(scene, simulation, settings, options);
     std::unique_ptr<FrameWriter> writer;
     if (options.record && options.frames_per_second > 0) {
@@ -268,10 +343,9 @@ int run_command(const RunOptions& options) {
     for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
 
     EmulatedOmni device(settings);
-    const bool watched = isatty(STDERR_FILENO) != 0 && !options.json;
     const Summary summary =
         run_headless(scene, simulation, device, warnings, recording ? &*recording : nullptr,
-                     watched ? ProgressFunction(show_progress) : ProgressFunction(), frames);
+                     find_progress(options.json), frames);
     for (std::size_t i = warnings.size(); i < summary.warnings.size(); ++i) {
         fmt::print(stderr, "warning: {}\n", summary.warnings[i]);
     }

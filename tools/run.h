@@ -2,6 +2,7 @@
 #pragma once
 #include "devices/emulated_omni.h"
 #include "scene/description.h"
+#include "session/run_headless.h"
 #include "simulation/simulation.h"
 
 #include <cstdint>
@@ -21,6 +22,7 @@ struct RunOptions {
     bool check_only = false;
     bool json = false;  // the summary as JSON on standard output
     bool headless = false;
+    std::string device = "emulated";  // one of the list in devices/open_device.h
     bool play = false;  // in a window: the emulated hand plays the scene's stroke, no mouse
     std::uint32_t width = 1280, height = 800;        // of the window
     std::filesystem::path screenshots = ".";         // folder for those of the window
@@ -33,6 +35,13 @@ struct RunOptions {
 // The emulated device and hand that a scene describes.
 EmulatedOmniSettings build_emulated_omni(const SceneDescription& scene,
                                          const Simulation& simulation);
+
+// Puts a person's mouse in place of the script, and how far ahead of the handle it may be.
+void give_to_mouse(EmulatedOmniSettings& settings);
+double mouse_reach_m(const EmulatedOmniSettings& settings);
+
+// A line of progress where a person watches and standard output is not for a program.
+ProgressFunction find_progress(bool json);
 
 // All keys of a scene file as a Markdown table, as scenes/README.md has it.
 void print_scene_keys();

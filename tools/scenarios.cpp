@@ -1,5 +1,6 @@
 #include "tools/scenarios.h"
 
+#include "core/draws.h"
 #include "core/units.h"
 #include "devices/emulated_omni.h"
 #include "scene/read_scene.h"
@@ -17,42 +18,16 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
-#include <random>
 
 namespace palpa {
 namespace {
 
-// The same on every machine: distributions of the library are not.
-class Draws {
-public:
-    Draws(std::uint64_t seed, std::size_t number) : random_(seed * 1'000'003 + number) {}
-
-    double between(double low, double high) {
-        const double share = static_cast<double>(random_() >> 11U) * 0x1p-53;
-        return low + (high - low) * share;
-    }
-    // Equally often in every decade.
-    double scale(double low, double high) {
-        return std::exp(between(std::log(low), std::log(high)));
-    }
-    std::size_t below(std::size_t count) { return random_() % count; }
-
-private:
-    std::mt19937_64 random_;
-};
-
 std::vector<std::string> draw_settings(Draws& draws) {
     constexpr double rest_s = 8, lead_s = 0.3;
-    std::vector<std::string> settings{"hand.stroke=path"};
+    std::vector<std::string> settings = draw_hand(draws);
     const auto set = [&](const char* key, const auto& value) {
         settings.push_back(fmt::format("{}={}", key, value));
     };
-    set("hand.grip", hand_names[1 + draws.below(hand_names.size() - 1)]);
-    set("device.friction_N", draws.below(3) == 0 ? 0.0 : draws.between(0, 0.5));
-    set("device.inertia_kg", draws.scale(0.03, 0.15));
-    set("device.viscosity_N_s_per_m", draws.between(0.05, 0.5));
-    set("device.servo_delay_ticks", draws.below(2));
-    set("run.period_ms", std::lround(draws.scale(1, 100)));
     set("hand.start_angstrom", draws.between(2.7, 10));
     const double depth_mm = draws.between(20, 145), fastest_mm_per_s = draws.scale(30, 600);
     // Minimum jerk is fastest in the middle, at 15/8 of the mean.
@@ -90,7 +65,7 @@ void check_scene(const ScenarioOptions& options) {
         if (molecule.name != scene.grab.molecule || molecule.motion == Motion::AlongX) continue;
         throw LoadError(scene.place_of("grab.molecule"),
                         "moves in space, where work around a closed way is not nothing; expected a "
-                        "molecule that moves along-x");
+                        "molecule that moves along-x, or palpa loops");
     }
 }
 
@@ -106,6 +81,20 @@ nlohmann::ordered_json as_json(std::size_t number, const ScenarioResult& result)
 }
 
 }  // namespace
+
+std::vector<std::string> draw_hand(Draws& draws) {
+    std::vector<std::string> settings{"hand.stroke=path"};
+    const auto set = [&](const char* key, const auto& value) {
+        settings.push_back(fmt::format("{}={}", key, value));
+    };
+    set("hand.grip", hand_names[1 + draws.below(hand_names.size() - 1)]);
+    set("device.friction_N", draws.below(3) == 0 ? 0.0 : draws.between(0, 0.5));
+    set("device.inertia_kg", draws.scale(0.03, 0.15));
+    set("device.viscosity_N_s_per_m", draws.between(0.05, 0.5));
+    set("device.servo_delay_ticks", draws.below(2));
+    set("run.period_ms", std::lround(draws.scale(1, 100)));
+    return settings;
+}
 
 bool ScenarioResult::is_calm() const noexcept {
     return generated_J <= most_generated_J && ripple_N < most_ripple_N && !went_through &&

@@ -1,6 +1,8 @@
 // palpa scenarios: random hands, devices, periods and speeds on a scene of one axis. None may
 // generate energy, end in a limit cycle or go through.
 #pragma once
+#include "core/draws.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -17,6 +19,9 @@ struct ScenarioOptions {
     std::uint64_t seed = 1;
     bool json = false;
 };
+
+// A hand on a device and a period, as "key=value".
+std::vector<std::string> draw_hand(Draws& draws);
 
 struct ScenarioResult {
     std::vector<std::string> settings;  // of the scenario, for palpa run --set

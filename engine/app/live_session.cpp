@@ -8,6 +8,7 @@
 #include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <utility>
@@ -58,6 +59,14 @@ TouchModel without_force(TouchModel touch) noexcept {
     return touch;
 }
 
+// Where forces must be exact, real time is what limits the work for it, unless the scene does.
+SceneDescription limited_by_period(SceneDescription scene) {
+    constexpr double share = 0.8;
+    if (scene.coupling.feel_within_pN && !scene.statics.budget_us)
+        scene.statics.budget_us = share * 1e3 * scene.period_ms;
+    return scene;
+}
+
 }  // namespace
 
 LiveSession::LiveSession(const SceneDescription& scene, const ViewSettings& view, Device& device,
@@ -65,7 +74,7 @@ LiveSession::LiveSession(const SceneDescription& scene, const ViewSettings& view
     : scene_(scene),
       device_(device),
       orders_(orders),
-      state_{load_simulation(scene), view, {}, {}, false, {}, {}} {
+      state_{load_simulation(limited_by_period(scene)), view, {}, {}, false, {}, {}} {
     order_.granted_ticks = ticks_of(scene.period_ms);
     exchange_.touch.post(state_.simulation.touch);
     const ServoOrder order = build_order(state_);
@@ -140,6 +149,7 @@ void LiveSession::run_servo(ServoOrder order) {
                               orders_ ? reading.time_s : real_s.count());
             ticks_.push(last);
         }
+        device_.show(last.touch);
         device_.write(last.sent_newton);
         next += servo_tick;
         const Clock::time_point now = Clock::now();
@@ -228,7 +238,7 @@ void LiveSession::obey(State& state, const Command& command) {
 
 void LiveSession::reset(State& state) {
     try {
-        state.simulation = load_simulation(scene_);
+        state.simulation = load_simulation(limited_by_period(scene_));
     } catch (const LoadError& error) {  // the files changed meanwhile: what runs, runs on
         state.readout.problem = error.what();
         return;
@@ -246,7 +256,14 @@ LiveSession::ServoOrder LiveSession::build_order(const State& state) {
     ServoOrder order{
         build_servo_settings(scene_, state.simulation, device_.spec().half_workspace_m)};
     order.is_paused = orders_ && state.readout.paused;
-    order.settings.safety.starts_engaged = false;
+    SafetySettings& safety = order.settings.safety;
+    safety.starts_engaged = false;
+    // What the device says of itself; nothing beside what a scene allows.
+    const DeviceSpec& device = device_.spec();
+    if (device.peak_force_newton > 0) {
+        safety.clamp_newton = std::min(safety.clamp_newton, device.peak_force_newton);
+    }
+    if (device.continuous_force_newton > 0) safety.hot_newton = device.continuous_force_newton;
     if (order.settings.guarded) order.settings.guarded->revision = revision_++;
     return order;
 }
@@ -264,6 +281,12 @@ void LiveSession::post_frame_if_wanted(const State& state) {
     LiveFrame frame{build_frame(state.simulation, state.simulation.touch.model, state.view),
                     grabbed, grabbed_place(state.simulation), state.readout};
     frame.readout.touch = state.simulation.touch.model;
+    if (const auto& flexible = state.simulation.flexible; flexible && flexible->adaptive) {
+        if (const auto& exactness = flexible->adaptive->exactness) {
+            frame.readout.error_pN = exactness->error();
+            frame.readout.effort = exactness->effort();
+        }
+    }
     frames_.post(frame);
 }
 

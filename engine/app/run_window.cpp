@@ -11,6 +11,7 @@
 #include "session/run_headless.h"
 #include "ui/backend.h"
 #include "ui/overlay.h"
+#include "ui/study_panel.h"
 #include "view/orbit_camera.h"
 
 #include <fmt/format.h>
@@ -92,7 +93,7 @@ public:
           session_(scene, options.view, device, options.orders),
           overlay_(scene, options.view),
           statistics_(servo_tick_s),
-          device_name_(device.spec().name) {
+          device_(device) {
         std::error_code error;
         if (!std::filesystem::is_directory(options.screenshots, error)) {
             throw LoadError({options.screenshots.string()},
@@ -116,6 +117,7 @@ private:
     void move_camera(const Input& input);
     void move_hand(const Input& input);
     void perform(Action action);
+    void press_study_key();
     void look_at_pixel(double x, double y);
     void draw();
     void save(const WindowShot& shot);
@@ -130,7 +132,7 @@ private:
     std::unique_ptr<Graphics> graphics_;
     Overlay overlay_;
     Statistics statistics_;
-    std::string device_name_;
+    const Device& device_;
 
     LiveFrame frame_;
     bool has_frame_ = false, framed_ = false;
@@ -174,6 +176,7 @@ WindowReport Sandbox::run() {
     if (!validation_messages_.empty()) throw GpuError("validation: " + validation_messages_[0]);
     WindowReport report{statistics_.summary(), overlay_.settings(),        frame_ms_.size(), 0,
                         scale_.value(),        overlay_.lesson().current()};
+    report.summary.device = device_.spec().name;
     report.summary.steps = frame_.readout.steps;
     warn_of_outcome(report.summary);
     report.summary.overruns = session_.servo_health().overruns;
@@ -216,7 +219,8 @@ void Sandbox::frame() {
 float Sandbox::free_aspect() const {
     const auto width = static_cast<float>(window_.size().width);
     const auto height = static_cast<float>(window_.size().height);
-    return (width - 2 * overlay_.covered_pixels(width)) / std::max(height, 1.0F);
+    const float covered = options_.study ? 0 : overlay_.covered_pixels(width);
+    return (width - 2 * covered) / std::max(height, 1.0F);
 }
 
 void Sandbox::look_at_all() { frame_all(camera_, frame_.picture, free_aspect()); }
@@ -237,6 +241,7 @@ void Sandbox::take_ticks() {
         if (frame_.readout.paused) continue;
         statistics_.add(tick);
         overlay_.add_tick(tick);
+        if (options_.study) options_.study->add(tick);
     }
 }
 
@@ -245,6 +250,7 @@ void Sandbox::take_input() {
     must_rebuild_ = must_rebuild_ || input.resized;
     if (!graphics_->ui.wants_keys()) {
         for (const Key key : input.pressed) {
+            if (options_.study && key == Key::Enter) press_study_key();
             if (const std::optional<Action> action = find_action(key, input.control)) {
                 perform(*action);
             }
@@ -288,7 +294,29 @@ void Sandbox::move_hand(const Input& input) {
     session_.move_hand(hand_m_);
 }
 
+// Of what a study leaves to a person: where to look, and the way out.
+bool is_of_picture(Action action) {
+    return action == Action::Focus || action == Action::FrameAll || action == Action::Screenshot ||
+           action == Action::RestartGraphics || action == Action::Quit;
+}
+
+void Sandbox::press_study_key() {
+    StudyCourse& study = *options_.study;
+    if (study.stage() == StudyCourse::Stage::Done) quitting_ = true;
+    const std::size_t before = study.results().size();
+    if (study.press_key()) {
+        LiveSettings settings = overlay_.settings();
+        settings.coupling.mode = study.mode();
+        session_.send(settings);
+        // The mouse's hand stays where the handle is.
+        if (has_mouse_hand()) session_.move_hand(hand_m_ = handle_m_);
+        session_.send(Reset{});
+    }
+    if (study.results().size() > before && options_.on_trial) options_.on_trial();
+}
+
 void Sandbox::perform(Action action) {
+    if (options_.study && !is_of_picture(action)) return;
     if (action == Action::Reset && has_mouse_hand()) session_.move_hand(hand_m_ = handle_m_);
     std::vector<Command> commands;
     if (overlay_.perform(action, commands)) {
@@ -344,13 +372,15 @@ void Sandbox::draw() {
     g.ui.begin();
     std::vector<Command> commands;
     std::vector<Action> actions;
-    if (has_frame_) {
+    if (has_frame_ && options_.study) {
+        draw_study_panel(*options_.study);
+    } else if (has_frame_) {
         const bool is_news = Clock::now() < notice_until_;
-        overlay_.draw(
-            frame_.readout,
-            {session_.servo_health(), device_name_, g.device.name(), last_frame_ms_, scale_.value(),
-             has_mouse_hand(), holding_, is_news ? notice_ : std::string()},
-            commands, actions);
+        overlay_.draw(frame_.readout,
+                      {session_.servo_health(), device_.spec().name, g.device.name(),
+                       last_frame_ms_, scale_.value(), has_mouse_hand(), holding_,
+                       is_news ? notice_ : std::string(device_.status())},
+                      commands, actions);
     }
     g.ui.end();
     for (const Command& command : commands) session_.send(command);

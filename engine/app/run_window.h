@@ -5,9 +5,11 @@
 #include "scene/description.h"
 #include "session/commands.h"
 #include "session/statistics.h"
+#include "session/study_course.h"
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 
 namespace palpa {
@@ -22,6 +24,8 @@ struct WindowOptions {
     double mouse_reach_m = 0;      // how far ahead of the handle a mouse's hand goes; 0: no mouse
     double most_frames_per_s = 60;
     std::uint64_t lose_device_at = 0;  // frame at which the graphics device is given up, for tests
+    StudyCourse* study = nullptr;      // the window is for this alone: no overlays, one key
+    std::function<void()> on_trial{};  // after each
     bool validation = false;  // of all that Vulkan is told; what it finds is thrown at the end
 };
 

@@ -176,12 +176,14 @@ HWY_INLINE void add_pairs(const Point& point, const FrozenPoints& others, std::s
 // Sixteens of points between two sums in double.
 constexpr std::size_t most_sixteens = 64 * lane_count / 16 > 0 ? 64 * lane_count / 16 : 1;
 
-FrozenJobSum sum_field(const FrozenField& field, std::span<const Vec3> group, const Vec3& origin) {
+// `motion`: from where the group was to where it is as seen from the field's origin.
+FrozenJobSum sum_field(const FrozenField& field, std::span<const Vec3> group,
+                       const RigidMotion& motion) {
     Total total;
     Nearest nearest;
     for (std::size_t i = 0; i < group.size(); ++i) {
         const FrozenField::GroupPoint& own = field.group[i];
-        const Vec3 place = group[i] - origin;
+        const Vec3 place = motion * group[i];
         const Vec3 high(rounded_to_grid(place.x()), rounded_to_grid(place.y()),
                         rounded_to_grid(place.z()));
         const Vec3 low = place - high;
@@ -325,9 +327,10 @@ void fill_group(FrozenField& field) {
     }
 }
 
-bool is_near(std::span<const Vec3> points, const Vec3& origin) noexcept {
+// Of the origin, seen from which the points are where `motion` brings them.
+bool is_near(std::span<const Vec3> points, const RigidMotion& motion) noexcept {
     return std::all_of(points.begin(), points.end(), [&](const Vec3& place) {
-        return (place - origin).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <
+        return (motion * place).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <
                farthest_single_precision;
     });
 }
@@ -355,10 +358,10 @@ double find_clearance(const FrozenField& field, std::size_t i, const Vec3& place
 
 // Point by point by the twin.
 FrozenSum evaluate_in_double(const FrozenField& field, std::span<const Vec3> group,
-                             const Vec3& shift) noexcept {
+                             const RigidMotion& motion) noexcept {
     FrozenSum sum;
     for (std::size_t i = 0; i < group.size(); ++i) {
-        const Vec3 place = group[i] + shift;
+        const Vec3 place = motion * group[i];
         const FieldSum one =
             evaluate_pair_field(view(field.group_numbers, std::span(&place, 1), i, 1),
                                 view(field.environment, field.environment.positions, 0,
@@ -390,18 +393,19 @@ FrozenField build_frozen_field(const FieldPoints& group, const FieldPoints& envi
 }
 
 FrozenSum evaluate_frozen_field(const FrozenField& field, std::span<const Vec3> group,
-                                const Vec3& shift) noexcept {
+                                const RigidMotion& motion) noexcept {
     PALPA_ASSERT(group.size() == field.group.size());
-    const Vec3 origin = field.origin - shift;  // as the group where it was sees it
-    if (is_near(group, origin) && is_near(field.environment.positions, field.origin)) {
-        FrozenJobSum result = HWY_DYNAMIC_DISPATCH(sum_field)(field, group, origin);
+    const RigidMotion from_origin{Mat3::Identity(), -field.origin};
+    const RigidMotion seen = from_origin * motion;
+    if (is_near(group, seen) && is_near(field.environment.positions, from_origin)) {
+        FrozenJobSum result = HWY_DYNAMIC_DISPATCH(sum_field)(field, group, seen);
         constexpr double nearest = nearest_single_precision;
         if (result.nearest2 > nearest * nearest) {
             result.sum.torque += field.origin.cross(result.sum.force);
             return result.sum;
         }
     }
-    return evaluate_in_double(field, group, shift);
+    return evaluate_in_double(field, group, motion);
 }
 
 }  // namespace palpa

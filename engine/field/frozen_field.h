@@ -3,6 +3,7 @@
 // field/pair_field.h.
 #pragma once
 #include "field/pair_field.h"
+#include "math/rigid_motion.h"
 #include "math/vec.h"
 
 #include <array>
@@ -75,9 +76,9 @@ struct FrozenSum {
     Vec3 torque_about(const Vec3& place) const noexcept { return torque - place.cross(force); }
 };
 
-// As `evaluate_pair_field`, of the group moved by `shift`. Pairs are in single precision, sums over
-// more than some hundreds in double; with two points nearer than `nearest_single_precision`, or one
-// further than `farthest_single_precision` from the middle of the environment
+// As `evaluate_pair_field`, of the group moved by `motion`. Pairs are in single precision, sums
+// over more than some hundreds in double; with two points nearer than `nearest_single_precision`,
+// or one further than `farthest_single_precision` from the middle of the environment
 // (field/pair_kernel.h), all is the twin's. Repeats to the bit on the same kind of processor.
 // Without allocation or lock.
 //
@@ -85,6 +86,6 @@ struct FrozenSum {
 // least) and stiffness within 2e-6 of the sum of all pairs' magnitudes; the clearance within 1e-5
 // Å, the largest force within 2e-6 of the sum of the point's pairs.
 FrozenSum evaluate_frozen_field(const FrozenField& field, std::span<const Vec3> group,
-                                const Vec3& shift = Vec3::Zero()) noexcept;
+                                const RigidMotion& motion = {}) noexcept;
 
 }  // namespace palpa

@@ -4,8 +4,11 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace palpa {
+
+struct TouchModel;
 
 // The servo ticks this often, on every device so far.
 inline constexpr double servo_rate_hz = 1000;
@@ -14,10 +17,18 @@ inline constexpr double servo_tick_s = 1 / servo_rate_hz;
 // Limits as the maker or the driver states them. SI; axes: x right, y up, z towards the user.
 struct DeviceSpec {
     std::string name;
-    double rate_hz = servo_rate_hz;  // servo ticks a second
-    double peak_force_newton = 0;    // what the motors give at most
-    double viscosity_N_s_per_m = 0;  // what is known of the device's own damping; 0 if nothing
+    double rate_hz = servo_rate_hz;      // servo ticks a second
+    double peak_force_newton = 0;        // what the motors give at most
+    double continuous_force_newton = 0;  // what they give for ever; 0 if not known
+    double viscosity_N_s_per_m = 0;      // what is known of the device's own damping; 0 if nothing
     Vec3 half_workspace_m = Vec3::Zero();  // the box in which the handle can move, from its centre
+};
+
+// What a device that still answers says of its motors.
+enum class DeviceTrouble : std::uint8_t {
+    None,
+    WarmMotors,   // it has to rest without force
+    ForceRefused  // one of its own limits was passed, and it let go
 };
 
 // One look at the device. `valid` is false if the device had nothing new or nothing sane to say.
@@ -26,6 +37,8 @@ struct DeviceReading {
     Vec3 position_m = Vec3::Zero();  // of the handle, from the centre of the workspace
     std::uint32_t buttons = 0;       // one bit a button, see Button
     bool valid = false;
+    Quat orientation = Quat::Identity();  // of the handle, where the device senses it
+    DeviceTrouble trouble = DeviceTrouble::None;
 };
 
 enum class Button : std::uint32_t { Clutch = 1 };
@@ -48,6 +61,13 @@ public:
     // The force (N) on the hand, held until the next write: one write a tick. An emulated device
     // lives on the servo's clock and moves on by one tick here.
     virtual void write(const Vec3& force_newton) noexcept = 0;
+
+    // What the person at it sees of the molecule: in every tick, before the force is written.
+    virtual void show(const TouchModel& /*touch*/) noexcept {}
+
+    // What the person has to know or do for the device to work, one sentence, which is never freed;
+    // empty where all is well. From any thread.
+    virtual std::string_view status() const noexcept { return {}; }
 };
 
 }  // namespace palpa

@@ -13,9 +13,10 @@ namespace palpa {
 struct HandPose {
     double time_s = 0;
     Vec3 travel_m = Vec3::Zero();  // handle travel so far, but for what was travelled clutched
-    // Where guarded coupling has put the molecule: its reference atom, from its counterpart.
-    // Without it the simulation moves the molecule by the travel.
-    std::optional<Vec3> place_angstrom = {};
+    Quat turn = Quat::Identity();  // and handle turn
+    // Where guarded coupling has put the molecule. Without it the simulation moves the molecule by
+    // travel and turn.
+    std::optional<MoleculePose> molecule = {};
 };
 
 // The simulation's answer. One simulation step old when it is felt: the paper's z^-1.

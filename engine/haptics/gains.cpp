@@ -103,44 +103,61 @@ double PrintedForceLaw::inverse(double F_h) const noexcept {
 PerceptualForceLaw::PerceptualForceLaw(const Parameters& p) noexcept
     : F_lo_(p.F_lo),
       F_hi_(p.F_hi),
-      exponent_(std::log(F_h_hi / F_h_lo) / std::log(p.F_hi / p.F_lo)),
-      slope_at_hi_(exponent_ * F_h_hi / p.F_hi) {}
+      F_h_lo_(p.F_h_lo),
+      F_h_hi_(p.F_h_hi),
+      F_h_limit_(p.F_h_limit),
+      exponent_(std::log(p.F_h_hi / p.F_h_lo) / std::log(p.F_hi / p.F_lo)),
+      slope_at_hi_(exponent_ * p.F_h_hi / p.F_hi) {}
+
+PerceptualForceLaw PerceptualForceLaw::for_range(double F_lo, double F_hi) noexcept {
+    // Rounding is not to take the weakest below what must be felt of it.
+    constexpr double rounding = 1e-14;
+    const double ratio = F_hi / F_lo;
+    const double power = std::min(1.0, std::log(most_felt / least_felt) / std::log(ratio));
+    const double joint_at = F_lo / 2;
+    return PerceptualForceLaw(
+        {.F_lo = joint_at,
+         .F_hi = F_hi,
+         .F_h_lo = most_felt * std::pow(joint_at / F_hi, power) * (1 + rounding),
+         .F_h_hi = most_felt,
+         .F_h_limit = 3});
+}
 
 double PerceptualForceLaw::value(double F_m) const noexcept {
     const double F = std::abs(F_m);
     if (F >= F_hi_) {
-        const double room = F_h_limit - F_h_hi;
+        const double room = F_h_limit_ - F_h_hi_;
         const double above = room - room / (1 + slope_at_hi_ * (F - F_hi_) / room);
-        return std::copysign(F_h_hi + above, F_m);
+        return std::copysign(F_h_hi_ + above, F_m);
     }
     const double x = std::log(F / F_lo_);
-    if (!(x > -joint)) return F_h_lo / F_lo_ * F_m;
+    if (!(x > -joint)) return F_h_lo_ / F_lo_ * F_m;
     const double into = x + joint;
     const double y = x < joint ? x - (1 - exponent_) / (4 * joint) * into * into : exponent_ * x;
-    return std::copysign(F_h_lo * std::exp(y), F_m);
+    return std::copysign(F_h_lo_ * std::exp(y), F_m);
 }
 
 double PerceptualForceLaw::slope(double F_m) const noexcept {
     const double F = std::abs(F_m);
     if (F >= F_hi_) {
-        const double t = 1 + slope_at_hi_ * (F - F_hi_) / (F_h_limit - F_h_hi);
+        const double t = 1 + slope_at_hi_ * (F - F_hi_) / (F_h_limit_ - F_h_hi_);
         return slope_at_hi_ / (t * t);
     }
     const double x = std::log(F / F_lo_);
-    if (!(x > -joint)) return F_h_lo / F_lo_;
+    if (!(x > -joint)) return F_h_lo_ / F_lo_;
     const double exponent = x < joint ? 1 - (1 - exponent_) / (2 * joint) * (x + joint) : exponent_;
     return exponent * value(F) / F;
 }
 
 double PerceptualForceLaw::inverse(double F_h) const noexcept {
     const double magnitude = std::abs(F_h);
-    if (magnitude >= F_h_limit) return std::copysign(infinity, F_h);
-    if (magnitude >= F_h_hi) {
-        const double above = magnitude - F_h_hi, room = F_h_limit - F_h_hi;
-        return std::copysign(F_hi_ + above * room / (slope_at_hi_ * (F_h_limit - magnitude)), F_h);
+    if (magnitude >= F_h_limit_) return std::copysign(infinity, F_h);
+    if (magnitude >= F_h_hi_) {
+        const double above = magnitude - F_h_hi_, room = F_h_limit_ - F_h_hi_;
+        return std::copysign(F_hi_ + above * room / (slope_at_hi_ * (F_h_limit_ - magnitude)), F_h);
     }
-    const double y = std::log(magnitude / F_h_lo);
-    if (!(y > -joint)) return F_h * F_lo_ / F_h_lo;
+    const double y = std::log(magnitude / F_h_lo_);
+    if (!(y > -joint)) return F_h * F_lo_ / F_h_lo_;
     if (y >= exponent_ * joint) return std::copysign(F_lo_ * std::exp(y / exponent_), F_h);
     // The parabola: y + joint = z - c z², z = x + joint.
     const double c = (1 - exponent_) / (4 * joint), from_start = y + joint;
@@ -183,7 +200,10 @@ Mat3 force_jacobian(const ForceLaw& law, const Vec3& force_newton) noexcept {
 }
 
 double largest_felt(const ForceLaw& law, const Vec3& force_newton, const Mat3& stiffness) noexcept {
-    const Mat3 felt = force_jacobian(law, force_newton) * stiffness;
+    return largest_felt(force_jacobian(law, force_newton) * stiffness);
+}
+
+double largest_felt(const Mat3& felt) noexcept {
     if (!felt.allFinite()) return infinity;
     const Mat3 symmetric = 0.5 * (felt + felt.transpose());
     const Eigen::SelfAdjointEigenSolver<Mat3> solver(symmetric, Eigen::EigenvaluesOnly);

@@ -62,22 +62,29 @@ public:
     // By default what can be told from nothing is what eq. 3 calls near (F_off); a hand on eq. 2
     // hardly goes above 3 nN. Between, the attraction of two waters (0.32 nN) feels like 1.1 N.
     struct Parameters {
-        double F_lo = 20e-12;  // N
-        double F_hi = 3e-9;    // N, > 2 F_lo
+        double F_lo = 20e-12;    // N
+        double F_hi = 3e-9;      // N, > 2 F_lo
+        double F_h_lo = 0.3;     // N
+        double F_h_hi = 3.0;     // N, where the usual device is clamped
+        double F_h_limit = 3.3;  // N, > F_h_hi, what it is built for
     };
-    static constexpr double F_h_lo = 0.3;     // N
-    static constexpr double F_h_hi = 3.0;     // N, where the usual device is clamped
-    static constexpr double F_h_limit = 3.3;  // N, what it is built for
 
     explicit PerceptualForceLaw(const Parameters& parameters) noexcept;
+
+    // For forces that must be felt, 0 < F_lo < F_hi (N): at F_lo `least_felt` or more, at F_hi
+    // `most_felt`, above that less than 3 N. Its joint is wholly below F_lo. Where F_hi is less
+    // than 9 F_lo it would take a power above 1, so the law is linear there.
+    static PerceptualForceLaw for_range(double F_lo, double F_hi) noexcept;
+    static constexpr double least_felt = 0.3, most_felt = 2.7;  // N
 
     double value(double F_m) const noexcept;    // N
     double slope(double F_m) const noexcept;    // dF_h/dF_m
     double inverse(double F_h) const noexcept;  // N; ±infinity from ±F_h_limit on
 
 private:
-    double F_lo_, F_hi_;  // N
-    double exponent_;     // p
+    double F_lo_, F_hi_;                  // N
+    double F_h_lo_, F_h_hi_, F_h_limit_;  // N
+    double exponent_;                     // p
     double slope_at_hi_;
 };
 
@@ -99,6 +106,7 @@ Mat3 force_jacobian(const ForceLaw& law, const Vec3& force_newton) noexcept;
 // The stiffest that a hand feels a molecular stiffness (N/m) in any direction, times A_d: the
 // largest eigenvalue of the symmetric part of jacobian times stiffness, 0 where it is negative.
 // Infinite where force or stiffness are not finite: then the capped gain lets nothing move.
+double largest_felt(const Mat3& felt) noexcept;  // of that product
 double largest_felt(const ForceLaw& law, const Vec3& force_newton, const Mat3& stiffness) noexcept;
 
 // Eq. 3 of the paper as printed: A_d = A_dmin + β [atan((|F| - F_off) γ) - atan(-F_off γ)], handle

@@ -3,10 +3,12 @@
 #include "core/units.h"
 #include "haptics/device.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 namespace palpa {
 namespace {
@@ -70,32 +72,126 @@ Vec3 find_extra_travel(const GuardedSettings& settings, const Vec3& handle_m, co
                                servo_tick_s);
 }
 
-// Goes to a place if no atom is pushed too hard there, or less than before.
-bool try_place(const GuardedSettings& settings, const Touch& touch, const Vec3& place,
-               GuardedState& state) noexcept {
-    const LocalForce there = evaluate_local(touch.model, touch.field, place);
+// Goes by so much (Å) and turns if no atom is pushed too hard there, or less than before.
+bool try_move(const GuardedSettings& settings, const Touch& touch, const Vec3& by, const Quat& turn,
+              GuardedState& state) noexcept {
+    const MoleculePose pose{state.molecule.place_angstrom + by,
+                            (turn * state.molecule.orientation).normalized()};
+    const LocalForce there = evaluate_local(touch.model, touch.field, pose);
     const bool is_allowed = there.largest_newton <= settings.stop_newton ||
                             there.largest_newton < state.at_place.largest_newton;
     if (!is_allowed) return false;
-    state.place_angstrom = place;
+    state.molecule = pose;
     state.at_place = there;
     return true;
 }
 
-// Handle travel of which the molecule follows what the stop allows; returns that. Where it may not
-// go on, it may slide: across the force.
-Vec3 follow(const GuardedSettings& settings, const Touch& touch, const Vec3& travel_m,
-            double angstrom_per_m, GuardedState& state) noexcept {
-    const Vec3 from = state.place_angstrom;
-    if (travel_m.isZero()) return travel_m;
-    if (try_place(settings, touch, from + travel_m * angstrom_per_m, state)) return travel_m;
+// What of a way (Å) and a turn the molecule follows, as the stop allows; returns that way. Where it
+// may not go on, it may slide: across the force. Where it may not turn, it goes without.
+Vec3 follow(const GuardedSettings& settings, const Touch& touch, const Vec3& way, const Quat& turn,
+            GuardedState& state) noexcept {
+    const Quat none = Quat::Identity();
+    const bool turns = turn.vec() != Vec3::Zero();
+    if (way.isZero() && !turns) return way;
+    if (try_move(settings, touch, way, turn, state) || way.isZero()) return way;
+    if (turns && try_move(settings, touch, way, none, state)) return way;
     const Vec3 force = state.at_place.force_newton;
-    const double along = travel_m.dot(force), norm2 = force.squaredNorm();
+    const double along = way.dot(force), norm2 = force.squaredNorm();
     if (along >= 0 || norm2 == 0) return Vec3::Zero();
-    const Vec3 across = travel_m - along / norm2 * force;
-    if (across.squaredNorm() < 1e-6 * travel_m.squaredNorm()) return Vec3::Zero();
-    return try_place(settings, touch, from + across * angstrom_per_m, state) ? across
-                                                                             : Vec3(Vec3::Zero());
+    const Vec3 across = way - along / norm2 * force;
+    if (across.squaredNorm() < 1e-6 * way.squaredNorm()) return Vec3::Zero();
+    return try_move(settings, touch, across, none, state) ? across : Vec3(Vec3::Zero());
+}
+
+// `felt`: Jacobian times stiffness, N/m times A_d.
+GuardedGain tensor_gain(double law, const Mat3& felt, double cap_N_per_m) noexcept {
+    const Eigen::SelfAdjointEigenSolver<Mat3> solver(0.5 * (felt + felt.transpose()));
+    const Mat3& axes = solver.eigenvectors();
+    Vec3 A_d = (solver.eigenvalues() / cap_N_per_m).cwiseMax(law);
+    const Mat3 inverse = axes * A_d.cwiseInverse().asDiagonal() * axes.transpose();
+    // What is not symmetric of it adds to the stiffness once the axes differ.
+    const double raised = std::max(1.0, largest_felt(felt * inverse) / cap_N_per_m);
+    A_d *= raised;
+    return {A_d.maxCoeff(),
+            largest_felt(felt * inverse) / raised,
+            axes * A_d.asDiagonal() * axes.transpose(),
+            inverse / raised,
+            felt * inverse / raised,
+            A_d.maxCoeff() / law};
+}
+
+// What the molecule did of what the handle asked.
+struct Followed {
+    double share = 1;             // that the limits of a step left of it
+    Vec3 moved_m = Vec3::Zero();  // handle travel of which it went the way
+};
+
+// With one gain, no atom further than `most` (Å), and what it owes (Å) besides. Takes what it goes
+// from the allowance.
+Followed follow_handle(const GuardedSettings& settings, const Touch& touch, const GuardedGain& gain,
+                       const HandleStep& asked, const Vec3& owed, double most,
+                       GuardedState& state) noexcept {
+    const Vec3 way = units::angstrom_per_metre * (gain.inverse * asked.moved_m) + owed;
+    const Vec3 turn = rotation_vector_of(asked.turned);
+    const double radius = touch.field.radius;
+    const double length = way.norm() + turn.norm() * radius;
+    Followed done;
+    if (length > most) done.share = most / length;
+    const Quat before = state.molecule.orientation;
+    const Vec3 tried = done.share * way;
+    const Vec3 gone = follow(settings, touch, tried, turn_of(done.share * turn), state);
+    done.moved_m = gone == tried ? Vec3(done.share * asked.moved_m)
+                                 : Vec3(units::metre_per_angstrom * (gain.tensor * gone));
+    const double turned = state.molecule.orientation.angularDistance(before);
+    state.allowance_angstrom = std::max(0.0, most - gone.norm() - turned * radius);
+    return done;
+}
+
+// What the last step went too far or not far enough (Å), now that it is known what held at its end:
+// a way is the mean of both ends', or it would drift.
+Vec3 find_owed(const GuardedGain& gain, const GuardedState& state) noexcept {
+    if (state.stepped_m.isZero()) return Vec3::Zero();
+    const Mat3 mean = 0.5 * (state.began_with + gain.inverse);
+    return units::angstrom_per_metre * ((mean - state.went_with) * state.stepped_m);
+}
+
+// The gain of a step that has led to where another one holds: of where it is stiffer that of there,
+// since no more than the cap may be felt; else of halfway.
+std::optional<GuardedGain> find_better_gain(const GuardedSettings& settings,
+                                            const GuardedGain& gain,
+                                            const GuardedState& state) noexcept {
+    constexpr double much = 1.05;
+    GuardedGain there = guarded_gain(settings, state.at_place.force_newton + state.jump_newton,
+                                     state.at_place.stiffness_N_per_m);
+    if (there.A_d > much * gain.A_d) return there;
+    if (there.A_d * much > gain.A_d || !there.tensor.allFinite()) return std::nullopt;
+    const double least = gain.felt_N_per_m / (most_of_cap * settings.cap_N_per_m);
+    const double share = std::max(least, 2 * there.A_d / (there.A_d + gain.A_d));
+    GuardedGain halfway = gain;
+    halfway.A_d *= share;
+    halfway.raised *= share;
+    halfway.felt_N_per_m /= share;
+    halfway.tensor *= share;
+    halfway.inverse /= share;
+    halfway.felt /= share;
+    return halfway;
+}
+
+// Clutched, a hand has no hold of the molecule and feels none: what pulled at the handle while it
+// is carried back would be work that nobody did. Forces go and come quickly enough not to be
+// missed, and what the stop has kept is gone with them.
+void update_hold(bool is_clutched, GuardedState& state) noexcept {
+    constexpr double lets_go_s = 0.08, takes_hold_s = 0.2;
+    const double change = servo_tick_s / (is_clutched ? -lets_go_s : takes_hold_s);
+    state.hold = std::clamp(state.hold + change, 0.0, 1.0);
+    if (state.hold == 0) state.kept_m.setZero();
+}
+
+// A third of what shakes a handle by itself.
+double most_damping(double inertia_kg, int delay_ticks) noexcept {
+    constexpr double third_of_critical = std::numbers::pi / 6;
+    const double late_s = velocity_filter_s + (1.5 + delay_ticks) * servo_tick_s;
+    return third_of_critical * inertia_kg / late_s;
 }
 
 }  // namespace
@@ -109,18 +205,26 @@ double guarded_cap(double viscosity_N_s_per_m, double damping_N_s_per_m, int del
 }
 
 double guarded_damping(double damping_N_s_per_m, double inertia_kg, int delay_ticks) noexcept {
-    constexpr double third_of_critical = std::numbers::pi / 6;
-    const double late_s = velocity_filter_s + (1.5 + delay_ticks) * servo_tick_s;
-    return std::min(damping_N_s_per_m, third_of_critical * inertia_kg / late_s);
+    return std::min(damping_N_s_per_m, most_damping(inertia_kg, delay_ticks));
+}
+
+double guarded_lateness(double cap_N_per_m, double damping_N_s_per_m, double inertia_kg,
+                        int delay_ticks) noexcept {
+    const double room = std::max(0.0, most_damping(inertia_kg, delay_ticks) - damping_N_s_per_m);
+    return std::min((0.5 + delay_ticks) * servo_tick_s, room / cap_N_per_m);
 }
 
 GuardedGain guarded_gain(const GuardedSettings& settings, const Vec3& force_newton,
                          const Mat3& stiffness) noexcept {
     const double law = displacement_gain(settings.displacement_law, force_newton.norm(),
                                          std::abs(extreme_stiffness(stiffness)));
-    const double felt = largest_felt(settings.force_law, force_newton, stiffness);
-    const double A_d = capped_gain(law, felt, settings.cap_N_per_m);
-    return {A_d, felt / A_d};
+    const Mat3 felt = force_jacobian(settings.force_law, force_newton) * stiffness;
+    if (settings.gain_shape == GainShape::Tensor && felt.allFinite())
+        return tensor_gain(law, felt, settings.cap_N_per_m);
+    const double largest = largest_felt(felt);
+    const double A_d = capped_gain(law, largest, settings.cap_N_per_m);
+    return {A_d,        largest / A_d, A_d * Mat3::Identity(), 1 / A_d * Mat3::Identity(),
+            felt / A_d, A_d / law};
 }
 
 void take_touch(const Touch& touch, GuardedState& state) noexcept {
@@ -128,13 +232,14 @@ void take_touch(const Touch& touch, GuardedState& state) noexcept {
     const Vec3 felt = state.at_place.force_newton + state.jump_newton;
     const bool goes_on = state.is_placed && state.start == model.start && !model.is_still;
     if (!goes_on) {
-        state.place_angstrom = model.molecule_angstrom;
+        state.molecule = model.molecule;
         state.kept_m.setZero();
+        state.stepped_m.setZero();
         state.law_newton.setZero();
         state.law_jump_newton.setZero();
         state.wanted_m = state.allowed_m = state.debt_J = 0;
     }
-    state.at_place = evaluate_local(model, touch.field, state.place_angstrom);
+    state.at_place = evaluate_local(model, touch.field, state.molecule);
     state.jump_newton.setZero();
     if (goes_on) state.jump_newton = felt - state.at_place.force_newton;
     state.interval_s = goes_on ? state.since_arrival_s : model.period_s;
@@ -144,7 +249,8 @@ void take_touch(const Touch& touch, GuardedState& state) noexcept {
 }
 
 GuardedTick step_guarded(const GuardedSettings& settings, const Touch& touch, const Vec3& handle_m,
-                         const Vec3& moved_m, bool is_clutched, GuardedState& state) noexcept {
+                         const HandleStep& handle, bool is_clutched, GuardedState& state) noexcept {
+    const Vec3& moved_m = handle.moved_m;
     GuardedTick tick;
     const TouchModel& model = touch.model;
     const double keep = velocity_filter_s / (velocity_filter_s + servo_tick_s);
@@ -153,32 +259,48 @@ GuardedTick step_guarded(const GuardedSettings& settings, const Touch& touch, co
 
     const Vec3 before = state.at_place.force_newton + state.jump_newton;
     const Mat3& stiffness = state.at_place.stiffness_N_per_m;
-    const auto [A_d, felt] = guarded_gain(settings, before, stiffness);
-    tick.displacement_gain = A_d;
-    tick.felt_N_per_m = felt;
-
-    const double angstrom_per_m = units::angstrom_per_metre / A_d;
+    GuardedGain gain = guarded_gain(settings, before, stiffness);
     Vec3 own = Vec3::Zero(), extra = Vec3::Zero();
     if (!is_clutched) {
         extra = model.projector * find_extra_travel(settings, handle_m, moved_m, state);
         own = model.projector * moved_m + extra;
     }
     const Vec3 wanted = own + state.kept_m;
-    const double length = wanted.norm() * angstrom_per_m, most = update_allowance(touch, state);
-    const double share = length > most ? most / length : 1;
-    const Vec3 followed = follow(settings, touch, share * wanted, angstrom_per_m, state);
-    state.allowance_angstrom =
-        std::max(0.0, state.allowance_angstrom - followed.norm() * angstrom_per_m);
+    const bool turns = model.turns_with_handle && !is_clutched;
+    const HandleStep asked{wanted, turns ? handle.turned : Quat::Identity()};
+    const double most = update_allowance(touch, state);
+    const Vec3 owed = find_owed(gain, state);
+    const Mat3 began_with = gain.inverse;
+    const MoleculePose from = state.molecule;
+    const LocalForce at_from = state.at_place;
+    Followed done = follow_handle(settings, touch, gain, asked, owed, most, state);
+    if (const std::optional<GuardedGain> better = find_better_gain(settings, gain, state)) {
+        state.molecule = from;
+        state.at_place = at_from;
+        gain = *better;
+        done = follow_handle(settings, touch, gain, asked, owed, most, state);
+    }
+    const auto& [share, followed] = done;
+    tick.displacement_gain = gain.A_d;
+    tick.raised = gain.raised;
+    tick.felt_N_per_m = gain.felt_N_per_m;
+    tick.molecule_per_handle = gain.inverse;
     // What the stop held back is kept; what the limits cut off is not, but for what was kept.
     const Vec3 cut = (1 - share) * wanted;
     const double kept_norm = state.kept_m.norm(), cut_norm = cut.norm();
     const Vec3 kept_cut = cut_norm > kept_norm ? Vec3(cut * (kept_norm / cut_norm)) : cut;
     tick.dropped_m = cut - kept_cut;
     state.kept_m = share * wanted - followed + kept_cut;
+    const bool is_whole = followed == wanted;
+    state.stepped_m = is_whole ? wanted : Vec3(Vec3::Zero());
+    state.began_with = began_with;
+    state.went_with = gain.inverse;
 
     state.jump_newton *= std::exp(-4 * servo_tick_s / std::max(state.interval_s, servo_tick_s));
     tick.force_newton = state.at_place.force_newton + state.jump_newton;
-    const Vec3 law = hand_force(settings.force_law, tick.force_newton);
+    // Foretold for where the handle is when it acts; else what is late by t gives K t v² to a hand.
+    Vec3 law = hand_force(settings.force_law, tick.force_newton);
+    if (gain.felt.allFinite()) law -= settings.late_s * (gain.felt * state.handle_m_per_s);
     if (settings.revision != state.revision) {
         const Vec3 jump = state.law_newton - law;
         if (jump.allFinite()) state.law_jump_newton += jump;
@@ -189,9 +311,11 @@ GuardedTick step_guarded(const GuardedSettings& settings, const Touch& touch, co
     const double remember = share_filter_s / (share_filter_s + servo_tick_s);
     state.wanted_m = remember * state.wanted_m + wanted.norm();
     state.allowed_m = remember * state.allowed_m + share * wanted.norm();
-    tick.hand_newton = driven_share(state) * state.law_newton -
-                       settings.cap_N_per_m * state.kept_m -
-                       settings.damping_N_s_per_m * state.handle_m_per_s;
+    tick.damping_newton = -settings.damping_N_s_per_m * state.handle_m_per_s;
+    update_hold(is_clutched, state);
+    tick.hand_newton = state.hold * (driven_share(state) * state.law_newton -
+                                     settings.cap_N_per_m * state.kept_m) +
+                       tick.damping_newton;
     update_debt(settings, tick.dropped_m - extra, state);
     state.since_arrival_s += servo_tick_s;
     return tick;

@@ -4,6 +4,13 @@
 #include <cstddef>
 
 namespace palpa {
+namespace {
+
+HandTarget target_at(const HandWaypoint& point) noexcept {
+    return {{point.x_m, point.y_m, point.z_m}, turn_of(point.turn_rad)};
+}
+
+}  // namespace
 
 std::optional<HandModel> hand_model(Grip grip) noexcept {
     switch (grip) {
@@ -39,15 +46,18 @@ double minimum_jerk(double s) noexcept {
     return s * s * s * (10 - 15 * s + 6 * s * s);
 }
 
-double find_target(const std::vector<HandWaypoint>& path, double time_s) noexcept {
+HandTarget find_target(const std::vector<HandWaypoint>& path, double time_s) noexcept {
     const auto next = std::find_if(path.begin(), path.end(), [time_s](const HandWaypoint& point) {
         return time_s < point.time_s;
     });
-    if (next == path.begin()) return path.empty() ? 0 : path.front().x_m;
-    if (next == path.end()) return path.back().x_m;
-    const HandWaypoint& from = *(next - 1);
-    const double s = (time_s - from.time_s) / (next->time_s - from.time_s);
-    return from.x_m + (next->x_m - from.x_m) * minimum_jerk(s);
+    if (path.empty()) return {};
+    if (next == path.begin()) return target_at(path.front());
+    if (next == path.end()) return target_at(path.back());
+    const HandTarget from = target_at(*(next - 1)), to = target_at(*next);
+    const double from_s = (next - 1)->time_s;
+    const double share = minimum_jerk((time_s - from_s) / (next->time_s - from_s));
+    return {from.place_m + share * (to.place_m - from.place_m),
+            from.orientation.slerp(share, to.orientation)};
 }
 
 }  // namespace palpa

@@ -41,30 +41,38 @@ double static_stiffness(const HandModel& hand) noexcept;
 // curve, before the first and after the last it rests.
 struct HandWaypoint {
     double time_s = 0;
-    double x_m = 0;
+    double x_m = 0, y_m = 0, z_m = 0;
+    Vec3 turn_rad = Vec3::Zero();  // rotation vector
 };
 
 // From 0 to 1 for s from 0 to 1, at rest at both ends: 10 s^3 - 15 s^4 + 6 s^5; flat outside.
 double minimum_jerk(double s) noexcept;
 
-double find_target(const std::vector<HandWaypoint>& path, double time_s) noexcept;
+struct HandTarget {
+    Vec3 place_m = Vec3::Zero();
+    Quat orientation = Quat::Identity();
+};
+
+HandTarget find_target(const std::vector<HandWaypoint>& path, double time_s) noexcept;
 
 // A hand turns back this far (m) before the stops of the workspace.
 inline constexpr double stop_margin_m = 0.005;
 
-// A hand's plan for a session: a path along x, when it lets go, and an impulse that knocks the
-// handle.
+// A hand's plan for a session: a path, when it lets go, and an impulse that knocks the handle.
 struct HandScript {
     std::vector<HandWaypoint> path;  // times ascending
+    // The path is the molecule's (m from its start): the hand brings it there by sight, and waits
+    // for it.
+    bool leads = false;
     std::optional<double> release_s = {};
     double kick_N_s = 0;  // along x, spread over `kick_duration_s`
     double kick_time_s = 1.0;
     double kick_duration_s = 0.01;
 };
 
-// What a window asks of the hand on an emulated device: the window posts, the device reads.
+// What a window or an operator asks of the hand on an emulated device: they post, the device reads.
 struct HandOrder {
-    Vec3 target_m = Vec3::Zero();  // where a live hand wants the handle
+    Vec3 target_m = Vec3::Zero();  // where the hand wants the handle
     std::uint32_t restarts = 0;    // another number: a script begins anew, a live hand rests
     bool frozen = false;           // time stands still for handle and hand
     std::uint32_t grants = 0;      // another number: `granted_ticks` go by although it is frozen

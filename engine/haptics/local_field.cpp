@@ -27,15 +27,21 @@ LocalForce evaluate_tangent(const TouchModel& model, const Vec3& moved) noexcept
 }  // namespace
 
 LocalForce evaluate_local(const TouchModel& model, const LocalField& field,
-                          const Vec3& place_angstrom) noexcept {
+                          const MoleculePose& pose) noexcept {
     const Mat3& free = model.projector;
-    const Vec3 moved = place_angstrom - model.molecule_angstrom;
+    const Vec3 moved = pose.place_angstrom - model.molecule.place_angstrom;
     if (!field.has_atoms) return evaluate_tangent(model, moved);
-    const FrozenSum sum = evaluate_frozen_field(field.frozen, field.group, moved);
+    RigidMotion motion{Mat3::Identity(), moved};
+    if (model.turns_with_handle) {
+        motion.rotation =
+            (pose.orientation * model.molecule.orientation.conjugate()).toRotationMatrix();
+        motion.translation += field.pivot - motion.rotation * field.pivot;
+    }
+    const FrozenSum sum = evaluate_frozen_field(field.frozen, field.group, motion);
     LocalForce result;
     result.force_newton =
         model.force_newton + model.confirmed * newton * (free * (sum.force - field.there.force));
-    const Vec3 torque = sum.torque_about(field.centre + moved);
+    const Vec3 torque = sum.torque_about(motion * field.centre);
     result.torque_newton_metre =
         model.torque_newton_metre +
         model.confirmed_torque * joule * (torque - field.there.torque_about(field.centre));

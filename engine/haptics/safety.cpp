@@ -108,6 +108,17 @@ void update_stale(const SafetySettings& settings, SafetyState& state, const Safe
     if (state.faded > 1 - rounding_s) state.faded = 1;
 }
 
+// What motors say that are warmer than the heat of our own forces tells.
+void update_warm(const SafetySettings& settings, SafetyState& state, DeviceTrouble trouble,
+                 double elapsed_s) noexcept {
+    const bool is_warm = trouble == DeviceTrouble::WarmMotors;
+    const double change = elapsed_s / settings.fade_s;
+    state.warmed = std::clamp(state.warmed + (is_warm ? change : -change), 0.0, 1.0);
+    if (state.warmed > 1 - rounding_s) state.warmed = 1;
+    const double hot = settings.hot_newton * settings.hot_newton;
+    if (is_warm) state.mean_square_newton2 = std::max(state.mean_square_newton2, hot);
+}
+
 // The share of the force that the end leaves.
 double update_ending(const SafetySettings& settings, SafetyState& state, bool is_ending,
                      double elapsed_s) noexcept {
@@ -216,6 +227,9 @@ std::string_view words(SafetyStage stage) noexcept {
         case SafetyStage::Stale:
             return "The simulation is too slow or stands still, so the force fades: wait, or let "
                    "fewer joints move.";
+        case SafetyStage::Warm:
+            return "The device says that its motors are too warm, so the force fades: let them "
+                   "rest until it returns.";
         case SafetyStage::TooFast:
             return "The handle was faster than the limit, so the force is off: move it slowly.";
         case SafetyStage::Late:
@@ -226,6 +240,9 @@ std::string_view words(SafetyStage stage) noexcept {
         case SafetyStage::Jump:
             return "The handle's position jumped, so the force is off: check the cable and "
                    "calibrate the device.";
+        case SafetyStage::Refused:
+            return "The device found the force too large or too sudden and let go: move the handle "
+                   "slowly, then it returns.";
         case SafetyStage::Unplugged:
             return "The device does not answer, so the force is off: check cable and power.";
         case SafetyStage::NotFinite:
@@ -242,6 +259,7 @@ SafetyResult guard_force(const SafetySettings& settings, SafetyState& state,
     // what is wrong
     if (state.engagement == Engagement::Off) forget(state);
     const Elapsed elapsed = update_clock(settings, state, input.now_s);
+    update_warm(settings, state, input.reading.trouble, elapsed.s);
     const double clamp_newton = update_heat(settings, state, elapsed.s);
     update_stale(settings, state, input, elapsed.s);
     const double ending_share = update_ending(settings, state, input.is_ending, elapsed.s);
@@ -250,7 +268,11 @@ SafetyResult guard_force(const SafetySettings& settings, SafetyState& state,
     if (!(input.velocity_m_per_s.norm() <= settings.fastest_m_per_s)) {  // no number: too fast
         fault = std::max(fault, SafetyStage::TooFast);
     }
+    if (input.reading.trouble == DeviceTrouble::ForceRefused) {
+        fault = std::max(fault, SafetyStage::Refused);
+    }
     if (state.faded == 1) fault = std::max(fault, SafetyStage::Stale);
+    if (state.warmed == 1) fault = std::max(fault, SafetyStage::Warm);
     if (ending_share == 0) fault = std::max(fault, SafetyStage::Ending);
     if (state.not_finite) fault = SafetyStage::NotFinite;
 
@@ -267,10 +289,11 @@ SafetyResult guard_force(const SafetySettings& settings, SafetyState& state,
     SafetyResult result;
     result.stage = update_engagement(settings, state, input.wanted_newton, elapsed.s);
     if (state.faded > 0) result.stage = std::max(result.stage, SafetyStage::Stale);
+    if (state.warmed > 0) result.stage = std::max(result.stage, SafetyStage::Warm);
     if (ending_share < 1) result.stage = std::max(result.stage, SafetyStage::Ending);
 
     // fades, clamp, slew
-    result.share = state.risen * (1 - state.faded) * ending_share;
+    result.share = state.risen * (1 - state.faded) * (1 - state.warmed) * ending_share;
     const double before = result.share;
     const Vec3 force = clamped(input.wanted_newton * result.share, clamp_newton, result.share);
     if (result.share < before) {

@@ -39,9 +39,10 @@ struct SafetySettings {
     double stale_s = 0.1;
     double fade_s = 0.1;
 
-    // Motors: once the leaky mean of F^2 over `heat_s` reaches hot_newton^2, the clamp glides to
-    // hot_newton, the force that the motors stand for ever; once the mean is below `cooled_share`
-    // of that, it glides back.
+    // Motors: while the device says that they are warm the force fades in `fade_s`, and they count
+    // as hot from then on. Once the leaky mean of F^2 over `heat_s` reaches hot_newton^2, the clamp
+    // glides to hot_newton, the force that the motors stand for ever; once the mean is below
+    // `cooled_share` of that, it glides back.
     double hot_newton = 0.88;
     double heat_s = 30;
     double cooled_share = 0.8;
@@ -65,10 +66,12 @@ enum class SafetyStage {
     Disengaged,  // by disengage()
     Ending,
     Stale,  // fading, or faded
+    Warm,   // the device says so of its motors: the same
     TooFast,
     Late,  // or the clock stands still, went back, or is no number
     Frozen,
     Jump,
+    Refused,  // by the device, which let go
     Unplugged,
     NotFinite
 };
@@ -109,6 +112,8 @@ struct SafetyState {
     double pushed_s = 0;               // the force has been `frozen_newton` away from it since
     // stale model
     double faded = 0;  // 0 to 1
+    // warm motors
+    double warmed = 0;  // share of the force that they take away, 0 to 1
     // end
     double ending_s = 0;  // since it was asked for
     // heat
@@ -135,12 +140,12 @@ struct SafetyResult {
 };
 
 // The force that may be sent in this tick. Whatever comes in, it is finite and its norm is not
-// above the clamp. Not finite, jump, frozen, late, too fast, unplugged: zero in the tick that finds
-// it, whatever the slew; all other changes keep to the slew. What took the force to zero, once it
-// is over, is followed by quiet cycles and ramp; a force that is no number only after release(). A
-// late tick is found when it comes: what the device plays until then is up to its own watchdog. As
-// late counts a clock that stands still for as many ticks as `late_s` has milliseconds. Never
-// throws, locks, waits or allocates.
+// above the clamp. Not finite, jump, frozen, refused, late, too fast, unplugged: zero in the tick
+// that finds it, whatever the slew; all other changes keep to the slew. What took the force to
+// zero, once it is over, is followed by quiet cycles and ramp; a force that is no number only after
+// release(). A late tick is found when it comes: what the device plays until then is up to its own
+// watchdog. As late counts a clock that stands still for as many ticks as `late_s` has
+// milliseconds. Never throws, locks, waits or allocates.
 [[nodiscard]] SafetyResult guard_force(const SafetySettings& settings, SafetyState& state,
                                        const SafetyInput& input) noexcept;
 

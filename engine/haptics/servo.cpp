@@ -8,19 +8,26 @@ namespace palpa {
 namespace {
 
 // What the handle did since the last valid reading, clutched or not.
-Vec3 take_reading(ServoState& state, const DeviceReading& reading) noexcept {
-    if (!reading.valid || !reading.position_m.allFinite()) return Vec3::Zero();
-    const Vec3 moved = state.has_reading ? Vec3(reading.position_m - state.handle_m) : Vec3::Zero();
+HandleStep take_reading(ServoState& state, const DeviceReading& reading) noexcept {
+    if (!reading.valid || !reading.position_m.allFinite() ||
+        !reading.orientation.coeffs().allFinite())
+        return {};
+    HandleStep step;
+    if (state.has_reading) {
+        step.moved_m = reading.position_m - state.handle_m;
+        step.turned = reading.orientation * state.orientation.conjugate();
+    }
     state.has_reading = true;
     state.handle_m = reading.position_m;
-    return moved;
+    state.orientation = reading.orientation;
+    return step;
 }
 
 // The touch model with what guarded coupling knows of this moment.
 TouchModel touch_now(TouchModel touch, const GuardedState& state,
                      const GuardedTick& tick) noexcept {
     if (!state.is_placed || touch.is_still) return touch;
-    touch.molecule_angstrom = state.place_angstrom;
+    touch.molecule = state.molecule;
     touch.force_newton = tick.force_newton;
     touch.torque_newton_metre = state.at_place.torque_newton_metre;
     touch.displacement_gain = tick.displacement_gain;
@@ -66,12 +73,15 @@ ServoTick step_servo(const ServoSettings& settings, ServoState& state, Exchange&
                      const DeviceReading& reading, double now_s) noexcept {
     PALPA_ASSERT(settings.delay_ticks >= 0 && settings.delay_ticks <= max_servo_delay_ticks);
     follow_safety(settings.safety, state);
-    const Vec3 moved = take_reading(state, reading);
+    const HandleStep handle = take_reading(state, reading);
     // What the last force did while the handle went from there to here.
-    state.hand_energy_J += state.safety.sent_newton.dot(moved);
+    state.hand_energy_J += state.safety.sent_newton.dot(handle.moved_m);
     // A clutched handle moves, the molecule does not: that travel does not count.
     const bool clutched = is_pressed(reading.buttons, Button::Clutch);
-    if (!clutched) state.travel_m += moved;
+    if (!clutched) {
+        state.travel_m += handle.moved_m;
+        state.turn = (handle.turned * state.turn).normalized();
+    }
 
     const bool is_new = exchange.touch.take();
     const Touch& touch = exchange.touch.taken();
@@ -84,19 +94,22 @@ ServoTick step_servo(const ServoSettings& settings, ServoState& state, Exchange&
     tick.reading = reading;
     tick.clutched = clutched;
     tick.touch = state.touch;
-    HandPose pose{reading.time_s, state.travel_m};
+    HandPose pose{reading.time_s, state.travel_m, state.turn};
     Vec3 wanted = Vec3::Zero();
     if (settings.guarded) {
         GuardedState& guarded = state.guarded;
         if (is_new || (state.has_touch && !guarded.is_placed)) take_touch(touch, guarded);
         const GuardedTick done =
-            step_guarded(*settings.guarded, touch, state.handle_m, moved, clutched, guarded);
+            step_guarded(*settings.guarded, touch, state.handle_m, handle, clutched, guarded);
         wanted = done.hand_newton;
+        tick.raised = done.raised;
         tick.felt_N_per_m = done.felt_N_per_m;
+        tick.molecule_per_handle = done.molecule_per_handle;
+        tick.damping_newton = done.damping_newton;
         tick.dropped_m = done.dropped_m;
         tick.kept_m = guarded.kept_m;
         tick.touch = touch_now(state.touch, guarded, done);
-        if (guarded.is_placed) pose.place_angstrom = guarded.place_angstrom;
+        if (guarded.is_placed) pose.molecule = guarded.molecule;
     } else {
         state.guarded = {};
         wanted = hand_force(settings.force_law, state.touch.force_newton);

@@ -26,8 +26,10 @@ struct ServoSettings {
 // Everything that one tick leaves to the next.
 struct ServoState {
     // clutch
-    Vec3 handle_m = Vec3::Zero();  // last valid position
-    Vec3 travel_m = Vec3::Zero();  // handle travel outside of the clutch
+    Vec3 handle_m = Vec3::Zero();         // last valid position
+    Vec3 travel_m = Vec3::Zero();         // handle travel outside of the clutch
+    Quat orientation = Quat::Identity();  // last valid one
+    Quat turn = Quat::Identity();         // handle turn outside of the clutch
     bool has_reading = false;
     // touch model
     TouchModel touch;  // the newest that came
@@ -59,8 +61,11 @@ struct ServoTick {
     SafetyStage stage = SafetyStage::None;   // the gravest that acted
     SafetyStage reason = SafetyStage::None;  // why the force is not back in full
     // Guarded coupling alone.
-    double felt_N_per_m = 0;        // of the molecule's stiffness, where it is largest
-    Vec3 kept_m = Vec3::Zero();     // handle travel that the stop holds back
+    double raised = 1;                        // A_d over the law's, for the cap
+    double felt_N_per_m = 0;                  // of the molecule's stiffness, where it is largest
+    Mat3 molecule_per_handle = Mat3::Zero();  // travel: 1/A_d, of every direction
+    Vec3 damping_newton = Vec3::Zero();       // of the servo's own, in this tick's force
+    Vec3 kept_m = Vec3::Zero();               // handle travel that the stop holds back
     Vec3 dropped_m = Vec3::Zero();  // that the limits of a step did away with in this tick
 };
 

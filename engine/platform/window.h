@@ -23,6 +23,7 @@ enum class MouseButton { Left, Right, Middle };
 // Keys that mean something; all others are passed over.
 enum class Key {
     Space,
+    Enter,
     Escape,
     Tab,
     Home,

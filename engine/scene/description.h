@@ -16,9 +16,9 @@
 namespace palpa {
 
 // Every choice of a scene file: its names stand in the order of the enumerators.
-enum class Motion { Fixed, AlongX, Translate, TranslateAndTurn, Free };
-inline constexpr std::array<std::string_view, 5> motion_names{"fixed", "along-x", "translate",
-                                                              "translate-and-turn", "free"};
+enum class Motion { Fixed, AlongX, Translate, TranslateAndTurn, Free, WithHandle };
+inline constexpr std::array<std::string_view, 6> motion_names{
+    "fixed", "along-x", "translate", "translate-and-turn", "free", "with-handle"};
 
 enum class Shape { Rigid, Flexible };
 inline constexpr std::array<std::string_view, 2> shape_names{"rigid", "flexible"};
@@ -36,8 +36,8 @@ enum class StaticsMethod { QuasiStatic, LimitedMemory, InverseMass };
 inline constexpr std::array<std::string_view, 3> statics_method_names{
     "quasi-static", "limited-memory", "inverse-mass"};
 
-enum class Stroke { Hold, InOut, Path };
-inline constexpr std::array<std::string_view, 3> stroke_names{"hold", "in-out", "path"};
+enum class Stroke { Hold, InOut, Path, Lead };
+inline constexpr std::array<std::string_view, 4> stroke_names{"hold", "in-out", "path", "lead"};
 
 // The paper's five modes, and guarded coupling.
 enum class CouplingMode {
@@ -60,6 +60,9 @@ inline constexpr std::array<std::string_view, 3> displacement_law_names{"repaire
                                                                         "constant"};
 enum class WorkspaceChoice { Clutch, Bubble, Drift };
 inline constexpr std::array<std::string_view, 3> workspace_names{"clutch", "bubble", "drift"};
+
+enum class GainShapeChoice { Scalar, Tensor };
+inline constexpr std::array<std::string_view, 2> gain_shape_names{"scalar", "tensor"};
 
 // How a hand takes hold when nobody looks: a window always has the ramp.
 enum class Engage { AtOnce, Ramp };
@@ -121,6 +124,15 @@ struct GrabDescription {
     double spring_kcal_per_mol_angstrom2 = 20;
 };
 
+// Where the hand is to be at a time, mm, or where it is to have brought the molecule, Å from its
+// start. Turns as rotation vectors: along the axis, as long as the angle.
+struct PathPoint {
+    double time_s = 0;
+    std::array<double, 3> place{}, turn_deg{};
+
+    friend bool operator==(const PathPoint&, const PathPoint&) = default;
+};
+
 struct HandDescription {
     std::size_t grip = 3;  // into hand_names: medium
     Stroke stroke = Stroke::InOut;
@@ -132,7 +144,7 @@ struct HandDescription {
     std::int64_t cycles = 1;
     std::optional<double> release_s;
     double kick_N_s = 0;
-    std::vector<std::array<double, 2>> path;  // s, mm
+    std::vector<PathPoint> path;
 };
 
 struct DeviceDescription {
@@ -150,9 +162,15 @@ struct CouplingDescription {
     double gamma_per_N = 10e11, F_off_pN = 20, A_d_min = 0.005e9, A_d_max = 0.25e9;  // eq. 3
     double A_f = 0.64e9, A_d = 0.25e9;  // the constant gains
 
+    // What must be felt, of the force on the molecule, and how exactly; unset: what the laws and
+    // the statics give.
+    std::optional<std::array<double, 2>> feel_pN;  // from and to
+    std::optional<double> feel_within_pN;
+
     // Of guarded coupling.
     ForceLawChoice force_law = ForceLawChoice::Printed;
     DisplacementLawChoice displacement_law = DisplacementLawChoice::Repaired;
+    GainShapeChoice gain_shape = GainShapeChoice::Scalar;
     WorkspaceChoice workspace = WorkspaceChoice::Clutch;
     double F_lo_pN = 20, F_hi_nN = 3;  // of the perceptual law
     double damping_N_s_per_m = 0.5;

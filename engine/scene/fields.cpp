@@ -53,7 +53,8 @@ void visit_molecule(FieldVisitor& v, MoleculeDescription& m) {
             .meaning = "what the hand may do with the molecule without turning it: nothing, move "
                        "it along x, or in space after it was relaxed on loading; "
                        "translate-and-turn: it turns by itself meanwhile, about its reference "
-                       "atom; free: it moves and turns by itself, no hand holds it"},
+                       "atom; with-handle: the handle turns it too, about that atom; free: it "
+                       "moves and turns by itself, no hand holds it"},
            motion_names, m.motion);
     choose(v,
            {.key = "shape",
@@ -199,7 +200,8 @@ void visit_hand(FieldVisitor& v, HandDescription& h) {
     choose(v,
            {.key = "stroke",
             .meaning = "what the hand does: keep the handle where the force vanishes, go in to "
-                       "peak_nN and out again, or follow path"},
+                       "peak_nN and out again, follow path, or lead the molecule along it by "
+                       "sight, which takes what time it takes"},
            stroke_names, h.stroke);
     v.optional_real({.key = "start_angstrom",
                      .meaning = "distance of the reference atoms at the start; unset: for hold the "
@@ -240,9 +242,12 @@ void visit_hand(FieldVisitor& v, HandDescription& h) {
             .lowest = -0.1,
             .highest = 0.1},
            h.kick_N_s);
-    v.pairs({.key = "path",
-             .meaning = "path: [time in s, place in mm] of the hand, minimum jerk in between"},
-            h.path);
+    v.path({.key = "path",
+            .meaning = "path: where the hand is to be, [s, mm along x], [s, mm, mm, mm], or that "
+                       "and a turn about x, y and z in degrees (a rotation vector), minimum jerk "
+                       "in between; lead: where it is to have brought the molecule, [s, Å along "
+                       "x] or [s, Å, Å, Å] from its start"},
+           h.path);
     v.leave_table();
 }
 
@@ -343,6 +348,20 @@ void visit_coupling(FieldVisitor& v, CouplingDescription& c) {
             .lowest = 1,
             .highest = 1e15},
            c.A_d);
+    v.optional_pair({.key = "feel_pN",
+                     .meaning = "guarded: [weakest, strongest] molecular force that must be felt, "
+                                "as 0.3 N or more and 2.7 N or less, in place of force_law; the "
+                                "cap makes the molecule go less far for it; unset: force_law",
+                     .lowest = positive,
+                     .highest = 1e6},
+                    c.feel_pN);
+    v.optional_real({.key = "feel_within_pN",
+                     .meaning = "how far the force may be from what all joints would give; where "
+                                "something moves by itself, active joints and steps follow "
+                                "(quasi-static); unset: they are as [statics] has them",
+                     .lowest = positive,
+                     .highest = 1e6},
+                    c.feel_within_pN);
     choose(
         v,
         {.key = "force_law",
@@ -353,6 +372,11 @@ void visit_coupling(FieldVisitor& v, CouplingDescription& c) {
            {.key = "displacement_law",
             .meaning = "guarded: eq. 3 repaired to see stiff places too, as printed, constant A_d"},
            displacement_law_names, c.displacement_law);
+    choose(v,
+           {.key = "gain_shape",
+            .meaning = "guarded: where A_d is raised for the cap, it is in all directions, or, a "
+                       "tensor, in those that are stiff"},
+           gain_shape_names, c.gain_shape);
     choose(v,
            {.key = "workspace",
             .meaning = "guarded: how far places are reached: by the clutch alone, beyond a bubble "
@@ -444,6 +468,10 @@ public:
     void optional_real(const Field& field, std::optional<double>& /*value*/) override {
         add(field, fmt::format("number{}", range(field)), "unset");
     }
+    void optional_pair(const Field& field,
+                       std::optional<std::array<double, 2>>& /*value*/) override {
+        add(field, fmt::format("two numbers{}", range(field)), "unset");
+    }
     void triple(const Field& field, std::array<double, 3>& value) override {
         add(field, fmt::format("three numbers{}", range(field)),
             fmt::format("[{}]", fmt::join(value, ", ")));
@@ -471,8 +499,8 @@ public:
     void files(const Field& field, std::vector<std::filesystem::path>& /*value*/) override {
         add(field, "list of file names", "[]");
     }
-    void pairs(const Field& field, std::vector<std::array<double, 2>>& /*value*/) override {
-        add(field, "list of pairs", "[]");
+    void path(const Field& field, std::vector<PathPoint>& /*value*/) override {
+        add(field, "list of 2, 4 or 7 numbers each", "[]");
     }
 
 private:

@@ -38,6 +38,7 @@ public:
 
     virtual void real(const Field& field, double& value) = 0;
     virtual void optional_real(const Field& field, std::optional<double>& value) = 0;
+    virtual void optional_pair(const Field& field, std::optional<std::array<double, 2>>& value) = 0;
     virtual void triple(const Field& field, std::array<double, 3>& value) = 0;
     virtual void flag(const Field& field, bool& value) = 0;
     virtual void integer(const Field& field, std::int64_t& value) = 0;
@@ -47,7 +48,7 @@ public:
                         std::size_t& value) = 0;
     virtual void file(const Field& field, std::filesystem::path& value) = 0;
     virtual void files(const Field& field, std::vector<std::filesystem::path>& value) = 0;
-    virtual void pairs(const Field& field, std::vector<std::array<double, 2>>& value) = 0;
+    virtual void path(const Field& field, std::vector<PathPoint>& value) = 0;
 };
 
 void visit_scene(FieldVisitor& visitor, SceneDescription& scene);

@@ -169,24 +169,30 @@ public:
         if (!std::isnan(read)) value = read;
     }
 
+    void optional_pair(const Field& field, std::optional<std::array<double, 2>>& value) override {
+        const toml::node* const node = find_value(field);
+        if (!node) return;
+        if (const auto read = find_numbers<2>(field, *node)) {
+            value = *read;
+        } else {
+            problem(*node, expected(field, *node,
+                                    fmt::format("two numbers {}{} to {}, [20.0, 3000.0]",
+                                                field.lowest == positive ? "above " : "from ",
+                                                field.lowest == positive ? 0 : field.lowest,
+                                                field.highest)));
+        }
+    }
+
     void triple(const Field& field, std::array<double, 3>& value) override {
         const toml::node* const node = find_value(field);
         if (!node) return;
-        const toml::array* const list = node->as_array();
-        std::vector<double> read;
-        for (std::size_t i = 0; list && i < list->size(); ++i) {
-            const std::optional<double> number = list->get(i)->value<double>();
-            if (number && *number >= field.lowest && *number <= field.highest) {
-                read.push_back(*number);
-            }
+        if (const auto read = find_numbers<3>(field, *node)) {
+            value = *read;
+        } else {
+            problem(*node, expected(field, *node,
+                                    fmt::format("three numbers from {} to {}, [0.0, 1.0, 2.0]",
+                                                field.lowest, field.highest)));
         }
-        if (!list || list->size() != value.size() || read.size() != value.size()) {
-            return problem(*node, expected(field, *node,
-                                           fmt::format("three numbers from {} to {}, [0.0, 1.0, "
-                                                       "2.0]",
-                                                       field.lowest, field.highest)));
-        }
-        std::copy(read.begin(), read.end(), value.begin());
     }
 
     void flag(const Field& field, bool& value) override {
@@ -266,24 +272,22 @@ public:
         }
     }
 
-    void pairs(const Field& field, std::vector<std::array<double, 2>>& value) override {
+    void path(const Field& field, std::vector<PathPoint>& value) override {
         const toml::node* const node = find_value(field);
         if (!node) return;
         const toml::array* const list = node->as_array();
-        if (!list) return problem(*node, expected(field, *node, "a list of pairs, [[0.0, 1.0]]"));
+        if (!list) return problem(*node, expected(field, *node, "a list of points, [[0.0, 1.0]]"));
         value.clear();
         for (const toml::node& entry : *list) {
-            const toml::array* const pair = entry.as_array();
-            const auto number = [&](std::size_t i) {
-                return pair && pair->size() == 2 ? pair->get(i)->value<double>() : std::nullopt;
-            };
-            const std::optional<double> a = number(0), b = number(1);
-            if (!a || !b || !std::isfinite(*a) || !std::isfinite(*b)) {
-                return problem(entry, fmt::format("an entry of '{}' is no pair; expected a pair of "
-                                                  "finite numbers, [0.5, 10.0]",
-                                                  full_key(field.key)));
+            const std::optional<PathPoint> point = find_path_point(entry);
+            if (!point) {
+                return problem(
+                    entry, fmt::format("an entry of '{}' is no point of a path; expected [s, mm], "
+                                       "[s, mm, mm, mm] or [s, mm, mm, mm, degrees, degrees, "
+                                       "degrees], finite numbers",
+                                       full_key(field.key)));
             }
-            value.push_back({*a, *b});
+            value.push_back(*point);
         }
     }
 
@@ -296,6 +300,37 @@ private:
         std::vector<std::string> known;  // keys that were asked for
         bool missing;                    // told already
     };
+
+    static constexpr double positive = std::numeric_limits<double>::min();
+
+    // A list of so many numbers in the field's range.
+    template <std::size_t Count>
+    static std::optional<std::array<double, Count>> find_numbers(const Field& field,
+                                                                 const toml::node& node) {
+        const toml::array* const list = node.as_array();
+        if (!list || list->size() != Count) return std::nullopt;
+        std::array<double, Count> numbers{};
+        for (std::size_t i = 0; i < Count; ++i) {
+            const std::optional<double> number = list->get(i)->value<double>();
+            if (!number || !(*number >= field.lowest && *number <= field.highest))
+                return std::nullopt;
+            numbers[i] = *number;
+        }
+        return numbers;
+    }
+
+    static std::optional<PathPoint> find_path_point(const toml::node& node) {
+        const toml::array* const numbers = node.as_array();
+        if (!numbers || (numbers->size() != 2 && numbers->size() != 4 && numbers->size() != 7))
+            return std::nullopt;
+        std::array<double, 7> all{};
+        for (std::size_t i = 0; i < numbers->size(); ++i) {
+            const std::optional<double> number = numbers->get(i)->value<double>();
+            if (!number || !std::isfinite(*number)) return std::nullopt;
+            all[i] = *number;
+        }
+        return PathPoint{all[0], {all[1], all[2], all[3]}, {all[4], all[5], all[6]}};
+    }
 
     TextPlace place_or_start(const toml::table& table) const {
         TextPlace place = place_of(table.source());
@@ -333,7 +368,7 @@ private:
     }
 
     static std::string range(const Field& field, std::string_view kind) {
-        if (field.lowest == std::numeric_limits<double>::min()) {
+        if (field.lowest == positive) {
             return fmt::format("{} above 0 up to {}", kind, field.highest);
         }
         return fmt::format("{} from {} to {}", kind, field.lowest, field.highest);
@@ -404,7 +439,8 @@ bool check_grabbed(const SceneDescription& scene, const MoleculeDescription& gra
     const bool yields = grabbed.motion == Motion::Free ||
                         (grabbed.motion == Motion::Fixed && grabbed.shape == Shape::Flexible);
     const bool is_moved = grabbed.motion == Motion::AlongX || grabbed.motion == Motion::Translate ||
-                          grabbed.motion == Motion::TranslateAndTurn;
+                          grabbed.motion == Motion::TranslateAndTurn ||
+                          grabbed.motion == Motion::WithHandle;
     if (by_spring ? yields : is_moved) return true;
     reader.problem(
         reader.place_of_key("grab.molecule"),
@@ -412,8 +448,8 @@ bool check_grabbed(const SceneDescription& scene, const MoleculeDescription& gra
                     scene.grab.molecule, name_of(grabbed.motion),
                     by_spring ? "a free molecule, or one that is fixed and flexible: the hand "
                                 "pulls at it by a spring (grab.atom)"
-                              : "a molecule that moves, along-x, translate or "
-                                "translate-and-turn"));
+                              : "a molecule that moves, along-x, translate, translate-and-turn "
+                                "or with-handle"));
     return false;
 }
 
@@ -462,6 +498,13 @@ void check_grab(const SceneDescription& scene, Reader& reader) {
                                        "itself; expected translate or translate-and-turn",
                                        key));
         }
+        if (molecule.motion == Motion::WithHandle && scene.has_statics()) {
+            reader.problem(reader.place_of_key(key),
+                           fmt::format("'{}' is \"with-handle\" beside something that moves by "
+                                       "itself, which a handle does not turn yet; expected "
+                                       "translate or translate-and-turn",
+                                       key));
+        }
     }
     if (!scene.joints.around.empty())
         find_named(scene, reader, "joints.around", scene.joints.around);
@@ -481,6 +524,27 @@ void check_ranges(const SceneDescription& scene, Reader& reader) {
     check(c.F_hi_nN * 1e3 > 2 * c.F_lo_pN, "coupling.F_hi_nN",
           fmt::format("'coupling.F_hi_nN' is {}; expected more than twice F_lo_pN, {}", c.F_hi_nN,
                       c.F_lo_pN));
+    if (const auto range = c.feel_pN) {
+        constexpr double most_felt_newton = 3;
+        const auto [weakest, strongest] = *range;
+        check(strongest > weakest, "coupling.feel_pN",
+              fmt::format("'coupling.feel_pN' is [{}, {}]; expected the weaker force first",
+                          weakest, strongest));
+        check(c.mode == CouplingMode::Guarded, "coupling.feel_pN",
+              fmt::format("'coupling.feel_pN' is for guarded coupling, and coupling.mode is {}, "
+                          "with forces of its own; expected mode = \"guarded\", or no feel_pN",
+                          coupling_mode_names[static_cast<std::size_t>(c.mode)]));
+        check(c.clamp_N >= most_felt_newton, "coupling.clamp_N",
+              fmt::format("'coupling.clamp_N' is {}, and what feel_pN names is felt as up to {} N; "
+                          "expected that or more",
+                          c.clamp_N, most_felt_newton));
+    }
+    check(!c.feel_within_pN || !scene.has_statics() ||
+              scene.statics.method == StaticsMethod::QuasiStatic,
+          "statics.method",
+          fmt::format("'statics.method' is \"{}\", which moves all joints at once; expected "
+                      "quasi-static with coupling.feel_within_pN",
+                      statics_method_names[static_cast<std::size_t>(scene.statics.method)]));
     check(std::abs(scene.period_ms - std::round(scene.period_ms)) < 1e-9, "run.period_ms",
           fmt::format("'run.period_ms' is {}; expected a whole number of servo ticks of 1 ms",
                       scene.period_ms));
@@ -488,12 +552,24 @@ void check_ranges(const SceneDescription& scene, Reader& reader) {
     check(h.stroke != Stroke::InOut || h.grip != 0, "hand.stroke",
           "'hand.stroke' is \"in-out\" with a grip of \"none\": nobody would move the handle; "
           "expected \"hold\", or a hand");
-    check(h.stroke != Stroke::Path || !h.path.empty(), "hand.stroke",
-          "'hand.stroke' is \"path\", but 'hand.path' has no point; expected [[time, place], ...]");
+    const bool has_path = h.stroke == Stroke::Path || h.stroke == Stroke::Lead;
+    check(!has_path || !h.path.empty(), "hand.stroke",
+          fmt::format("'hand.stroke' is \"{}\", but 'hand.path' has no point; expected [[time, "
+                      "place], ...]",
+                      stroke_names[static_cast<std::size_t>(h.stroke)]));
+    check(h.stroke != Stroke::Lead || h.grip != 0, "hand.stroke",
+          "'hand.stroke' is \"lead\" with a grip of \"none\": nobody would move the handle; "
+          "expected a hand");
+    const auto turns = [](const PathPoint& point) {
+        return point.turn_deg != PathPoint{}.turn_deg;
+    };
+    check(h.stroke != Stroke::Lead || std::ranges::none_of(h.path, turns), "hand.path",
+          "'hand.path' turns the handle, but 'hand.stroke' is \"lead\", which only moves; expected "
+          "[s, Å] or [s, Å, Å, Å]");
     for (std::size_t i = 1; i < h.path.size(); ++i) {
-        check(h.path[i][0] > h.path[i - 1][0], "hand.path",
+        check(h.path[i].time_s > h.path[i - 1].time_s, "hand.path",
               fmt::format("'hand.path' has the time {} after {}; expected ascending times",
-                          h.path[i][0], h.path[i - 1][0]));
+                          h.path[i].time_s, h.path[i - 1].time_s));
     }
     for (const LessonStepDescription& step : scene.lesson) {
         const std::string key = "lesson." + step.name;

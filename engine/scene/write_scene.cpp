@@ -55,6 +55,12 @@ public:
     void optional_real(const Field& field, std::optional<double>& value) override {
         if (value) add(field, format_real(*value));
     }
+    void optional_pair(const Field& field, std::optional<std::array<double, 2>>& value) override {
+        if (value) {
+            const auto& [first, second] = *value;
+            add(field, fmt::format("[{}, {}]", format_real(first), format_real(second)));
+        }
+    }
     void triple(const Field& field, std::array<double, 3>& value) override {
         add(field, fmt::format("[{}, {}, {}]", format_real(value[0]), format_real(value[1]),
                                format_real(value[2])));
@@ -82,12 +88,19 @@ public:
             names.push_back(in_quotes(file_name_(path)));
         add(field, fmt::format("[{}]", fmt::join(names, ", ")));
     }
-    void pairs(const Field& field, std::vector<std::array<double, 2>>& value) override {
-        std::vector<std::string> pairs;
-        for (const auto& [a, b] : value) {
-            pairs.push_back(fmt::format("[{}, {}]", format_real(a), format_real(b)));
+    void path(const Field& field, std::vector<PathPoint>& value) override {
+        std::vector<std::string> points;
+        for (const auto& [time_s, place, turn] : value) {
+            const bool turns = turn != std::array<double, 3>{};
+            const bool in_space = turns || place[1] != 0 || place[2] != 0;
+            std::vector<std::string> numbers{format_real(time_s), format_real(place[0])};
+            if (in_space)
+                numbers.insert(numbers.end(), {format_real(place[1]), format_real(place[2])});
+            if (turns)
+                for (const double angle : turn) numbers.push_back(format_real(angle));
+            points.push_back(fmt::format("[{}]", fmt::join(numbers, ", ")));
         }
-        add(field, fmt::format("[{}]", fmt::join(pairs, ", ")));
+        add(field, fmt::format("[{}]", fmt::join(points, ", ")));
     }
 
 private:

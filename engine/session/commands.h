@@ -2,9 +2,11 @@
 #pragma once
 #include "haptics/exchange.h"
 #include "scene/description.h"
+#include "simulation/exactness.h"
 #include "view/build_frame.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -31,6 +33,10 @@ struct Readout {
     TouchModel touch;
     std::uint64_t steps = 0;
     double step_ms = 0;  // wall time of the last step
+    // Where the scene says how exact forces must be: what nine of ten of the last audits found at
+    // most, nothing before the first, and what a step uses for it.
+    std::optional<double> error_pN;
+    Effort effort;
     bool paused = false;
     std::string problem;  // why the last Reset failed; else empty
 };

@@ -3,7 +3,8 @@
 namespace palpa {
 
 void run_lockstep(const LockstepSettings& settings, const ServoSettings& servo, Device& device,
-                  const Touch& first, const StepFunction& step, const TickFunction& on_tick) {
+                  const Touch& first, const StepFunction& step, const TickFunction& on_tick,
+                  const EndFunction& is_over) {
     Exchange exchange;
     ServoState state;
     TouchModel felt;
@@ -19,10 +20,12 @@ void run_lockstep(const LockstepSettings& settings, const ServoSettings& servo, 
         const ServoTick done = step_servo(servo, state, exchange, device.read(),
                                           static_cast<double>(tick) / servo_rate_hz);
         on_tick(done);
+        device.show(done.touch);
         device.write(done.sent_newton);
 
         exchange.hand.read(hand);
         if (period_begins) next = step(hand, felt);
+        if (is_over && is_over()) return;
     }
 }
 

@@ -17,12 +17,14 @@ struct LockstepSettings {
 // Answers a hand pose; `felt` is the touch model that the hand feels meanwhile.
 using StepFunction = std::function<Touch(const HandPose& hand, const TouchModel& felt)>;
 using TickFunction = std::function<void(const ServoTick& tick)>;
+using EndFunction = std::function<bool()>;
 
 // Tick j reads the device, runs the servo and writes the force. Where a period begins, the result
 // of the step before is published first, and a new step starts from this tick's hand pose: what it
 // finds is felt from the next period on and held throughout (the paper's z^-1 and hold). `first` is
-// felt during the first period.
+// felt during the first period. Ends sooner where `is_over`, asked after every tick, says so.
 void run_lockstep(const LockstepSettings& settings, const ServoSettings& servo, Device& device,
-                  const Touch& first, const StepFunction& step, const TickFunction& on_tick);
+                  const Touch& first, const StepFunction& step, const TickFunction& on_tick,
+                  const EndFunction& is_over = {});
 
 }  // namespace palpa

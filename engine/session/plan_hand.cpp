@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <optional>
 #include <variant>
 
@@ -77,7 +78,8 @@ void check_speed(const SceneDescription& scene, const HandScript& script) {
     for (std::size_t i = 1; i < script.path.size(); ++i) {
         const HandWaypoint &from = script.path[i - 1], &to = script.path[i];
         // Minimum jerk is fastest in the middle, at 15/8 of the mean.
-        const double speed = 15.0 / 8 * std::abs(to.x_m - from.x_m) / (to.time_s - from.time_s);
+        const Vec3 way(to.x_m - from.x_m, to.y_m - from.y_m, to.z_m - from.z_m);
+        const double speed = 15.0 / 8 * way.norm() / (to.time_s - from.time_s);
         if (speed <= fastest_hand_m_per_s) continue;
         const bool own_path = scene.hand.stroke == Stroke::Path;
         throw LoadError(scene.place_of(own_path ? "hand.path" : "hand.stroke_s"),
@@ -101,8 +103,16 @@ HandScript plan_hand(const SceneDescription& scene, const Simulation& simulation
             script = plan_in_out(scene, simulation, half_width_m);
             break;
         case Stroke::Path:
-            for (const auto& [time_s, x_mm] : scene.hand.path) {
-                script.path.push_back({time_s, x_mm * 1e-3});
+            for (const auto& [time_s, place, turn] : scene.hand.path) {
+                script.path.push_back({time_s, place[0] * 1e-3, place[1] * 1e-3, place[2] * 1e-3,
+                                       Vec3(turn.data()) * (std::numbers::pi / 180)});
+            }
+            break;
+        case Stroke::Lead:
+            script.leads = true;
+            for (const auto& [time_s, place, turn] : scene.hand.path) {
+                const Vec3 place_m = units::metre_per_angstrom * Vec3(place.data());
+                script.path.push_back({time_s, place_m.x(), place_m.y(), place_m.z()});
             }
             break;
     }

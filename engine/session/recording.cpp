@@ -4,7 +4,9 @@
 #include "core/load_error.h"
 #include "core/text.h"
 #include "core/version.h"
+#include "field/processor.h"
 #include "scene/write_scene.h"
+#include "session/feel.h"
 
 #include <fmt/format.h>
 #include <Eigen/Core>
@@ -48,7 +50,13 @@ constexpr std::array columns = std::to_array<std::string_view>({"time_s",
                                                                 "potential_kcal_per_mol",
                                                                 "active_joints",
                                                                 "period_ms",
-                                                                "clutch"});
+                                                                "clutch",
+                                                                "handle_turn_x_rad",
+                                                                "handle_turn_y_rad",
+                                                                "handle_turn_z_rad",
+                                                                "molecule_turn_x_rad",
+                                                                "molecule_turn_y_rad",
+                                                                "molecule_turn_z_rad"});
 
 constexpr std::size_t flush_bytes = 1 << 16;
 
@@ -116,6 +124,27 @@ void make_folder(const fs::path& folder) {
     if (error) throw LoadError({folder.string()}, "cannot be made: " + error.message());
 }
 
+nlohmann::ordered_json feel_as_json(const Feel& feel) {
+    nlohmann::ordered_json json;
+    if (feel.range_pN) {
+        json["range_pN"] = *feel.range_pN;
+        json["ends_N"] = feel.ends_newton;
+    }
+    json["stiffest_share_of_cap"] = feel.stiffest_share;
+    json["largest_raise_of_A_d"] = feel.largest_raise;
+    if (feel.within_pN) {
+        json["within_pN"] = *feel.within_pN;
+        json["audits"] = feel.audits;
+        json["error_median_pN"] = feel.median_pN;
+        json["error_90_pN"] = feel.ninety_pN;
+        json["within_share"] = feel.within_share;
+        json["active_mean"] = feel.active;
+        json["steps_mean"] = feel.steps;
+    }
+    json["gave_way"] = find_yielding(feel).all();
+    return json;
+}
+
 }  // namespace
 
 std::string scene_hash(const SceneDescription& scene) {
@@ -137,7 +166,7 @@ std::string format_summary(const SceneDescription& scene, const Summary& summary
                                               EIGEN_MINOR_VERSION)}};
     json["scene"] = scene.title;
     json["scene_hash"] = scene_hash(scene);
-    json["device"] = "emulated Omni";
+    json["device"] = summary.device;
     json["hand"] = hand_names[scene.hand.grip];
     json["stroke"] = stroke_names[static_cast<std::size_t>(scene.hand.stroke)];
     json["mode"] = coupling_mode_names[static_cast<std::size_t>(scene.coupling.mode)];
@@ -178,6 +207,7 @@ std::string format_summary(const SceneDescription& scene, const Summary& summary
         json["closest_atoms_angstrom"] = summary.journey->closest;
         json["last_rmsd_angstrom"] = summary.journey->last_rmsd;
     }
+    if (summary.feel) json["feel"] = feel_as_json(*summary.feel);
     json["clamped_share"] = summary.clamped_share;
     json["safety_share"] = summary.safety_share;
     json["stopped"] = summary.stopped;
@@ -209,11 +239,13 @@ Recording::Recording(const fs::path& folder, const SceneDescription& scene)
     for (std::size_t i = 0; i < files.size(); ++i) {
         write_text_file(folder / names.at(files[i]), contents[i]);
     }
-    write_text_file(folder / "session.toml", format_session(scene));
+    write_text_file(folder / "session.toml",
+                    fmt::format("{}# Recorded by Palpa {}, {}, on a processor of kind {}.\n",
+                                format_session(scene), version_name, commit_name,
+                                list_processor_kinds().front()));
 }
 
-void Recording::add(const ServoTick& tick) {
-    if (tick_++ % static_cast<std::uint64_t>(scene_.every) != 0) return;
+std::string trace_row(const ServoTick& tick) {
     const DeviceReading& device = tick.reading;
     const TouchModel& touch = tick.touch;
     // Adding nothing makes -0 a plain 0.
@@ -221,16 +253,24 @@ void Recording::add(const ServoTick& tick) {
     const Vec3 force_nN = touch.force_newton * 1e9 + zero;
     const Vec3 torque = touch.torque_newton_metre * 1e19 + zero;  // nN Å
     const Vec3 sent = tick.sent_newton + zero;
-    const Vec3 molecule = touch.molecule_angstrom + zero;
+    const Vec3 molecule = touch.molecule.place_angstrom + zero;
     const Vec3 handle = device.position_m + zero;
-    fmt::format_to(std::back_inserter(rows_),
-                   "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
-                   device.time_s, handle.x(), handle.y(), handle.z(), molecule.x(), molecule.y(),
-                   molecule.z(), force_nN.x(), force_nN.y(), force_nN.z(), torque.x(), torque.y(),
-                   torque.z(), sent.x(), sent.y(), sent.z(), tick.force_gain,
-                   touch.displacement_gain, touch.stiffness_N_per_m, tick.hand_energy_J,
-                   touch.potential_kcal_per_mol, touch.active_freedom, touch.period_s * 1e3,
-                   tick.clutched ? 1 : 0);
+    const Vec3 handle_turn = rotation_vector_of(device.orientation) + zero;
+    const Vec3 molecule_turn = rotation_vector_of(touch.molecule.orientation) + zero;
+    return fmt::format(
+        "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},"
+        "{},{},{},{}\n",
+        device.time_s, handle.x(), handle.y(), handle.z(), molecule.x(), molecule.y(), molecule.z(),
+        force_nN.x(), force_nN.y(), force_nN.z(), torque.x(), torque.y(), torque.z(), sent.x(),
+        sent.y(), sent.z(), tick.force_gain, touch.displacement_gain, touch.stiffness_N_per_m,
+        tick.hand_energy_J, touch.potential_kcal_per_mol, touch.active_freedom,
+        touch.period_s * 1e3, tick.clutched ? 1 : 0, handle_turn.x(), handle_turn.y(),
+        handle_turn.z(), molecule_turn.x(), molecule_turn.y(), molecule_turn.z());
+}
+
+void Recording::add(const ServoTick& tick) {
+    if (tick_++ % static_cast<std::uint64_t>(scene_.every) != 0) return;
+    rows_ += trace_row(tick);
     if (rows_.size() > flush_bytes) flush();
 }
 

@@ -17,6 +17,10 @@ std::string scene_hash(const SceneDescription& scene);
 // The trace's first line, without its end. One column a value, the unit last in the name.
 std::string trace_header();
 
+// One of its rows, with its end: every number in the shortest form that reads back to the same
+// bits.
+std::string trace_row(const ServoTick& tick);
+
 // The summary as a JSON object; scripts rely on its keys, which the README of tools lists.
 std::string format_summary(const SceneDescription& scene, const Summary& summary);
 

@@ -4,7 +4,6 @@
 #include "haptics/hand.h"
 #include "haptics/plant.h"
 #include "molecule/coincident_atoms.h"
-#include "session/lockstep.h"
 #include "simulation/components.h"
 #include "simulation/step.h"
 
@@ -45,13 +44,19 @@ ServoSettings build_servo_settings(const SceneDescription& scene, const Simulati
     GuardedSettings& guarded = settings.guarded.emplace();
     guarded.force_law = simulation.laws.force;
     guarded.displacement_law = simulation.laws.displacement;
+    guarded.gain_shape =
+        c.gain_shape == GainShapeChoice::Tensor ? GainShape::Tensor : GainShape::Scalar;
     guarded.workspace = build_workspace(c.workspace);
     guarded.half_workspace_m = half_workspace_m;
     guarded.damping_N_s_per_m =
         guarded_damping(c.damping_N_s_per_m, scene.device.inertia_kg, settings.delay_ticks);
     guarded.cap_N_per_m = guarded_cap(scene.device.viscosity_N_s_per_m, guarded.damping_N_s_per_m,
                                       settings.delay_ticks);
+    // Where the scene says what must be felt, no tick feels more than the cap.
+    if (c.feel_pN) guarded.cap_N_per_m /= most_of_cap;
     guarded.stop_newton = c.stop_nN * 1e-9;
+    guarded.late_s = guarded_lateness(guarded.cap_N_per_m, guarded.damping_N_s_per_m,
+                                      scene.device.inertia_kg, settings.delay_ticks);
     // Friction is lost twice on turning round, and the rest has to show (haptics/safety.h).
     settings.safety.frozen_newton = 2 + 2 * scene.device.friction_N;
     return settings;
@@ -222,12 +227,16 @@ private:
 
 Summary run_headless(const SceneDescription& scene, Simulation& simulation, Device& device,
                      const std::vector<std::string>& warnings, Recording* recording,
-                     const ProgressFunction& progress, const FrameClock& frames) {
+                     const ProgressFunction& progress, const FrameClock& frames,
+                     const TickFunction& watch, const EndFunction& is_over) {
     const auto ticks = static_cast<std::uint64_t>(std::ceil(scene.seconds / servo_tick_s - 1e-9));
     const auto ticks_per_step =
         static_cast<std::uint64_t>(std::lround(simulation.period_s / servo_tick_s));
     Statistics statistics(servo_tick_s);
     ActivityLog activity;
+    const ServoSettings servo =
+        build_servo_settings(scene, simulation, device.spec().half_workspace_m);
+    FeelLog feel(scene, servo);
     std::optional<JourneyLog> journey;
     if (simulation.flexible) journey.emplace(simulation);
 
@@ -237,8 +246,12 @@ Summary run_headless(const SceneDescription& scene, Simulation& simulation, Devi
         const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
         statistics.add_step(took.count(), report.finite);
         if (journey) journey->add(simulation);
-        if (report.settled)
-            activity.add(*report.settled, 1e6 * took.count(), scene.statics.budget_us);
+        if (!report.settled) {
+            feel.add_answer(report.touch);
+            return simulation.touch;
+        }
+        feel.add_step(*report.settled);
+        activity.add(*report.settled, 1e6 * took.count(), scene.statics.budget_us);
         return simulation.touch;
     };
     std::uint64_t done = 0, drawn = 0;
@@ -249,19 +262,20 @@ Summary run_headless(const SceneDescription& scene, Simulation& simulation, Devi
             ++drawn;
         }
         statistics.add(tick);
+        feel.add(tick);
         if (recording) recording->add(tick);
+        if (watch) watch(tick);
         ++done;
         if (progress && done % ticks_between_progress == 0 && done < ticks) {
             progress(static_cast<double>(done) / static_cast<double>(ticks));
         }
     };
-    run_lockstep({ticks, ticks_per_step},
-                 build_servo_settings(scene, simulation, device.spec().half_workspace_m), device,
-                 simulation.touch, step, on_tick);
+    run_lockstep({ticks, ticks_per_step}, servo, device, simulation.touch, step, on_tick, is_over);
 
     if (progress) progress(1);
     Summary summary = statistics.summary();
     summary.warnings = warnings;
+    summary.feel = feel.feel(summary.step_median_us);
     if (journey && simulation.flexible) {
         // Where molecules make room for each other, one may well be on either side of another.
         constexpr double on_top = 1;  // Å

@@ -4,6 +4,7 @@
 #include "haptics/hand.h"
 #include "haptics/servo.h"
 #include "scene/description.h"
+#include "session/lockstep.h"
 #include "session/recording.h"
 #include "session/statistics.h"
 #include "simulation/probe.h"
@@ -61,10 +62,13 @@ std::vector<std::string> list_warnings(const SceneDescription& scene, const Simu
 // Adds to the summary's warnings what went wrong in it.
 void warn_of_outcome(Summary& summary);
 
-// `warnings` are put at the head of the summary's. `recording` and `progress` may be null or empty,
-// and there need not be frames. The simulation ends where the run leaves it.
+// `warnings` are put at the head of the summary's. `recording`, `progress` and `watch`, which sees
+// every tick, may be null or empty, and there need not be frames. It ends after the scene's
+// seconds, or where `is_over`, asked after every tick, says so; the simulation ends where the run
+// leaves it.
 Summary run_headless(const SceneDescription& scene, Simulation& simulation, Device& device,
                      const std::vector<std::string>& warnings, Recording* recording,
-                     const ProgressFunction& progress, const FrameClock& frames = {});
+                     const ProgressFunction& progress, const FrameClock& frames = {},
+                     const TickFunction& watch = {}, const EndFunction& is_over = {});
 
 }  // namespace palpa

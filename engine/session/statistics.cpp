@@ -31,11 +31,12 @@ SafetyStage trouble_of(const ServoTick& tick) {
 }  // namespace
 
 Statistics::Statistics(double tick_s) : tick_s_(tick_s), step_counts_(class_count, 0) {
-    recent_force_.resize(static_cast<std::size_t>(std::lround(ripple_window_s / tick_s)), 0.0);
+    for (std::vector<double>& axis : recent_force_)
+        axis.resize(static_cast<std::size_t>(std::lround(ripple_window_s / tick_s)), 0.0);
 }
 
 void Statistics::add(const ServoTick& tick) {
-    const Vec3& place = tick.touch.molecule_angstrom;
+    const Vec3& place = tick.touch.molecule.place_angstrom;
     const double distance = place.norm();
     if (running_.ticks == 0) {
         first_place_angstrom_ = place;
@@ -54,7 +55,9 @@ void Statistics::add(const ServoTick& tick) {
         ++safety_ticks_;
         running_.gravest = std::max(running_.gravest, trouble);
     }
-    recent_force_[running_.ticks % recent_force_.size()] = tick.sent_newton.x();
+    for (std::size_t axis = 0; axis < recent_force_.size(); ++axis)
+        recent_force_[axis][running_.ticks % recent_force_[axis].size()] =
+            tick.sent_newton(static_cast<Eigen::Index>(axis));
     ++running_.ticks;
 }
 
@@ -68,14 +71,17 @@ Summary Statistics::summary() const {
     Summary summary = running_;
     summary.step_median_us = quantile_us(0.5);
     summary.step_p99_us = quantile_us(0.99);
-    std::vector<double> force = recent_force_;
-    const auto oldest = static_cast<std::ptrdiff_t>(running_.ticks % force.size());
-    if (running_.ticks >= force.size()) {
-        std::rotate(force.begin(), force.begin() + oldest, force.end());
-    } else {
-        force.resize(running_.ticks);
+    for (std::vector<double> force : recent_force_) {
+        const auto oldest = static_cast<std::ptrdiff_t>(running_.ticks % force.size());
+        if (running_.ticks >= force.size()) {
+            std::rotate(force.begin(), force.begin() + oldest, force.end());
+        } else {
+            force.resize(running_.ticks);
+        }
+        const std::optional<Ripple> ripple = measure_ripple(force, tick_s_);
+        if (ripple && (!summary.ripple || ripple->rms > summary.ripple->rms))
+            summary.ripple = ripple;
     }
-    summary.ripple = measure_ripple(force, tick_s_);
     if (summary.ticks > 0) {
         summary.clamped_share =
             static_cast<double>(clamped_ticks_) / static_cast<double>(summary.ticks);

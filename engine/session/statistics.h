@@ -1,9 +1,11 @@
 // What is worth knowing of a run, gathered tick by tick.
 #pragma once
 #include "haptics/servo.h"
+#include "session/feel.h"
 #include "session/journey.h"
 #include "session/ripple.h"
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -22,20 +24,21 @@ struct Activity {
 };
 
 struct Summary {
+    std::string device = "emulated Omni";
     std::uint64_t ticks = 0, steps = 0;
     std::uint64_t steps_not_finite = 0;
     // Sums of forces since the scene was loaded, and those that fast pairs left to double. 0 where
     // nothing moves by itself.
     std::uint64_t sums = 0, sums_in_double = 0;
     double step_median_us = 0, step_p99_us = 0;  // wall time
-    std::optional<Ripple> ripple;                // of the device force along x, last 4 s
-    double net_work_J = 0;                       // done on the hand; + = generated
-    double largest_attraction_N = 0;             // felt, along -x
-    double largest_repulsion_N = 0;              // felt, along +x
-    double closest_angstrom = 0;                 // smallest distance of the reference atoms
-    double last_angstrom = 0;                    // negative on the other side
-    bool went_through = false;                   // the molecule came out on the other side
-    double clamped_share = 0;                    // of the time
+    std::optional<Ripple> ripple;  // of the device force, along the axis where it is most, last 4 s
+    double net_work_J = 0;         // done on the hand; + = generated
+    double largest_attraction_N = 0;  // felt, along -x
+    double largest_repulsion_N = 0;   // felt, along +x
+    double closest_angstrom = 0;      // smallest distance of the reference atoms
+    double last_angstrom = 0;         // negative on the other side
+    bool went_through = false;        // the molecule came out on the other side
+    double clamped_share = 0;         // of the time
     // Of the time in which something was wrong that held the force back, and the gravest of that.
     double safety_share = 0;
     SafetyStage gravest = SafetyStage::None;
@@ -43,6 +46,7 @@ struct Summary {
     std::uint64_t overruns = 0;      // servo ticks that came too late; none in lockstep
     std::optional<Journey> journey;  // in space, where something moves by itself
     std::optional<Activity> activity;
+    std::optional<Feel> feel;  // where the scene says what must be felt
     std::vector<std::string> warnings;
 };
 
@@ -64,8 +68,8 @@ private:
     Summary running_;
     Vec3 first_place_angstrom_ = Vec3::Zero();
     std::uint64_t clamped_ticks_ = 0, safety_ticks_ = 0;
-    std::vector<double> recent_force_;        // along x, N: a ring of the last 4 s
-    std::vector<std::uint64_t> step_counts_;  // of step times, in classes 1 % wide
+    std::array<std::vector<double>, 3> recent_force_;  // by axis, N: a ring of the last 4 s
+    std::vector<std::uint64_t> step_counts_;           // of step times, in classes 1 % wide
 };
 
 }  // namespace palpa

@@ -16,12 +16,13 @@ struct Molecule {
     std::uint32_t reference_atom = 0;  // index into the table; stands for the molecule's place
 };
 
-// A rigid molecule that may be moved along x or in space, and does not turn. Places are its
-// reference atom's, from that of the molecule which the hand measures from.
+// A molecule that the handle moves, along x or in space, and may turn. Places are its reference
+// atom's, from that of the molecule which the hand measures from.
 struct Guide {
-    int freedom = 1;                              // 1: along x, 3: in space
-    Mat3 projector = Vec3::UnitX().asDiagonal();  // onto what it may do
+    int freedom = 1;                              // 1: along x, 3: in space, 6: turned as well
+    Mat3 projector = Vec3::UnitX().asDiagonal();  // onto where it may go
     Vec3 place = Vec3::Zero();                    // Å
+    Quat orientation = Quat::Identity();          // about its reference atom, from the start's
 
     // The line on which the molecule is probed: along x through this place, where the distance is
     // 0. For a molecule on a line that is its counterpart, for one in space its place of rest, or
@@ -34,6 +35,7 @@ struct Grab {
     Entity molecule;
     Entity measured_from;
     Vec3 travel_m = Vec3::Zero();  // the handle's, up to the last step
+    Quat turn = Quat::Identity();  // and its turn
 };
 
 }  // namespace palpa

@@ -1,6 +1,7 @@
 #include "simulation/flexible.h"
 
 #include "core/text.h"
+#include "core/units.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -294,9 +295,11 @@ std::vector<double> find_lightness(const TorsionModel& model) {
     return lightness;
 }
 
-bool is_adaptive(const StaticsDescription& s, const TorsionModel& model) {
+bool is_adaptive(const SceneDescription& scene, const TorsionModel& model) {
+    const StaticsDescription& s = scene.statics;
     return s.method == StaticsMethod::QuasiStatic &&
-           (s.active < model.coordinates || s.budget_us.has_value());
+           (s.active < model.coordinates || s.budget_us.has_value() ||
+            scene.coupling.feel_within_pN.has_value());
 }
 
 // What is held.
@@ -320,6 +323,7 @@ void update_factors(const Flexible& flexible, FewActive& few) {
     std::vector<double>& factors = few.settings.factors;
     if (!few.statics.is_built && !flexible.state.tether) {
         factors = few.lightness;
+        few.near_to.reset();
         return;
     }
     const Ball ball = find_held_ball(flexible, few);
@@ -339,9 +343,15 @@ void update_factors(const Flexible& flexible, FewActive& few) {
 // Before a choice.
 void prepare_choice(const Flexible& flexible, FewActive& few) {
     if (few.is_near_hand) update_factors(flexible, few);
+    std::size_t most = static_cast<std::size_t>(flexible.model.coordinates);
+    if (few.exactness) {
+        const Effort& effort = few.exactness->effort();
+        most = few.settings.limits.degrees_of_freedom = effort.active;
+        // More steps are of the same moment, in which no others have to be chosen.
+        few.settings.choose_every = few.choose_every * effort.steps / flexible.settings.steps;
+    }
     if (!few.budget) return;
-    few.settings.limits.degrees_of_freedom =
-        few.budget->find_freedom(static_cast<std::size_t>(flexible.model.coordinates));
+    few.settings.limits.degrees_of_freedom = few.budget->find_freedom(most);
     // The budget is for as many quasi-static steps as make one of the simulation.
     const std::size_t together = flexible.settings.steps, usual = few.choose_every;
     few.settings.choose_every =
@@ -364,6 +374,32 @@ void take_back(Flexible& flexible, FewActive& few) {
     (void)update_adaptive_forces(flexible.model, few.settings, state, few.statics);
 }
 
+// An audit begins where its share of the work allows, or goes on. In a time budget it makes one
+// step in each of the simulation's, else all at once.
+void update_audit(const Flexible& flexible, FewActive& few, SettleReport& report) {
+    if (!few.exactness) return;
+    constexpr double newton_per_pN = 1e-12, settled = 0.05;
+    constexpr double kcal = newton_per_pN / units::newton_per_kcal_per_mol_angstrom;
+    Exactness& exactness = *few.exactness;
+    Audit& audit = few.audit;
+    exactness.add_step({report.active, report.steps});
+    if (!audit.is_under_way) {
+        if (!exactness.is_due()) return;
+        start_audit(flexible.model, few.settings.step, flexible.state,
+                    std::max(few.statics.h, few.settings.step.first_h),
+                    few.told.value_or(find_force_on_held(flexible)), flexible.grabbed, audit);
+    }
+    report.is_audited = true;
+    const AuditLimits limits{settled * exactness.tolerance() * kcal, Exactness::audit_steps};
+    do {
+        if (audit.is_under_way)
+            step_audit(flexible.model, few.settings.step, flexible.grabbed, limits, audit);
+    } while (audit.is_under_way && !exactness.has_budget());
+    if (audit.is_under_way || !audit.is_finite) return;
+    report.audited_pN = (audit.told - audit.found).norm() / kcal;
+    exactness.add_audit(*report.audited_pN, audit.told / kcal, audit.steps);
+}
+
 SettleReport step_adaptively(Flexible& flexible, FewActive& few) {
     const TorsionModel& model = flexible.model;
     const AdaptiveSettings& settings = few.settings;
@@ -374,7 +410,10 @@ SettleReport step_adaptively(Flexible& flexible, FewActive& few) {
     const double before = state.energy();
     report.is_finite = update_adaptive_forces(model, settings, state, statics);
     report.hand_work = state.energy() - before;
-    for (std::size_t i = 0; i < flexible.settings.steps && report.is_finite; ++i) {
+    report.steps = few.exactness ? few.exactness->effort().steps : flexible.settings.steps;
+    // Many steps where all is at rest leave nothing of h but what rounding did not take.
+    if (few.exactness) statics.h = std::max(statics.h, settings.step.first_h);
+    for (std::size_t i = 0; i < report.steps && report.is_finite; ++i) {
         if (statics.steps_since_choice >= settings.choose_every) prepare_choice(flexible, few);
         const AdaptiveReport step = step_adaptive(model, settings, state, statics);
         report.is_finite = step.step.is_finite;
@@ -390,6 +429,7 @@ SettleReport step_adaptively(Flexible& flexible, FewActive& few) {
     report.is_finite = report.is_finite && std::isfinite(state.energy());
     if (report.is_finite) {
         keep_held(flexible, few);
+        update_audit(flexible, few, report);
     } else {
         take_back(flexible, few);
     }
@@ -457,7 +497,7 @@ Flexible build_flexible(const SceneDescription& scene, TorsionModel model, std::
         result.state.tether->place =
             find_tethered(result.model, *result.state.tether, result.state.positions);
     }
-    if (is_adaptive(scene.statics, result.model)) {
+    if (is_adaptive(scene, result.model)) {
         FewActive& few = result.adaptive.emplace();
         few.settings = build_adaptive_settings(scene.statics, result.settings.step);
         few.statics = build_adaptive_statics(result.model);
@@ -471,6 +511,11 @@ Flexible build_flexible(const SceneDescription& scene, TorsionModel model, std::
         }
         few.choose_every = few.settings.choose_every;
         if (scene.statics.budget_us) few.budget.emplace(*scene.statics.budget_us);
+        if (const auto within_pN = scene.coupling.feel_within_pN) {
+            few.exactness.emplace(
+                *within_pN, Effort{few.settings.limits.degrees_of_freedom, result.settings.steps},
+                static_cast<std::size_t>(result.model.coordinates), few.budget.has_value());
+        }
     }
     start_flexible(result);
     return result;
@@ -532,6 +577,7 @@ SettleReport step_flexible(Flexible& flexible) {
     }
     report.evaluations = flexible.statics.memory.evaluations - evaluations;
     report.active = static_cast<std::size_t>(model.coordinates);
+    report.steps = settings.steps;
     report.is_finite = report.is_finite && std::isfinite(state.energy());
     if (!report.is_finite) {
         state = flexible.safe;
@@ -549,6 +595,7 @@ std::size_t find_active_freedom(const Flexible& flexible) noexcept {
 
 void note_time(Flexible& flexible, const SettleReport& report, double took_us) noexcept {
     if (!flexible.adaptive || !flexible.adaptive->budget) return;
+    if (report.is_audited) return;
     TimeBudget& budget = *flexible.adaptive->budget;
     if (report.is_chosen || report.is_renewed) {
         budget.add_choice(took_us);
@@ -568,6 +615,12 @@ Vec6 find_pull_on_held(const Flexible& flexible) noexcept {
         wrench.tail<3>() += flexible.state.forces[i];
     }
     return wrench;
+}
+
+Vec3 find_force_on_held(const Flexible& flexible) noexcept {
+    if (flexible.adaptive && !flexible.state.tether)
+        return find_wrench_on(flexible.adaptive->statics, flexible.grabbed).tail<3>();
+    return find_force_on_held(flexible.model, flexible.state, flexible.grabbed);
 }
 
 void copy_positions(Flexible& flexible, std::vector<Vec3>& positions) {

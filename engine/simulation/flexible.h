@@ -4,6 +4,7 @@
 #include "molecule/atoms.h"
 #include "molecule/connectivity.h"
 #include "scene/description.h"
+#include "simulation/exactness.h"
 #include "statics/adaptive_step.h"
 #include "statics/relax_joints.h"
 #include "statics/time_budget.h"
@@ -29,11 +30,17 @@ struct Ball {
     double radius;
 };
 
-// Of a scene in which not everything is active at a time.
+// Of a scene in which not everything is active at a time, or that says how exact it must be.
 struct FewActive {
     AdaptiveSettings settings;
     AdaptiveStatics statics;
     std::optional<TimeBudget> budget;
+    // Where the scene says how exact forces must be, and what finds out.
+    std::optional<Exactness> exactness;
+    Audit audit;
+    // The caller's, before a step: what the hand was told where it now is, kcal/mol/Å; nothing:
+    // what the step itself tells.
+    std::optional<Vec3> told;
     std::size_t choose_every = 0;  // steps, as the scene says
     // How much each joint counts for what it moves; empty where all do alike. And whether what is
     // near to the hand counts more, and around what that was found last.
@@ -91,6 +98,11 @@ struct [[nodiscard]] SettleReport {
     double largest_move = 0;   // of any atom, Å
     std::size_t evaluations = 0;
     std::size_t active = 0;  // degrees of freedom that could move
+    std::size_t steps = 0;   // towards rest
+    // How far the force on the hand was from what all joints give (pN), where an audit ended in
+    // this step; whether it was one of an audit's.
+    std::optional<double> audited_pN;
+    bool is_audited = false;
     // The metric of everything at the last choice, and of what was not chosen: weighted squares of
     // accelerations.
     double total = 0, neglected = 0;
@@ -110,6 +122,9 @@ std::size_t find_active_freedom(const Flexible& flexible) noexcept;
 
 // Force and torque about the origin on the molecule that the hand moves, from all others.
 Vec6 find_pull_on_held(const Flexible& flexible) noexcept;
+
+// What pulls at the hand, kcal/mol/Å: that on the molecule it moves, or its spring.
+Vec3 find_force_on_held(const Flexible& flexible) noexcept;
 
 // The places of atoms in the scene's table, those that have changed since `positions` were written
 // the last time.

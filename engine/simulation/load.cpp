@@ -239,6 +239,10 @@ namespace {
 
 ForceLaw guarded_force_law(const CouplingDescription& c,
                            const PrintedForceLaw::Parameters& parameters) {
+    if (const auto range = c.feel_pN) {
+        const auto [weakest_pN, strongest_pN] = *range;
+        return PerceptualForceLaw::for_range(weakest_pN * 1e-12, strongest_pN * 1e-12);
+    }
     switch (c.force_law) {
         case ForceLawChoice::Printed:
             break;
@@ -284,7 +288,8 @@ void check_laws(const SceneDescription& scene) {
 }  // namespace
 
 bool can_build_laws(const CouplingDescription& c) {
-    return c.mode != CouplingMode::Guarded || c.force_law != ForceLawChoice::Calibrated ||
+    return c.mode != CouplingMode::Guarded || c.feel_pN.has_value() ||
+           c.force_law != ForceLawChoice::Calibrated ||
            PrintedForceLaw::find_calibrated(force_parameters(c)).has_value();
 }
 
@@ -318,6 +323,11 @@ CouplingLaws build_coupling_laws(const CouplingDescription& c) {
 void set_coupling(const CouplingDescription& coupling, Simulation& simulation) {
     simulation.laws = build_coupling_laws(coupling);
     simulation.is_guarded = coupling.mode == CouplingMode::Guarded;
+    if (simulation.flexible && simulation.flexible->adaptive) {
+        std::optional<Exactness>& exactness = simulation.flexible->adaptive->exactness;
+        if (exactness && coupling.feel_within_pN)
+            exactness->set_tolerance(*coupling.feel_within_pN);
+    }
     simulation.pairs_per_tick = static_cast<std::size_t>(coupling.pairs_per_tick);
     update_near(simulation);
     const std::uint32_t start = simulation.touch.model.start;
@@ -344,9 +354,13 @@ Simulation load_simulation(const SceneDescription& scene, const RelaxProgressFun
     }
     simulation.hand = simulation.world.create();
     simulation.world.set(simulation.hand, grab);
-    const bool on_line = molecules.front()->motion == Motion::AlongX;
-    simulation.world.set(grab.molecule,
-                         on_line ? Guide{} : Guide{.freedom = 3, .projector = Mat3::Identity()});
+    const Motion motion = molecules.front()->motion;
+    Guide guide;
+    if (motion != Motion::AlongX) {
+        guide.freedom = motion == Motion::WithHandle ? 6 : 3;
+        guide.projector = Mat3::Identity();
+    }
+    simulation.world.set(grab.molecule, guide);
     simulation.replaced_pairs = build_replaced_pairs(force_field, simulation.atoms.type_names);
     if (scene.has_statics()) {
         load_flexible(scene, force_field, files, molecules, entities, on_relax, simulation);

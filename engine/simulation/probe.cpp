@@ -47,7 +47,7 @@ double bisect(const Simulation& simulation, double level, double inside, double 
 }  // namespace
 
 bool moves_in_space(const Simulation& simulation) noexcept {
-    return grabbed_guide(simulation).freedom == 3;
+    return grabbed_guide(simulation).freedom != 1;
 }
 
 Vec3 grabbed_place(const Simulation& simulation) noexcept {
@@ -57,20 +57,27 @@ Vec3 grabbed_place(const Simulation& simulation) noexcept {
     return simulation.atoms.positions[grabbed->reference_atom];
 }
 
-void place_grabbed(Simulation& simulation, const Vec3& place) noexcept {
+void place_grabbed(Simulation& simulation, const MoleculePose& pose) noexcept {
     const Grab* const grab = simulation.world.find<Grab>(simulation.hand);
     const Molecule* const grabbed = simulation.world.find<Molecule>(grab->molecule);
-    simulation.world.find<Guide>(grab->molecule)->place = place;
-    const Vec3 reference = simulation.anchor + place;
+    Guide* const guide = simulation.world.find<Guide>(grab->molecule);
+    guide->place = pose.place_angstrom;
+    guide->orientation = pose.orientation;
+    const Vec3 reference = simulation.anchor + pose.place_angstrom;
     if (simulation.flexible) {
         move_held(*simulation.flexible, reference - find_held(*simulation.flexible));
         copy_positions(*simulation.flexible, simulation.atoms.positions);
         return;
     }
+    const Mat3 turn = pose.orientation.toRotationMatrix();
     for (std::size_t i = 0; i < simulation.grabbed_shape.size(); ++i) {
         simulation.atoms.positions[grabbed->atoms.first + i] =
-            reference + simulation.grabbed_shape[i];
+            reference + turn * simulation.grabbed_shape[i];
     }
+}
+
+void place_grabbed(Simulation& simulation, const Vec3& place) noexcept {
+    place_grabbed(simulation, MoleculePose{place, grabbed_guide(simulation).orientation});
 }
 
 void move_grabbed(Simulation& simulation, double distance) noexcept {

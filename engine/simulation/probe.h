@@ -21,8 +21,10 @@ bool moves_in_space(const Simulation& simulation) noexcept;
 // in the world).
 Vec3 grabbed_place(const Simulation& simulation) noexcept;
 
-// Puts the grabbed molecule's reference atom at that place (Å) from its counterpart's, or at that
-// distance (Å) along its line; and tells the distance, wherever beside the line it is.
+// Puts the grabbed molecule's reference atom at that place (Å) from its counterpart's, turned about
+// it as told or as it is, or at that distance (Å) along its line; and tells the distance, wherever
+// beside the line it is. What moves by itself is not turned.
+void place_grabbed(Simulation& simulation, const MoleculePose& pose) noexcept;
 void place_grabbed(Simulation& simulation, const Vec3& place) noexcept;
 void move_grabbed(Simulation& simulation, double distance) noexcept;
 double grabbed_distance(const Simulation& simulation) noexcept;

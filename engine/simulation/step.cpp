@@ -12,9 +12,9 @@
 namespace palpa {
 namespace {
 
-// How far the grabbed molecule goes, and the gain that decided it.
+// Where the grabbed molecule goes, and the gain that decided it.
 struct Move {
-    Vec3 by = Vec3::Zero();  // Å
+    MoleculePose to;
     double displacement_gain = 0;
 };
 
@@ -22,13 +22,31 @@ Move find_move(const Simulation& simulation, const HandPose& hand, const TouchMo
                const Grab& grab, const Guide& guide) noexcept {
     const double gain = displacement_gain(simulation.laws.displacement, felt.force_newton.norm());
     const Vec3 handle_m = guide.projector * (hand.travel_m - grab.travel_m);
-    return {handle_m / gain * units::angstrom_per_metre, gain};
+    Move move{{guide.place + handle_m / gain * units::angstrom_per_metre, guide.orientation}, gain};
+    if (guide.freedom == 6) {
+        const Quat turned = hand.turn * grab.turn.conjugate();
+        move.to.orientation = (turned * guide.orientation).normalized();
+    }
+    return move;
+}
+
+// Audits ask about what the servo told where the hand is, in the field of the step before.
+void note_told(Simulation& simulation, const HandPose& hand) noexcept {
+    if (!simulation.flexible || !simulation.flexible->adaptive) return;
+    FewActive& few = *simulation.flexible->adaptive;
+    few.told.reset();
+    if (!few.exactness || !hand.molecule) return;
+    const Touch& touch = simulation.touch;
+    few.told = evaluate_local(touch.model, touch.field, *hand.molecule).force_newton /
+               units::newton_per_kcal_per_mol_angstrom;
 }
 
 }  // namespace
 
 void take_hold(Simulation& simulation, const HandPose& hand) noexcept {
-    simulation.world.find<Grab>(simulation.hand)->travel_m = hand.travel_m;
+    Grab* const grab = simulation.world.find<Grab>(simulation.hand);
+    grab->travel_m = hand.travel_m;
+    grab->turn = hand.turn;
 }
 
 StepReport step_simulation(Simulation& simulation, const HandPose& hand,
@@ -36,20 +54,20 @@ StepReport step_simulation(Simulation& simulation, const HandPose& hand,
     const auto begin = std::chrono::steady_clock::now();
     Grab* const grab = simulation.world.find<Grab>(simulation.hand);
     const Guide* const guide = simulation.world.find<Guide>(grab->molecule);
-    const Vec3 before = guide->place;
-    const Move move = hand.place_angstrom ? Move{*hand.place_angstrom - before, 0}
-                                          : find_move(simulation, hand, felt, *grab, *guide);
-    const Vec3 place = before + move.by;
-    grab->travel_m = hand.travel_m;
+    const MoleculePose before{guide->place, guide->orientation};
+    const Move move =
+        hand.molecule ? Move{*hand.molecule} : find_move(simulation, hand, felt, *grab, *guide);
+    take_hold(simulation, hand);
     StepReport report;
-    if (!place.allFinite()) {
+    if (!move.to.place_angstrom.allFinite() || !move.to.orientation.coeffs().allFinite()) {
         report.touch = felt;
         report.finite = false;
         return report;
     }
 
-    report.move = move.by.norm();
-    place_grabbed(simulation, place);
+    report.move = (move.to.place_angstrom - before.place_angstrom).norm();
+    note_told(simulation, hand);
+    place_grabbed(simulation, move.to);
     if (simulation.flexible) {
         report.settled = step_flexible(*simulation.flexible);
         copy_positions(*simulation.flexible, simulation.atoms.positions);
@@ -57,7 +75,7 @@ StepReport step_simulation(Simulation& simulation, const HandPose& hand,
     }
     if (!report.finite) place_grabbed(simulation, before);
     update_touch(hand, simulation);
-    if (!hand.place_angstrom) simulation.touch.model.displacement_gain = move.displacement_gain;
+    if (!hand.molecule) simulation.touch.model.displacement_gain = move.displacement_gain;
     report.touch = simulation.touch.model;
     report.finite = report.finite && report.touch.force_newton.allFinite();
     if (!report.finite) place_grabbed(simulation, before);

@@ -137,8 +137,9 @@ TouchModel build_model(const Simulation& simulation, const HandPose& hand, const
     const Guide& guide = guide_of(simulation);
     TouchModel touch;
     touch.time_s = hand.time_s;
-    touch.molecule_angstrom = guide.place;
+    touch.molecule = {guide.place, guide.orientation};
     touch.projector = guide.projector;
+    touch.turns_with_handle = guide.freedom == 6;
     touch.force_newton = guide.projector * pull.force * units::newton_per_kcal_per_mol_angstrom;
     touch.torque_newton_metre = pull.torque * units::joule_per_kcal_per_mol;
     touch.stiffness_matrix_N_per_m = guide.projector * pull.stiffness * guide.projector *
@@ -197,6 +198,9 @@ Touch build_touch(const Simulation& simulation, const HandPose& hand) noexcept {
     }
     if (simulation.is_guarded || simulation.flexible) touch.field = build_local_field(simulation);
     touch.field.centre = centre_of_mass(simulation.atoms, grabbed_atoms(simulation));
+    touch.field.pivot = grabbed_place(simulation);
+    for (const Vec3& place : touch.field.group)
+        touch.field.radius = std::max(touch.field.radius, (place - touch.field.pivot).norm());
     touch.model = build_model(simulation, hand, find_pull(simulation, touch.field));
     touch.model.clearance_angstrom = touch.field.there.clearance;
     return touch;

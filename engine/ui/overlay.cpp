@@ -92,7 +92,7 @@ void Overlay::add_tick(const ServoTick& tick) {
     has_tick_ = true;
     last_ = reading;
     if (tick.touch.active_freedom == 1) {
-        const double side = tick.touch.molecule_angstrom.x();
+        const double side = tick.touch.molecule.place_angstrom.x();
         if (side_ == 0) side_ = side;
         went_through_ = side * side_ < 0;
     }
@@ -101,6 +101,7 @@ void Overlay::add_tick(const ServoTick& tick) {
     stage_ = tick.stage;
     reason_ = tick.reason;
     felt_N_per_m_ = tick.felt_N_per_m;
+    raised_ = tick.raised;
     hand_energy_J_ = tick.hand_energy_J;
     kept_m_ = tick.kept_m.norm();
     force_gain_ = tick.force_gain;
@@ -270,6 +271,13 @@ void Overlay::draw_readings(const Readout& readout, const OverlayStatus& status)
                     : "|F_m|, nN, on the molecule in hand");
     reading("force, hand", fmt::format("{:+.3f} N", last_.hand_N),
             "F_h = f(F_m), N, as sent to the device; eq. 2 of the paper in modes 1 and 2");
+    if (!on_axis) {
+        reading(
+            "torque",
+            fmt::format("{:.3g} nN Å, not played", 1e19 * touch.torque_newton_metre.norm()),
+            "on the molecule in hand about its centre of mass; no motor plays it, so a molecule "
+            "that is turned between the way in and the way out can give the hand energy");
+    }
     reading("force gain", fmt::format("{:.3g}", force_gain_), "A_f = F_h/F_m, N/N");
     reading("displ. gain",
             fmt::format("{:.3g}  ({:.2f} cm/Å)", last_.displacement_gain,
@@ -291,6 +299,7 @@ void Overlay::draw_readings(const Readout& readout, const OverlayStatus& status)
                 "handle travel that the molecule did not follow, since an atom would be pushed too "
                 "hard (coupling.stop_nN); it is felt, and has to be given back");
     }
+    draw_exactness(readout);
     reading("energy", fmt::format("{:.3f} kcal/mol", touch.potential_kcal_per_mol),
             "of the molecule in hand with all others: Lennard-Jones and Coulomb, kcal/mol");
     reading("moving",
@@ -313,6 +322,29 @@ void Overlay::draw_readings(const Readout& readout, const OverlayStatus& status)
             "/etc/security/limits.conf.");
     ImGui::EndTable();
     ImGui::TextDisabled("%s", status.gpu_name.c_str());
+}
+
+void Overlay::draw_exactness(const Readout& readout) {
+    const CouplingDescription& c = settings_.coupling;
+    if (const auto range = c.feel_pN; range && is_guarded()) {
+        reading("to be felt",
+                fmt::format("{:.4g} to {:.4g} pN, A_d x {:.2f}", (*range)[0], (*range)[1], raised_),
+                "molecular forces that are felt as 0.3 N or more and 2.7 N or less, and how much "
+                "A_d is raised at this moment so that the spring felt stays under its cap: by so "
+                "much less the molecule goes");
+    }
+    if (const auto within_pN = c.feel_within_pN; within_pN && readout.effort.steps > 0) {
+        const std::string error =
+            readout.error_pN ? fmt::format("{:.3g}", *readout.error_pN) : std::string("?");
+        reading("exact to",
+                fmt::format("{} of {:.4g} pN{}, {} active", error, *within_pN,
+                            readout.error_pN.value_or(0) > *within_pN ? ", gives way" : "",
+                            readout.effort.active),
+                "how far nine of ten forces are, at most, from what all joints would give, as "
+                "found on a copy now and then, of what is asked; and how many degrees of freedom "
+                "are wanted for it. Where the period leaves no time for more, the force is less "
+                "exact than asked.");
+    }
 }
 
 void Overlay::draw_gains(std::vector<Command>& commands) {
@@ -384,6 +416,7 @@ void Overlay::remember_edit(const LiveSettings& before) {
 void Overlay::draw_gain_sliders() {
     CouplingDescription& c = settings_.coupling;
     if (is_guarded()) choose_laws();
+    const bool has_range = is_guarded() && c.feel_pN.has_value();
     const bool is_perceptual = is_guarded() && c.force_law == ForceLawChoice::Perceptual;
     const bool variable_force =
         is_guarded()
@@ -394,7 +427,9 @@ void Overlay::draw_gain_sliders() {
         is_guarded() ? c.displacement_law != DisplacementLawChoice::Constant
                      : c.mode == CouplingMode::VariableForceVariableDisplacement ||
                            c.mode == CouplingMode::ConstantForceVariableDisplacement;
-    if (is_perceptual) {
+    if (has_range) {
+        // Its sliders stand below.
+    } else if (is_perceptual) {
         slide("F_lo", c.F_lo_pN, 1, 1000, "%.0f pN", true,
               "molecular force that is felt as 0.3 N, pN; the law is linear below");
         slide("F_hi", c.F_hi_nN, 0.1, 100, "%.2f nN", true,
@@ -429,6 +464,7 @@ void Overlay::draw_gain_sliders() {
         slide("A_d", c.A_d, 0.005e9, 10e9, "%.3g", true,
               "constant displacement gain, handle metres per molecule metre; 0.25e9 is 2.5 cm/Å");
     }
+    if (is_guarded()) choose_range();
 }
 
 void Overlay::choose_laws() {
@@ -456,10 +492,40 @@ void Overlay::choose_laws() {
            "noticeable steps for each decade");
     choose("travel", displacement_law_names, c.displacement_law,
            "displacement law: eq. 3 that sees stiff places too, as printed, or a constant gain");
+    choose("raised", gain_shape_names, c.gain_shape,
+           "where A_d is raised for the cap: in all directions, or, a tensor, in those that are "
+           "stiff, so that sliding along a wall goes faster");
     choose("reach", workspace_names, c.workspace,
            "how far places are reached: the clutch alone; outside a bubble the molecule goes on by "
            "itself; or the handle drifts back to its centre while it moves");
     ImGui::TreePop();
+}
+
+void Overlay::choose_range() {
+    constexpr double lowest_pN = 1, highest_pN = 1e5, least_ratio = 1.1, least_clamp_newton = 3;
+    CouplingDescription& c = settings_.coupling;
+    const LiveSettings before = settings_;
+    bool has_range = c.feel_pN.has_value();
+    if (c.clamp_N >= least_clamp_newton && ImGui::Checkbox("feel a range", &has_range)) {
+        undo_.push_back(before);
+        redo_.clear();
+        c.feel_pN.reset();
+        if (has_range) c.feel_pN = {c.F_lo_pN, 1e3 * c.F_hi_nN};
+    }
+    tip("what must be felt, in place of a force law: the weakest force as 0.3 N, the strongest as "
+        "2.7 N");
+    if (c.feel_pN) {
+        auto& [weakest, strongest] = *c.feel_pN;
+        slide("weakest", weakest, lowest_pN, highest_pN, "%.0f pN", true,
+              "molecular force that is felt as 0.3 N or more");
+        slide("strongest", strongest, lowest_pN, highest_pN, "%.0f pN", true,
+              "molecular force that is felt as 2.7 N");
+        strongest = std::max(strongest, least_ratio * weakest);
+    }
+    if (c.feel_within_pN) {
+        slide("within", *c.feel_within_pN, lowest_pN, highest_pN, "%.0f pN", true,
+              "how far forces may be from what all joints would give; active joints follow");
+    }
 }
 
 void Overlay::draw_history() {

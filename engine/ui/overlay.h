@@ -49,9 +49,11 @@ private:
     void draw_scene(const Readout& readout, const OverlayStatus& status,
                     std::vector<Command>& commands, std::vector<Action>& actions);
     void draw_readings(const Readout& readout, const OverlayStatus& status);
+    void draw_exactness(const Readout& readout);
     void draw_gains(std::vector<Command>& commands);
     void draw_gain_sliders();
     void choose_laws();
+    void choose_range();
     void draw_history();
     void draw_lesson();
     void draw_warnings(const Readout& readout, const OverlayStatus& status);
@@ -80,7 +82,7 @@ private:
     Reading last_;
     bool has_tick_ = false, clamped_ = false, stopped_ = false;
     SafetyStage stage_ = SafetyStage::None, reason_ = SafetyStage::None;
-    double felt_N_per_m_ = 0, hand_energy_J_ = 0, kept_m_ = 0;
+    double felt_N_per_m_ = 0, raised_ = 1, hand_energy_J_ = 0, kept_m_ = 0;
     double side_ = 0;  // of the counterpart, on one axis, where the molecule began
     bool went_through_ = false;
     bool wants_pause_ = false;

@@ -31,7 +31,7 @@ struct Live {
         EmulatedOmniSettings settings;
         settings.hand = hand_model(Grip::Medium);
         settings.orders = orders;
-        settings.live = true;
+        settings.driver = HandDriver::Mouse;
         settings.half_workspace_m = Vec3::Constant(0.5);
         return settings;
     }
@@ -57,7 +57,7 @@ struct Live {
         const std::uint64_t from = frame.readout.steps;
         return wait_until([&](const LiveFrame& f) { return f.readout.steps >= from + more; });
     }
-    double distance() const { return frame.readout.touch.molecule_angstrom.x(); }
+    double distance() const { return frame.readout.touch.molecule.place_angstrom.x(); }
 
     HandOrders orders;
     EmulatedOmni device;

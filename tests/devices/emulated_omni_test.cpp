@@ -157,7 +157,7 @@ TEST_CASE("a live hand takes the handle where the mouse is, in three dimensions"
     EmulatedOmniSettings settings = bare();
     settings.hand = hand_model(Grip::Medium);
     settings.orders = &orders;
-    settings.live = true;
+    settings.driver = HandDriver::Mouse;
     settings.half_workspace_m = Vec3::Constant(0.5);
     EmulatedOmni omni(settings);
     const Vec3 target(0.2, -0.1, 0.15);
@@ -185,7 +185,7 @@ TEST_CASE("however far the mouse is, a live hand pulls less than the clamp, and 
     EmulatedOmniSettings settings = bare();
     settings.hand = hand_model(Grip::Medium);
     settings.orders = &orders;
-    settings.live = true;
+    settings.driver = HandDriver::Mouse;
     settings.half_workspace_m = Vec3::Constant(0.5);
     EmulatedOmni omni(settings);
     orders.post({Vec3(1, 0, 0)});
@@ -273,4 +273,28 @@ TEST_CASE("a hand that lets go behind a grip follows the handle, and pulls it no
     play(omni, Vec3(-1, 0, 0), 500);
     play(omni, Vec3::Zero(), 3000);
     CHECK(omni.true_position_m().x() < 0);
+}
+
+TEST_CASE("an operator's hand wants the place it is told at once, as a script's does",
+          "[devices][omni]") {
+    EmulatedOmniSettings settings = bare();
+    settings.hand = hand_model(Grip::Medium);
+    settings.script.path = {{0, 0}, {0.3, 0.05}};
+    EmulatedOmni scripted(settings);
+    HandOrders orders;
+    settings.driver = HandDriver::Operator;
+    settings.orders = &orders;
+    EmulatedOmni operated(settings);
+
+    double widest = 0;
+    for (int tick = 0; tick < 500; ++tick) {
+        // What the script wants by the end of the tick that begins.
+        orders.post({find_target(settings.script.path, tick * servo_tick_s).place_m});
+        play(scripted, Vec3(-0.5, 0, 0), 1);
+        play(operated, Vec3(-0.5, 0, 0), 1);
+        widest = std::max(widest, (scripted.true_position_m() - operated.true_position_m()).norm());
+    }
+
+    CHECK(widest < 1e-12);
+    CHECK(operated.true_position_m().x() > 0.04);
 }

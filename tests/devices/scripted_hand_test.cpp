@@ -1,5 +1,7 @@
 #include "devices/scripted_hand.h"
 
+#include "devices/emulated_omni.h"
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -14,17 +16,17 @@ constexpr double tick = 1e-3;
 
 TEST_CASE("a path inside the workspace is followed without the clutch", "[devices][hand]") {
     const HandScript script{.path = {{0.1, 0.05}, {1.1, -0.05}}};
-    ScriptedHand hand(script, 0.08);
+    ScriptedHand hand(script, omni_half_workspace_m);
     double fastest = 0;
 
-    CHECK(hand.start_m() == 0.05);
+    CHECK(hand.start_m().x() == 0.05);
     ScriptedHand::Wish wish;
     for (int i = 0; i < 1500; ++i) {
         wish = hand.step(tick);
         CHECK(wish.buttons == 0);
-        fastest = std::max(fastest, std::abs(wish.v_m_per_s));
+        fastest = std::max(fastest, std::abs(wish.m_per_s.x()));
     }
-    CHECK(wish.x_m == -0.05);
+    CHECK(wish.place_m.x() == -0.05);
     // Minimum jerk peaks at 15/8 of the mean speed.
     CHECK(fastest == Approx(0.1 * 15 / 8).epsilon(1e-3));
 }
@@ -33,17 +35,17 @@ TEST_CASE("a path longer than the workspace is walked in pieces, clutching betwe
           "[devices][hand]") {
     const double length = GENERATE(0.2, 0.5, -0.4);
     const HandScript script{.path = {{0.1, 0.02}, {2.1, 0.02 + length}}};
-    ScriptedHand hand(script, 0.08);
-    double before = hand.start_m(), travelled = 0, widest = 0;
+    ScriptedHand hand(script, omni_half_workspace_m);
+    double before = hand.start_m().x(), travelled = 0, widest = 0;
     int clutched_ticks = 0;
 
     for (int i = 0; i < 12'000; ++i) {
         const ScriptedHand::Wish wish = hand.step(tick);
         const bool clutched = is_pressed(wish.buttons, Button::Clutch);
-        if (!clutched) travelled += wish.x_m - before;
+        if (!clutched) travelled += wish.place_m.x() - before;
         if (clutched) ++clutched_ticks;
-        widest = std::max(widest, std::abs(wish.x_m));
-        before = wish.x_m;
+        widest = std::max(widest, std::abs(wish.place_m.x()));
+        before = wish.place_m.x();
     }
 
     CHECK(travelled == Approx(length).epsilon(1e-9));
@@ -54,7 +56,7 @@ TEST_CASE("a path longer than the workspace is walked in pieces, clutching betwe
 TEST_CASE("a kick gives its impulse within ten milliseconds after one second", "[devices][hand]") {
     HandScript script;
     script.kick_N_s = 0.005;
-    const ScriptedHand hand(script, 0.08);
+    const ScriptedHand hand(script, omni_half_workspace_m);
     double impulse = 0;
     int ticks = 0;
 
@@ -72,20 +74,71 @@ TEST_CASE("a kick gives its impulse within ten milliseconds after one second", "
 
 TEST_CASE("a path that begins outside of the workspace is begun at its edge", "[devices][hand]") {
     const HandScript script{.path = {{0.5, 0.2}, {2.5, 0.1}}};
-    ScriptedHand hand(script, 0.08);
+    ScriptedHand hand(script, omni_half_workspace_m);
 
-    CHECK(hand.start_m() == Approx(0.075));
+    CHECK(hand.start_m().x() == Approx(0.075));
     ScriptedHand::Wish wish;
     for (int i = 0; i < 4000; ++i) {
         wish = hand.step(tick);
         CHECK(wish.buttons == 0);
     }
-    CHECK(wish.x_m == Approx(0.075 - 0.1));
+    CHECK(wish.place_m.x() == Approx(0.075 - 0.1));
 }
 
 TEST_CASE("a clutch ends inside the workspace, from wherever it began", "[devices][hand]") {
     const HandScript script{.path = {{0.1, -0.06}, {0.6, 0.5}, {1.0, 0.5}, {1.6, -0.3}}};
-    ScriptedHand hand(script, 0.08);
+    ScriptedHand hand(script, omni_half_workspace_m);
 
-    for (int i = 0; i < 20'000; ++i) CHECK(std::abs(hand.step(tick).x_m) < 0.08);
+    for (int i = 0; i < 20'000; ++i) CHECK(std::abs(hand.step(tick).place_m.x()) < 0.08);
+}
+
+TEST_CASE("a hand that leads brings a molecule that follows to where its path says, clutching",
+          "[devices][hand]") {
+    // 30 Å along a diagonal at 0.1e9 are 300 mm of handle, most of them along x.
+    constexpr double angstrom = 1e-10, A_d = 0.1e9;
+    const HandScript script{.path = {{0.5, 0}, {20, 24 * angstrom, 18 * angstrom}}, .leads = true};
+    ScriptedHand hand(script, omni_half_workspace_m);
+    const Vec3 begin(7 * angstrom, 0, 0), end(24 * angstrom, 18 * angstrom, 0);
+    Vec3 molecule = begin, handle = hand.start_m();
+    int clutched_ticks = 0;
+
+    CHECK(hand.start_m().x() < -0.05);
+    for (int i = 0; i < 60'000; ++i) {
+        hand.see({molecule, A_d, handle});
+        const ScriptedHand::Wish wish = hand.step(tick);
+        const bool clutched = is_pressed(wish.buttons, Button::Clutch);
+        if (!clutched) molecule += (wish.place_m - handle) / A_d;
+        if (clutched) ++clutched_ticks;
+        handle = wish.place_m;
+        REQUIRE((handle.cwiseAbs() - omni_half_workspace_m).maxCoeff() < 0);
+    }
+
+    CHECK((molecule - begin - end).norm() < 0.01 * angstrom);
+    CHECK(clutched_ticks > 0);
+}
+
+TEST_CASE("a hand that leads waits for a molecule that does not come, and goes on where it does",
+          "[devices][hand]") {
+    constexpr double angstrom = 1e-10, most_ahead_m = 0.012;
+    const HandScript script{.path = {{0.5, 0}, {2, 20 * angstrom}}, .leads = true};
+    ScriptedHand hand(script, omni_half_workspace_m, most_ahead_m);
+    // Handle and molecule are stuck for ten seconds; then they follow.
+    Vec3 molecule = Vec3::Zero(), handle = hand.start_m();
+    double ahead = 0;
+    for (int i = 0; i < 10'000; ++i) {
+        hand.see({molecule, 0.02e9, handle});
+        ahead = (hand.step(tick).place_m - handle).norm();
+        REQUIRE(ahead < most_ahead_m * (1 + 1e-9));
+    }
+    CHECK(ahead == Approx(most_ahead_m));
+    double fastest = 0;
+    for (int i = 0; i < 10'000; ++i) {
+        hand.see({molecule, 0.02e9, handle});
+        const Vec3 wish = hand.step(tick).place_m;
+        molecule += (wish - handle) / 0.02e9;
+        if (i > 0) fastest = std::max(fastest, (wish - handle).norm() / tick);
+        handle = wish;
+    }
+    CHECK(molecule.x() == Approx(20 * angstrom).epsilon(1e-3));
+    CHECK(fastest < 0.081);
 }

@@ -142,16 +142,18 @@ TEST_CASE("the frozen field of nothing, or on nothing, is none", "[field][frozen
     CHECK(evaluate_frozen_field(on_none, none.positions).stiffness == Mat3(Mat3::Zero()));
 }
 
-TEST_CASE("a group that is moved feels what one that stands there feels", "[field][frozen]") {
+TEST_CASE("a group that is moved and turned feels what one that stands there feels",
+          "[field][frozen]") {
     std::mt19937 random(14);
     const PointSet environment = random_points(random, 4, 4, 4, Vec3::Zero());
     PointSet group = random_points(random, 2, 2, 2, Vec3(3, 3, 9));
     const FrozenField field =
         build_frozen_field(group.view(), environment.view(), {coulomb_constant});
-    const Vec3 shift(0.3, -0.2, 1);
+    RigidMotion motion = turn_about(Vec3(3, 3, 9), Vec3(0.6, 0, 0.8), 0.7);
+    motion.translation += Vec3(0.3, -0.2, 1);
 
-    const FrozenSum moved = evaluate_frozen_field(field, group.positions, shift);
-    for (Vec3& place : group.positions) place += shift;
+    const FrozenSum moved = evaluate_frozen_field(field, group.positions, motion);
+    for (Vec3& place : group.positions) place = motion * place;
     const FrozenSum there = evaluate_frozen_field(field, group.positions);
 
     CHECK((moved.force - there.force).norm() < 1e-5 * there.force.norm());

@@ -46,6 +46,10 @@ public:
     void optional_real(const Field& field, std::optional<double>& value) override {
         if (value) real(field, *value);
     }
+    void optional_pair(const Field& field, std::optional<std::array<double, 2>>& value) override {
+        if (!value) return;
+        for (double& number : *value) real(field, number);
+    }
     void triple(const Field& field, std::array<double, 3>& value) override {
         for (double& number : value) real(field, number);
     }
@@ -68,8 +72,12 @@ public:
     void files(const Field& /*field*/, std::vector<std::filesystem::path>& value) override {
         PALPA_EXPECT(!value.empty());
     }
-    void pairs(const Field& /*field*/, std::vector<std::array<double, 2>>& value) override {
-        for (const auto& [a, b] : value) PALPA_EXPECT(std::isfinite(a) && std::isfinite(b));
+    void path(const Field& /*field*/, std::vector<PathPoint>& value) override {
+        for (const auto& [time_s, place, turn] : value) {
+            PALPA_EXPECT(std::isfinite(time_s));
+            for (const double number : place) PALPA_EXPECT(std::isfinite(number));
+            for (const double number : turn) PALPA_EXPECT(std::isfinite(number));
+        }
     }
 };
 

@@ -41,8 +41,13 @@ Mat3 turned(const Vec3& eigenvalues, const Eigen::Quaterniond& turn) {
 }
 
 std::vector<ForceLaw> force_laws() {
-    return {PrintedForceLaw({}), calibrated_law(), ConstantForceLaw{0.64e9}, PerceptualForceLaw({}),
-            PerceptualForceLaw({1e-9, 2.5e-9})};
+    return {PrintedForceLaw({}),
+            calibrated_law(),
+            ConstantForceLaw{0.64e9},
+            PerceptualForceLaw({}),
+            PerceptualForceLaw({1e-9, 2.5e-9}),
+            PerceptualForceLaw::for_range(20 * pN, 3 * nN),
+            PerceptualForceLaw::for_range(1 * nN, 2.5 * nN)};
 }
 
 }  // namespace
@@ -266,7 +271,7 @@ TEST_CASE("the perceptual law gives equally many noticeable steps per decade", "
     CHECK_THAT(steps(0.05 * nN, 0.5 * nN), WithinRel(26.7192 / 2.17609, 1e-5));
     CHECK_THAT(steps(0.3 * nN, 3 * nN), WithinRel(26.7192 / 2.17609, 1e-5));
     // The joint takes away less than a step.
-    CHECK(PerceptualForceLaw::F_h_lo - law.value(20 * pN) < 0.05);
+    CHECK(PerceptualForceLaw::Parameters{}.F_h_lo - law.value(20 * pN) < 0.05);
 }
 
 TEST_CASE("the perceptual law's pieces join in value and slope", "[haptics][gains]") {
@@ -284,8 +289,66 @@ TEST_CASE("the perceptual law's pieces join in value and slope", "[haptics][gain
     CHECK_THAT(law.value(p.F_hi), WithinRel(3.0, 1e-14));
     CHECK_THAT(law.slope(0), WithinRel(0.3 / p.F_lo, 1e-14));
     CHECK(law.value(0) == 0);
-    CHECK(law.value(infinity) == PerceptualForceLaw::F_h_limit);
+    CHECK(law.value(infinity) == p.F_h_limit);
     CHECK(law.slope(infinity) == 0);
+}
+
+TEST_CASE("a range that must be felt gives a power law with its joint below", "[haptics][gains]") {
+    const auto law = PerceptualForceLaw::for_range(20 * pN, 3 * nN);
+    // ln 9/ln 150 = 0.438515 is the power; 0.3 N 2^-power at 10 pN is where the joint is.
+    const double power = std::log(9.0) / std::log(150.0);
+
+    CHECK(law.value(20 * pN) >= 0.3);
+    CHECK_THAT(law.value(20 * pN), WithinRel(0.3, 1e-13));
+    CHECK(law.value(3 * nN) == 2.7);
+    CHECK_THAT(law.value(200 * pN), WithinRel(0.3 * std::pow(10, power), 1e-13));
+    CHECK_THAT(law.value(std::sqrt(20e-12 * 3e-9)), WithinRel(0.9, 1e-13));
+    CHECK_THAT(law.slope(3 * nN), WithinRel(power * 2.7 / (3 * nN), 1e-13));
+    CHECK_THAT(law.slope(0), WithinRel(0.3 * std::pow(2, -power) / (10 * pN), 1e-13));
+    CHECK_THAT(law.value(5 * pN), WithinRel(law.slope(0) * 5 * pN, 1e-13));
+    CHECK(law.value(infinity) == 3);
+}
+
+TEST_CASE("a narrow range that must be felt gives a linear law", "[haptics][gains]") {
+    const double F_lo = 100 * pN, F_hi = GENERATE(101 * pN, 300 * pN, 900 * pN);
+    const auto law = PerceptualForceLaw::for_range(F_lo, F_hi);
+
+    for (const double share : {0.001, 0.03, 0.12, 0.3, 0.7, 0.999}) {
+        INFO("at " << share << " of F_hi");
+        CHECK_THAT(law.value(share * F_hi), WithinRel(2.7 * share, 1e-13));
+        CHECK_THAT(law.slope(share * F_hi), WithinRel(2.7 / F_hi, 1e-12));
+    }
+    CHECK(law.value(F_lo) >= 0.3);
+    CHECK(law.value(F_hi) == 2.7);
+}
+
+TEST_CASE("whatever range must be felt is, and below the clamp", "[haptics][gains]") {
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> log_lo(-13, -8), log_ratio(0.001, 6);
+
+    for (int i = 0; i < 2000; ++i) {
+        const double F_lo = std::pow(10, log_lo(random)),
+                     F_hi = F_lo * std::pow(10, log_ratio(random));
+        const auto law = PerceptualForceLaw::for_range(F_lo, F_hi);
+        INFO("from " << F_lo << " to " << F_hi);
+        REQUIRE(law.value(F_lo) >= 0.3);
+        REQUIRE(law.value(F_hi) <= 2.7);
+        REQUIRE(law.value(1e4 * F_hi) < 3);
+        double before = 0;
+        for (double F = F_lo / 100; F < 100 * F_hi; F *= 1.07) {
+            const double h = 1e-6 * F;
+            REQUIRE(law.value(F) > before);
+            REQUIRE(law.slope(F) > 0);
+            // Pieces join in value and slope, so differences hold across their ends too; above F_hi
+            // forces near 3 N leave them fewer digits.
+            if (F < F_hi)
+                REQUIRE_THAT((law.value(F + h) - law.value(F - h)) / (2 * h),
+                             WithinRel(law.slope(F), 1e-5));
+            REQUIRE_THAT(law.inverse(law.value(F)), WithinRel(F, 1e-8));
+            REQUIRE(law.value(-F) == -law.value(F));
+            before = law.value(F);
+        }
+    }
 }
 
 TEST_CASE("force laws are odd and monotone, and slopes are their derivatives", "[haptics][gains]") {

@@ -36,7 +36,7 @@ struct Pair {
 
     Touch touch(double x) const {
         Touch touch;
-        touch.model.molecule_angstrom = Vec3(x, 0, 0);
+        touch.model.molecule.place_angstrom = Vec3(x, 0, 0);
         touch.model.projector = Vec3::UnitX().asDiagonal();
         touch.model.force_newton = Vec3(force(x), 0, 0);
         touch.model.period_s = 0.014;
@@ -56,13 +56,13 @@ struct Guarded {
 
     explicit Guarded(const Touch& first) : touch(first) { take_touch(touch, state); }
     GuardedTick move(const Vec3& by) {
-        return step_guarded(settings, touch, Vec3::Zero(), by, false, state);
+        return step_guarded(settings, touch, Vec3::Zero(), {by}, false, state);
     }
     void update(const Pair& pair) {
         touch = pair.touch(x());
         take_touch(touch, state);
     }
-    double x() const { return state.place_angstrom.x(); }
+    double x() const { return state.molecule.place_angstrom.x(); }
 };
 
 }  // namespace
@@ -74,7 +74,9 @@ TEST_CASE("the local field is the touch model's at its place, and knows the way 
     touch.model.confirmed = GENERATE(0.0, 0.5, 1.0);
     touch.model.force_newton.x() += 1e-10;  // that the field does not know of
 
-    const auto at = [&](double x) { return evaluate_local(touch.model, touch.field, {x, 0, 0}); };
+    const auto at = [&](double x) {
+        return evaluate_local(touch.model, touch.field, {Vec3(x, 0, 0)});
+    };
 
     CHECK(at(4).force_newton.x() == Approx(touch.model.force_newton.x()));
     const double way = pair.force(3.6) - pair.force(4);
@@ -90,12 +92,12 @@ TEST_CASE("the local field is the touch model's at its place, and knows the way 
 
 TEST_CASE("without atoms the local field is the tangent", "[haptics][guarded]") {
     Touch touch;
-    touch.model.molecule_angstrom = Vec3(1, 2, 3);
+    touch.model.molecule.place_angstrom = Vec3(1, 2, 3);
     touch.model.force_newton = Vec3(1e-9, 0, 0);
     touch.model.stiffness_matrix_N_per_m = 10 * Mat3::Identity();
     touch.model.clearance_angstrom = 0.5;
 
-    const LocalForce there = evaluate_local(touch.model, touch.field, Vec3(1, 2.2, 3));
+    const LocalForce there = evaluate_local(touch.model, touch.field, {Vec3(1, 2.2, 3)});
 
     CHECK((there.force_newton - Vec3(1e-9, -10 * 0.2e-10, 0)).norm() < 1e-20);
     CHECK(there.clearance_angstrom == Approx(0.3));
@@ -117,6 +119,21 @@ TEST_CASE("a new touch model does not make the force jump", "[haptics][guarded]"
     double last = first;
     for (int i = 0; i < 14; ++i) last = guarded.move(Vec3::Zero()).force_newton.x();
     CHECK(last == Approx(next.model.force_newton.x()).margin(0.03 * news));
+}
+
+TEST_CASE("how much A_d is raised for the cap is told", "[haptics][guarded]") {
+    GuardedSettings settings;
+    settings.force_law = ConstantForceLaw{2e9};
+    settings.displacement_law = ConstantDisplacementLaw{0.25e9};
+    settings.cap_N_per_m = 200;
+    const Vec3 springs = GENERATE(Vec3(10, 20, 25), Vec3(10, 50, 75), Vec3(-300, 0, 100));
+    settings.gain_shape = GENERATE(GainShape::Scalar, GainShape::Tensor);
+
+    const GuardedGain gain = guarded_gain(settings, Vec3(1e-9, 0, 0), Mat3(springs.asDiagonal()));
+
+    // A gain of 2e9 makes k N/m into 8 k N/m at the handle: 25 N/m are the cap's 200.
+    CHECK(gain.raised == Approx(std::max(1.0, springs.maxCoeff() / 25)));
+    CHECK(gain.felt_N_per_m == Approx(std::min(200.0, 8 * springs.maxCoeff())));
 }
 
 TEST_CASE("laws that are exchanged while they are felt make no jump", "[haptics][guarded]") {
@@ -186,7 +203,7 @@ TEST_CASE("a step goes no farther than clearance and period allow, and stays on 
         const GuardedTick tick = guarded.move(Vec3(-5e-3, 1e-3, -2e-3));
         CHECK(before - guarded.x() <= 0.02 + 0.1 * clearance + 1e-5);
         CHECK(tick.dropped_m.x() <= 0);
-        CHECK(guarded.state.place_angstrom.tail<2>().norm() == 0);
+        CHECK(guarded.state.molecule.place_angstrom.tail<2>().norm() == 0);
         if (i % 14 != 13) continue;
         // From one model to the next, and what was saved up at its beginning.
         const double room = std::max(0.0, start - 3.8);
@@ -255,7 +272,7 @@ TEST_CASE("what carries a workspace carries nothing where a force is felt", "[ha
         guarded.settings.displacement_law = ConstantDisplacementLaw{1e9};
         for (int i = 0; i < 20; ++i) {
             const Vec3 moved(i % 2 == 0 ? 1e-5 : -1e-5, 0, 0);
-            (void)step_guarded(guarded.settings, guarded.touch, Vec3(0.09, 0, 0), moved, false,
+            (void)step_guarded(guarded.settings, guarded.touch, Vec3(0.09, 0, 0), {moved}, false,
                                guarded.state);
         }
         return std::abs(guarded.x() - from);
@@ -288,4 +305,45 @@ TEST_CASE("a molecule that stands still is not moved, and is let go where it sta
         CHECK(guarded.move(Vec3(-1e-3, 0, 0)).hand_newton.norm() == 0);
     }
     CHECK(guarded.x() == 5);
+}
+
+TEST_CASE("clutched, a hand feels nothing of the molecule, and finds it where it was",
+          "[haptics][guarded]") {
+    const Pair pair;
+    Guarded guarded(pair.touch(3.4));
+    guarded.settings.damping_N_s_per_m = 0;
+    const auto carry = [&](double by_m, bool is_clutched) {
+        const Vec3 by(by_m, 0, 0);
+        return step_guarded(guarded.settings, guarded.touch, Vec3::Zero(), {by}, is_clutched,
+                            guarded.state);
+    };
+    const double before = carry(0, false).hand_newton.x(), place = guarded.x();
+    REQUIRE(std::abs(before) > 0.3);
+
+    for (int i = 0; i < 100; ++i) carry(0, true);
+    double work = 0;
+    for (int i = 0; i < 100; ++i) work += carry(1e-3, true).hand_newton.x() * 1e-3;
+    for (int i = 0; i < 100; ++i) carry(0, true);  // until no speed of the handle is foretold
+    CHECK(work == 0);
+    CHECK(guarded.x() == place);
+    double last = 0, largest_step = 0;
+    for (int i = 0; i < 300; ++i) {
+        const double felt = carry(0, false).hand_newton.x();
+        largest_step = std::max(largest_step, std::abs(felt - last));
+        last = felt;
+    }
+    CHECK(last == Approx(before));
+    // Back in a fifth of a second.
+    CHECK(largest_step == Approx(std::abs(before) / 200).epsilon(1e-6));
+}
+
+TEST_CASE("what the stop has kept is gone once the hand clutches", "[haptics][guarded]") {
+    const Pair pair;
+    Guarded guarded(pair.touch(3.4));
+    guarded.settings.stop_newton = 1.5 * std::abs(pair.force(3.4));
+    for (int i = 0; i < 200; ++i) guarded.move(Vec3(-1e-3, 0, 0));
+    REQUIRE(guarded.state.kept_m.norm() > 0.05);
+    for (int i = 0; i < 100; ++i)
+        (void)step_guarded(guarded.settings, guarded.touch, Vec3::Zero(), {}, true, guarded.state);
+    CHECK(guarded.state.kept_m.norm() == 0);
 }

@@ -20,12 +20,12 @@ TEST_CASE("a minimum-jerk curve starts and ends at rest", "[haptics][hand]") {
 TEST_CASE("a hand rests before its first waypoint and after its last", "[haptics][hand]") {
     const std::vector<HandWaypoint> path{{1, 0.05}, {3, -0.05}, {4, -0.05}};
 
-    CHECK(find_target(path, 0) == 0.05);
-    CHECK(find_target(path, 1) == 0.05);
-    CHECK(find_target(path, 2) == Approx(0).margin(1e-15));
-    CHECK(find_target(path, 3.5) == -0.05);
-    CHECK(find_target(path, 100) == -0.05);
-    CHECK(find_target({}, 1) == 0);
+    CHECK(find_target(path, 0).place_m.x() == 0.05);
+    CHECK(find_target(path, 1).place_m.x() == 0.05);
+    CHECK(find_target(path, 2).place_m.x() == Approx(0).margin(1e-15));
+    CHECK(find_target(path, 3.5).place_m.x() == -0.05);
+    CHECK(find_target(path, 100).place_m.x() == -0.05);
+    CHECK(find_target({}, 1).place_m.x() == 0);
 }
 
 TEST_CASE("a grip and the hand behind it are springs in a row", "[haptics][hand]") {

@@ -519,3 +519,45 @@ TEST_CASE("every stage has a sentence for the user", "[haptics][safety]") {
     }
     CHECK(words(SafetyStage::None).empty());
 }
+
+TEST_CASE("motors that are warm by their own word rest, and then stay below what they stand",
+          "[haptics][safety]") {
+    Guard guard;
+    (void)guard.tick(2, 100);
+    guard.input.reading.trouble = DeviceTrouble::WarmMotors;
+    const SafetyResult half = guard.tick(2, 50);
+    const SafetyResult gone = guard.tick(2, 51);
+    guard.input.reading.trouble = DeviceTrouble::None;
+    (void)guard.tick(0, 10);  // quiet cycles
+    const SafetyResult back = guard.tick(2, 2200);
+    (void)guard.tick(0, 8000);  // 30 s * ln(1 / 0.8) is 6.7 s
+    const SafetyResult cooled = guard.tick(2, 1100);
+
+    CHECK(half.stage == SafetyStage::Warm);
+    CHECK(half.newton.x() == Approx(1).margin(0.05));
+    CHECK(gone.newton == zero);
+    CHECK(gone.reason == SafetyStage::Warm);
+    CHECK(back.newton.x() == Approx(guard.settings.hot_newton));
+    CHECK(back.stage == SafetyStage::Hot);
+    CHECK(cooled.newton.x() == Approx(2));
+}
+
+TEST_CASE("a device that refuses the force gets none, then quiet cycles and the ramp",
+          "[haptics][safety]") {
+    Guard guard;
+    (void)guard.tick(2, 100);
+    guard.input.reading.trouble = DeviceTrouble::ForceRefused;
+    const SafetyResult refused = guard.tick(2);
+    guard.input.reading.trouble = DeviceTrouble::None;
+    const SafetyResult waiting = guard.tick(2, 100);
+    (void)guard.tick(0, 10);
+    const SafetyResult rising = guard.tick(2, 1000);
+    const SafetyResult back = guard.tick(2, 1100);
+
+    CHECK(refused.newton == zero);
+    CHECK(refused.stage == SafetyStage::Refused);
+    CHECK(waiting.newton == zero);
+    CHECK(waiting.reason == SafetyStage::Refused);
+    CHECK(rising.newton.x() == Approx(1).margin(0.02));
+    CHECK(back.newton.x() == Approx(2));
+}

@@ -93,7 +93,8 @@ TEST_CASE("a servo tick allocates nothing, whatever it feels", "[haptics][servo]
             exchange.touch.post(touch);
         }
         const double time_s = 1e-3 * tick;
-        const DeviceReading reading{time_s, Vec3(1e-3 * std::sin(time_s), 0, 0), 0, tick % 7 != 0};
+        const DeviceReading reading{time_s, Vec3(1e-3 * std::sin(time_s), 0, 0), 0, tick % 7 != 0,
+                                    turn_of(Vec3(0, 0.1 * std::sin(time_s), 0))};
         is_counting = true;
         allocations = 0;
         (void)step_servo(settings, state, exchange, reading, time_s);

@@ -106,8 +106,8 @@ period_ms = 20
     CHECK(scene.hand.stroke == Stroke::Path);
     CHECK(scene.hand.start_angstrom == 7.0);
     REQUIRE(scene.hand.path.size() == 2);
-    CHECK(scene.hand.path[0] == std::array{0.0, 0.5});
-    CHECK(scene.hand.path[1] == std::array{1.5, -2.0});
+    CHECK(scene.hand.path[0] == PathPoint{0, {0.5, 0, 0}});
+    CHECK(scene.hand.path[1] == PathPoint{1.5, {-2, 0, 0}});
     CHECK(scene.device.servo_delay_ticks == 7);
     CHECK(scene.coupling.mode == CouplingMode::ConstantForceConstantDisplacement);
     CHECK(scene.coupling.A_d == 2.5e8);
@@ -165,6 +165,10 @@ TEST_CASE("a value of the wrong type is told with what it is and should be", "[s
         {"[coupling]\nclamp_N = [1]", 18, 11, "'coupling.clamp_N' is a list; expected a number"},
         {"[coupling]\nclamp_N = 2020-01-01", 18, 11, "is a date or time; expected a number"},
         {"[hand]\nstart_angstrom = \"far\"", 18, 18, "expected a number"},
+        {"[coupling]\nfeel_pN = [1, 2, 3]", 18, 11, "expected two numbers above 0 to 1000000"},
+        {"[coupling]\nfeel_pN = [0, 2]", 18, 11, "expected two numbers above 0"},
+        {"[coupling]\nfeel_pN = 20", 18, 11, "expected two numbers above 0"},
+        {"[coupling]\nfeel_within_pN = 0", 18, 18, "'coupling.feel_within_pN' is 0"},
         {"[hand]\nstart_offset_angstrom = [1, 2]", 18, 25, "expected three numbers from -1000"},
         {"[hand]\nstart_offset_angstrom = [1, 2, 3e3]", 18, 25, "expected three numbers"},
         {"[hand]\nstart_offset_angstrom = 3", 18, 25, "expected three numbers"},
@@ -176,13 +180,17 @@ TEST_CASE("a value of the wrong type is told with what it is and should be", "[s
         {"[hand]\ngrip = \"fir\"", 18, 8, "did you mean 'firm'?"},
         {"[coupling]\nmode = 6", 18, 8, "'coupling.mode' is 6; expected one of 1, 2, 3, 4, 5"},
         {"[coupling]\nmode = 2.0", 18, 8, "expected one of 1, 2, 3, 4, 5"},
-        {"[hand]\npath = 3", 18, 8, "expected a list of pairs"},
+        {"[hand]\npath = 3", 18, 8, "expected a list of points"},
         {"[hand]\npath = [[0, 1], 3]", 18, 17,
-         "an entry of 'hand.path' is no pair; expected a pair of finite numbers"},
-        {"[hand]\npath = [[0, 1], [3]]", 18, 17, "expected a pair of finite numbers"},
-        {"[hand]\npath = [[0, 1, 2]]", 18, 9, "expected a pair of finite numbers"},
-        {"[hand]\npath = [[0, \"1\"]]", 18, 9, "expected a pair of finite numbers"},
-        {"[hand]\npath = [[0, true]]", 18, 9, "expected a pair of finite numbers"},
+         "an entry of 'hand.path' is no point of a path; expected [s, mm], [s, mm, mm, mm] or"},
+        {"[hand]\npath = [[0, 1], [3]]", 18, 17, "is no point of a path"},
+        {"[hand]\npath = [[0, 1, 2]]", 18, 9, "is no point of a path"},
+        {"[hand]\npath = [[0, \"1\"]]", 18, 9, "is no point of a path"},
+        {"[hand]\npath = [[0, true]]", 18, 9, "is no point of a path"},
+        {"[hand]\nstroke = \"lead\"", 18, 10, "is \"lead\", but 'hand.path' has no point"},
+        {"[hand]\nstroke = \"lead\"\npath = [[0, 1]]\ngrip = \"none\"", 18, 10,
+         "nobody would move the handle"},
+        {"[hand]\nstroke = \"lead\"\npath = [[0, 0, 0, 0, 0, 0, 9]]", 19, 8, "which only moves"},
     }));
     INFO(row.lines);
 
@@ -230,8 +238,8 @@ TEST_CASE("a number out of its range or not finite is told with the range", "[sc
         {"[run]\nseconds = -inf", 18, 11, "expected a finite number"},
         {"[hand]\nstart_angstrom = nan", 18, 18, "expected a finite number"},
         {"[hand]\nstart_angstrom = -1", 18, 18, "expected a number from 0 to 1000"},
-        {"[hand]\npath = [[0, nan]]", 18, 9, "expected a pair of finite numbers"},
-        {"[hand]\npath = [[inf, 0]]", 18, 9, "expected a pair of finite numbers"},
+        {"[hand]\npath = [[0, nan]]", 18, 9, "is no point of a path"},
+        {"[hand]\npath = [[inf, 0]]", 18, 9, "is no point of a path"},
     }));
     INFO(row.lines);
 
@@ -335,6 +343,10 @@ TEST_CASE("fields that contradict each other are told at one of them", "[scene][
         {"[coupling]\nF_h1_N = 3.0", 17, 1, "'coupling.F_h2_N' is 3; expected more than F_h1_N, 3"},
         {"[coupling]\nA_d_max = 1.0", 18, 11, "expected A_d_min, 5000000, or more"},
         {"[coupling]\nF_hi_nN = 0.03", 18, 11, "expected more than twice F_lo_pN, 20"},
+        {"[coupling]\nfeel_pN = [300, 20]", 18, 11,
+         "is [300, 20]; expected the weaker force first"},
+        {"[coupling]\nfeel_pN = [20, 300]\nmode = 2", 18, 11, "coupling.mode is 2, with forces of"},
+        {"[coupling]\nfeel_pN = [20, 300]\nclamp_N = 2.5", 19, 11, "is felt as up to 3 N"},
         {"[run]\nperiod_ms = 1.5", 18, 13, "expected a whole number of servo ticks"},
         {"[hand]\ngrip = \"none\"", 17, 1, "nobody would move the handle"},
         {"[hand]\ngrip = \"none\"\nstroke = \"in-out\"", 19, 10, "nobody would move the handle"},
@@ -349,7 +361,10 @@ TEST_CASE("fields that contradict each other are told at one of them", "[scene][
 TEST_CASE("what looks like a contradiction and is none passes", "[scene][read]") {
     const std::string lines = GENERATE(
         "[hand]\ngrip = \"none\"\nstroke = \"hold\"", "[coupling]\nA_d_min = 1e8\nA_d_max = 1e8",
-        "[hand]\npath = [[0, 1]]\nstroke = \"path\"", "[run]\nperiod_ms = 2.0");
+        "[hand]\npath = [[0, 1]]\nstroke = \"path\"", "[run]\nperiod_ms = 2.0",
+        "[coupling]\nfeel_pN = [20, 21]\nfeel_within_pN = 5",
+        "[coupling]\nmode = 1\nfeel_within_pN = 5",
+        "[statics]\nmethod = \"limited-memory\"\n[coupling]\nfeel_within_pN = 5");
     INFO(lines);
 
     CHECK(error_of(base + lines + "\n") == "no error");
@@ -387,7 +402,10 @@ TEST_CASE("a setting's value is TOML or a bare word", "[scene][settings]") {
     CHECK(with({"title=\"a=b\""}).title == "a=b");
     CHECK(hand_names[with({"grip=firm-grip"}).hand.grip] == "firm-grip");
     CHECK(with({"start_angstrom=2.5"}).hand.start_angstrom == 2.5);
-    CHECK(with({"path=[[0, 1], [2, 3.5]]", "stroke=path"}).hand.path[1] == std::array{2.0, 3.5});
+    CHECK(with({"path=[[0, 1], [2, 3.5]]", "stroke=path"}).hand.path[1] ==
+          PathPoint{2, {3.5, 0, 0}});
+    CHECK(with({"path=[[0, 1, 2, 3], [2, 3, 4, 5, 6, 7, 8]]", "stroke=path"}).hand.path[1] ==
+          PathPoint{2, {3, 4, 5}, {6, 7, 8}});
     CHECK(with({"molecules.fixed.reference_atom=H1"}).molecules[0].reference_atom == "H1");
 }
 
@@ -599,8 +617,11 @@ TEST_CASE("what the hand holds, and how, must go together", "[scene][errors]") {
                StartsWith(at(14, 12)) && Contains("fixed and flexible"));
     CHECK_THAT(
         error_of(replaced(base, "along-x", "free")),
-        StartsWith(at(14, 12)) && Contains("expected a molecule that moves, along-x, translate or "
-                                           "translate-and-turn"));
+        StartsWith(at(14, 12)) && Contains("expected a molecule that moves, along-x, translate, "
+                                           "translate-and-turn or with-handle"));
+    CHECK_THAT(
+        error_of(replaced(in_space, "\"translate\"", "\"with-handle\"\nshape = \"flexible\"")),
+        Contains("'molecules.moved.motion' is \"with-handle\" beside something"));
     CHECK(parse_scene(by_spring(replaced(base, "along-x", "free")), file).has_statics());
     CHECK(parse_scene(by_spring(replaced(base, "\"along-x\"", "\"fixed\"\nshape = \"flexible\"")),
                       file)

@@ -59,12 +59,15 @@ TEST_CASE("odd values survive being written and read, to the last bit", "[scene]
     scene.hand.release_s = 1e-3;
     scene.hand.kick_N_s = -0.0;
     scene.hand.peak_nN = 0.1 + 0.2;
-    scene.hand.path = {
-        {-1e308, 1.0 / 3}, {-0.0, 5e-324}, {1e16, -1e22}, {123456789012345678.0, 1e300}};
+    scene.hand.path = {{-1e308, {1.0 / 3}},
+                       {-0.0, {5e-324}},
+                       {1e16, {-1e22, 0, 0.1}},
+                       {123456789012345678.0, {1e300, 0.7, 0}, {0, 1.0 / 3, 0}}};
     scene.device.servo_delay_ticks = 7;
     scene.coupling.mode = CouplingMode::NoForce;
     scene.coupling.A_f_min = std::numeric_limits<double>::min();
     scene.coupling.gamma_per_N = 1e18;
+    scene.coupling.feel_within_pN = 1.0 / 3;
     scene.period_ms = 10000;
     scene.seed = 1'000'000'000'000'000;
     scene.lesson = {{"zuerst", "two\nlines \"quoted\"", "do", LessonQuantity::Force, -0.25, {}, 0},
@@ -94,6 +97,8 @@ TEST_CASE("odd values survive being written and read, to the last bit", "[scene]
     CHECK(back.hand.path == scene.hand.path);
     CHECK(back.coupling.mode == CouplingMode::NoForce);
     CHECK(back.coupling.A_f_min == scene.coupling.A_f_min);
+    CHECK(back.coupling.feel_within_pN == 1.0 / 3);
+    CHECK_FALSE(back.coupling.feel_pN);
     CHECK(back.seed == scene.seed);
     REQUIRE(back.lesson.size() == 2);
     CHECK(back.lesson[0].name == "zuerst");
@@ -112,10 +117,16 @@ TEST_CASE("every field is written, under its full key", "[scene][write]") {
     scene.joints.within_angstrom = 8;
     scene.statics.cutoff_angstrom = 12;
     scene.statics.budget_us = 1000;
+    scene.coupling.feel_pN = {0.1 + 0.2, 3000};
+    scene.coupling.feel_within_pN = 50;
     for (MoleculeDescription& molecule : scene.molecules) molecule.topology = folder / "dimer.psf";
 
     const std::string text = formatted(scene);
 
+    CHECK(parsed(formatted(water())).coupling.feel_pN == water().coupling.feel_pN);
+    SceneDescription ranged = water();
+    ranged.coupling.feel_pN = {0.1 + 0.2, 3000};
+    CHECK(parsed(formatted(ranged)).coupling.feel_pN == ranged.coupling.feel_pN);
     for (const FieldNote& field : list_fields()) {
         INFO(field.key);
         const std::size_t dot = field.key.rfind('.');

@@ -52,7 +52,7 @@ InSpace run_in_space(const GuardedCase& c, const Vec3& x) {
         water_scene({"mode=guarded", "stroke=hold", "period_ms=" + std::to_string(c.period_ms),
                      "molecules.moved.motion=translate"});
     Simulation simulation = load_simulation(scene);
-    const Vec3 start = simulation.touch.model.molecule_angstrom;
+    const Vec3 start = simulation.touch.model.molecule.place_angstrom;
     TurnedOmni omni(c, x);
     InSpace result;
     std::array<std::vector<double>, 3> sent;
@@ -61,7 +61,7 @@ InSpace run_in_space(const GuardedCase& c, const Vec3& x) {
         return simulation.touch;
     };
     const auto on_tick = [&](const ServoTick& tick) {
-        result.off_angstrom = (tick.touch.molecule_angstrom - start).norm();
+        result.off_angstrom = (tick.touch.molecule.place_angstrom - start).norm();
         result.largest_nN = std::max(result.largest_nN, 1e9 * tick.touch.force_newton.norm());
         result.energy_J = tick.hand_energy_J;
         result.stage = std::max(result.stage, tick.stage);

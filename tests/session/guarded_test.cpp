@@ -245,3 +245,15 @@ TEST_CASE("damping that is late shakes no handle that nobody holds", "[session][
     CHECK(summary.net_work_J < 0.001);
     CHECK(summary.warnings.empty());
 }
+
+// While the hand carries the handle back the molecule stays in the wall, and must not push.
+TEST_CASE("guarded, a hand that clutches in the wall is given nothing", "[session][coupling]") {
+    const int inward_mm = GENERATE(120, 200, 400);
+    const Summary summary = run_water({"hand.stroke=path", "hand.start_angstrom=7",
+                                       "hand.path=[[0.3,70],[3,-" + std::to_string(inward_mm) +
+                                           "],[4,-" + std::to_string(inward_mm) + "],[7,70]]",
+                                       "run.seconds=25"});
+
+    CHECK(summary.net_work_J <= 0.001);
+    CHECK(summary.largest_repulsion_N > 1);
+}

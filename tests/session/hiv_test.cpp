@@ -41,10 +41,10 @@ std::vector<ServoTick> ticks_of(const std::string& path, const std::vector<std::
 TEST_CASE("TL-3 pulled within its pocket resists, and slides back when it is let go",
           "[session][slow]") {
     const std::vector<ServoTick> ticks = ticks_of("scene.toml", {"seconds=7"});
-    const Vec3 rest = ticks.front().touch.molecule_angstrom;
+    const Vec3 rest = ticks.front().touch.molecule.place_angstrom;
     const ServoTick &held = ticks[3200], &last = ticks.back();
 
-    const Vec3 pulled = held.touch.molecule_angstrom - rest;
+    const Vec3 pulled = held.touch.molecule.place_angstrom - rest;
     CHECK(pulled.x() > 0.25);
     CHECK(held.touch.force_newton.dot(pulled) < 0);
     CHECK(held.touch.force_newton.norm() > 3e-9);
@@ -52,7 +52,7 @@ TEST_CASE("TL-3 pulled within its pocket resists, and slides back when it is let
     CHECK(held.touch.potential_kcal_per_mol > ticks.front().touch.potential_kcal_per_mol + 5);
     // Friction keeps the handle from the last of the way: 0.26 N where 17 N/m are felt, the softest
     // axis of the pocket's 100 N/m over A_d/A_f, is 15 mm or 0.07 Å.
-    CHECK((last.touch.molecule_angstrom - rest).norm() < 0.075);
+    CHECK((last.touch.molecule.place_angstrom - rest).norm() < 0.075);
     CHECK(last.sent_newton.norm() < 0.27);
     CHECK(last.reading.position_m == ticks[ticks.size() - 500].reading.position_m);
 }
@@ -69,7 +69,8 @@ TEST_CASE("TL-3 brought from outside is attracted, meets the surface and leaves 
     CHECK(attraction < -0.06e-9);
     CHECK(repulsion > 0.5e-9);
     CHECK(repulsion < 1.1e-9);
-    const Vec3 way = ticks.back().touch.molecule_angstrom - ticks.front().touch.molecule_angstrom;
+    const Vec3 way =
+        ticks.back().touch.molecule.place_angstrom - ticks.front().touch.molecule.place_angstrom;
     CHECK(way.norm() < 0.2);
 }
 

@@ -86,7 +86,7 @@ TEST_CASE("a step can ask for what the hand feels, and for a mode as the keys co
 TEST_CASE("on one axis what drives apart is positive, in three dimensions a force is a norm",
           "[session][lesson]") {
     ServoTick tick;
-    tick.touch.molecule_angstrom = {-3, 0, 0};  // on the other side of its counterpart
+    tick.touch.molecule.place_angstrom = {-3, 0, 0};  // on the other side of its counterpart
     tick.touch.force_newton = {-2e-9, 0, 0};
     tick.sent_newton = {0.5, 0, 0};
     tick.touch.active_freedom = 1;

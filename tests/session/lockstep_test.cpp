@@ -60,3 +60,17 @@ TEST_CASE("a step's answer is felt one period after its hand pose, and held for 
     CHECK(felt_by_step[1] == Approx(0).margin(1e-15));
     CHECK(felt_by_step[2] == Approx(0.04));
 }
+
+TEST_CASE("a run ends after the tick at which it is said to be over", "[session][lockstep]") {
+    const ServoSettings servo{ConstantForceLaw{1e9}, {.is_full = false}, 0};
+    Conveyor device;
+    int ticks = 0;
+    const auto step = [](const HandPose&, const TouchModel&) { return TouchModel(); };
+
+    run_lockstep(
+        {12, 4}, servo, device, {}, step, [&](const ServoTick&) { ++ticks; },
+        [&] { return ticks == 5; });
+
+    CHECK(ticks == 5);
+    CHECK(device.sent.size() == 5);
+}

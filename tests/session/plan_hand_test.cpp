@@ -80,3 +80,18 @@ TEST_CASE("a stroke that no hand could follow is an error at its key", "[session
         Catch::Matchers::Contains("--set hand.path") && Catch::Matchers::Contains("9.38 m/s"));
     CHECK_THROWS_WITH(plan({"stroke_s=0.02"}), Catch::Matchers::Contains("--set stroke_s=0.02"));
 }
+
+TEST_CASE("a hand that leads brings the water where its path says, whatever the gain",
+          "[session][hand]") {
+    const std::string mode = GENERATE("4", "guarded");
+    const SceneDescription scene =
+        test::water_scene({"mode=" + mode, "hand.stroke=lead", "hand.start_angstrom=7",
+                           "hand.path=[[0.5, 0], [6, -4], [6.5, -4], [12, 1]]", "run.seconds=30"});
+    Simulation simulation = load_simulation(scene);
+    const double begin = grabbed_distance(simulation);
+    EmulatedOmni device(build_emulated_omni(scene, simulation));
+    const Summary summary = run_headless(scene, simulation, device, {}, nullptr, {});
+
+    CHECK(summary.closest_angstrom == Approx(begin - 4).margin(0.1));
+    CHECK(summary.last_angstrom == Approx(begin + 1).margin(0.05));
+}

@@ -11,7 +11,7 @@ namespace {
 ServoTick tick_of(double force, double distance) {
     ServoTick tick;
     tick.sent_newton.x() = force;
-    tick.touch.molecule_angstrom.x() = distance;
+    tick.touch.molecule.place_angstrom.x() = distance;
     return tick;
 }
 
@@ -40,7 +40,7 @@ TEST_CASE("in space a molecule is as far as it is, and beyond where it was turne
     Statistics statistics(1e-3);
     for (const Vec3& place : {Vec3(3, 4, 0), Vec3(0, 0, -2), Vec3(0, 1, 0)}) {
         ServoTick tick;
-        tick.touch.molecule_angstrom = place;
+        tick.touch.molecule.place_angstrom = place;
         statistics.add(tick);
     }
 

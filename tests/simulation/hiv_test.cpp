@@ -144,7 +144,7 @@ TEST_CASE("the hand moves TL-3 in space without turning it", "[simulation][hiv]"
     Simulation simulation = load_simulation(hiv_scene({"A_d=1e9"}));
     const std::vector<Vec3> before = simulation.atoms.positions;
     TouchModel felt = build_touch(simulation, {}).model;
-    const Vec3 rest = felt.molecule_angstrom;
+    const Vec3 rest = felt.molecule.place_angstrom;
     const double energy = felt.potential_kcal_per_mol;
 
     // 10 mm / 1e9 = 0.1 Å.
@@ -152,7 +152,7 @@ TEST_CASE("the hand moves TL-3 in space without turning it", "[simulation][hiv]"
     const StepReport report = step_simulation(simulation, {0, travel}, felt);
 
     CHECK(report.finite);
-    CHECK((report.touch.molecule_angstrom - rest - 10 * travel).norm() < 1e-12);
+    CHECK((report.touch.molecule.place_angstrom - rest - 10 * travel).norm() < 1e-12);
     CHECK(report.move == Approx(10 * travel.norm()));
     for (std::size_t i = 0; i < before.size(); ++i) {
         const Vec3 moved = simulation.atoms.positions[i] - before[i];
@@ -185,8 +185,8 @@ TEST_CASE("a start beside the place of rest is measured from it", "[simulation][
     const Simulation outside =
         load_simulation(hiv_scene({"hand.start_offset_angstrom=[30, 1, -2]"}));
 
-    const Vec3 moved = build_touch(outside, {}).model.molecule_angstrom -
-                       build_touch(inside, {}).model.molecule_angstrom;
+    const Vec3 moved = build_touch(outside, {}).model.molecule.place_angstrom -
+                       build_touch(inside, {}).model.molecule.place_angstrom;
 
     CHECK((moved - Vec3(30, 1, -2)).norm() < 1e-12);
     CHECK(grabbed_distance(inside) == 0);

@@ -28,13 +28,13 @@ TEST_CASE("the molecule goes the handle's travel divided by A_d, step by step",
 
     // 25 mm / 0.25e9 = 1 Å; travel counts from the last step, across the axis it does nothing.
     felt = step_simulation(simulation, hand_at(-0.025), felt).touch;
-    CHECK(felt.molecule_angstrom.x() == Approx(6));
+    CHECK(felt.molecule.place_angstrom.x() == Approx(6));
     HandPose aside = hand_at(-0.025);
     aside.travel_m.y() = 1;
     felt = step_simulation(simulation, aside, felt).touch;
-    CHECK(felt.molecule_angstrom.x() == Approx(6));
+    CHECK(felt.molecule.place_angstrom.x() == Approx(6));
     const StepReport back = step_simulation(simulation, hand_at(0), felt);
-    CHECK(back.touch.molecule_angstrom.x() == Approx(7));
+    CHECK(back.touch.molecule.place_angstrom.x() == Approx(7));
     CHECK(back.move == Approx(1));
 }
 
@@ -46,7 +46,7 @@ TEST_CASE("A_d follows the force that is felt, not the one just computed", "[sim
     const StepReport report = step_simulation(simulation, hand_at(-0.012552), felt);
 
     CHECK(report.touch.displacement_gain == Approx(1.2552e8).epsilon(1e-4));
-    CHECK(report.touch.molecule_angstrom.x() == Approx(6).margin(1e-4));
+    CHECK(report.touch.molecule.place_angstrom.x() == Approx(6).margin(1e-4));
 }
 
 TEST_CASE("a touch model tells force, stiffness and energy of the line in SI",
@@ -58,7 +58,7 @@ TEST_CASE("a touch model tells force, stiffness and energy of the line in SI",
 
     CHECK(touch.force_newton.x() == Approx(-0.322e-9).epsilon(0.005));
     CHECK(touch.force_newton.y() == 0);
-    CHECK(touch.molecule_angstrom.x() == Approx(3.1));
+    CHECK(touch.molecule.place_angstrom.x() == Approx(3.1));
     CHECK(touch.active_freedom == 1);
     CHECK(touch.period_s == Approx(1e-3));
     // Stiffness against the difference of forces, energy against their integral from far away.
@@ -81,6 +81,6 @@ TEST_CASE("a hand pose that is no number moves nothing and is reported", "[simul
         step_simulation(simulation, hand_at(std::numeric_limits<double>::quiet_NaN()), felt);
 
     CHECK_FALSE(report.finite);
-    CHECK(report.touch.molecule_angstrom.x() == 7);
+    CHECK(report.touch.molecule.place_angstrom.x() == 7);
     CHECK(force_along_line(simulation).energy == Approx(felt.potential_kcal_per_mol));
 }

@@ -68,7 +68,7 @@ public:
           law_newton_(std::move(law_newton)) {}
 
     void add(const ServoTick& tick) {
-        const double distance = tick.touch.molecule_angstrom.x();
+        const double distance = tick.touch.molecule.place_angstrom.x();
         const double sent = tick.sent_newton.x();
         const double F_m = law_newton_(distance);
         // The damping of the tick before, which is when the force left: from a speed with the
@@ -175,7 +175,7 @@ public:
             (void)step_simulation(simulation_, hand, felt);
             return simulation_.touch;
         }
-        relax_at(hand.place_angstrom.value());
+        relax_at(hand.molecule.value().place_angstrom);
         update_touch(hand, simulation_);
         return simulation_.touch;
     }

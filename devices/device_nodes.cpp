@@ -1,0 +1,116 @@
+#include "devices/device_nodes.h"
+
+#include <fmt/format.h>
+#ifndef _WIN32
+#include <unistd.h>
+#endif
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <fstream>
+#include <system_error>
+
+namespace palpa {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Its first line; empty where it cannot be read.
+std::string first_line(const fs::path& file) {
+    std::ifstream stream(file);
+    std::string line;
+    std::getline(stream, line);
+    return line;
+}
+
+std::vector<fs::path> entries(const fs::path& folder) {
+    std::vector<fs::path> found;
+    std::error_code error;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+         entry.increment(error)) {
+        found.push_back(entry->path());
+    }
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
+std::uint16_t hex(const std::string& text) {
+    std::uint16_t value = 0;
+    std::from_chars(text.data(), text.data() + text.size(), value, 16);
+    return value;
+}
+
+// The USB device is the one above that has an id.
+fs::path usb_device_above(const fs::path& node) {
+    std::error_code error;
+    fs::path folder = fs::canonical(node, error);
+    if (error) return {};
+    while (folder.has_relative_path()) {
+        if (fs::exists(folder / "idVendor", error)) return folder;
+        folder = folder.parent_path();
+    }
+    return {};
+}
+
+bool is_open_to_us(const fs::path& node) {
+#ifdef _WIN32
+    return !node.empty();
+#else
+    return access(node.c_str(), R_OK | W_OK) == 0;
+#endif
+}
+
+void add_node(const fs::path& node, FoundDevice& device) {
+    device.nodes.push_back(node);
+    if (!is_open_to_us(node)) device.closed.push_back(node);
+}
+
+std::string lower(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return text;
+}
+
+}  // namespace
+
+std::vector<FoundDevice> find_usb_devices(const fs::path& root, std::span<const UsbId> ids) {
+    std::vector<FoundDevice> found;
+    std::vector<fs::path> folders;
+    for (const fs::path& folder : entries(root / "sys/bus/usb/devices")) {
+        const UsbId id{hex(first_line(folder / "idVendor")), hex(first_line(folder / "idProduct"))};
+        if (std::find(ids.begin(), ids.end(), id) == ids.end()) continue;
+        const std::string product = first_line(folder / "product");
+        FoundDevice device;
+        device.where = fmt::format("USB {:04x}:{:04x}{}", id.vendor, id.product,
+                                   product.empty() ? "" : " (" + product + ")");
+        found.push_back(device);
+        std::error_code error;
+        folders.push_back(fs::canonical(folder, error));
+    }
+    for (const char* kind : {"hidraw", "tty"}) {
+        for (const fs::path& node : entries(root / "sys/class" / kind)) {
+            const fs::path above = usb_device_above(node / "device");
+            for (std::size_t i = 0; i < found.size(); ++i) {
+                if (above.empty() || above != folders[i]) continue;
+                add_node(root / "dev" / node.filename(), found[i]);
+            }
+        }
+    }
+    return found;
+}
+
+std::vector<FoundDevice> find_firewire_devices(const fs::path& root, const std::string& name) {
+    std::vector<FoundDevice> found;
+    for (const fs::path& folder : entries(root / "sys/bus/firewire/devices")) {
+        const std::string words =
+            first_line(folder / "vendor_name") + " " + first_line(folder / "model_name");
+        if (lower(words).find(lower(name)) == std::string::npos) continue;
+        FoundDevice device;
+        device.where = fmt::format("FireWire {} ({})", folder.filename().string(), words);
+        add_node(root / "dev" / folder.filename(), device);
+        found.push_back(device);
+    }
+    return found;
+}
+
+}  // namespace palpa

@@ -1,0 +1,29 @@
+// The devices that the program knows, by name: a list, written out.
+#pragma once
+#include "devices/device_check.h"
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace palpa {
+
+struct DeviceMaker {
+    std::string_view name;     // as --device takes it
+    std::string_view summary;  // what it is, in a few words
+    bool is_emulated = false;  // always there
+    // Looks at every layer in order and opens the device if it can. Plays no force. Never throws
+    // because something is missing: that is told in the checks.
+    OpenedDevice (*open)(const DeviceRequest& request) = nullptr;
+};
+
+// In the order in which they are listed. Another device is another line in open_device.cpp.
+std::span<const DeviceMaker> device_makers() noexcept;
+
+// Throws LoadError that lists the names.
+const DeviceMaker& device_maker_called(const std::string& name);
+
+// With a device in it: otherwise throws LoadError that says which layer failed and what mends it.
+OpenedDevice open_device(const std::string& name, const DeviceRequest& request);
+
+}  // namespace palpa

@@ -1,0 +1,75 @@
+#include "session/replay.h"
+
+#include "core/files.h"
+#include "core/load_error.h"
+#include "core/text.h"
+#include "session/recording.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace palpa {
+namespace {
+
+std::vector<std::string_view> split_row(std::string_view row) {
+    std::vector<std::string_view> values;
+    for (std::size_t begin = 0; begin <= row.size();) {
+        const std::size_t end = std::min(row.find(',', begin), row.size());
+        values.push_back(row.substr(begin, end - begin));
+        begin = end + 1;
+    }
+    return values;
+}
+
+}  // namespace
+
+TraceCheck::TraceCheck(const std::filesystem::path& folder, std::int64_t every)
+    : text_(read_text_file(folder / "trace.csv")), every_(every) {
+    const std::string file = (folder / "trace.csv").string();
+    std::string_view rest = text_;
+    const auto take_line = [&]() -> std::optional<std::string_view> {
+        const std::size_t end = rest.find('\n');
+        if (end == std::string_view::npos) return std::nullopt;
+        const std::string_view line = rest.substr(0, end);
+        rest.remove_prefix(end + 1);
+        return line;
+    };
+    const std::optional<std::string_view> header = take_line();
+    if (!header) throw LoadError({file, 1}, "holds no whole line; expected a recorded trace");
+    if (*header != trace_header()) {
+        throw LoadError({file, 1},
+                        "has other columns than this program records; expected a recording of the "
+                        "same version, session.toml says which");
+    }
+    columns_ = split_row(*header);
+    while (const std::optional<std::string_view> line = take_line()) rows_.push_back(*line);
+    is_cut_off_ = !rest.empty();
+}
+
+void TraceCheck::add(const ServoTick& tick) {
+    if (tick_++ % static_cast<std::uint64_t>(every_) != 0 || compared_ >= rows_.size()) return;
+    const std::string_view recorded = rows_[compared_++];
+    std::string played = trace_row(tick);
+    played.pop_back();  // its end of line
+    if (played != recorded) note(recorded, played);
+}
+
+void TraceCheck::note(std::string_view recorded, std::string_view played) {
+    ++different_;
+    const std::vector<std::string_view> was = split_row(recorded), is = split_row(played);
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+        const std::string_view before = i < was.size() ? was[i] : "",
+                               now = i < is.size() ? is[i] : "";
+        if (before == now) continue;
+        if (!first_) {
+            first_ = {compared_, std::string(was.front()), std::string(columns_[i]),
+                      std::string(before), std::string(now)};
+        }
+        if (!columns_[i].starts_with("device_force")) continue;
+        const std::optional<double> a = find_real(before), b = find_real(now);
+        if (a && b) largest_newton_ = std::max(largest_newton_, std::abs(*a - *b));
+    }
+}
+
+}  // namespace palpa

@@ -1,0 +1,52 @@
+// A recorded trace, held against a run of the same session.
+#pragma once
+#include "haptics/servo.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace palpa {
+
+// Where two traces part.
+struct TraceDifference {
+    std::uint64_t row = 0;  // from 1, behind the header: line row + 1 of the file
+    std::string time_s;     // as recorded
+    std::string column;
+    std::string recorded, played;
+};
+
+// Row by row, to the last digit: equal rows have the same bits.
+class TraceCheck {
+public:
+    // Reads trace.csv of a recording whose trace keeps one row of `every` ticks. What is behind the
+    // last whole line of one that was cut off does not count. Throws LoadError if there is none, or
+    // if its columns are not those of this program.
+    TraceCheck(const std::filesystem::path& folder, std::int64_t every);
+
+    // Every tick of the run, in order; those behind the last row recorded do not count.
+    void add(const ServoTick& tick);
+
+    std::uint64_t recorded() const noexcept { return rows_.size(); }
+    std::uint64_t compared() const noexcept { return compared_; }
+    std::uint64_t different() const noexcept { return different_; }
+    bool is_cut_off() const noexcept { return is_cut_off_; }  // within a line
+    const std::optional<TraceDifference>& first() const noexcept { return first_; }
+    double largest_newton() const noexcept { return largest_newton_; }  // of device forces apart
+
+private:
+    void note(std::string_view recorded, std::string_view played);
+
+    std::string text_;
+    std::vector<std::string_view> rows_, columns_;  // of `text_`
+    std::int64_t every_;
+    std::uint64_t tick_ = 0, compared_ = 0, different_ = 0;
+    bool is_cut_off_ = false;
+    std::optional<TraceDifference> first_;
+    double largest_newton_ = 0;
+};
+
+}  // namespace palpa

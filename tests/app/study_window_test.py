@@ -1,0 +1,75 @@
+"""A person takes part in a study, in a window under Xvfb: agrees, practises, does two trials."""
+import csv
+import os
+import subprocess
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+from window_test import PROGRAM, ROOT, Display
+
+
+class StudyWindow(unittest.TestCase):
+    def wait_until(self, is_so, what):
+        for _ in range(1200):
+            if is_so():
+                return
+            self.assertIsNone(self.program.poll(), "the program ended early")
+            time.sleep(0.05)
+        self.fail("waited in vain for " + what)
+
+    def take_part(self, folder, trials, before):
+        """Presses Enter until so many trials are in the table, and Esc."""
+        with Display() as display:
+            return self.take_part_on(display, folder, trials, before)
+
+    def take_part_on(self, display, folder, trials, before):
+        self.program = subprocess.Popen(
+            [PROGRAM, "study", ROOT / "scenes" / "water", "--modes", "4,guarded", "--rounds", "2",
+             "--validation", "-o", folder],
+            env={**os.environ, "DISPLAY": display.name}, stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE, text=True)
+        self.wait_until(display.focus_window, "the window")
+
+        def press_and_look():
+            display.do("key", "Return")
+            time.sleep(0.5)
+            return len(self.rows(folder)) == before + trials
+
+        self.wait_until(press_and_look, "the trials")
+        display.do("key", "Escape")
+        out, err = self.program.communicate(timeout=60)
+        self.assertEqual(self.program.returncode, 0, err)
+        return out
+
+    def rows(self, folder):
+        table = Path(folder) / "trials.csv"
+        if not table.exists():
+            return []
+        with open(table, encoding="utf-8", newline="") as file:
+            return list(csv.DictReader(file))
+
+    def test_each_trial_is_in_the_table_as_soon_as_it_is_done_and_the_next_person_adds_to_it(self):
+        with tempfile.TemporaryDirectory() as folder:
+            out = self.take_part(folder, 2, 0)
+            first = self.rows(folder)
+            self.take_part(folder, 1, 2)
+            both = self.rows(folder)
+
+            self.assertIn("2 of 4 trials", out)
+            self.assertEqual(both[:2], first)
+            self.assertEqual({row["mode"] for row in first}, {"4", "guarded"})
+            self.assertEqual([row["place"] for row in first], ["1", "2"])
+            self.assertEqual(len({row["participant"] for row in first}), 1)
+            self.assertNotEqual(both[2]["participant"], first[0]["participant"])
+            for row in both:
+                # Nobody moved the mouse: five Å outside of the place to be found.
+                self.assertAlmostEqual(float(row["start_angstrom"]), 7.767, delta=0.01)
+                self.assertAlmostEqual(float(row["off_angstrom"]), 5, delta=0.3)
+                self.assertGreater(float(row["time_s"]), 1)
+                self.assertEqual(len(row["participant"]), 6)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,389 @@
+// What every device has to do, whatever stands behind it. Another device is another rig, and a
+// name in `PALPA_RIGS`.
+#include "devices/device_check.h"
+#include "devices/emulated_omni.h"
+#include "devices/open_haptics.h"
+#include "haptics/exchange.h"
+#include "haptics/servo.h"
+#include "tests/support/open_haptics_stub/load.h"
+
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <random>
+#include <thread>
+
+using namespace palpa;
+
+namespace {
+
+// A rig is a device and what a test may do to it:
+//   has_own_thread  whether something else than the servo's thread moves it
+//   device()        what is tested
+//   tick()          after each write: lets a millisecond pass
+//   plug(bool)      takes the cable out, or puts it in
+//   motors()        what the hand gets now, N
+//   close()         no device() after that
+
+class EmulatedRig {
+public:
+    static constexpr bool has_own_thread = false;
+
+    Device& device() { return device_; }
+    void tick() {}
+    void plug(bool is_plugged) { device_.is_plugged = is_plugged; }
+    Vec3 motors() const { return device_.written_newton; }
+
+private:
+    // The emulated Omni with a cable.
+    class Cabled final : public Device {
+    public:
+        const DeviceSpec& spec() const noexcept override { return omni_.spec(); }
+        DeviceReading read() noexcept override {
+            DeviceReading reading = omni_.read();
+            reading.valid = reading.valid && is_plugged;
+            return reading;
+        }
+        void write(const Vec3& force_newton) noexcept override {
+            written_newton = is_plugged ? force_newton : Vec3(Vec3::Zero());
+            omni_.write(written_newton);
+        }
+
+        bool is_plugged = true;
+        Vec3 written_newton = Vec3::Zero();
+
+    private:
+        EmulatedOmni omni_{EmulatedOmniSettings{}};
+    };
+
+    Cabled device_;
+};
+
+class OpenHapticsRig {
+public:
+    static constexpr bool has_own_thread = true;
+
+    OpenHapticsRig() : stub_(test::load_open_haptics_stub()) {
+        OpenHapticsSettings settings;
+        settings.library = PALPA_OPEN_HAPTICS_STUB;
+        settings.retry_s = 1e-3;
+        DeviceRequest request;
+        request.system_root = "/nowhere";
+        device_ = open_haptics(settings, request).device;
+        REQUIRE(device_);
+        tick();
+    }
+    OpenHapticsRig(const OpenHapticsRig&) = delete;
+    OpenHapticsRig& operator=(const OpenHapticsRig&) = delete;
+    ~OpenHapticsRig() {
+        device_.reset();
+        INFO(stub_.first_violation());
+        CHECK(stub_.violations() == 0);
+    }
+
+    Device& device() { return *device_; }
+    void tick() { stub_.step(1); }
+    void plug(bool is_plugged) { stub_.plug(is_plugged); }
+    Vec3 motors() { return {stub_.motor_newton(0), stub_.motor_newton(1), stub_.motor_newton(2)}; }
+    void close() { device_.reset(); }
+    // Its own thread stops in the middle of a tick, until release().
+    void hold() {
+        stub_.block();
+        stepper_ = std::thread([this] { stub_.step(1); });
+        stub_.wait_until_blocked();
+    }
+    void release() {
+        stub_.unblock();
+        stepper_.join();
+    }
+
+private:
+    test::OpenHapticsStub& stub_;
+    std::unique_ptr<Device> device_;
+    std::thread stepper_;
+};
+
+#define PALPA_RIGS EmulatedRig, OpenHapticsRig
+
+// The servo with a device at its hands: what a molecule at a fixed place asks for.
+struct ServoRun {
+    ServoSettings settings;
+    ServoState state;
+    Exchange exchange;
+    TouchModel model;
+    std::uint64_t ticks = 0;
+
+    ServoRun() {
+        settings.force_law = ConstantForceLaw{1e9};
+        settings.safety.is_full = true;
+    }
+
+    void ask_for(const Vec3& force_newton) {
+        model.force_newton = force_newton / 1e9;
+        exchange.touch.post({model});
+    }
+
+    template <class Rig>
+    ServoTick tick(Rig& rig) {
+        if (ticks % 10 == 0) exchange.touch.post({model});  // or it would be stale
+        const DeviceReading reading = rig.device().read();
+        const ServoTick done =
+            step_servo(settings, state, exchange, reading, static_cast<double>(++ticks) * 1e-3);
+        rig.device().write(done.sent_newton);
+        rig.tick();
+        return done;
+    }
+};
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("a device says what it can do", "[devices][conformance]", PALPA_RIGS) {
+    TestType rig;
+    const DeviceSpec& spec = rig.device().spec();
+
+    CHECK_FALSE(spec.name.empty());
+    CHECK(spec.rate_hz == servo_rate_hz);
+    CHECK(spec.peak_force_newton >= spec.continuous_force_newton);
+    CHECK(spec.peak_force_newton < 100);
+    CHECK(spec.viscosity_N_s_per_m >= 0);
+    CHECK(spec.half_workspace_m.minCoeff() > 0.005);
+    CHECK(spec.half_workspace_m.maxCoeff() < 1);
+}
+
+TEMPLATE_TEST_CASE("a device at rest gives valid readings whose clock runs",
+                   "[devices][conformance]", PALPA_RIGS) {
+    TestType rig;
+    const Vec3 reach = 3 * rig.device().spec().half_workspace_m;
+    double last_s = -1;
+
+    for (int i = 0; i < 500; ++i) {
+        const DeviceReading reading = rig.device().read();
+        REQUIRE(reading.valid);
+        REQUIRE(reading.trouble == DeviceTrouble::None);
+        REQUIRE((reading.position_m.cwiseAbs().array() <= reach.array()).all());
+        REQUIRE(std::abs(reading.orientation.norm() - 1) < 1e-9);
+        REQUIRE(reading.time_s > last_s);
+        last_s = reading.time_s;
+        rig.device().write(Vec3::Zero());
+        rig.tick();
+    }
+    CHECK(last_s == Approx(0.499));
+}
+
+TEMPLATE_TEST_CASE("the handle goes where the newest force pushes it", "[devices][conformance]",
+                   PALPA_RIGS) {
+    TestType rig;
+    const int axis = GENERATE(0, 1, 2);
+    const double side = GENERATE(-1.0, 1.0);
+    const Vec3 push = side * Vec3::Unit(axis);
+    const Vec3 before = rig.device().read().position_m;
+
+    for (int i = 0; i < 50; ++i) {
+        if (i == 0) rig.device().write(-push);  // overtaken at once
+        rig.device().write(push);
+        rig.tick();
+    }
+
+    // Half of a t^2 is (1 N - 0.26 N) / 45 g * (50 ms)^2 / 2, 20 mm; less where it is not free.
+    const Vec3 moved = rig.device().read().position_m - before;
+    CHECK(moved.dot(push) > 0.010);
+    CHECK(moved.dot(push) < 0.021);
+    CHECK((moved - moved.dot(push) * push).norm() < 1e-9);
+}
+
+TEMPLATE_TEST_CASE("what is no force leaves a device in order", "[devices][conformance]",
+                   PALPA_RIGS) {
+    TestType rig;
+    if constexpr (TestType::has_own_thread) {
+        const double no_number = GENERATE(std::numeric_limits<double>::quiet_NaN(),
+                                          std::numeric_limits<double>::infinity());
+        for (int i = 0; i < 5; ++i) {
+            rig.device().write(Vec3(0, no_number, 0));
+            rig.tick();
+            CHECK(rig.motors() == Vec3::Zero());
+        }
+    }
+
+    for (int i = 0; i < 100; ++i) {
+        rig.device().write(Vec3(0, 1e300, 0));
+        rig.tick();
+    }
+
+    const DeviceReading reading = rig.device().read();
+    CHECK(reading.valid);
+    CHECK(reading.position_m.allFinite());
+}
+
+TEST_CASE("a closed device has no force", "[devices][conformance]") {
+    OpenHapticsRig rig;
+    for (int i = 0; i < 10; ++i) {
+        rig.device().write(Vec3(1, 2, 0));
+        rig.tick();
+    }
+    REQUIRE(rig.motors() == Vec3(1, 2, 0));
+
+    rig.close();
+
+    CHECK(rig.motors() == Vec3::Zero());
+}
+
+// Without an end, if it waited.
+TEST_CASE("neither read nor write waits for the device's own thread", "[devices][conformance]") {
+    OpenHapticsRig rig;
+    rig.device().write(Vec3(1, 0, 0));
+    rig.tick();
+    rig.hold();
+
+    int valid = 0;
+    for (int i = 0; i < 1000; ++i) {
+        valid += rig.device().read().valid ? 1 : 0;
+        rig.device().write(Vec3(0, 0.001 * i, 0));
+    }
+    rig.release();
+    rig.tick();
+
+    CHECK(valid == 1);  // the one before
+    CHECK(rig.motors() == Vec3(0, 0.999, 0));
+}
+
+TEMPLATE_TEST_CASE("an unplugged device costs the force, and gives it back when it returns",
+                   "[devices][conformance]", PALPA_RIGS) {
+    const int unplugged_at = GENERATE(0, 1, 2, 17, 100);
+    CAPTURE(unplugged_at);
+    TestType rig;
+    ServoRun servo;
+    servo.ask_for(Vec3(0, 0.1, 0));
+    for (int i = 0; i < unplugged_at; ++i) (void)servo.tick(rig);
+
+    rig.plug(false);
+    (void)servo.tick(rig);
+    CHECK(rig.motors() == Vec3::Zero());
+    ServoTick tick;
+    for (int i = 0; i < 12; ++i) {
+        tick = servo.tick(rig);
+        CHECK(rig.motors() == Vec3::Zero());
+    }
+    CHECK_FALSE(tick.reading.valid);
+    CHECK(tick.stage == SafetyStage::Unplugged);
+    CHECK(tick.sent_newton == Vec3::Zero());
+
+    rig.plug(true);
+    while (!tick.reading.valid) {
+        std::this_thread::yield();
+        tick = servo.tick(rig);
+    }
+    for (int i = 0; i < 2100; ++i) tick = servo.tick(rig);  // quiet cycles and ramp
+    CHECK(tick.sent_newton.y() == Approx(0.1));
+    CHECK(rig.motors().y() == Approx(0.1));
+}
+
+TEMPLATE_TEST_CASE("a device that comes and goes at random never gets more than the clamp",
+                   "[devices][conformance]", PALPA_RIGS) {
+    TestType rig;
+    ServoRun servo;
+    std::mt19937 random(GENERATE(1U, 2U));
+    std::normal_distribution<double> newton(0, 3);
+    int valid = 0;
+    bool is_awaited = false;  // plugged in, and not back yet
+
+    for (int i = 0; i < 3000; i += is_awaited ? 0 : 1) {
+        if (!is_awaited && random() % 50 == 0) {
+            is_awaited = random() % 2 == 0;
+            rig.plug(is_awaited);
+        }
+        if (is_awaited) std::this_thread::yield();
+        if (random() % 5 == 0) servo.ask_for({newton(random), newton(random), newton(random)});
+        const ServoTick tick = servo.tick(rig);
+        valid += tick.reading.valid ? 1 : 0;
+        is_awaited = is_awaited && !tick.reading.valid;
+        REQUIRE(tick.sent_newton.allFinite());
+        REQUIRE(tick.sent_newton.norm() <= servo.settings.safety.clamp_newton * (1 + 1e-12));
+        REQUIRE(rig.motors().norm() <= servo.settings.safety.clamp_newton * (1 + 1e-12));
+    }
+
+    CHECK(valid > 100);
+    CHECK(valid < 3000);
+}
+
+namespace {
+
+// Mostly what a handle does, else anything that a broken driver could say.
+DeviceReading random_reading(std::mt19937& random, const DeviceReading& before) {
+    constexpr std::array odd{0.0,
+                             -0.0,
+                             1e-310,
+                             1e308,
+                             -1e308,
+                             std::numeric_limits<double>::infinity(),
+                             -std::numeric_limits<double>::infinity(),
+                             std::numeric_limits<double>::quiet_NaN()};
+    std::normal_distribution<double> normal;
+    const auto any = [&] { return odd[random() % odd.size()]; };
+    DeviceReading reading = before;
+    reading.valid = true;
+    reading.trouble = DeviceTrouble::None;
+    reading.time_s += servo_tick_s;
+    reading.position_m += 1e-4 * Vec3(normal(random), normal(random), normal(random));
+    switch (random() % 200) {
+        case 0:
+            reading.position_m(static_cast<Eigen::Index>(random() % 3)) = any();
+            break;
+        case 1:
+            reading.orientation = Quat(any(), any(), any(), any());
+            break;
+        case 2:
+            reading.time_s = any();
+            break;
+        case 3:
+            reading.valid = false;
+            break;
+        case 4:
+            reading.buttons = static_cast<std::uint32_t>(random());
+            break;
+        case 5:
+            reading.trouble = static_cast<DeviceTrouble>(random() % 3);
+            break;
+        case 6:
+            reading.position_m = Vec3::Zero();
+            break;
+        default:
+            break;
+    }
+    return reading;
+}
+
+}  // namespace
+
+TEST_CASE("a million readings, whatever they say, leave a force within the clamp",
+          "[devices][conformance]") {
+    const bool is_full = GENERATE(true, false);
+    std::mt19937 random(5);
+    std::normal_distribution<double> newton(0, 2);
+    ServoRun servo;
+    servo.settings.safety.is_full = is_full;
+    DeviceReading sane;
+    int with_force = 0;
+    double worst = 0;
+
+    for (int i = 0; i < 500'000; ++i) {
+        if (random() % 14 == 0) servo.ask_for({newton(random), newton(random), newton(random)});
+        if (random() % 100 == 0) servo.ask_for(Vec3::Zero());
+        const DeviceReading reading = random_reading(random, sane);
+        const bool is_sane = reading.position_m.norm() < 0.1 && std::isfinite(reading.time_s) &&
+                             std::abs(reading.time_s) < 1e6 && reading.orientation.norm() < 2;
+        if (is_sane) sane = reading;
+        const double now_s = static_cast<double>(++servo.ticks) * 1e-3;
+        const ServoTick tick =
+            step_servo(servo.settings, servo.state, servo.exchange, reading, now_s);
+        worst =
+            std::max(worst, tick.sent_newton.allFinite() ? tick.sent_newton.norm()
+                                                         : std::numeric_limits<double>::infinity());
+        with_force += tick.sent_newton != Vec3::Zero() ? 1 : 0;
+    }
+
+    CHECK(worst <= servo.settings.safety.clamp_newton * (1 + 1e-12));
+    CHECK(with_force > 5000);
+}

@@ -1,0 +1,48 @@
+// The first of the loops that `palpa loops` plays, and that its bars can be missed.
+#include "tools/loops.h"
+
+#include <catch2/catch.hpp>
+
+using namespace palpa;
+
+namespace {
+
+LoopOptions loops(std::size_t count, const std::vector<std::string>& settings = {}) {
+    LoopOptions options;
+    options.scene = PALPA_ROOT "/scenes/water/space.toml";
+    options.settings = settings;
+    options.count = count;
+    return options;
+}
+
+}  // namespace
+
+TEST_CASE("closed ways in space do the work of the continuous law and end where it ends",
+          "[session][coupling]") {
+    const std::string shape = GENERATE("scalar", "tensor");
+    const std::vector<LoopResult> results = play_loops(loops(60, {"gain_shape=" + shape}), {});
+
+    REQUIRE(results.size() == 60);
+    for (std::size_t i = 0; i < results.size(); ++i) {
+        const LoopResult& r = results[i];
+        INFO(shape << " " << i << ": " << r.extra_joule() << " J, " << r.drift_angstrom << " A, "
+                   << r.ripple_N << " N, " << r.felt_share);
+        CHECK(meets_bars(r, false));
+    }
+}
+
+TEST_CASE("ways on which the handle turns end without a ripple and under the cap",
+          "[session][coupling]") {
+    LoopOptions options = loops(40);
+    options.turn = true;
+
+    for (const LoopResult& result : play_loops(options, {})) CHECK(meets_bars(result, true));
+}
+
+TEST_CASE("positions read in steps of 3 mm miss the bars of loops", "[session][coupling]") {
+    std::size_t missed = 0;
+    for (const LoopResult& result : play_loops(loops(40, {"device.encoder_step_mm=3"}), {}))
+        missed += meets_bars(result, false) ? 0 : 1;
+
+    CHECK(missed > 20);
+}

@@ -1,0 +1,48 @@
+"""palpa journey from outside: what its rows say, on two peptides and on what is refused."""
+import json
+import os
+import subprocess
+import unittest
+from pathlib import Path
+
+PROGRAM = os.environ["PALPA_PROGRAM"]
+ROOT = Path(os.environ["PALPA_ROOT"])
+PEPTIDES = ROOT / "tests" / "data" / "two_peptides"
+
+
+def journey(*arguments):
+    return subprocess.run([PROGRAM, "journey", *map(str, arguments)], capture_output=True,
+                          text=True, stdin=subprocess.DEVNULL)
+
+
+class Journey(unittest.TestCase):
+    def test_every_choice_has_a_row(self):
+        result = journey(PEPTIDES, "--periods", "14,50", "--hands", "medium,firm", "--modes",
+                         "guarded,2", "--active", "10", "--set", "run.seconds=2", "--json")
+        report = json.loads(result.stdout)
+        rows = report["journeys"]
+        self.assertEqual([(r["period_ms"], r["grip"], r["mode"]) for r in rows],
+                         [(t, g, m) for t in (14, 50) for g in ("medium", "firm")
+                          for m in ("guarded", "2")])
+        self.assertEqual(result.returncode, 1 if report["missed"] else 0)
+        for row in rows:
+            self.assertEqual(row["active"], 10)
+            self.assertFalse(row["out"] and row["farthest_angstrom"] < 10)
+            self.assertFalse(row["back"] and not row["out"])
+
+    def test_random_ones_repeat(self):
+        arguments = PEPTIDES, "--random", 2, "--set", "run.seconds=1", "--json"
+        first, again = (json.loads(journey(*arguments).stdout)["journeys"] for _ in range(2))
+        for one, other in zip(first, again):
+            self.assertEqual(one["settings"], other["settings"])
+            self.assertEqual(one["net_work_J"], other["net_work_J"])
+        self.assertNotEqual(first[0]["settings"], first[1]["settings"])
+
+    def test_a_rigid_scene_is_refused(self):
+        result = journey(ROOT / "scenes" / "water")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("nothing moves by itself here", result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

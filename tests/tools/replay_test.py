@@ -1,0 +1,103 @@
+"""palpa replay --verify from outside: whole recordings, cut ones, and ones that were tampered with."""
+import json
+import os
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+PROGRAM = os.environ["PALPA_PROGRAM"]
+ROOT = Path(os.environ["PALPA_ROOT"])
+WATER = ROOT / "scenes" / "water"
+
+
+def palpa(*arguments):
+    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True,
+                          stdin=subprocess.DEVNULL)
+
+
+class Replay(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = Path(temporary.name) / "recording"
+        self.trace = self.folder / "trace.csv"
+
+    def record(self, *arguments):
+        result = palpa("run", "--headless", "--record", self.folder, *arguments)
+        self.assertEqual(result.returncode, 0, result.stderr)
+
+    def verify(self):
+        result = palpa("replay", self.folder, "--verify", "--json")
+        return result.returncode, json.loads(result.stdout)
+
+    def test_a_recording_is_found_again_to_the_last_digit(self):
+        for arguments in (["--seconds", "1.5", WATER],
+                          ["--seconds", "1", "--mode", "1", "--period-ms", "14", "--every", "7", WATER],
+                          ["--seconds", "2", WATER / "space.toml"]):
+            with self.subTest(arguments=arguments):
+                self.record(*arguments)
+                code, report = self.verify()
+                self.assertEqual(code, 0)
+                self.assertEqual(report["different"], 0)
+                self.assertEqual(report["compared"], len(self.trace.read_text().splitlines()) - 1)
+
+    def test_one_that_was_cut_off_is_readable_as_far_as_it_goes(self):
+        self.record("--seconds", "1", WATER)
+        whole = self.trace.read_bytes()
+        (self.folder / "summary.json").unlink()
+        self.trace.write_bytes(whole[:len(whole) // 2])
+        code, report = self.verify()
+        self.assertEqual((code, report["different"], report["cut_off"]), (0, 0, True))
+        self.assertGreater(report["compared"], 400)
+        self.assertLess(report["compared"], 600)
+
+    def test_a_program_that_is_killed_leaves_what_it_wrote(self):
+        running = subprocess.Popen([PROGRAM, "run", "--headless", "--record", self.folder,
+                                    "--seconds", "100000", WATER], stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.DEVNULL)
+        while not self.trace.exists() or self.trace.stat().st_size < 300_000:
+            self.assertIsNone(running.poll())
+            time.sleep(0.01)
+        running.send_signal(signal.SIGKILL)
+        running.wait()
+        code, report = self.verify()
+        self.assertEqual((code, report["different"]), (0, 0))
+        self.assertGreater(report["compared"], 500)
+
+    def test_a_force_that_was_another_is_told_with_its_place(self):
+        self.record("--seconds", "1", WATER)
+        lines = self.trace.read_text().splitlines(keepends=True)
+        column = lines[0].split(",").index("device_force_x_N")
+        row = lines[500].split(",")
+        row[column] = repr(float(row[column]) + 0.25)
+        lines[500] = ",".join(row)
+        self.trace.write_text("".join(lines))
+        code, report = self.verify()
+        self.assertEqual((code, report["different"]), (1, 1))
+        self.assertEqual((report["first"]["row"], report["first"]["column"]),
+                         (500, "device_force_x_N"))
+        self.assertAlmostEqual(report["largest_N"], 0.25)
+
+    def test_what_cannot_be_verified_is_refused(self):
+        self.record("--seconds", "0.2", WATER)
+        session = self.folder / "session.toml"
+        text = session.read_text()
+        session.write_text(text.replace("[statics]\n", "[statics]\nbudget_us = 5000.0\n"))
+        result = palpa("replay", self.folder, "--verify")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("do not repeat", result.stderr)
+        session.write_text(text)
+        self.trace.write_text("time_s,handle_x_m\n0,0\n")
+        result = palpa("replay", self.folder, "--verify")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("other columns", result.stderr)
+        result = palpa("replay", ROOT / "scenes", "--verify")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("holds no session.toml", result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,130 @@
+"""palpa study from outside: its files, that they repeat, its figures, bad input."""
+import csv
+import json
+import os
+import struct
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+PROGRAM = os.environ["PALPA_PROGRAM"]
+ROOT = Path(os.environ["PALPA_ROOT"])
+WATER = ROOT / "scenes" / "water"
+
+
+def run(*command):
+    return subprocess.run([str(word) for word in command], capture_output=True, text=True,
+                          stdin=subprocess.DEVNULL)
+
+
+def read_rows(path):
+    with open(path, encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+class Study(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.tmp = Path(self.folder.name)
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def study(self, *arguments):
+        result = run(PROGRAM, "study", WATER, *arguments)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return result.stdout
+
+    def assert_bad_input(self, expected, *arguments):
+        result = run(PROGRAM, "study", *arguments)
+        self.assertEqual(result.returncode, 2, result.stdout + result.stderr)
+        self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
+        self.assertIn(expected, result.stderr)
+
+    def test_a_row_for_every_trial_and_a_summary_of_them(self):
+        folder = self.tmp / "deep" / "study"
+        table = self.study("--operators", 2, "--rounds", 2, "--modes", "4,5,guarded", "-o", folder)
+        rows = read_rows(folder / "trials.csv")
+        summary = json.loads((folder / "summary.json").read_text())
+        self.assertEqual(len(rows), 2 * 2 * 3)
+        self.assertEqual({row["mode"] for row in rows}, {"4", "5", "guarded"})
+        self.assertEqual(summary["period_ms"], 14)
+        self.assertEqual([mode["mode"] for mode in summary["modes"]], ["4", "5", "guarded"])
+        for mode in summary["modes"]:
+            found = [float(row["found_angstrom"]) for row in rows if row["mode"] == mode["mode"]]
+            off = [place - summary["rest_angstrom"] for place in found]
+            self.assertEqual(mode["trials"], 4)
+            self.assertAlmostEqual(mode["distance_angstrom"]["mean"],
+                                   sum(map(abs, off)) / 4, places=4)
+            self.assertIn(f"| {mode['mode']} | 4 |", table)
+        # The place to be found is where the line that was written turns from push to pull.
+        line = read_rows(folder / "line.csv")
+        outward = [float(row["distance_angstrom"]) for row in line if float(row["force_nN"]) < -1e-4]
+        self.assertAlmostEqual(min(outward), summary["rest_angstrom"], delta=0.011)
+
+    def test_the_same_seed_gives_the_same_bytes_and_another_one_others(self):
+        arguments = ["--operators", 1, "--rounds", 1, "--modes", "4,guarded", "--json"]
+        first = self.study(*arguments)
+        self.assertEqual(first, self.study(*arguments))
+        self.assertNotEqual(first, self.study(*arguments, "--seed", 2))
+
+    def test_the_figures_are_drawn_from_the_folder(self):
+        folder = self.tmp / "study"
+        self.study("--operators", 2, "--rounds", 1, "-o", folder)
+        result = run(ROOT / "tools" / "plot_study", folder, 2)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        for name, size in (("figure7.png", (1100, 440)), ("figure8.png", (900, 560))):
+            data = (folder / name).read_bytes()
+            self.assertEqual(struct.unpack(">II", data[16:24]), size)
+        self.assertEqual(run(ROOT / "tools" / "plot_study", folder, 3).returncode, 2)
+        self.assertEqual(run(ROOT / "tools" / "plot_study", self.tmp).returncode, 2)
+
+    def test_forced_choices_have_a_row_for_every_pair_and_a_fit_for_every_mode(self):
+        folder = self.tmp / "choices"
+        table = self.study("--operators", 1, "--forced-choice", "attracts-more", "--modes", "4,5",
+                           "--repeats", 3, "-o", folder)
+        rows = read_rows(folder / "choices.csv")
+        modes = json.loads((folder / "summary.json").read_text())["modes"]
+        self.assertEqual([mode["mode"] for mode in modes], ["4", "5"])
+        self.assertIn("the ratio hardly matters", table)
+        for mode in modes:
+            own = [row for row in rows if row["mode"] == mode["mode"]]
+            self.assertEqual(len(own), 10 * 3)
+            for level in mode["levels"]:
+                there = [row for row in own if abs(float(row["ratio"]) - level["ratio"]) < 1e-3]
+                self.assertEqual(level["answers"], len(there))
+                self.assertEqual(level["more"], sum(int(row["is_more"]) for row in there))
+        self.assertEqual(modes[0]["end"], "found")
+        self.assertNotIn("threshold_log", modes[1])
+        self.assert_bad_input("holds a study already", WATER, "--operators", 1, "--forced-choice",
+                              "stiffer", "-o", folder)
+
+    def test_a_study_is_never_written_over(self):
+        folder = self.tmp / "study"
+        self.study("--operators", 1, "--rounds", 1, "--modes", "4", "-o", folder)
+        before = (folder / "trials.csv").read_bytes()
+        self.assert_bad_input("holds a study already", WATER, "--operators", 2, "-o", folder)
+        self.assertEqual((folder / "trials.csv").read_bytes(), before)
+
+    def test_bad_input_is_one_line(self):
+        self.assert_bad_input("expected one of 1, 2", WATER, "--operators", 1, "--modes", "7")
+        self.assert_bad_input("every mode once", WATER, "--operators", 1, "--modes", "2,4,2")
+        self.assert_bad_input("did you mean 'careful'", WATER, "--operators", 1, "--operator",
+                              "carefull")
+        self.assert_bad_input("one place on a line", ROOT / "scenes" / "hiv", "--operators", 1)
+        self.assert_bad_input("no hand", WATER, "--operators", 1, "--hand", "none", "--set",
+                              "hand.stroke=hold")
+        self.assert_bad_input("--operators", WATER, "--operators", 0)
+        self.assert_bad_input("did you mean 'stiffer'", WATER, "--operators", 1,
+                              "--forced-choice", "stifer")
+        self.assert_bad_input("--rounds", WATER, "--operators", 1, "--rounds", 2,
+                              "--forced-choice", "stiffer")
+        self.assert_bad_input("folder in which people's trials are kept", WATER)
+        (self.tmp / "trials.csv").write_text("something else")
+        self.assert_bad_input("is no table of a study", WATER, "-o", self.tmp)
+        self.assert_bad_input("--repeats", WATER, "--operators", 1, "--repeats", 2)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,54 @@
+// palpa journey: a molecule is taken out of its pocket and brought back, by several hands, periods,
+// modes and numbers of active joints; or random ones of all these.
+#pragma once
+#include "session/statistics.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace palpa {
+
+struct JourneyOptions {
+    std::filesystem::path scene;
+    std::vector<std::string> settings;  // "key=value", over the scene file and the choices below
+    std::vector<std::string> grips{"medium", "firm"}, modes{"guarded", "4"};
+    std::vector<double> periods_ms{1, 14, 83};
+    std::vector<std::int64_t> active{40};
+    std::size_t random = 0;  // so many random ones instead
+    std::uint64_t seed = 1;
+    bool json = false;
+};
+
+struct JourneyResult {
+    std::vector<std::string> settings;  // for palpa run --set
+    std::string grip, mode;
+    double period_ms = 0;
+    std::int64_t active = 0;
+    Summary summary;
+    // rms of the force on the hand, but for the servo's damping, minus the force law, clamped, of
+    // the force that the simulation then found for that very pose.
+    double error_N = 0;
+    // Work on the hand by the force felt, but for the servo's damping, minus that of the law along
+    // the same way, of the force that the simulation found at its poses (trapezia), unclutched.
+    double off_J = 0;
+    // Share of the ticks with the force at the clamp though the molecule felt 3 nN or less.
+    double cut_share = 0;
+    std::size_t clutches = 0;
+    std::optional<double> out_s;   // when its reference atom was 10 Å from where it began
+    std::optional<double> back_s;  // and when it was there again, within 0.3 Å
+    double wall_s = 0;
+
+    // Out: its centre of mass went 10 Å and more, and there no heavy atom was within 4 Å of others.
+    bool is_out() const noexcept;
+    // And back: its heavy atoms end within 1.5 Å rms of where they began.
+    bool is_back() const noexcept;
+};
+
+// Throws LoadError on bad input. Returns the exit code: 1 where a guarded one misses a bar.
+int journey_command(const JourneyOptions& options);
+
+}  // namespace palpa

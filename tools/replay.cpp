@@ -1,0 +1,106 @@
+#include "tools/replay.h"
+
+#include "core/load_error.h"
+#include "devices/emulated_omni.h"
+#include "scene/read_scene.h"
+#include "session/replay.h"
+#include "session/run_headless.h"
+#include "simulation/simulation.h"
+#include "tools/relax.h"
+#include "tools/run.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+namespace palpa {
+namespace {
+
+SceneDescription read_session(const std::filesystem::path& folder) {
+    const std::filesystem::path session = folder / "session.toml";
+    std::error_code error;
+    if (!std::filesystem::exists(session, error)) {
+        throw LoadError({folder.string()},
+                        "holds no session.toml; expected the folder of a recording (palpa run "
+                        "--record)");
+    }
+    return read_scene(session, {});
+}
+
+void check_repeats(const SceneDescription& scene) {
+    if (!scene.statics.budget_us) return;
+    throw LoadError(
+        scene.place_of("statics.budget_us"),
+        "the session had a time budget, and how much moved hung on the machine's speed: "
+        "such runs do not repeat; expected one without statics.budget_us");
+}
+
+nlohmann::ordered_json as_json(const TraceCheck& check) {
+    nlohmann::ordered_json json{{"recorded", check.recorded()},
+                                {"compared", check.compared()},
+                                {"different", check.different()},
+                                {"cut_off", check.is_cut_off()},
+                                {"largest_N", check.largest_newton()}};
+    if (const auto& first = check.first()) {
+        json["first"] = {{"row", first->row},
+                         {"time_s", first->time_s},
+                         {"column", first->column},
+                         {"recorded", first->recorded},
+                         {"played", first->played}};
+    }
+    return json;
+}
+
+void print_check(const TraceCheck& check) {
+    fmt::print("{} of {} rows played again: ", check.compared(), check.recorded());
+    if (const auto& difference = check.first(); !difference) {
+        fmt::print("all the same to the last digit\n");
+    } else {
+        const TraceDifference& first = *difference;
+        fmt::print(
+            "{} differ\n  first       row {}, {} s: {} was {}, now {}\n  forces      {:.3g} N "
+            "apart "
+            "at most\n",
+            check.different(), first.row, first.time_s, first.column, first.recorded, first.played,
+            check.largest_newton());
+        fmt::print(
+            "  The same bits come from the same program on the same kind of processor "
+            "(session.toml says which).\n");
+    }
+    if (check.is_cut_off())
+        fmt::print("  The recording was cut off within a line, which is left out.\n");
+}
+
+}  // namespace
+
+int replay_command(const ReplayOptions& options) {
+    SceneDescription scene = read_session(options.recording);
+    if (!options.verify) {
+        RunOptions run;
+        run.scene = options.recording / "session.toml";
+        run.headless = true;
+        run.json = options.json;
+        return run_command(run);
+    }
+    check_repeats(scene);
+    TraceCheck check(options.recording, scene.every);
+    if (check.recorded() == 0) {
+        throw LoadError({(options.recording / "trace.csv").string(), 2},
+                        "holds no row; expected a recording that had begun");
+    }
+    // One that was cut off is played as far as it goes.
+    const auto ticks = check.recorded() * static_cast<std::uint64_t>(scene.every);
+    scene.seconds = std::min(scene.seconds, static_cast<double>(ticks) * servo_tick_s);
+    Simulation simulation = load_simulation(scene, show_relaxing());
+    EmulatedOmni device(build_emulated_omni(scene, simulation));
+    (void)run_headless(scene, simulation, device, {}, nullptr, find_progress(options.json), {},
+                       [&](const ServoTick& tick) { check.add(tick); });
+    if (options.json) {
+        fmt::print("{}\n", as_json(check).dump(2));
+    } else {
+        print_check(check);
+    }
+    return check.different() == 0 && check.compared() == check.recorded() ? 0 : 1;
+}
+
+}  // namespace palpa
