@@ -46,6 +46,17 @@ AdaptiveSettings settings_of(std::size_t active, bool fast, bool ends) {
     return settings;
 }
 
+// Atoms begin on each other. Where they are 0.5 Å apart, rounding their places to single precision
+// is already 1e-5 of the force.
+void part_atoms(const TorsionModel& model, TorsionState& state) {
+    const QuasiStaticSettings settings = settings_of(0, false, false).step;
+    QuasiStatics statics = build_quasi_statics(model);
+    update_forces(model, settings.forces, statics.memory, state);
+    for (int i = 0; i < 100; ++i) {
+        REQUIRE(step_quasi_static(model, settings, state, statics).is_finite);
+    }
+}
+
 constexpr std::size_t everything = std::numeric_limits<std::size_t>::max();
 
 }  // namespace
@@ -83,6 +94,7 @@ TEST_CASE("work where something moves agrees with work on everything", "[statics
     auto [model, state] = peptide_pair(bases);
     const AdaptiveSettings settings = settings_of(active, fast, ends);
     AdaptiveStatics statics = build_adaptive_statics(model);
+    if (fast) part_atoms(model, state);
     if (bases[0] == Held) state.tether = Tether{{50, 51, 52}, 20, state.positions[51]};
     CHECK(update_adaptive_forces(model, settings, state, statics));
     double largest = std::abs(state.energy());
@@ -108,7 +120,7 @@ TEST_CASE("work where something moves agrees with work on everything", "[statics
         INFO("step " << i);
         CHECK(deviation.position < 1e-9);
         CHECK(deviation.force < (fast ? 2e-5 : 1e-9));
-        // Atoms begin on each other; what was rounded then stays until everything is summed anew.
+        // What was rounded stays until everything is summed anew.
         CHECK(deviation.energy < (fast ? 1e-3 + 1e-7 * largest : 1e-9 + 1e-12 * largest));
     }
     CHECK(statics.choices >= 10);
