@@ -85,7 +85,8 @@ public:
         under_way_[tick_ % under_way_.size()] = tick.damping_newton;
         if (!tick.clutched) law_.follow(step);
         result_.work_J = tick.hand_energy_J - damped_J_;
-        result_.was_pushed = result_.was_pushed || !tick.kept_m.isZero();
+        result_.was_limited =
+            result_.was_limited || !tick.kept_m.isZero() || tick.stage == SafetyStage::Hot;
         result_.dropped_mm += 1e3 * tick.dropped_m.norm();
         result_.largest_N = std::max(result_.largest_N, tick.sent_newton.norm());
         result_.was_held_back = result_.was_held_back || tick.stage > SafetyStage::Hot;
@@ -159,7 +160,7 @@ nlohmann::ordered_json as_json(std::size_t number, const LoopResult& r) {
             {"largest_N", r.largest_N},
             {"dropped_mm", r.dropped_mm},
             {"clamped_share", r.clamped_share},
-            {"was_pushed", r.was_pushed},
+            {"was_limited", r.was_limited},
             {"was_held_back", r.was_held_back},
             {"settings", r.settings}};
 }
@@ -184,27 +185,27 @@ struct Row {
 };
 
 void print_table(const std::vector<LoopResult>& all, bool turned) {
-    const auto free = [](const LoopResult& r) { return !r.was_pushed; };
+    const auto free = [](const LoopResult& r) { return !r.was_limited; };
     const auto any = [](const LoopResult&) { return true; };
     const std::string energy_bar = turned ? "" : fmt::format("{}", 1e3 * most_extra_J);
     const std::array rows = std::to_array<Row>({
         {"work beyond the continuous law's, in the plane, mJ", 1e3, energy_bar,
-         [](const LoopResult& r) { return !r.was_pushed && r.in_plane; },
+         [](const LoopResult& r) { return !r.was_limited && r.in_plane; },
          [](const LoopResult& r) { return std::abs(r.extra_joule()); }},
         {"the same in space, mJ", 1e3, energy_bar,
-         [](const LoopResult& r) { return !r.was_pushed && !r.in_plane; },
+         [](const LoopResult& r) { return !r.was_limited && !r.in_plane; },
          [](const LoopResult& r) { return std::abs(r.extra_joule()); }},
-        {"generated, pushed to the stop, mJ", 1e3, energy_bar,
-         [](const LoopResult& r) { return r.was_pushed; },
+        {"generated, at the stop or with warm motors, mJ", 1e3, energy_bar,
+         [](const LoopResult& r) { return r.was_limited; },
          [](const LoopResult& r) { return r.extra_joule(); }},
         {"work of the continuous law, mJ", 1e3, "", free,
          [](const LoopResult& r) { return std::abs(r.law_J); }},
         {"drift beyond the continuous law's, inside of 6 Å, Å", 1,
          turned ? "" : fmt::format("{}", most_drift_angstrom),
-         [](const LoopResult& r) { return !r.was_pushed && r.farthest_angstrom <= near_angstrom; },
+         [](const LoopResult& r) { return !r.was_limited && r.farthest_angstrom <= near_angstrom; },
          [](const LoopResult& r) { return r.drift_angstrom; }},
         {"the same outside, Å", 1, "",
-         [](const LoopResult& r) { return !r.was_pushed && r.farthest_angstrom > near_angstrom; },
+         [](const LoopResult& r) { return !r.was_limited && r.farthest_angstrom > near_angstrom; },
          [](const LoopResult& r) { return r.drift_angstrom; }},
         {"from begin to end by the continuous law, Å", 1, "", free,
          [](const LoopResult& r) { return r.closure_angstrom; }},
@@ -229,10 +230,10 @@ void print_table(const std::vector<LoopResult>& all, bool turned) {
 }  // namespace
 
 bool meets_bars(const LoopResult& r, bool turned) noexcept {
-    // Beyond the stop there is no continuous law but that nothing is generated.
-    const double extra = r.was_pushed ? r.extra_joule() : std::abs(r.extra_joule());
+    // Beyond these limits there is no continuous law but that nothing is generated.
+    const double extra = r.was_limited ? r.extra_joule() : std::abs(r.extra_joule());
     const bool keeps_energy = turned || extra <= most_extra_J;
-    const bool stays = turned || r.was_pushed || r.farthest_angstrom > near_angstrom ||
+    const bool stays = turned || r.was_limited || r.farthest_angstrom > near_angstrom ||
                        r.drift_angstrom <= most_drift_angstrom;
     return keeps_energy && stays && r.ripple_N <= most_loop_ripple_N &&
            r.felt_share <= most_felt_share && !r.was_held_back;

@@ -32,9 +32,10 @@ struct LoopResult {
     double ripple_N = 0;           // above 3 Hz, over the last 4 s, which are at rest
     double felt_share =
         0;  // of the cap: the largest stiffness felt of the field where the molecule was
-    double largest_N = 0;        // felt
-    bool was_pushed = false;     // to the stop, beyond which there is no continuous law
-    double dropped_mm = 0;       // handle travel that the limits of a step did away with
+    double largest_N = 0;  // felt
+    bool was_limited =
+        false;              // by the stop or warm motors, of which the continuous law knows nothing
+    double dropped_mm = 0;  // handle travel that the limits of a step did away with
     double clamped_share = 0;    // of the time
     bool was_held_back = false;  // by a stage of the safety chain graver than warm motors
 

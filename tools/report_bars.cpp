@@ -82,8 +82,8 @@ void add_random_bars(const ReportOptions& options, std::vector<BarRow>& rows) {
     double extra = -1e9, drift = 0;
     const auto looped = play_loops(loops, {});
     for (const LoopResult& r : looped) {
-        extra = std::max(extra, r.was_pushed ? r.extra_joule() : std::abs(r.extra_joule()));
-        if (!r.was_pushed && r.farthest_angstrom <= near_angstrom)
+        extra = std::max(extra, r.was_limited ? r.extra_joule() : std::abs(r.extra_joule()));
+        if (!r.was_limited && r.farthest_angstrom <= near_angstrom)
             drift = std::max(drift, r.drift_angstrom);
     }
     const auto missed =
