@@ -17,6 +17,7 @@ struct JourneyOptions {
     std::vector<std::string> settings;  // "key=value", over the scene file and the choices below
     std::vector<std::string> grips{"medium", "firm"}, modes{"guarded", "4"};
     std::vector<double> periods_ms{1, 14, 83};
+    bool fastest = false;  // and at the shortest period that this machine keeps
     std::vector<std::int64_t> active{40};
     std::size_t random = 0;  // so many random ones instead
     std::uint64_t seed = 1;
@@ -33,8 +34,10 @@ struct JourneyResult {
     // the force that the simulation then found for that very pose.
     double error_N = 0;
     // Work on the hand by the force felt, but for the servo's damping, minus that of the law along
-    // the same way, of the force that the simulation found at its poses (trapezia), unclutched.
-    double off_J = 0;
+    // the same way, of the force that the simulation found at its poses (trapezia), unclutched. And
+    // the same while at the stop or with warm motors, of which the law knows nothing.
+    double off_J = 0, off_at_limits_J = 0;
+    std::optional<double> ripple_N;  // in hold, after it came back
     // Share of the ticks with the force at the clamp though the molecule felt 3 nN or less.
     double cut_share = 0;
     std::size_t clutches = 0;

@@ -343,6 +343,8 @@ void add_journey(CLI::App& program, palpa::JourneyOptions& options) {
     journey.add_option("--periods", options.periods_ms, "declared T_s in ms, 1,14,83 unless given")
         ->delimiter(',')
         ->check(in_range(1, 1e4));
+    journey.add_flag("--fastest", options.fastest,
+                     "and at the shortest T_s that 99 % of steps keep on this machine, measured");
     journey.add_option("--hands", options.grips, "medium,firm unless given")->delimiter(',');
     journey.add_option("--modes", options.modes, "guarded,4 unless given")->delimiter(',');
     journey.add_option("--active", options.active, "degrees of freedom, 40 unless given")
