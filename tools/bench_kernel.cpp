@@ -13,6 +13,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -323,15 +324,17 @@ void bench_small(const System& system, const Peaks& peaks, std::vector<BenchRow>
                     "the twin"});
 }
 
+std::array<Case, 2> list_cases() {
+    return {Case{"all-pairs", {}, 39, 43}, Case{"force-switch=12",
+                                                {.electrostatics = ElectrostaticCutoff::ForceSwitch,
+                                                 .van_der_waals = VanDerWaalsCutoff::ForceSwitch},
+                                                58,
+                                                86}};
+}
+
 void bench_system(const System& system, std::vector<BenchRow>& rows) {
     const Peaks peaks = measure_peaks(rows);
-    const Case all_pairs{"all-pairs", {}, 39, 43};
-    const Case force_switch{"force-switch=12",
-                            {.electrostatics = ElectrostaticCutoff::ForceSwitch,
-                             .van_der_waals = VanDerWaalsCutoff::ForceSwitch},
-                            58,
-                            86};
-    for (const Case& which : {all_pairs, force_switch}) {
+    for (const Case& which : list_cases()) {
         bench_large(system, which, peaks, rows);
         bench_all_terms(system, which, rows);
     }
@@ -344,6 +347,12 @@ void bench_system(const System& system, std::vector<BenchRow>& rows) {
 void bench_kernels(const std::string& scene_name, const SceneDescription& scene,
                    std::vector<BenchRow>& rows) {
     bench_system(load_system(scene_name, scene), rows);
+}
+
+void bench_force_field(const std::string& scene_name, const SceneDescription& scene,
+                       std::vector<BenchRow>& rows) {
+    const System system = load_system(scene_name, scene);
+    for (const Case& which : list_cases()) bench_all_terms(system, which, rows);
 }
 
 void bench_gas_kernels(std::vector<BenchRow>& rows) {

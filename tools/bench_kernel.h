@@ -12,6 +12,10 @@ namespace palpa {
 void bench_kernels(const std::string& scene_name, const SceneDescription& scene,
                    std::vector<BenchRow>& rows);
 
+// All terms alone, with energies: of all pairs, and switched off at 12 Å.
+void bench_force_field(const std::string& scene_name, const SceneDescription& scene,
+                       std::vector<BenchRow>& rows);
+
 // Of a made-up gas of as many atoms as a small protein has.
 void bench_gas_kernels(std::vector<BenchRow>& rows);
 

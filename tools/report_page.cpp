@@ -8,7 +8,6 @@
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -57,33 +56,42 @@ private:
 // What gnuplot prints for a script.
 std::string run_gnuplot(const std::string& script) {
     const WorkFolder folder;
-    const std::string input = folder / "script", output = folder / "output",
-                      errors = folder / "errors";
+    const std::string input = folder / "script";
     write_text_file(input, script);
+    const ProgramRun run = run_program({"gnuplot", input});
+    if (run.problem != 0) {
+        throw LoadError({"gnuplot"}, fmt::format("cannot be started ({}), and draws all figures; "
+                                                 "expected it to be installed: package gnuplot-nox",
+                                                 std::strerror(run.problem)));
+    }
+    if (run.status != 0) throw std::runtime_error("gnuplot: " + run.errors);
+    return run.output;
+}
+
+}  // namespace
+
+ProgramRun run_program(std::vector<std::string> words) {
+    const WorkFolder folder;
+    const std::string output = folder / "output", errors = folder / "errors";
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     constexpr int write_new = O_WRONLY | O_CREAT | O_TRUNC;
     posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output.c_str(), write_new, 0600);
     posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, errors.c_str(), write_new, 0600);
-    std::string program = "gnuplot", file = input;
-    const std::array<char*, 3> arguments{program.data(), file.data(), nullptr};
+    std::vector<char*> arguments;
+    for (std::string& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
     pid_t child = 0;
-    const int problem =
-        posix_spawnp(&child, "gnuplot", &actions, nullptr, arguments.data(), environ);
+    ProgramRun run;
+    run.problem = posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
-    if (problem != 0) {
-        throw LoadError({"gnuplot"}, fmt::format("cannot be started ({}), and draws all figures; "
-                                                 "expected it to be installed: package gnuplot-nox",
-                                                 std::strerror(problem)));
-    }
-    int status = 0;
-    while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
-    if (status != 0) throw std::runtime_error("gnuplot: " + read_text_file(errors));
-    return read_text_file(output);
+    if (run.problem != 0) return run;
+    while (waitpid(child, &run.status, 0) < 0 && errno == EINTR) continue;
+    run.output = read_text_file(output);
+    run.errors = read_text_file(errors);
+    return run;
 }
-
-}  // namespace
 
 std::string escaped(std::string_view text) {
     std::string result;

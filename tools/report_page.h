@@ -23,6 +23,14 @@ std::string escaped(std::string_view text);
 // A table, the first row of which is its head; cells are HTML.
 std::string format_table(const std::vector<std::vector<std::string>>& rows);
 
+// Another program, to its end.
+struct ProgramRun {
+    int problem = 0;  // errno where it could not be started
+    int status = 0;   // as waitpid tells
+    std::string output, errors;
+};
+ProgramRun run_program(std::vector<std::string> words);
+
 // Throws LoadError where gnuplot cannot be started.
 void check_gnuplot();
 
