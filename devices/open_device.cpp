@@ -3,6 +3,7 @@
 #include "core/load_error.h"
 #include "core/text.h"
 #include "devices/emulated_omni.h"
+#include "devices/mouse_handle.h"
 #include "devices/open_haptics.h"
 
 #include <fmt/format.h>
@@ -15,14 +16,32 @@ namespace palpa {
 namespace {
 
 OpenedDevice open_emulated(const DeviceRequest& request) {
-    return {std::make_unique<EmulatedOmni>(request.emulated),
+    EmulatedOmniSettings settings = request.emulated;
+    if (request.orders) settings.orders = request.orders;
+    return {std::make_unique<EmulatedOmni>(settings),
             {{"emulation", CheckOutcome::Ok, "a Phantom Omni that is not there", ""}}};
 }
 
+OpenedDevice open_mouse(const DeviceRequest& request) {
+    MouseHandleSettings settings = mouse_handle_of(request.emulated.hand);
+    settings.orders = request.orders;
+    return {std::make_unique<MouseHandle>(settings),
+            {{"window", CheckOutcome::Ok, "mouse and keys of the window", ""}}};
+}
+
 constexpr std::array makers{
-    DeviceMaker{"emulated", "a Phantom Omni that is not there, and a hand on it", true,
-                open_emulated},
-    DeviceMaker{"omni", "Phantom Omni or Touch, by its maker's OpenHaptics", false, open_omni},
+    DeviceMaker{.name = "emulated",
+                .summary = "a Phantom Omni that is not there, and a hand on it",
+                .is_emulated = true,
+                .open = open_emulated},
+    DeviceMaker{.name = "mouse",
+                .summary = "mouse and keys: the force is seen as what the handle lags",
+                .is_emulated = true,
+                .is_led = true,
+                .open = open_mouse},
+    DeviceMaker{.name = "omni",
+                .summary = "Phantom Omni or Touch, by its maker's OpenHaptics",
+                .open = open_omni},
 };
 
 }  // namespace

@@ -11,7 +11,8 @@ namespace palpa {
 struct DeviceMaker {
     std::string_view name;     // as --device takes it
     std::string_view summary;  // what it is, in a few words
-    bool is_emulated = false;  // always there
+    bool is_emulated = false;  // always there, and its time is the servo's
+    bool is_led = false;       // by the window's mouse and keys: nobody leads it without one
     // Looks at every layer in order and opens the device if it can. Plays no force. Never throws
     // because something is missing: that is told in the checks.
     OpenedDevice (*open)(const DeviceRequest& request) = nullptr;

@@ -210,6 +210,14 @@ void write_frame(std::unique_ptr<FrameWriter>& writer, const Simulation& simulat
     }
 }
 
+// Without a window nobody is there.
+void check_headless(const std::string& device) {
+    const DeviceMaker& maker = device_maker_called(device);
+    if (maker.is_emulated && !maker.is_led) return;
+    throw LoadError({fmt::format("--device {}", device)},
+                    "is held by a person and needs the window; expected it without --headless");
+}
+
 // What a person has to do although the device could be opened.
 void print_failed_checks(const OpenedDevice& opened) {
     for (const DeviceCheck& check : opened.checks) {
@@ -225,29 +233,29 @@ int run_in_window(const SceneDescription& scene, const Simulation& simulation,
             {"--record"},
             "a session in a window cannot be recorded yet; expected --headless with it");
     }
-    const bool is_emulated = device_maker_called(options.device).is_emulated;
-    if (options.play && !is_emulated) {
+    if (options.play && options.device && *options.device != "emulated") {
         throw LoadError({"--play"}, "is of the emulated hand; expected it without --device");
     }
+    const std::string name = options.device.value_or(options.play ? "emulated" : "mouse");
     HandOrders orders;
-    settings.orders = &orders;
     // A window needs somebody.
     if (!settings.hand) settings.hand = hand_model(Grip::Medium);
     if (!options.play) give_to_mouse(settings);
-    const double reach_m = mouse_reach_m(settings);
-    const OpenedDevice opened = open_device(options.device, {.emulated = settings});
+    const bool is_emulated = device_maker_called(name).is_emulated;
+    const OpenedDevice opened = open_device(name, {.emulated = settings, .orders = &orders});
     print_failed_checks(opened);
-    const WindowReport report = run_window(scene, *opened.device,
-                                           {.view = default_view(simulation),
-                                            .width = options.width,
-                                            .height = options.height,
-                                            .screenshots = options.screenshots,
-                                            .last_shot = options.last_shot,
-                                            .last_shot_s = options.last_shot_s,
-                                            .orders = is_emulated ? &orders : nullptr,
-                                            .mouse_reach_m = options.play ? 0 : reach_m,
-                                            .lose_device_at = options.lose_device_at,
-                                            .validation = options.validation});
+    const WindowReport report =
+        run_window(scene, *opened.device,
+                   {.view = default_view(simulation),
+                    .width = options.width,
+                    .height = options.height,
+                    .screenshots = options.screenshots,
+                    .last_shot = options.last_shot,
+                    .last_shot_s = options.last_shot_s,
+                    .orders = is_emulated ? &orders : nullptr,
+                    .mouse_reach_m = options.play ? 0 : mouse_reach_m(settings),
+                    .lose_device_at = options.lose_device_at,
+                    .validation = options.validation});
     SceneDescription played = scene;
     if (!options.play) played.hand.stroke = Stroke::Path;  // wherever the mouse went
     played.coupling = report.settings.coupling;
@@ -322,10 +330,7 @@ int run_command(const RunOptions& options) {
         throw LoadError({options.play ? "--play" : "--shot"},
                         "is of a window; expected it without --headless");
     }
-    if (options.headless && !device_maker_called(options.device).is_emulated) {
-        throw LoadError({fmt::format("--device {}", options.device)},
-                        "is held by a person and needs the window; expected it without --headless");
-    }
+    if (options.headless && options.device) check_headless(*options.device);
     if (!options.headless) return run_in_window(scene, simulation, settings, options);
     std::unique_ptr<FrameWriter> writer;
     if (options.record && options.frames_per_second > 0) {
