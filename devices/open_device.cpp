@@ -5,11 +5,16 @@
 #include "devices/emulated_omni.h"
 #include "devices/mouse_handle.h"
 #include "devices/open_haptics.h"
+#include "devices/played_handle.h"
 
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <filesystem>
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace palpa {
@@ -29,6 +34,28 @@ OpenedDevice open_mouse(const DeviceRequest& request) {
             {{"window", CheckOutcome::Ok, "mouse and keys of the window", ""}}};
 }
 
+OpenedDevice open_played(PlayedHandleSettings settings, const DeviceRequest& request,
+                         std::vector<PlayedRow> (*read)(const std::filesystem::path&)) {
+    try {
+        settings.rows = read(request.file);
+    } catch (const LoadError& error) {
+        return {nullptr, {{"file", CheckOutcome::Failed, error.what(), ""}}};
+    }
+    settings.orders = request.orders;
+    const std::string found =
+        fmt::format("{} rows in {}", settings.rows.size(), request.file.string());
+    return {std::make_unique<PlayedHandle>(std::move(settings)),
+            {{"file", CheckOutcome::Ok, found, ""}}};
+}
+
+OpenedDevice open_replay(const DeviceRequest& request) {
+    return open_played({.name = "replay"}, request, read_trace);
+}
+
+OpenedDevice open_script(const DeviceRequest& request) {
+    return open_played({.name = "script"}, request, read_script);
+}
+
 constexpr std::array makers{
     DeviceMaker{.name = "emulated",
                 .summary = "a Phantom Omni that is not there, and a hand on it",
@@ -42,25 +69,49 @@ constexpr std::array makers{
     DeviceMaker{.name = "omni",
                 .summary = "Phantom Omni or Touch, by its maker's OpenHaptics",
                 .open = open_omni},
+    DeviceMaker{.name = "replay",
+                .summary = "a recorded hand, as palpa run --record left it",
+                .is_emulated = true,
+                .file = "FOLDER",
+                .open = open_replay},
+    DeviceMaker{.name = "script",
+                .summary = "a handle that goes where a table of times and places says",
+                .is_emulated = true,
+                .file = "FILE",
+                .open = open_script},
 };
+
+constexpr char before_file = ':';
 
 }  // namespace
 
 std::span<const DeviceMaker> device_makers() noexcept { return makers; }
 
 const DeviceMaker& device_maker_called(const std::string& name) {
+    const TextPlace place{fmt::format("--device {}", name)};
+    const std::size_t end = std::min(name.find(before_file), name.size());
+    const std::string kind = name.substr(0, end);
     const auto* const found = std::find_if(
-        makers.begin(), makers.end(), [&](const DeviceMaker& maker) { return maker.name == name; });
-    if (found != makers.end()) return *found;
-    std::vector<std::string_view> names;
-    for (const DeviceMaker& maker : makers) names.push_back(maker.name);
-    throw LoadError(
-        {fmt::format("--device {}", name)},
-        fmt::format("expected one of {}{}", fmt::join(names, ", "), near_name_hint(name, names)));
+        makers.begin(), makers.end(), [&](const DeviceMaker& maker) { return maker.name == kind; });
+    if (found == makers.end()) {
+        std::vector<std::string_view> names;
+        for (const DeviceMaker& maker : makers) names.push_back(maker.name);
+        throw LoadError(place, fmt::format("expected one of {}{}", fmt::join(names, ", "),
+                                           near_name_hint(kind, names)));
+    }
+    const bool has_file = end + 1 < name.size();
+    if (has_file == found->file.empty()) {
+        throw LoadError(place, found->file.empty()
+                                   ? fmt::format("plays no file; expected {} alone", kind)
+                                   : fmt::format("expected {}:{}", kind, found->file));
+    }
+    return *found;
 }
 
-OpenedDevice open_device(const std::string& name, const DeviceRequest& request) {
-    OpenedDevice opened = device_maker_called(name).open(request);
+OpenedDevice open_device(const std::string& name, DeviceRequest request) {
+    const DeviceMaker& maker = device_maker_called(name);
+    if (!maker.file.empty()) request.file = name.substr(name.find(before_file) + 1);
+    OpenedDevice opened = maker.open(request);
     if (opened.device) return opened;
     const DeviceCheck last = opened.checks.empty() ? DeviceCheck{} : opened.checks.back();
     throw LoadError({fmt::format("--device {}", name)},

@@ -347,9 +347,10 @@ int run_command(const RunOptions& options) {
     if (writer) frames = {options.frames_per_second, [&] { write_frame(writer, simulation); }};
     for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
 
-    EmulatedOmni device(settings);
+    const OpenedDevice opened =
+        open_device(options.device.value_or("emulated"), {.emulated = settings});
     const Summary summary =
-        run_headless(scene, simulation, device, warnings, recording ? &*recording : nullptr,
+        run_headless(scene, simulation, *opened.device, warnings, recording ? &*recording : nullptr,
                      find_progress(options.json), frames);
     for (std::size_t i = warnings.size(); i < summary.warnings.size(); ++i) {
         fmt::print(stderr, "warning: {}\n", summary.warnings[i]);

@@ -12,6 +12,7 @@
 #include "ui/backend.h"
 #include "ui/overlay.h"
 #include "ui/study_panel.h"
+#include "view/build_frame.h"
 #include "view/orbit_camera.h"
 
 #include <fmt/format.h>
@@ -35,6 +36,8 @@ using Clock = std::chrono::steady_clock;
 constexpr float radians_per_pixel = 0.008F;
 constexpr float zoom_per_notch = 0.9F;
 constexpr double angstrom_per_notch = 0.25;  // of the molecule in hand, towards the eye and away
+constexpr double key_angstrom_per_s = 2, slow_key = 0.2;
+constexpr double longest_key_s = 0.1;  // that counts at once
 constexpr double notice_s = 4;
 constexpr float surroundings = 1.6F;  // times the distance that fits the molecule in hand alone
 constexpr glm::vec3 background{0.86F, 0.89F, 0.93F};
@@ -116,6 +119,9 @@ private:
     void take_input();
     void move_camera(const Input& input);
     void move_hand(const Input& input);
+    void move_hand_by_keys(const Input& input, double seconds);
+    void pull(const glm::vec3& way);
+    void show_wish();
     void perform(Action action);
     void press_study_key();
     void look_at_pixel(double x, double y);
@@ -140,7 +146,9 @@ private:
     Vec3 hand_m_ = Vec3::Zero();    // where the mouse wants the handle
     Vec3 handle_m_ = Vec3::Zero();  // where it is
     double displacement_gain_ = 0;  // A_d at this moment
-    VkExtent2D drawn_size_{};       // of the last picture
+    FrameScene shown_;              // the frame's picture, and what the window puts in it
+    Clock::time_point last_input_ = Clock::now();
+    VkExtent2D drawn_size_{};  // of the last picture
     bool holding_ = false;
     RenderScale scale_;
     const Clock::time_point start_ = Clock::now();
@@ -256,7 +264,10 @@ void Sandbox::take_input() {
             }
         }
     }
-    holding_ = has_mouse_hand() && input.is_held(Key::Space) && !graphics_->ui.wants_keys();
+    const bool leads = has_mouse_hand() && !graphics_->ui.wants_keys();
+    const double seconds = 1e-3 * ms_since(std::exchange(last_input_, Clock::now()));
+    if (leads) move_hand_by_keys(input, std::min(seconds, longest_key_s));
+    holding_ = leads && input.is_held(Key::Space);
     if (holding_) {
         move_hand(input);
     } else if (!graphics_->ui.wants_mouse()) {
@@ -277,21 +288,41 @@ void Sandbox::move_camera(const Input& input) {
     if (input.wheel != 0) zoom(camera_, std::pow(zoom_per_notch, static_cast<float>(input.wheel)));
 }
 
-// The molecule would follow the mouse where nothing holds it: handle travel is A_d times its way.
 void Sandbox::move_hand(const Input& input) {
     const float scale = angstrom_per_pixel(camera_, as_float(frame_.grabbed_angstrom),
                                            static_cast<float>(window_.size().height));
-    const glm::vec3 way = scale * (static_cast<float>(input.mouse_dx) * rightward(camera_) -
-                                   static_cast<float>(input.mouse_dy) * upward(camera_)) -
-                          static_cast<float>(input.wheel * angstrom_per_notch) * backward(camera_);
-    const double gain = displacement_gain_;
-    hand_m_ += Vec3(way.x, way.y, way.z) * units::metre_per_angstrom * gain;
+    pull(scale * (static_cast<float>(input.mouse_dx) * rightward(camera_) -
+                  static_cast<float>(input.mouse_dy) * upward(camera_)) -
+         static_cast<float>(input.wheel * angstrom_per_notch) * backward(camera_));
+}
+
+void Sandbox::move_hand_by_keys(const Input& input, double seconds) {
+    const auto along = [&](Key forth, Key back) {
+        return static_cast<float>(input.is_held(forth)) - static_cast<float>(input.is_held(back));
+    };
+    const glm::vec3 way = along(Key::Right, Key::Left) * rightward(camera_) +
+                          along(Key::Up, Key::Down) * upward(camera_) -
+                          along(Key::PageUp, Key::PageDown) * backward(camera_);
+    if (way == glm::vec3(0)) return;
+    pull(static_cast<float>(key_angstrom_per_s * (input.shift ? slow_key : 1) * seconds) * way);
+}
+
+// The molecule would go this way (Å) where nothing holds it: handle travel is A_d times its way.
+void Sandbox::pull(const glm::vec3& way) {
+    hand_m_ += Vec3(way.x, way.y, way.z) * units::metre_per_angstrom * displacement_gain_;
     // Never further ahead than the hand pulls: so that coming back is felt at once.
     const double ahead = (hand_m_ - handle_m_).norm();
     if (ahead > options_.mouse_reach_m) {
         hand_m_ = handle_m_ + (hand_m_ - handle_m_) * (options_.mouse_reach_m / ahead);
     }
     session_.move_hand(hand_m_);
+}
+
+// By how much of its own way the molecule stays behind; a study shows nothing of it.
+void Sandbox::show_wish() {
+    if (!has_mouse_hand() || options_.study || !(displacement_gain_ > 0)) return;
+    const Vec3 gap = (hand_m_ - handle_m_) / (displacement_gain_ * units::metre_per_angstrom);
+    add_wish(frame_.grabbed_angstrom, frame_.grabbed_angstrom + gap, shown_);
 }
 
 // Of what a study leaves to a person: where to look, and the way out.
@@ -385,13 +416,15 @@ void Sandbox::draw() {
     g.ui.end();
     for (const Command& command : commands) session_.send(command);
 
-    frame_.picture.camera = frame_camera(camera_, frame_.picture);
-    frame_.picture.background = background;
+    shown_ = frame_.picture;
+    show_wish();
+    shown_.camera = frame_camera(camera_, shown_);
+    shown_.background = background;
     const VkExtent2D size = picture_size();
     WindowShot shot;
     const bool shows = g.swapchain.present(
         [&](VkCommandBuffer buffer, VkImage image) {
-            g.renderer.record(buffer, frame_.picture, size);
+            g.renderer.record(buffer, shown_, size);
             blit(buffer, g.renderer.colour_image(), size, image, g.swapchain.size());
         },
         [&](VkCommandBuffer buffer) { g.ui.draw(buffer); }, wants_shot_ ? &shot : nullptr);

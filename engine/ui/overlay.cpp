@@ -640,8 +640,8 @@ void Overlay::draw_warnings(const Readout& readout, const OverlayStatus& status)
     if (!status.notice.empty()) warnings.push_back(status.notice);
     warnings.emplace_back(!status.has_mouse_hand ? "the emulated hand plays its stroke; H: all keys"
                           : status.holding ? "in hand: move the mouse; the wheel goes in and out"
-                                           : "hold Space and move the mouse to pull the molecule; "
-                                             "H: all keys");
+                                           : "hold Space and move the mouse to pull the molecule, "
+                                             "or use the arrow keys; H: all keys");
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     const float column = column_of(screen.x);
     ImGui::SetNextWindowPos({screen.x / 2, edge}, ImGuiCond_Always, {0.5F, 0});

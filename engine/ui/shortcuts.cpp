@@ -35,6 +35,7 @@ constexpr std::array list = std::to_array<Shortcut>({
 constexpr std::array gesture_list = std::to_array<Gesture>({
     {"hold Space, move the mouse", "take the molecule in hand and pull it"},
     {"hold Space, turn the wheel", "push it away from you, draw it near"},
+    {"arrows, Page up, Page down", "pull it with keys; with Shift slowly"},
     {"drag", "turn the view"},
     {"right drag, Shift+drag", "shift the view"},
     {"wheel", "nearer, farther"},

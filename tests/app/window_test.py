@@ -76,8 +76,8 @@ class Session(unittest.TestCase):
         self.program = subprocess.Popen(
             [PROGRAM, "run", ROOT / "scenes" / "water", "--screenshots", self.folder, "--json",
              "--validation", *map(str, options)],
-            env={**os.environ, "DISPLAY": display.name}, stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE, text=True)
+            env={**os.environ, "DISPLAY": display.name, "XDG_CONFIG_HOME": str(self.folder)},
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.wait_until(display.focus_window, "the window")
         self.screenshots = 0
         self.screenshot(display)  # the first picture is there: it takes part from now on
@@ -150,6 +150,17 @@ class Session(unittest.TestCase):
             display.do("mouseup", 1)
             summary = self.quit(display)
         self.assertAlmostEqual(summary["closest_angstrom"], 7, delta=0.7)
+
+    def test_arrow_keys_pull_the_molecule_too(self):
+        with Display() as display:
+            self.start(display)
+            display.do("keydown", "Left")
+            time.sleep(1.5)
+            display.do("keyup", "Left")
+            self.screenshot(display)
+            summary = self.quit(display)
+        self.assertEqual(summary["device"], "mouse and keys")
+        self.assertLess(summary["closest_angstrom"], 6.5)
 
     def test_a_lost_device_comes_back(self):
         with Display() as display:
