@@ -17,6 +17,7 @@
 #include "simulation/step.h"
 #include "tools/relax.h"
 #include "tools/render.h"
+#include "tools/window_devices.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -213,17 +214,9 @@ void write_frame(std::unique_ptr<FrameWriter>& writer, const Simulation& simulat
 // Without a window nobody is there.
 void check_headless(const std::string& device) {
     const DeviceMaker& maker = device_maker_called(device);
-    if (maker.is_emulated && !maker.is_led) return;
+    if (maker.is_emulated && !maker.needs_window) return;
     throw LoadError({fmt::format("--device {}", device)},
                     "is held by a person and needs the window; expected it without --headless");
-}
-
-// What a person has to do although the device could be opened.
-void print_failed_checks(const OpenedDevice& opened) {
-    for (const DeviceCheck& check : opened.checks) {
-        if (check.outcome != CheckOutcome::Failed) continue;
-        fmt::print(stderr, "warning: {}: {}; {}\n", check.layer, check.found, check.remedy);
-    }
 }
 
 int run_in_window(const SceneDescription& scene, const Simulation& simulation,
@@ -236,26 +229,27 @@ int run_in_window(const SceneDescription& scene, const Simulation& simulation,
     if (options.play && options.device && *options.device != "emulated") {
         throw LoadError({"--play"}, "is of the emulated hand; expected it without --device");
     }
-    const std::string name = options.device.value_or(options.play ? "emulated" : "mouse");
-    HandOrders orders;
     // A window needs somebody.
     if (!settings.hand) settings.hand = hand_model(Grip::Medium);
     if (!options.play) give_to_mouse(settings);
-    const bool is_emulated = device_maker_called(name).is_emulated;
-    const OpenedDevice opened = open_device(name, {.emulated = settings, .orders = &orders});
-    print_failed_checks(opened);
-    const WindowReport report =
-        run_window(scene, *opened.device,
-                   {.view = default_view(simulation),
-                    .width = options.width,
-                    .height = options.height,
-                    .screenshots = options.screenshots,
-                    .last_shot = options.last_shot,
-                    .last_shot_s = options.last_shot_s,
-                    .orders = is_emulated ? &orders : nullptr,
-                    .mouse_reach_m = options.play ? 0 : mouse_reach_m(settings),
-                    .lose_device_at = options.lose_device_at,
-                    .validation = options.validation});
+    PreferencesFile preferences(find_preferences_file());
+    WindowDevices devices(settings, preferences);
+    const WindowDevice first =
+        devices.open_first(options.play ? std::optional<std::string>("emulated") : options.device);
+    if (!devices.notice().empty()) fmt::print(stderr, "warning: {}\n", devices.notice());
+    const WindowReport report = run_window(scene, *first.device,
+                                           {.view = default_view(simulation),
+                                            .width = options.width,
+                                            .height = options.height,
+                                            .screenshots = options.screenshots,
+                                            .last_shot = options.last_shot,
+                                            .last_shot_s = options.last_shot_s,
+                                            .orders = first.orders,
+                                            .mouse_reach_m = options.play ? 0 : first.mouse_reach_m,
+                                            .devices = options.play ? DeviceMenu() : devices.menu(),
+                                            .notice = devices.notice(),
+                                            .lose_device_at = options.lose_device_at,
+                                            .validation = options.validation});
     SceneDescription played = scene;
     if (!options.play) played.hand.stroke = Stroke::Path;  // wherever the mouse went
     played.coupling = report.settings.coupling;

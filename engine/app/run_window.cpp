@@ -10,7 +10,6 @@
 #include "render/renderer.h"
 #include "session/run_headless.h"
 #include "ui/backend.h"
-#include "ui/overlay.h"
 #include "ui/study_panel.h"
 #include "view/build_frame.h"
 #include "view/orbit_camera.h"
@@ -38,7 +37,8 @@ constexpr float zoom_per_notch = 0.9F;
 constexpr double angstrom_per_notch = 0.25;  // of the molecule in hand, towards the eye and away
 constexpr double key_angstrom_per_s = 2, slow_key = 0.2;
 constexpr double longest_key_s = 0.1;  // that counts at once
-constexpr double notice_s = 4;
+constexpr double notice_s = 4, first_notice_s = 15;
+constexpr std::chrono::seconds device_look{1};
 constexpr float surroundings = 1.6F;  // times the distance that fits the molecule in hand alone
 constexpr glm::vec3 background{0.86F, 0.89F, 0.93F};
 
@@ -92,11 +92,14 @@ class Sandbox {
 public:
     Sandbox(const SceneDescription& scene, Device& device, const WindowOptions& options)
         : options_(options),
+          devices_(options.devices),
+          device_(&device),
+          orders_(options.orders),
+          mouse_reach_m_(options.mouse_reach_m),
           window_("Palpa - " + scene.title, options.width, options.height),
           session_(scene, options.view, device, options.orders),
           overlay_(scene, options.view),
-          statistics_(servo_tick_s),
-          device_(device) {
+          statistics_(servo_tick_s) {
         std::error_code error;
         if (!std::filesystem::is_directory(options.screenshots, error)) {
             throw LoadError({options.screenshots.string()},
@@ -105,6 +108,7 @@ public:
         // Drawing, which may be done by threads of the driver, comes after feeling.
         (void)nice(5);
         graphics_ = std::make_unique<Graphics>(window_, options.validation);
+        if (!options.notice.empty()) notice(options.notice, first_notice_s);
     }
 
     WindowReport run();
@@ -114,7 +118,12 @@ private:
     void look_at_all();
     void look_at_grabbed();
     float free_aspect() const;
-    bool has_mouse_hand() const { return options_.orders && options_.mouse_reach_m > 0; }
+    bool has_mouse_hand() const { return orders_ && mouse_reach_m_ > 0; }
+    bool can_choose_device() const { return devices_.open && !options_.study; }
+    void look_for_devices();
+    bool change_device(const std::string& name);
+    void choose_device(const std::string& name);
+    void choose_next_device();
     void take_ticks();
     void take_input();
     void move_camera(const Input& input);
@@ -128,17 +137,22 @@ private:
     void draw();
     void save(const WindowShot& shot);
     void restart_graphics();
-    void notice(std::string text);
+    void notice(std::string text, double seconds = notice_s);
     VkExtent2D picture_size() const;
     void keep_validation_messages();
 
     const WindowOptions options_;
+    DeviceMenu devices_;
+    std::unique_ptr<Device> chosen_;  // in the place of the one that the window began with
+    Device* device_;
+    HandOrders* orders_;
+    double mouse_reach_m_;
+    Clock::time_point next_look_ = Clock::now();
     Window window_;
     LiveSession session_;
     std::unique_ptr<Graphics> graphics_;
     Overlay overlay_;
     Statistics statistics_;
-    const Device& device_;
 
     LiveFrame frame_;
     bool has_frame_ = false, framed_ = false;
@@ -184,7 +198,7 @@ WindowReport Sandbox::run() {
     if (!validation_messages_.empty()) throw GpuError("validation: " + validation_messages_[0]);
     WindowReport report{statistics_.summary(), overlay_.settings(),        frame_ms_.size(), 0,
                         scale_.value(),        overlay_.lesson().current()};
-    report.summary.device = device_.spec().name;
+    report.summary.device = device_->spec().name;
     report.summary.steps = frame_.readout.steps;
     warn_of_outcome(report.summary);
     report.summary.overruns = session_.servo_health().overruns;
@@ -206,6 +220,7 @@ void Sandbox::frame() {
     }
     if (has_frame_ && !std::exchange(framed_, has_frame_)) look_at_all();
     take_input();
+    look_for_devices();
     if (frame_ms_.size() + 1 == options_.lose_device_at) {
         frame_ms_.push_back(0);
         throw DeviceLost("the device was given up on request");
@@ -312,8 +327,8 @@ void Sandbox::pull(const glm::vec3& way) {
     hand_m_ += Vec3(way.x, way.y, way.z) * units::metre_per_angstrom * displacement_gain_;
     // Never further ahead than the hand pulls: so that coming back is felt at once.
     const double ahead = (hand_m_ - handle_m_).norm();
-    if (ahead > options_.mouse_reach_m) {
-        hand_m_ = handle_m_ + (hand_m_ - handle_m_) * (options_.mouse_reach_m / ahead);
+    if (ahead > mouse_reach_m_) {
+        hand_m_ = handle_m_ + (hand_m_ - handle_m_) * (mouse_reach_m_ / ahead);
     }
     session_.move_hand(hand_m_);
 }
@@ -361,6 +376,9 @@ void Sandbox::perform(Action action) {
         case Action::FrameAll:
             look_at_all();
             break;
+        case Action::NextDevice:
+            choose_next_device();
+            break;
         case Action::Screenshot:
             wants_shot_ = true;
             break;
@@ -372,6 +390,66 @@ void Sandbox::perform(Action action) {
             break;
         default:
             break;
+    }
+}
+
+// One that was wanted, and was not there, is taken when it comes.
+void Sandbox::look_for_devices() {
+    if (!can_choose_device() || Clock::now() < next_look_) return;
+    next_look_ = Clock::now() + device_look;
+    bool has_come = false;
+    for (DeviceOffer& offer : devices_.offers) {
+        const bool was_there = std::exchange(offer.is_there, devices_.is_there(offer.name));
+        has_come = has_come || (offer.name == devices_.wanted && offer.is_there && !was_there);
+    }
+    if (has_come && change_device(devices_.wanted)) devices_.wanted.clear();
+}
+
+bool Sandbox::change_device(const std::string& name) {
+    WindowDevice next;
+    try {
+        next = devices_.open(name);
+    } catch (const LoadError& error) {
+        notice(error.what(), first_notice_s);
+        return false;
+    }
+    session_.change_device(*next.device, next.orders);
+    chosen_ = std::move(next.device);
+    device_ = chosen_.get();
+    orders_ = next.orders;
+    mouse_reach_m_ = next.mouse_reach_m;
+    hand_m_ = handle_m_ = Vec3::Zero();
+    devices_.current = name;
+    notice(fmt::format("led by: {}", device_->spec().name));
+    return true;
+}
+
+void Sandbox::choose_device(const std::string& name) {
+    if (name == devices_.current) {
+        devices_.wanted.clear();
+    } else if (!change_device(name)) {
+        return;
+    }
+    devices_.wanted.clear();
+    try {
+        devices_.remember(name);
+    } catch (const LoadError& error) {
+        notice(error.what(), first_notice_s);
+    }
+}
+
+void Sandbox::choose_next_device() {
+    if (!can_choose_device()) return;
+    const auto& offers = devices_.offers;
+    const auto current = std::find_if(offers.begin(), offers.end(), [&](const DeviceOffer& offer) {
+        return offer.name == devices_.current;
+    });
+    const std::size_t from = current == offers.end()
+                                 ? offers.size() - 1
+                                 : static_cast<std::size_t>(current - offers.begin());
+    for (std::size_t i = 1; i < offers.size(); ++i) {
+        const DeviceOffer& next = offers[(from + i) % offers.size()];
+        if (next.is_there) return choose_device(next.name);
     }
 }
 
@@ -407,11 +485,13 @@ void Sandbox::draw() {
         draw_study_panel(*options_.study);
     } else if (has_frame_) {
         const bool is_news = Clock::now() < notice_until_;
-        overlay_.draw(frame_.readout,
-                      {session_.servo_health(), device_.spec().name, g.device.name(),
-                       last_frame_ms_, scale_.value(), has_mouse_hand(), holding_,
-                       is_news ? notice_ : std::string(device_.status())},
-                      commands, actions);
+        overlay_.draw(
+            frame_.readout,
+            {session_.servo_health(), device_->spec().name, g.device.name(), last_frame_ms_,
+             scale_.value(), has_mouse_hand(), holding_,
+             is_news ? notice_ : std::string(device_->status()),
+             can_choose_device() ? devices_.offers : std::vector<DeviceOffer>(), devices_.current},
+            commands, actions);
     }
     g.ui.end();
     for (const Command& command : commands) session_.send(command);
@@ -435,6 +515,7 @@ void Sandbox::draw() {
         save(shot);
     }
     for (const Action action : actions) perform(action);
+    if (const std::optional<std::string> name = overlay_.take_device()) choose_device(*name);
 }
 
 void Sandbox::save(const WindowShot& shot) {
@@ -466,10 +547,10 @@ void Sandbox::keep_validation_messages() {
     }
 }
 
-void Sandbox::notice(std::string text) {
+void Sandbox::notice(std::string text, double seconds) {
     notice_ = std::move(text);
     notice_until_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                       std::chrono::duration<double>(notice_s));
+                                       std::chrono::duration<double>(seconds));
 }
 
 }  // namespace

@@ -39,6 +39,7 @@ constexpr std::array key_names = std::to_array<KeyName>({
     {GLFW_KEY_6, Key::Digit6},
     {GLFW_KEY_A, Key::A},
     {GLFW_KEY_C, Key::C},
+    {GLFW_KEY_D, Key::D},
     {GLFW_KEY_F, Key::F},
     {GLFW_KEY_H, Key::H},
     {GLFW_KEY_L, Key::L},

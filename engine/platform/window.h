@@ -45,6 +45,7 @@ enum class Key {
     Digit6,
     A,
     C,
+    D,
     F,
     H,
     L,
