@@ -4,6 +4,8 @@
 #include "core/text.h"
 #include "devices/emulated_omni.h"
 #include "devices/open_haptics.h"
+#include "devices/sony_pad.h"
+#include "devices/space_mouse.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -23,6 +25,12 @@ constexpr std::array makers{
     DeviceMaker{"emulated", "a Phantom Omni that is not there, and a hand on it", true,
                 open_emulated},
     DeviceMaker{"omni", "Phantom Omni or Touch, by its maker's OpenHaptics", false, open_omni},
+    DeviceMaker{"spacemouse", "SpaceMouse: a cap that sets the handle's speed; no force", false,
+                open_space_mouse},
+    DeviceMaker{"dualsense", "DualSense game pad: sticks and gyroscope, stiff triggers", false,
+                open_dualsense},
+    DeviceMaker{"dualshock4", "DualShock 4 game pad: sticks and gyroscope, rumble", false,
+                open_dualshock4},
 };
 
 }  // namespace
