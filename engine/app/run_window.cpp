@@ -115,6 +115,7 @@ private:
     void take_ticks();
     void take_input();
     void move_camera(const Input& input);
+    void heed_device(const Input& input);
     void move_hand(const Input& input);
     void perform(Action action);
     void press_study_key();
@@ -132,7 +133,7 @@ private:
     std::unique_ptr<Graphics> graphics_;
     Overlay overlay_;
     Statistics statistics_;
-    const Device& device_;
+    Device& device_;
 
     LiveFrame frame_;
     bool has_frame_ = false, framed_ = false;
@@ -142,6 +143,7 @@ private:
     double displacement_gain_ = 0;  // A_d at this moment
     VkExtent2D drawn_size_{};       // of the last picture
     bool holding_ = false;
+    Clock::time_point heeded_ = Clock::now();  // the device, for the last time
     RenderScale scale_;
     const Clock::time_point start_ = Clock::now();
     bool is_over_ = false;  // the last screenshot is due
@@ -248,6 +250,7 @@ void Sandbox::take_ticks() {
 void Sandbox::take_input() {
     const Input& input = window_.poll();
     must_rebuild_ = must_rebuild_ || input.resized;
+    heed_device(input);
     if (!graphics_->ui.wants_keys()) {
         for (const Key key : input.pressed) {
             if (options_.study && key == Key::Enter) press_study_key();
@@ -275,6 +278,15 @@ void Sandbox::move_camera(const Input& input) {
         orbit(camera_, -radians_per_pixel * dx, radians_per_pixel * dy);
     }
     if (input.wheel != 0) zoom(camera_, std::pow(zoom_per_notch, static_cast<float>(input.wheel)));
+}
+
+// What it is told without focus is meant for others.
+void Sandbox::heed_device(const Input& input) {
+    device_.attend(input.focused);
+    constexpr double longest_s = 0.1;  // after a pause nothing leaps
+    const double passed_s = std::chrono::duration<double>(Clock::now() - heeded_).count();
+    heeded_ = Clock::now();
+    carry(camera_, device_.view_rate(), std::min(passed_s, longest_s));
 }
 
 // The molecule would follow the mouse where nothing holds it: handle travel is A_d times its way.

@@ -47,8 +47,8 @@ inline bool is_pressed(std::uint32_t buttons, Button button) noexcept {
     return (buttons & static_cast<std::uint32_t>(button)) != 0;
 }
 
-// How fast a hand wants something to go that goes on by itself: a handle that is not there, the
-// camera. The turn is a rotation vector.
+// How fast a hand wants something to go that goes on by itself: a handle that is not there, or
+// what is seen. The turn is a rotation vector.
 struct HandRate {
     Vec3 m_per_s = Vec3::Zero();
     Vec3 rad_per_s = Vec3::Zero();
@@ -80,8 +80,8 @@ public:
     // thread. A device that is heard without focus too rests meanwhile. Unless told otherwise, yes.
     virtual void attend(bool /*is_meant*/) noexcept {}
 
-    // Where the person wants the camera to go, in its own axes: x right, y up, z backward. By the
-    // window's thread.
+    // How fast the person wants to move what is seen, as if it were in hand: x right, y up, z
+    // towards the eye. By the window's thread.
     virtual HandRate view_rate() const noexcept { return {}; }
 };
 
