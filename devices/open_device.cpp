@@ -6,6 +6,8 @@
 #include "devices/mouse_handle.h"
 #include "devices/open_haptics.h"
 #include "devices/played_handle.h"
+#include "devices/sony_pad.h"
+#include "devices/space_mouse.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -72,6 +74,24 @@ constexpr std::array makers{
                 .summary = "Phantom Omni or Touch, by its maker's OpenHaptics",
                 .is_there = is_omni_there,
                 .open = open_omni},
+    DeviceMaker{.name = "spacemouse",
+                .summary = "SpaceMouse: a cap that sets the handle's speed; no force",
+                .is_there = [](const DeviceRequest&) { return is_hid_there(SpaceMouseProtocol()); },
+                .open = open_space_mouse},
+    DeviceMaker{.name = "dualsense",
+                .summary = "DualSense game pad: sticks and gyroscope, stiff triggers",
+                .is_there =
+                    [](const DeviceRequest&) {
+                        return is_hid_there(SonyPadProtocol(SonyModel::DualSense));
+                    },
+                .open = open_dualsense},
+    DeviceMaker{.name = "dualshock4",
+                .summary = "DualShock 4 game pad: sticks and gyroscope, rumble",
+                .is_there =
+                    [](const DeviceRequest&) {
+                        return is_hid_there(SonyPadProtocol(SonyModel::DualShock4));
+                    },
+                .open = open_dualshock4},
     DeviceMaker{.name = "replay",
                 .summary = "a recorded hand, as palpa run --record left it",
                 .is_emulated = true,

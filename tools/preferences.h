@@ -9,7 +9,6 @@ namespace palpa {
 
 struct Preferences {
     std::optional<std::string> device;  // as --device takes it
-    bool sound = false;                 // the force as a tone
 
     friend bool operator==(const Preferences&, const Preferences&) = default;
 };

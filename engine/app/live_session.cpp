@@ -304,12 +304,7 @@ LiveSession::ServoOrder LiveSession::build_order(const State& state) {
     order.is_paused = orders_ && state.readout.paused;
     SafetySettings& safety = order.settings.safety;
     safety.starts_engaged = false;
-    // What the device says of itself; nothing beside what a scene allows.
-    const DeviceSpec& device = device_->spec();
-    if (device.peak_force_newton > 0) {
-        safety.clamp_newton = std::min(safety.clamp_newton, device.peak_force_newton);
-    }
-    if (device.continuous_force_newton > 0) safety.hot_newton = device.continuous_force_newton;
+    limit_to(device_->spec(), safety);
     if (order.settings.guarded) order.settings.guarded->revision = revision_++;
     return order;
 }

@@ -127,6 +127,7 @@ private:
     void take_ticks();
     void take_input();
     void move_camera(const Input& input);
+    void heed_device(const Input& input);
     void move_hand(const Input& input);
     void move_hand_by_keys(const Input& input, double seconds);
     void pull(const glm::vec3& way);
@@ -164,6 +165,7 @@ private:
     Clock::time_point last_input_ = Clock::now();
     VkExtent2D drawn_size_{};  // of the last picture
     bool holding_ = false;
+    Clock::time_point heeded_ = Clock::now();  // the device, for the last time
     RenderScale scale_;
     const Clock::time_point start_ = Clock::now();
     bool is_over_ = false;  // the last screenshot is due
@@ -271,6 +273,7 @@ void Sandbox::take_ticks() {
 void Sandbox::take_input() {
     const Input& input = window_.poll();
     must_rebuild_ = must_rebuild_ || input.resized;
+    heed_device(input);
     if (!graphics_->ui.wants_keys()) {
         for (const Key key : input.pressed) {
             if (options_.study && key == Key::Enter) press_study_key();
@@ -301,6 +304,15 @@ void Sandbox::move_camera(const Input& input) {
         orbit(camera_, -radians_per_pixel * dx, radians_per_pixel * dy);
     }
     if (input.wheel != 0) zoom(camera_, std::pow(zoom_per_notch, static_cast<float>(input.wheel)));
+}
+
+// What it is told without focus is meant for others.
+void Sandbox::heed_device(const Input& input) {
+    device_->attend(input.focused);
+    constexpr double longest_s = 0.1;  // after a pause nothing leaps
+    const double passed_s = std::chrono::duration<double>(Clock::now() - heeded_).count();
+    heeded_ = Clock::now();
+    carry(camera_, device_->view_rate(), std::min(passed_s, longest_s));
 }
 
 void Sandbox::move_hand(const Input& input) {

@@ -175,6 +175,7 @@ const Input& Window::poll() {
     input_.wheel = 0;
     input_.resized = false;
     glfwPollEvents();
+    input_.focused = glfwGetWindowAttrib(window_, GLFW_FOCUSED) == GLFW_TRUE;
     int width = 0, height = 0;
     glfwGetWindowSize(window_, &width, &height);
     const VkExtent2D pixels = size();
