@@ -31,7 +31,9 @@ inline constexpr std::string_view udev_remedy =
 
 // What whoever opens a device knows of its surroundings.
 struct DeviceRequest {
-    EmulatedOmniSettings emulated;            // of devices that are not there
+    EmulatedOmniSettings emulated;            // of devices that are not there, and the hand
+    HandOrders* orders = nullptr;             // of a window, for those on the servo's ticks
+    std::filesystem::path file = {};          // that a device plays
     std::filesystem::path system_root = "/";  // above /dev and /sys; another one in tests
 };
 

@@ -52,17 +52,9 @@ fs::path usb_device_above(const fs::path& node) {
     return {};
 }
 
-bool is_open_to_us(const fs::path& node) {
-#ifdef _WIN32
-    return !node.empty();
-#else
-    return access(node.c_str(), R_OK | W_OK) == 0;
-#endif
-}
-
 void add_node(const fs::path& node, FoundDevice& device) {
     device.nodes.push_back(node);
-    if (!is_open_to_us(node)) device.closed.push_back(node);
+    if (!is_open_to_user(node)) device.closed.push_back(node);
 }
 
 std::string lower(std::string text) {
@@ -72,6 +64,14 @@ std::string lower(std::string text) {
 }
 
 }  // namespace
+
+bool is_open_to_user(const fs::path& node) {
+#ifdef _WIN32
+    return !node.empty();
+#else
+    return access(node.c_str(), R_OK | W_OK) == 0;
+#endif
+}
 
 std::vector<FoundDevice> find_usb_devices(const fs::path& root, std::span<const UsbId> ids) {
     std::vector<FoundDevice> found;

@@ -20,6 +20,9 @@ struct FoundDevice {
     std::vector<std::filesystem::path> closed;  // of those, which this user may not read and write
 };
 
+// Whether this user may read and write it.
+bool is_open_to_user(const std::filesystem::path& node);
+
 // USB devices with one of these ids, with their serial and hidraw nodes. `root` stands for "/".
 std::vector<FoundDevice> find_usb_devices(const std::filesystem::path& root,
                                           std::span<const UsbId> ids);

@@ -41,7 +41,8 @@ double most_ahead(const std::optional<HandModel>& hand) noexcept {
 
 EmulatedOmni::EmulatedOmni(const EmulatedOmniSettings& settings)
     : settings_(settings),
-      operator_(settings.script, settings.half_workspace_m, most_ahead(settings.hand)) {
+      operator_(settings.script, settings.half_workspace_m, most_ahead(settings.hand)),
+      time_(settings.orders) {
     spec_.name = "emulated Omni";
     spec_.peak_force_newton = settings.peak_force_newton;
     spec_.viscosity_N_s_per_m = settings.dynamics.viscosity_N_s_per_m;
@@ -120,10 +121,8 @@ void EmulatedOmni::show(const TouchModel& touch) noexcept {
 }
 
 bool EmulatedOmni::take_orders() noexcept {
-    if (!settings_.orders) return true;
-    const HandOrder before = order_;
-    settings_.orders->read(order_);
-    if (order_.restarts != before.restarts) {
+    const bool goes_on = time_.step();
+    if (time_.was_restarted()) {
         operator_.restart();
         released_ = false;
         plant_ = holding_plant_;
@@ -131,11 +130,7 @@ bool EmulatedOmni::take_orders() noexcept {
         wish_m_ = true_position_m();
         wish_m_per_s_.setZero();
     }
-    if (order_.grants != before.grants) granted_ticks_ = order_.granted_ticks;
-    if (!order_.frozen) return true;
-    if (granted_ticks_ == 0) return false;
-    --granted_ticks_;
-    return true;
+    return goes_on;
 }
 
 Vec3 EmulatedOmni::follow_mouse() noexcept {
@@ -145,7 +140,7 @@ Vec3 EmulatedOmni::follow_mouse() noexcept {
     const Vec3 handle = true_position_m();
     const double w = live_hand_rad_per_s;
     const Vec3 before = wish_m_;
-    wish_m_per_s_ += servo_tick_s * (w * w * (order_.target_m - wish_m_) - 2 * w * wish_m_per_s_);
+    wish_m_per_s_ += servo_tick_s * (w * w * (time_.target_m() - wish_m_) - 2 * w * wish_m_per_s_);
     wish_m_per_s_ *= std::min(1.0, live_hand_m_per_s / std::max(wish_m_per_s_.norm(), 1e-12));
     wish_m_ += servo_tick_s * wish_m_per_s_;
     const Vec3 ahead = wish_m_ - handle;
@@ -159,8 +154,8 @@ Vec3 EmulatedOmni::follow_mouse() noexcept {
 
 Vec3 EmulatedOmni::follow_operator() noexcept {
     if (!settings_.hand) return Vec3::Zero();
-    wish_m_per_s_ = (order_.target_m - wish_m_) / servo_tick_s;
-    wish_m_ = order_.target_m;
+    wish_m_per_s_ = (time_.target_m() - wish_m_) / servo_tick_s;
+    wish_m_ = time_.target_m();
     return drive_of(*settings_.hand);
 }
 

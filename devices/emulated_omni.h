@@ -2,6 +2,7 @@
 // encoder steps, saturating motors, stops at the ends of the workspace, buttons. The hand follows a
 // script, a live person's mouse, or what an emulated operator wants. Nothing resists a turn.
 #pragma once
+#include "devices/ordered_time.h"
 #include "devices/scripted_hand.h"
 #include "haptics/device.h"
 #include "haptics/hand.h"
@@ -72,8 +73,7 @@ private:
     double handle_mass_kg_ = 0;
     std::array<PlantState, 3> state_;  // one per axis
     bool resting_ = true;              // friction held the handle through the last sub-step
-    HandOrder order_;
-    int granted_ticks_ = 0;  // that may still go by while frozen
+    OrderedTime time_;
     Vec3 wish_m_ = Vec3::Zero(), wish_m_per_s_ = Vec3::Zero();
     std::uint64_t tick_ = 0, start_tick_ = 0;  // since the beginning; where the script began
     std::uint32_t buttons_ = 0;                // as pressed during the last tick

@@ -3,45 +3,138 @@
 #include "core/load_error.h"
 #include "core/text.h"
 #include "devices/emulated_omni.h"
+#include "devices/mouse_handle.h"
 #include "devices/open_haptics.h"
+#include "devices/played_handle.h"
+#include "devices/sony_pad.h"
+#include "devices/space_mouse.h"
 
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <filesystem>
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace palpa {
 namespace {
 
 OpenedDevice open_emulated(const DeviceRequest& request) {
-    return {std::make_unique<EmulatedOmni>(request.emulated),
+    EmulatedOmniSettings settings = request.emulated;
+    if (request.orders) settings.orders = request.orders;
+    return {std::make_unique<EmulatedOmni>(settings),
             {{"emulation", CheckOutcome::Ok, "a Phantom Omni that is not there", ""}}};
 }
 
+OpenedDevice open_mouse(const DeviceRequest& request) {
+    MouseHandleSettings settings = mouse_handle_of(request.emulated.hand);
+    settings.orders = request.orders;
+    return {std::make_unique<MouseHandle>(settings),
+            {{"window", CheckOutcome::Ok, "mouse and keys of the window", ""}}};
+}
+
+OpenedDevice open_played(PlayedHandleSettings settings, const DeviceRequest& request,
+                         std::vector<PlayedRow> (*read)(const std::filesystem::path&)) {
+    try {
+        settings.rows = read(request.file);
+    } catch (const LoadError& error) {
+        return {nullptr, {{"file", CheckOutcome::Failed, error.what(), ""}}};
+    }
+    settings.orders = request.orders;
+    const std::string found =
+        fmt::format("{} rows in {}", settings.rows.size(), request.file.string());
+    return {std::make_unique<PlayedHandle>(std::move(settings)),
+            {{"file", CheckOutcome::Ok, found, ""}}};
+}
+
+OpenedDevice open_replay(const DeviceRequest& request) {
+    return open_played({.name = "replay"}, request, read_trace);
+}
+
+OpenedDevice open_script(const DeviceRequest& request) {
+    return open_played({.name = "script"}, request, read_script);
+}
+
 constexpr std::array makers{
-    DeviceMaker{"emulated", "a Phantom Omni that is not there, and a hand on it", true,
-                open_emulated},
-    DeviceMaker{"omni", "Phantom Omni or Touch, by its maker's OpenHaptics", false, open_omni},
+    DeviceMaker{.name = "emulated",
+                .summary = "a Phantom Omni that is not there, and a hand on it",
+                .is_emulated = true,
+                .is_led = true,
+                .open = open_emulated},
+    DeviceMaker{.name = "mouse",
+                .summary = "mouse and keys: the force is seen as what the handle lags",
+                .is_emulated = true,
+                .is_led = true,
+                .needs_window = true,
+                .open = open_mouse},
+    DeviceMaker{.name = "omni",
+                .summary = "Phantom Omni or Touch, by its maker's OpenHaptics",
+                .is_there = is_omni_there,
+                .open = open_omni},
+    DeviceMaker{.name = "spacemouse",
+                .summary = "SpaceMouse: a cap that sets the handle's speed; no force",
+                .is_there = [](const DeviceRequest&) { return is_hid_there(SpaceMouseProtocol()); },
+                .open = open_space_mouse},
+    DeviceMaker{.name = "dualsense",
+                .summary = "DualSense game pad: sticks and gyroscope, stiff triggers",
+                .is_there =
+                    [](const DeviceRequest&) {
+                        return is_hid_there(SonyPadProtocol(SonyModel::DualSense));
+                    },
+                .open = open_dualsense},
+    DeviceMaker{.name = "dualshock4",
+                .summary = "DualShock 4 game pad: sticks and gyroscope, rumble",
+                .is_there =
+                    [](const DeviceRequest&) {
+                        return is_hid_there(SonyPadProtocol(SonyModel::DualShock4));
+                    },
+                .open = open_dualshock4},
+    DeviceMaker{.name = "replay",
+                .summary = "a recorded hand, as palpa run --record left it",
+                .is_emulated = true,
+                .file = "FOLDER",
+                .open = open_replay},
+    DeviceMaker{.name = "script",
+                .summary = "a handle that goes where a table of times and places says",
+                .is_emulated = true,
+                .file = "FILE",
+                .open = open_script},
 };
+
+constexpr char before_file = ':';
 
 }  // namespace
 
 std::span<const DeviceMaker> device_makers() noexcept { return makers; }
 
 const DeviceMaker& device_maker_called(const std::string& name) {
+    const TextPlace place{fmt::format("--device {}", name)};
+    const std::size_t end = std::min(name.find(before_file), name.size());
+    const std::string kind = name.substr(0, end);
     const auto* const found = std::find_if(
-        makers.begin(), makers.end(), [&](const DeviceMaker& maker) { return maker.name == name; });
-    if (found != makers.end()) return *found;
-    std::vector<std::string_view> names;
-    for (const DeviceMaker& maker : makers) names.push_back(maker.name);
-    throw LoadError(
-        {fmt::format("--device {}", name)},
-        fmt::format("expected one of {}{}", fmt::join(names, ", "), near_name_hint(name, names)));
+        makers.begin(), makers.end(), [&](const DeviceMaker& maker) { return maker.name == kind; });
+    if (found == makers.end()) {
+        std::vector<std::string_view> names;
+        for (const DeviceMaker& maker : makers) names.push_back(maker.name);
+        throw LoadError(place, fmt::format("expected one of {}{}", fmt::join(names, ", "),
+                                           near_name_hint(kind, names)));
+    }
+    const bool has_file = end + 1 < name.size();
+    if (has_file == found->file.empty()) {
+        throw LoadError(place, found->file.empty()
+                                   ? fmt::format("plays no file; expected {} alone", kind)
+                                   : fmt::format("expected {}:{}", kind, found->file));
+    }
+    return *found;
 }
 
-OpenedDevice open_device(const std::string& name, const DeviceRequest& request) {
-    OpenedDevice opened = device_maker_called(name).open(request);
+OpenedDevice open_device(const std::string& name, DeviceRequest request) {
+    const DeviceMaker& maker = device_maker_called(name);
+    if (!maker.file.empty()) request.file = name.substr(name.find(before_file) + 1);
+    OpenedDevice opened = maker.open(request);
     if (opened.device) return opened;
     const DeviceCheck last = opened.checks.empty() ? DeviceCheck{} : opened.checks.back();
     throw LoadError({fmt::format("--device {}", name)},

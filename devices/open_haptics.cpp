@@ -150,12 +150,17 @@ DeviceCheck check_symbols(const hd::LibrarySearch& search) {
             "install OpenHaptics 3.4 or newer"};
 }
 
-// Neither is a reason to give up: a Touch with Ethernet shows in none of these places.
-void check_system(const std::filesystem::path& root, std::vector<DeviceCheck>& checks) {
+std::vector<FoundDevice> find_on_bus(const std::filesystem::path& root) {
     std::vector<FoundDevice> found = find_usb_devices(root, touch_ids);
     for (FoundDevice& device : find_firewire_devices(root, "sensable")) {
         found.push_back(std::move(device));
     }
+    return found;
+}
+
+// Neither is a reason to give up: a Touch with Ethernet shows in none of these places.
+void check_system(const std::filesystem::path& root, std::vector<DeviceCheck>& checks) {
+    const std::vector<FoundDevice> found = find_on_bus(root);
     if (found.empty()) {
         checks.push_back(
             {"bus", CheckOutcome::Unknown,
@@ -505,6 +510,10 @@ OpenedDevice open_haptics(const OpenHapticsSettings& settings, const DeviceReque
     checks.push_back(check_rate(library));
     opened.device = std::make_unique<OpenHaptics>(library, handle, spec, box.centre_m, settings);
     return opened;
+}
+
+bool is_omni_there(const DeviceRequest& request) {
+    return !find_on_bus(request.system_root).empty();
 }
 
 OpenedDevice open_omni(const DeviceRequest& request) {

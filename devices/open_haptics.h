@@ -37,6 +37,9 @@ OpenedDevice open_haptics(const OpenHapticsSettings& settings, const DeviceReque
 // name.
 OpenedDevice open_omni(const DeviceRequest& request);
 
+// On USB or FireWire; one on Ethernet does not show.
+bool is_omni_there(const DeviceRequest& request);
+
 // Made by open_haptics(). The library serves one device a process; a second one is not opened.
 class OpenHaptics final : public Device {
 public:

@@ -213,7 +213,8 @@ int devices_command(const DevicesOptions& options) {
     const DeviceMaker* const only =
         options.name.empty() ? nullptr : &device_maker_called(options.name);
     for (const DeviceMaker& maker : device_makers()) {
-        if (!only || only == &maker) all.push_back(examine(maker, options.tests_force));
+        const bool is_meant = only ? only == &maker : maker.file.empty();
+        if (is_meant) all.push_back(examine(maker, options.tests_force));
     }
     const bool is_any_usable = std::any_of(all.begin(), all.end(), [](const Examined& examined) {
         return examined.is_usable && !examined.maker->is_emulated;
@@ -226,6 +227,11 @@ int devices_command(const DevicesOptions& options) {
 void print_device_list() {
     const DeviceRequest request;
     for (const DeviceMaker& maker : device_makers()) {
+        if (!maker.file.empty()) {
+            fmt::print("{:<10} {}; --device {}:{}\n", maker.name, maker.summary, maker.name,
+                       maker.file);
+            continue;
+        }
         const OpenedDevice opened = maker.open(request);
         const DeviceCheck last = opened.checks.empty() ? DeviceCheck{} : opened.checks.back();
         fmt::print("{:<10} {}; {}\n", maker.name, maker.summary,

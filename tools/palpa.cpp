@@ -110,7 +110,7 @@ void add_run(CLI::App& program, palpa::RunOptions& options) {
             }
             options.device = name;
         },
-        "emulated unless given; list tells which there are");
+        "mouse unless given, headless emulated; list tells which there are");
     run.add_flag("--check", options.check_only,
                  "only read the scene and say what is wrong with it");
     CLI::Option* const record = run.add_option(

@@ -11,7 +11,10 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <string>
 
 namespace palpa {
 namespace {
@@ -33,6 +36,20 @@ void check_repeats(const SceneDescription& scene) {
         scene.place_of("statics.budget_us"),
         "the session had a time budget, and how much moved hung on the machine's speed: "
         "such runs do not repeat; expected one without statics.budget_us");
+}
+
+// The session's file brings back the emulated hand, and no other. A recording that was cut off has
+// no summary, and only the trace will tell.
+void check_device(const std::filesystem::path& folder) {
+    std::ifstream file(folder / "summary.json");
+    const auto summary = nlohmann::json::parse(file, nullptr, false);
+    if (!summary.is_object()) return;
+    const std::string device = summary.value("device", "emulated Omni");
+    if (device == "emulated Omni") return;
+    throw LoadError({(folder / "summary.json").string()},
+                    fmt::format("the device was '{}'; expected one of the emulated hand (palpa run "
+                                "--device replay:{} plays what was read then)",
+                                device, folder.string()));
 }
 
 nlohmann::ordered_json as_json(const TraceCheck& check) {
@@ -83,6 +100,7 @@ int replay_command(const ReplayOptions& options) {
         return run_command(run);
     }
     check_repeats(scene);
+    check_device(options.recording);
     TraceCheck check(options.recording, scene.every);
     if (check.recorded() == 0) {
         throw LoadError({(options.recording / "trace.csv").string(), 2},

@@ -17,6 +17,7 @@
 #include "simulation/step.h"
 #include "tools/relax.h"
 #include "tools/render.h"
+#include "tools/window_devices.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -210,12 +211,12 @@ void write_frame(std::unique_ptr<FrameWriter>& writer, const Simulation& simulat
     }
 }
 
-// What a person has to do although the device could be opened.
-void print_failed_checks(const OpenedDevice& opened) {
-    for (const DeviceCheck& check : opened.checks) {
-        if (check.outcome != CheckOutcome::Failed) continue;
-        fmt::print(stderr, "warning: {}: {}; {}\n", check.layer, check.found, check.remedy);
-    }
+// Without a window nobody is there.
+void check_headless(const std::string& device) {
+    const DeviceMaker& maker = device_maker_called(device);
+    if (maker.is_emulated && !maker.needs_window) return;
+    throw LoadError({fmt::format("--device {}", device)},
+                    "is held by a person and needs the window; expected it without --headless");
 }
 
 int run_in_window(const SceneDescription& scene, const Simulation& simulation,
@@ -225,27 +226,28 @@ int run_in_window(const SceneDescription& scene, const Simulation& simulation,
             {"--record"},
             "a session in a window cannot be recorded yet; expected --headless with it");
     }
-    const bool is_emulated = device_maker_called(options.device).is_emulated;
-    if (options.play && !is_emulated) {
+    if (options.play && options.device && *options.device != "emulated") {
         throw LoadError({"--play"}, "is of the emulated hand; expected it without --device");
     }
-    HandOrders orders;
-    settings.orders = &orders;
     // A window needs somebody.
     if (!settings.hand) settings.hand = hand_model(Grip::Medium);
     if (!options.play) give_to_mouse(settings);
-    const double reach_m = mouse_reach_m(settings);
-    const OpenedDevice opened = open_device(options.device, {.emulated = settings});
-    print_failed_checks(opened);
-    const WindowReport report = run_window(scene, *opened.device,
+    PreferencesFile preferences(find_preferences_file());
+    WindowDevices devices(settings, preferences);
+    const WindowDevice first =
+        devices.open_first(options.play ? std::optional<std::string>("emulated") : options.device);
+    if (!devices.notice().empty()) fmt::print(stderr, "warning: {}\n", devices.notice());
+    const WindowReport report = run_window(scene, *first.device,
                                            {.view = default_view(simulation),
                                             .width = options.width,
                                             .height = options.height,
                                             .screenshots = options.screenshots,
                                             .last_shot = options.last_shot,
                                             .last_shot_s = options.last_shot_s,
-                                            .orders = is_emulated ? &orders : nullptr,
-                                            .mouse_reach_m = options.play ? 0 : reach_m,
+                                            .orders = first.orders,
+                                            .mouse_reach_m = options.play ? 0 : first.mouse_reach_m,
+                                            .devices = options.play ? DeviceMenu() : devices.menu(),
+                                            .notice = devices.notice(),
                                             .lose_device_at = options.lose_device_at,
                                             .validation = options.validation});
     SceneDescription played = scene;
@@ -322,10 +324,7 @@ int run_command(const RunOptions& options) {
         throw LoadError({options.play ? "--play" : "--shot"},
                         "is of a window; expected it without --headless");
     }
-    if (options.headless && !device_maker_called(options.device).is_emulated) {
-        throw LoadError({fmt::format("--device {}", options.device)},
-                        "is held by a person and needs the window; expected it without --headless");
-    }
+    if (options.headless && options.device) check_headless(*options.device);
     if (!options.headless) return run_in_window(scene, simulation, settings, options);
     std::unique_ptr<FrameWriter> writer;
     if (options.record && options.frames_per_second > 0) {
@@ -342,9 +341,10 @@ int run_command(const RunOptions& options) {
     if (writer) frames = {options.frames_per_second, [&] { write_frame(writer, simulation); }};
     for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
 
-    EmulatedOmni device(settings);
+    const OpenedDevice opened =
+        open_device(options.device.value_or("emulated"), {.emulated = settings});
     const Summary summary =
-        run_headless(scene, simulation, device, warnings, recording ? &*recording : nullptr,
+        run_headless(scene, simulation, *opened.device, warnings, recording ? &*recording : nullptr,
                      find_progress(options.json), frames);
     for (std::size_t i = warnings.size(); i < summary.warnings.size(); ++i) {
         fmt::print(stderr, "warning: {}\n", summary.warnings[i]);

@@ -72,13 +72,12 @@ SceneDescription limited_by_period(SceneDescription scene) {
 LiveSession::LiveSession(const SceneDescription& scene, const ViewSettings& view, Device& device,
                          HandOrders* orders)
     : scene_(scene),
-      device_(device),
+      device_(&device),
       orders_(orders),
       state_{load_simulation(limited_by_period(scene)), view, {}, {}, false, {}, {}} {
     order_.granted_ticks = ticks_of(scene.period_ms);
     exchange_.touch.post(state_.simulation.touch);
-    const ServoOrder order = build_order(state_);
-    servo_thread_ = std::thread([this, order] { run_servo(order); });
+    start_servo(state_);
     simulation_thread_ = std::thread([this] { run_simulation(state_); });
 }
 
@@ -88,9 +87,8 @@ LiveSession::~LiveSession() {
         stopping_ = true;
     }
     has_command_.notify_one();
-    servo_thread_.join();
+    stop_servo();
     simulation_thread_.join();
-    device_.write(Vec3::Zero());
 }
 
 void LiveSession::send(const Command& command) {
@@ -112,6 +110,15 @@ void LiveSession::send(const Command& command) {
     has_command_.notify_one();
 }
 
+void LiveSession::change_device(Device& device, HandOrders* orders) {
+    order_.target_m.setZero();
+    if (orders) orders->post(order_);
+    std::unique_lock lock(mutex_);
+    device_change_ = {&device, orders};
+    has_command_.notify_one();
+    device_changed_.wait(lock, [&] { return !device_change_; });
+}
+
 void LiveSession::move_hand(const Vec3& target_m) {
     order_.target_m = target_m;
     if (orders_) orders_->post(order_);
@@ -125,10 +132,24 @@ bool LiveSession::read_frame(LiveFrame& frame) {
 
 ServoHealth LiveSession::servo_health() const noexcept { return {overruns_, real_time_, locked_}; }
 
+void LiveSession::start_servo(const State& state) {
+    ServoOrder order = build_order(state);
+    order.restarts = restarts_;
+    servo_thread_ = std::thread([this, order] { run_servo(order); });
+}
+
+// The force fades first.
+void LiveSession::stop_servo() {
+    servo_stopping_ = true;
+    servo_thread_.join();
+    servo_stopping_ = false;
+    device_->write(Vec3::Zero());
+}
+
 void LiveSession::run_servo(ServoOrder order) {
     real_time_ = ask_for_real_time();
     locked_ = ask_for_locked_memory();
-    ServoState state;
+    ServoState& state = servo_state_;
     ServoTick last;
     const Clock::time_point start = Clock::now();
     Clock::time_point next = start;
@@ -137,20 +158,20 @@ void LiveSession::run_servo(ServoOrder order) {
     for (int ending = 0; ending < last_ticks; ending += order.settings.is_ending ? 1 : 0) {
         const std::uint32_t restarts = order.restarts;
         if (servo_orders_.read(order) && order.restarts != restarts) release(state.safety);
-        order.settings.is_ending = stopping_;
-        const DeviceReading reading = device_.read();
+        order.settings.is_ending = servo_stopping_;
+        const DeviceReading reading = device_->read();
         // An emulated device lives on the servo's ticks, however late they come, and can stand
         // still.
         const std::chrono::duration<double> real_s = Clock::now() - start;
         const bool stands_still =
-            order.is_paused && !stopping_ && reading.time_s == last.reading.time_s;
+            order.is_paused && !servo_stopping_ && reading.time_s == last.reading.time_s;
         if (!stands_still) {
             last = step_servo(order.settings, state, exchange_, reading,
                               orders_ ? reading.time_s : real_s.count());
             ticks_.push(last);
         }
-        device_.show(last.touch);
-        device_.write(last.sent_newton);
+        device_->show(last.touch);
+        device_->write(last.sent_newton);
         next += servo_tick;
         const Clock::time_point now = Clock::now();
         if (now - next > servo_tick) {
@@ -181,9 +202,14 @@ void LiveSession::run_simulation(State& state) {
             std::vector<Command> commands;
             {
                 std::unique_lock lock(mutex_);
-                waited = !has_command_.wait_until(lock, next,
-                                                  [&] { return stopping_ || !commands_.empty(); });
+                waited = !has_command_.wait_until(
+                    lock, next, [&] { return stopping_ || !commands_.empty() || device_change_; });
                 commands.swap(commands_);
+                if (device_change_) {  // who asked for it waits
+                    change_device(state, *device_change_);
+                    device_change_.reset();
+                    device_changed_.notify_one();
+                }
             }
             for (const Command& command : commands) obey(state, command);
             if (!commands.empty()) post_frame_if_wanted(state);
@@ -244,26 +270,41 @@ void LiveSession::reset(State& state) {
         return;
     }
     state.readout.problem.clear();
+    take_hold_anew(state);
+    order_servo(state);
+}
+
+void LiveSession::change_device(State& state, const DeviceChange& change) {
+    stop_servo();
+    device_ = change.device;
+    orders_ = change.orders;
+    // What the molecule was given of the handle's travel and work stays its own.
+    ServoState fresh;
+    fresh.travel_m = servo_state_.travel_m;
+    fresh.turn = servo_state_.turn;
+    fresh.hand_energy_J = servo_state_.hand_energy_J;
+    servo_state_ = fresh;
+    take_hold_anew(state);
+    start_servo(state);
+    order_servo(state);  // or it would take one that was meant for the device before
+}
+
+// Once the hand rests; until then it moves nothing.
+void LiveSession::take_hold_anew(State& state) {
     state.settled = Clock::now() + settle_time;
     ++restarts_;
     state.simulation.touch.model.start = restarts_;
     hold(state);
-    order_servo(state);
 }
 
 // A hand takes hold quietly; laws that are exchanged glide.
 LiveSession::ServoOrder LiveSession::build_order(const State& state) {
     ServoOrder order{
-        build_servo_settings(scene_, state.simulation, device_.spec().half_workspace_m)};
+        build_servo_settings(scene_, state.simulation, device_->spec().half_workspace_m)};
     order.is_paused = orders_ && state.readout.paused;
     SafetySettings& safety = order.settings.safety;
     safety.starts_engaged = false;
-    // What the device says of itself; nothing beside what a scene allows.
-    const DeviceSpec& device = device_.spec();
-    if (device.peak_force_newton > 0) {
-        safety.clamp_newton = std::min(safety.clamp_newton, device.peak_force_newton);
-    }
-    if (device.continuous_force_newton > 0) safety.hot_newton = device.continuous_force_newton;
+    limit_to(device_->spec(), safety);
     if (order.settings.guarded) order.settings.guarded->revision = revision_++;
     return order;
 }

@@ -19,6 +19,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -45,6 +46,11 @@ public:
     ~LiveSession();
 
     void send(const Command& command);
+
+    // Puts another device in the hand's place, which takes hold of the molecule where it is: no
+    // force, then quiet cycles and ramp. Waits for the step that is under way; the device before is
+    // the caller's again.
+    void change_device(Device& device, HandOrders* orders);
 
     // Where a live hand wants the handle, m.
     void move_hand(const Vec3& target_m);
@@ -76,12 +82,21 @@ private:
         bool is_paused = false;      // on a device that stands still
     };
 
+    struct DeviceChange {
+        Device* device;
+        HandOrders* orders;
+    };
+
+    void start_servo(const State& state);
+    void stop_servo();
     void run_servo(ServoOrder order);
     void run_simulation(State& state);
     void step(State& state);
     void hold(State& state);
     void obey(State& state, const Command& command);
     void reset(State& state);
+    void change_device(State& state, const DeviceChange& change);
+    void take_hold_anew(State& state);
     ServoOrder build_order(const State& state);
     void order_servo(const State& state);
     void post_frame_if_wanted(const State& state);
@@ -89,7 +104,7 @@ private:
     static constexpr std::size_t ring_size = 8192;  // 8 s of ticks
 
     SceneDescription scene_;
-    Device& device_;
+    Device* device_;
     HandOrders* orders_;
     HandOrder order_;  // as posted last
     Exchange exchange_;
@@ -104,9 +119,12 @@ private:
     std::mutex mutex_;  // of the commands
     std::condition_variable has_command_;
     std::vector<Command> commands_;
-    std::atomic<bool> stopping_{false};
+    std::optional<DeviceChange> device_change_;  // until it is done
+    std::condition_variable device_changed_;
+    std::atomic<bool> stopping_{false}, servo_stopping_{false};
 
     State state_;
+    ServoState servo_state_;  // the servo's, while it runs
     std::thread simulation_thread_, servo_thread_;
 };
 

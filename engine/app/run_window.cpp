@@ -10,8 +10,8 @@
 #include "render/renderer.h"
 #include "session/run_headless.h"
 #include "ui/backend.h"
-#include "ui/overlay.h"
 #include "ui/study_panel.h"
+#include "view/build_frame.h"
 #include "view/orbit_camera.h"
 
 #include <fmt/format.h>
@@ -35,7 +35,10 @@ using Clock = std::chrono::steady_clock;
 constexpr float radians_per_pixel = 0.008F;
 constexpr float zoom_per_notch = 0.9F;
 constexpr double angstrom_per_notch = 0.25;  // of the molecule in hand, towards the eye and away
-constexpr double notice_s = 4;
+constexpr double key_angstrom_per_s = 2, slow_key = 0.2;
+constexpr double longest_key_s = 0.1;  // that counts at once
+constexpr double notice_s = 4, first_notice_s = 15;
+constexpr std::chrono::seconds device_look{1};
 constexpr float surroundings = 1.6F;  // times the distance that fits the molecule in hand alone
 constexpr glm::vec3 background{0.86F, 0.89F, 0.93F};
 
@@ -89,11 +92,14 @@ class Sandbox {
 public:
     Sandbox(const SceneDescription& scene, Device& device, const WindowOptions& options)
         : options_(options),
+          devices_(options.devices),
+          device_(&device),
+          orders_(options.orders),
+          mouse_reach_m_(options.mouse_reach_m),
           window_("Palpa - " + scene.title, options.width, options.height),
           session_(scene, options.view, device, options.orders),
           overlay_(scene, options.view),
-          statistics_(servo_tick_s),
-          device_(device) {
+          statistics_(servo_tick_s) {
         std::error_code error;
         if (!std::filesystem::is_directory(options.screenshots, error)) {
             throw LoadError({options.screenshots.string()},
@@ -102,6 +108,7 @@ public:
         // Drawing, which may be done by threads of the driver, comes after feeling.
         (void)nice(5);
         graphics_ = std::make_unique<Graphics>(window_, options.validation);
+        if (!options.notice.empty()) notice(options.notice, first_notice_s);
     }
 
     WindowReport run();
@@ -111,28 +118,42 @@ private:
     void look_at_all();
     void look_at_grabbed();
     float free_aspect() const;
-    bool has_mouse_hand() const { return options_.orders && options_.mouse_reach_m > 0; }
+    bool has_mouse_hand() const { return orders_ && mouse_reach_m_ > 0; }
+    bool can_choose_device() const { return devices_.open && !options_.study; }
+    void look_for_devices();
+    bool change_device(const std::string& name);
+    void choose_device(const std::string& name);
+    void choose_next_device();
     void take_ticks();
     void take_input();
     void move_camera(const Input& input);
+    void heed_device(const Input& input);
     void move_hand(const Input& input);
+    void move_hand_by_keys(const Input& input, double seconds);
+    void pull(const glm::vec3& way);
+    void show_wish();
     void perform(Action action);
     void press_study_key();
     void look_at_pixel(double x, double y);
     void draw();
     void save(const WindowShot& shot);
     void restart_graphics();
-    void notice(std::string text);
+    void notice(std::string text, double seconds = notice_s);
     VkExtent2D picture_size() const;
     void keep_validation_messages();
 
     const WindowOptions options_;
+    DeviceMenu devices_;
+    std::unique_ptr<Device> chosen_;  // in the place of the one that the window began with
+    Device* device_;
+    HandOrders* orders_;
+    double mouse_reach_m_;
+    Clock::time_point next_look_ = Clock::now();
     Window window_;
     LiveSession session_;
     std::unique_ptr<Graphics> graphics_;
     Overlay overlay_;
     Statistics statistics_;
-    const Device& device_;
 
     LiveFrame frame_;
     bool has_frame_ = false, framed_ = false;
@@ -140,8 +161,11 @@ private:
     Vec3 hand_m_ = Vec3::Zero();    // where the mouse wants the handle
     Vec3 handle_m_ = Vec3::Zero();  // where it is
     double displacement_gain_ = 0;  // A_d at this moment
-    VkExtent2D drawn_size_{};       // of the last picture
+    FrameScene shown_;              // the frame's picture, and what the window puts in it
+    Clock::time_point last_input_ = Clock::now();
+    VkExtent2D drawn_size_{};  // of the last picture
     bool holding_ = false;
+    Clock::time_point heeded_ = Clock::now();  // the device, for the last time
     RenderScale scale_;
     const Clock::time_point start_ = Clock::now();
     bool is_over_ = false;  // the last screenshot is due
@@ -176,7 +200,7 @@ WindowReport Sandbox::run() {
     if (!validation_messages_.empty()) throw GpuError("validation: " + validation_messages_[0]);
     WindowReport report{statistics_.summary(), overlay_.settings(),        frame_ms_.size(), 0,
                         scale_.value(),        overlay_.lesson().current()};
-    report.summary.device = device_.spec().name;
+    report.summary.device = device_->spec().name;
     report.summary.steps = frame_.readout.steps;
     warn_of_outcome(report.summary);
     report.summary.overruns = session_.servo_health().overruns;
@@ -198,6 +222,7 @@ void Sandbox::frame() {
     }
     if (has_frame_ && !std::exchange(framed_, has_frame_)) look_at_all();
     take_input();
+    look_for_devices();
     if (frame_ms_.size() + 1 == options_.lose_device_at) {
         frame_ms_.push_back(0);
         throw DeviceLost("the device was given up on request");
@@ -248,6 +273,7 @@ void Sandbox::take_ticks() {
 void Sandbox::take_input() {
     const Input& input = window_.poll();
     must_rebuild_ = must_rebuild_ || input.resized;
+    heed_device(input);
     if (!graphics_->ui.wants_keys()) {
         for (const Key key : input.pressed) {
             if (options_.study && key == Key::Enter) press_study_key();
@@ -256,7 +282,10 @@ void Sandbox::take_input() {
             }
         }
     }
-    holding_ = has_mouse_hand() && input.is_held(Key::Space) && !graphics_->ui.wants_keys();
+    const bool leads = has_mouse_hand() && !graphics_->ui.wants_keys();
+    const double seconds = 1e-3 * ms_since(std::exchange(last_input_, Clock::now()));
+    if (leads) move_hand_by_keys(input, std::min(seconds, longest_key_s));
+    holding_ = leads && input.is_held(Key::Space);
     if (holding_) {
         move_hand(input);
     } else if (!graphics_->ui.wants_mouse()) {
@@ -277,21 +306,50 @@ void Sandbox::move_camera(const Input& input) {
     if (input.wheel != 0) zoom(camera_, std::pow(zoom_per_notch, static_cast<float>(input.wheel)));
 }
 
-// The molecule would follow the mouse where nothing holds it: handle travel is A_d times its way.
+// What it is told without focus is meant for others.
+void Sandbox::heed_device(const Input& input) {
+    device_->attend(input.focused);
+    constexpr double longest_s = 0.1;  // after a pause nothing leaps
+    const double passed_s = std::chrono::duration<double>(Clock::now() - heeded_).count();
+    heeded_ = Clock::now();
+    carry(camera_, device_->view_rate(), std::min(passed_s, longest_s));
+}
+
 void Sandbox::move_hand(const Input& input) {
     const float scale = angstrom_per_pixel(camera_, as_float(frame_.grabbed_angstrom),
                                            static_cast<float>(window_.size().height));
-    const glm::vec3 way = scale * (static_cast<float>(input.mouse_dx) * rightward(camera_) -
-                                   static_cast<float>(input.mouse_dy) * upward(camera_)) -
-                          static_cast<float>(input.wheel * angstrom_per_notch) * backward(camera_);
-    const double gain = displacement_gain_;
-    hand_m_ += Vec3(way.x, way.y, way.z) * units::metre_per_angstrom * gain;
+    pull(scale * (static_cast<float>(input.mouse_dx) * rightward(camera_) -
+                  static_cast<float>(input.mouse_dy) * upward(camera_)) -
+         static_cast<float>(input.wheel * angstrom_per_notch) * backward(camera_));
+}
+
+void Sandbox::move_hand_by_keys(const Input& input, double seconds) {
+    const auto along = [&](Key forth, Key back) {
+        return static_cast<float>(input.is_held(forth)) - static_cast<float>(input.is_held(back));
+    };
+    const glm::vec3 way = along(Key::Right, Key::Left) * rightward(camera_) +
+                          along(Key::Up, Key::Down) * upward(camera_) -
+                          along(Key::PageUp, Key::PageDown) * backward(camera_);
+    if (way == glm::vec3(0)) return;
+    pull(static_cast<float>(key_angstrom_per_s * (input.shift ? slow_key : 1) * seconds) * way);
+}
+
+// The molecule would go this way (Å) where nothing holds it: handle travel is A_d times its way.
+void Sandbox::pull(const glm::vec3& way) {
+    hand_m_ += Vec3(way.x, way.y, way.z) * units::metre_per_angstrom * displacement_gain_;
     // Never further ahead than the hand pulls: so that coming back is felt at once.
     const double ahead = (hand_m_ - handle_m_).norm();
-    if (ahead > options_.mouse_reach_m) {
-        hand_m_ = handle_m_ + (hand_m_ - handle_m_) * (options_.mouse_reach_m / ahead);
+    if (ahead > mouse_reach_m_) {
+        hand_m_ = handle_m_ + (hand_m_ - handle_m_) * (mouse_reach_m_ / ahead);
     }
     session_.move_hand(hand_m_);
+}
+
+// By how much of its own way the molecule stays behind; a study shows nothing of it.
+void Sandbox::show_wish() {
+    if (!has_mouse_hand() || options_.study || !(displacement_gain_ > 0)) return;
+    const Vec3 gap = (hand_m_ - handle_m_) / (displacement_gain_ * units::metre_per_angstrom);
+    add_wish(frame_.grabbed_angstrom, frame_.grabbed_angstrom + gap, shown_);
 }
 
 // Of what a study leaves to a person: where to look, and the way out.
@@ -330,6 +388,9 @@ void Sandbox::perform(Action action) {
         case Action::FrameAll:
             look_at_all();
             break;
+        case Action::NextDevice:
+            choose_next_device();
+            break;
         case Action::Screenshot:
             wants_shot_ = true;
             break;
@@ -341,6 +402,66 @@ void Sandbox::perform(Action action) {
             break;
         default:
             break;
+    }
+}
+
+// One that was wanted, and was not there, is taken when it comes.
+void Sandbox::look_for_devices() {
+    if (!can_choose_device() || Clock::now() < next_look_) return;
+    next_look_ = Clock::now() + device_look;
+    bool has_come = false;
+    for (DeviceOffer& offer : devices_.offers) {
+        const bool was_there = std::exchange(offer.is_there, devices_.is_there(offer.name));
+        has_come = has_come || (offer.name == devices_.wanted && offer.is_there && !was_there);
+    }
+    if (has_come && change_device(devices_.wanted)) devices_.wanted.clear();
+}
+
+bool Sandbox::change_device(const std::string& name) {
+    WindowDevice next;
+    try {
+        next = devices_.open(name);
+    } catch (const LoadError& error) {
+        notice(error.what(), first_notice_s);
+        return false;
+    }
+    session_.change_device(*next.device, next.orders);
+    chosen_ = std::move(next.device);
+    device_ = chosen_.get();
+    orders_ = next.orders;
+    mouse_reach_m_ = next.mouse_reach_m;
+    hand_m_ = handle_m_ = Vec3::Zero();
+    devices_.current = name;
+    notice(fmt::format("led by: {}", device_->spec().name));
+    return true;
+}
+
+void Sandbox::choose_device(const std::string& name) {
+    if (name == devices_.current) {
+        devices_.wanted.clear();
+    } else if (!change_device(name)) {
+        return;
+    }
+    devices_.wanted.clear();
+    try {
+        devices_.remember(name);
+    } catch (const LoadError& error) {
+        notice(error.what(), first_notice_s);
+    }
+}
+
+void Sandbox::choose_next_device() {
+    if (!can_choose_device()) return;
+    const auto& offers = devices_.offers;
+    const auto current = std::find_if(offers.begin(), offers.end(), [&](const DeviceOffer& offer) {
+        return offer.name == devices_.current;
+    });
+    const std::size_t from = current == offers.end()
+                                 ? offers.size() - 1
+                                 : static_cast<std::size_t>(current - offers.begin());
+    for (std::size_t i = 1; i < offers.size(); ++i) {
+        const DeviceOffer& next = offers[(from + i) % offers.size()];
+        if (next.is_there) return choose_device(next.name);
     }
 }
 
@@ -376,22 +497,26 @@ void Sandbox::draw() {
         draw_study_panel(*options_.study);
     } else if (has_frame_) {
         const bool is_news = Clock::now() < notice_until_;
-        overlay_.draw(frame_.readout,
-                      {session_.servo_health(), device_.spec().name, g.device.name(),
-                       last_frame_ms_, scale_.value(), has_mouse_hand(), holding_,
-                       is_news ? notice_ : std::string(device_.status())},
-                      commands, actions);
+        overlay_.draw(
+            frame_.readout,
+            {session_.servo_health(), device_->spec().name, g.device.name(), last_frame_ms_,
+             scale_.value(), has_mouse_hand(), holding_,
+             is_news ? notice_ : std::string(device_->status()),
+             can_choose_device() ? devices_.offers : std::vector<DeviceOffer>(), devices_.current},
+            commands, actions);
     }
     g.ui.end();
     for (const Command& command : commands) session_.send(command);
 
-    frame_.picture.camera = frame_camera(camera_, frame_.picture);
-    frame_.picture.background = background;
+    shown_ = frame_.picture;
+    show_wish();
+    shown_.camera = frame_camera(camera_, shown_);
+    shown_.background = background;
     const VkExtent2D size = picture_size();
     WindowShot shot;
     const bool shows = g.swapchain.present(
         [&](VkCommandBuffer buffer, VkImage image) {
-            g.renderer.record(buffer, frame_.picture, size);
+            g.renderer.record(buffer, shown_, size);
             blit(buffer, g.renderer.colour_image(), size, image, g.swapchain.size());
         },
         [&](VkCommandBuffer buffer) { g.ui.draw(buffer); }, wants_shot_ ? &shot : nullptr);
@@ -402,6 +527,7 @@ void Sandbox::draw() {
         save(shot);
     }
     for (const Action action : actions) perform(action);
+    if (const std::optional<std::string> name = overlay_.take_device()) choose_device(*name);
 }
 
 void Sandbox::save(const WindowShot& shot) {
@@ -433,10 +559,10 @@ void Sandbox::keep_validation_messages() {
     }
 }
 
-void Sandbox::notice(std::string text) {
+void Sandbox::notice(std::string text, double seconds) {
     notice_ = std::move(text);
     notice_until_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                       std::chrono::duration<double>(notice_s));
+                                       std::chrono::duration<double>(seconds));
 }
 
 }  // namespace

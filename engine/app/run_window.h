@@ -6,13 +6,34 @@
 #include "session/commands.h"
 #include "session/statistics.h"
 #include "session/study_course.h"
+#include "ui/overlay.h"
 
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace palpa {
+
+// A device in the hand's place.
+struct WindowDevice {
+    std::unique_ptr<Device> device;
+    HandOrders* orders = nullptr;  // of one that can stand still
+    double mouse_reach_m = 0;      // how far ahead of its handle a mouse may be; 0: none leads it
+};
+
+// From what a person may choose. None where `open` is empty.
+struct DeviceMenu {
+    std::vector<DeviceOffer> offers{};
+    std::string current{};  // the one that the window begins with
+    std::string wanted{};   // to be taken as soon as it is there; empty: none
+    std::function<bool(const std::string& name)> is_there{};      // a quick look
+    std::function<WindowDevice(const std::string& name)> open{};  // throws LoadError
+    std::function<void(const std::string& name)> remember{};      // throws LoadError
+};
 
 struct WindowOptions {
     ViewSettings view{};
@@ -21,7 +42,9 @@ struct WindowOptions {
     std::optional<std::filesystem::path> last_shot{};  // taken after `last_shot_s`, then it quits
     double last_shot_s = 5;
     HandOrders* orders = nullptr;  // of an emulated device's hand
-    double mouse_reach_m = 0;      // how far ahead of the handle a mouse's hand goes; 0: no mouse
+    double mouse_reach_m = 0;      // as of WindowDevice
+    DeviceMenu devices{};
+    std::string notice{};  // to begin with
     double most_frames_per_s = 60;
     std::uint64_t lose_device_at = 0;  // frame at which the graphics device is given up, for tests
     StudyCourse* study = nullptr;      // the window is for this alone: no overlays, one key

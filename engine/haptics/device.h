@@ -47,7 +47,14 @@ inline bool is_pressed(std::uint32_t buttons, Button button) noexcept {
     return (buttons & static_cast<std::uint32_t>(button)) != 0;
 }
 
-// Used by one thread, the servo's. Neither call waits, locks or allocates.
+// How fast a hand wants something to go that goes on by itself: a handle that is not there, or
+// what is seen. The turn is a rotation vector.
+struct HandRate {
+    Vec3 m_per_s = Vec3::Zero();
+    Vec3 rad_per_s = Vec3::Zero();
+};
+
+// Used by one thread, the servo's, unless said otherwise. No call waits, locks or allocates.
 class Device {
 public:
     Device() = default;
@@ -68,6 +75,14 @@ public:
     // What the person has to know or do for the device to work, one sentence, which is never freed;
     // empty where all is well. From any thread.
     virtual std::string_view status() const noexcept { return {}; }
+
+    // Whether the person at it means this program, as its window has the focus; by the window's
+    // thread. A device that is heard without focus too rests meanwhile. Unless told otherwise, yes.
+    virtual void attend(bool /*is_meant*/) noexcept {}
+
+    // How fast the person wants to move what is seen, as if it were in hand: x right, y up, z
+    // towards the eye. By the window's thread.
+    virtual HandRate view_rate() const noexcept { return {}; }
 };
 
 }  // namespace palpa

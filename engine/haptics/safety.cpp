@@ -205,6 +205,15 @@ SafetyResult guard_papers_force(const SafetySettings& settings, SafetyState& sta
 
 }  // namespace
 
+void limit_to(const DeviceSpec& device, SafetySettings& settings) noexcept {
+    if (device.peak_force_newton > 0) {
+        settings.clamp_newton = std::min(settings.clamp_newton, device.peak_force_newton);
+    } else {
+        settings.frozen_s = settings.frozen_newton = std::numeric_limits<double>::infinity();
+    }
+    if (device.continuous_force_newton > 0) settings.hot_newton = device.continuous_force_newton;
+}
+
 std::string_view words(SafetyStage stage) noexcept {
     switch (stage) {
         case SafetyStage::None:

@@ -55,6 +55,10 @@ struct SafetySettings {
     double ramp_s = 2;
 };
 
+// Takes over what a device says of itself; nothing beside what the settings allow already. Without
+// motors nothing can be seen of them in its readings.
+void limit_to(const DeviceSpec& device, SafetySettings& settings) noexcept;
+
 // From harmless to grave.
 enum class SafetyStage {
     None,

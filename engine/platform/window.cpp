@@ -16,15 +16,39 @@ struct KeyName {
     Key key;
 };
 constexpr std::array key_names = std::to_array<KeyName>({
-    {GLFW_KEY_SPACE, Key::Space}, {GLFW_KEY_ENTER, Key::Enter}, {GLFW_KEY_ESCAPE, Key::Escape},
-    {GLFW_KEY_TAB, Key::Tab},     {GLFW_KEY_HOME, Key::Home},   {GLFW_KEY_F1, Key::F1},
-    {GLFW_KEY_F5, Key::F5},       {GLFW_KEY_F12, Key::F12},     {GLFW_KEY_PERIOD, Key::Period},
-    {GLFW_KEY_1, Key::Digit1},    {GLFW_KEY_2, Key::Digit2},    {GLFW_KEY_3, Key::Digit3},
-    {GLFW_KEY_4, Key::Digit4},    {GLFW_KEY_5, Key::Digit5},    {GLFW_KEY_6, Key::Digit6},
-    {GLFW_KEY_A, Key::A},         {GLFW_KEY_C, Key::C},         {GLFW_KEY_F, Key::F},
-    {GLFW_KEY_H, Key::H},         {GLFW_KEY_L, Key::L},         {GLFW_KEY_O, Key::O},
-    {GLFW_KEY_P, Key::P},         {GLFW_KEY_R, Key::R},         {GLFW_KEY_V, Key::V},
-    {GLFW_KEY_Y, Key::Y},         {GLFW_KEY_Z, Key::Z},
+    {GLFW_KEY_SPACE, Key::Space},
+    {GLFW_KEY_ENTER, Key::Enter},
+    {GLFW_KEY_ESCAPE, Key::Escape},
+    {GLFW_KEY_TAB, Key::Tab},
+    {GLFW_KEY_HOME, Key::Home},
+    {GLFW_KEY_LEFT, Key::Left},
+    {GLFW_KEY_RIGHT, Key::Right},
+    {GLFW_KEY_UP, Key::Up},
+    {GLFW_KEY_DOWN, Key::Down},
+    {GLFW_KEY_PAGE_UP, Key::PageUp},
+    {GLFW_KEY_PAGE_DOWN, Key::PageDown},
+    {GLFW_KEY_F1, Key::F1},
+    {GLFW_KEY_F5, Key::F5},
+    {GLFW_KEY_F12, Key::F12},
+    {GLFW_KEY_PERIOD, Key::Period},
+    {GLFW_KEY_1, Key::Digit1},
+    {GLFW_KEY_2, Key::Digit2},
+    {GLFW_KEY_3, Key::Digit3},
+    {GLFW_KEY_4, Key::Digit4},
+    {GLFW_KEY_5, Key::Digit5},
+    {GLFW_KEY_6, Key::Digit6},
+    {GLFW_KEY_A, Key::A},
+    {GLFW_KEY_C, Key::C},
+    {GLFW_KEY_D, Key::D},
+    {GLFW_KEY_F, Key::F},
+    {GLFW_KEY_H, Key::H},
+    {GLFW_KEY_L, Key::L},
+    {GLFW_KEY_O, Key::O},
+    {GLFW_KEY_P, Key::P},
+    {GLFW_KEY_R, Key::R},
+    {GLFW_KEY_V, Key::V},
+    {GLFW_KEY_Y, Key::Y},
+    {GLFW_KEY_Z, Key::Z},
 });
 static_assert(key_names.size() == static_cast<std::size_t>(Key::Count));
 
@@ -151,6 +175,7 @@ const Input& Window::poll() {
     input_.wheel = 0;
     input_.resized = false;
     glfwPollEvents();
+    input_.focused = glfwGetWindowAttrib(window_, GLFW_FOCUSED) == GLFW_TRUE;
     int width = 0, height = 0;
     glfwGetWindowSize(window_, &width, &height);
     const VkExtent2D pixels = size();

@@ -27,6 +27,12 @@ enum class Key {
     Escape,
     Tab,
     Home,
+    Left,
+    Right,
+    Up,
+    Down,
+    PageUp,
+    PageDown,
     F1,
     F5,
     F12,
@@ -39,6 +45,7 @@ enum class Key {
     Digit6,
     A,
     C,
+    D,
     F,
     H,
     L,
@@ -62,6 +69,7 @@ struct Input {
     std::vector<Key> pressed;  // since the last poll, in their order
     bool shift = false, control = false;
     bool resized = false;  // of the picture
+    bool focused = true;   // keys are meant for this window
 
     bool is_held(Key key) const { return held[static_cast<std::size_t>(key)]; }
     bool is_down(MouseButton button) const { return down[static_cast<std::size_t>(button)]; }

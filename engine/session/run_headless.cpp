@@ -274,6 +274,7 @@ Summary run_headless(const SceneDescription& scene, Simulation& simulation, Devi
 
     if (progress) progress(1);
     Summary summary = statistics.summary();
+    summary.device = device.spec().name;
     summary.warnings = warnings;
     summary.feel = feel.feel(summary.step_median_us);
     if (journey && simulation.flexible) {

@@ -12,6 +12,7 @@ constexpr auto most =
 
 void History::add(const Reading& reading) {
     if (ticks_++ % ticks_per_sample != 0) return;
+    if (!samples_.empty() && reading.time_s < samples_.back().time_s) samples_.clear();
     // The older half is dropped at once: most samples cost nothing.
     if (samples_.size() >= 2 * most) {
         samples_.erase(samples_.begin(), samples_.end() - static_cast<std::ptrdiff_t>(most));

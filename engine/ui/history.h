@@ -13,7 +13,8 @@ public:
     static constexpr double seconds = 10;
     static constexpr int ticks_per_sample = 10;
 
-    // Every tick in its order; one of ten is kept.
+    // Every tick in its order; one of ten is kept. Where the clock goes back, of another device, it
+    // begins anew.
     void add(const Reading& reading);
 
     // Those of the last seconds, in the order of time.

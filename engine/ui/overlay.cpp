@@ -307,7 +307,11 @@ void Overlay::draw_readings(const Readout& readout, const OverlayStatus& status)
             "degrees of freedom that a step may move");
     reading("hand", std::string(hand_names[scene_.hand.grip]),
             "the grip on the emulated handle; hand.grip of the scene");
-    reading("device", status.device_name, "what the force is sent to, 1000 times a second");
+    if (status.devices.empty()) {
+        reading("device", status.device_name, "what the force is sent to, 1000 times a second");
+    } else {
+        choose_device(status);
+    }
     reading("step", fmt::format("{:.3f} ms of {} ms", readout.step_ms, settings_.period_ms),
             "wall time of the last simulation step, and the declared period");
     reading("drawing", fmt::format("{:.1f} ms, scale {:.2f}", status.frame_ms, status.render_scale),
@@ -322,6 +326,24 @@ void Overlay::draw_readings(const Readout& readout, const OverlayStatus& status)
             "/etc/security/limits.conf.");
     ImGui::EndTable();
     ImGui::TextDisabled("%s", status.gpu_name.c_str());
+}
+
+void Overlay::choose_device(const OverlayStatus& status) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted("device");
+    tip("What the force is sent to, 1000 times a second. D takes the next one that is there. The "
+        "choice is remembered; a device that was unplugged is taken again when it is back.");
+    ImGui::TableNextColumn();
+    ImGui::SetNextItemWidth(-1);
+    if (!ImGui::BeginCombo("##device", status.device_name.c_str())) return;
+    for (const DeviceOffer& offer : status.devices) {
+        const std::string text =
+            fmt::format("{}{}", offer.name, offer.is_there ? "" : " (not seen)");
+        if (ImGui::Selectable(text.c_str(), offer.name == status.device)) device_ = offer.name;
+        tip(offer.summary.c_str());
+    }
+    ImGui::EndCombo();
 }
 
 void Overlay::draw_exactness(const Readout& readout) {
@@ -638,10 +660,11 @@ void Overlay::draw_warnings(const Readout& readout, const OverlayStatus& status)
     if (!readout.problem.empty()) warnings.push_back(readout.problem);
     if (readout.paused) warnings.emplace_back("paused: P goes on");
     if (!status.notice.empty()) warnings.push_back(status.notice);
-    warnings.emplace_back(!status.has_mouse_hand ? "the emulated hand plays its stroke; H: all keys"
+    warnings.emplace_back(!status.has_mouse_hand
+                              ? fmt::format("led by: {}; H: all keys", status.device_name)
                           : status.holding ? "in hand: move the mouse; the wheel goes in and out"
-                                           : "hold Space and move the mouse to pull the molecule; "
-                                             "H: all keys");
+                                           : "hold Space and move the mouse to pull the molecule, "
+                                             "or use the arrow keys; H: all keys");
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     const float column = column_of(screen.x);
     ImGui::SetNextWindowPos({screen.x / 2, edge}, ImGuiCond_Always, {0.5F, 0});

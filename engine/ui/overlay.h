@@ -6,10 +6,18 @@
 #include "ui/history.h"
 #include "ui/shortcuts.h"
 
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace palpa {
+
+// A device that a person may choose.
+struct DeviceOffer {
+    std::string name, summary;  // as --device takes it; in a few words
+    bool is_there = true;       // as far as can be seen
+};
 
 // What the window knows beside the readout.
 struct OverlayStatus {
@@ -17,9 +25,11 @@ struct OverlayStatus {
     std::string device_name, gpu_name;
     double frame_ms = 0;
     double render_scale = 1;
-    bool has_mouse_hand = true;  // the mouse can take the molecule
-    bool holding = false;        // and has it
-    std::string notice;          // of the last seconds, such as where a screenshot went
+    bool has_mouse_hand = true;        // the mouse can take the molecule
+    bool holding = false;              // and has it
+    std::string notice;                // of the last seconds, such as where a screenshot went
+    std::vector<DeviceOffer> devices;  // to choose from; none: there is no choice
+    std::string device;                // the one in use, of these names
 };
 
 class Overlay {
@@ -36,6 +46,9 @@ public:
     // Does what an action means for settings and overlays; false where it is the window's business.
     bool perform(Action action, std::vector<Command>& commands);
 
+    // The name of the device that the person has chosen since the last call.
+    std::optional<std::string> take_device() { return std::exchange(device_, std::nullopt); }
+
     // The hand feels a spring, at this moment, that it cannot keep calm at the present period.
     bool is_shaking(const Readout& readout) const;
 
@@ -49,6 +62,7 @@ private:
     void draw_scene(const Readout& readout, const OverlayStatus& status,
                     std::vector<Command>& commands, std::vector<Action>& actions);
     void draw_readings(const Readout& readout, const OverlayStatus& status);
+    void choose_device(const OverlayStatus& status);
     void draw_exactness(const Readout& readout);
     void draw_gains(std::vector<Command>& commands);
     void draw_gain_sliders();
@@ -89,6 +103,7 @@ private:
     double force_gain_ = 0;
     float gains_bottom_ = 0;  // pixels, where the next panel of that column may begin
 
+    std::optional<std::string> device_;  // just chosen
     bool shows_overlays_ = true, shows_lesson_ = true, shows_help_ = false;
     std::vector<double> x_, y_, z_;  // of the plots, kept for their room
 };

@@ -27,6 +27,7 @@ constexpr std::array list = std::to_array<Shortcut>({
     {Key::L, false, Action::ToggleLesson, "L", "lesson on, off"},
     {Key::H, false, Action::ToggleHelp, "H", "this list"},
     {Key::F1, false, Action::ToggleHelp, "F1", "this list"},
+    {Key::D, false, Action::NextDevice, "D", "another device"},
     {Key::F12, false, Action::Screenshot, "F12", "screenshot"},
     {Key::F5, false, Action::RestartGraphics, "F5", "set the graphics up again"},
     {Key::Escape, false, Action::Quit, "Esc", "quit"},
@@ -35,6 +36,7 @@ constexpr std::array list = std::to_array<Shortcut>({
 constexpr std::array gesture_list = std::to_array<Gesture>({
     {"hold Space, move the mouse", "take the molecule in hand and pull it"},
     {"hold Space, turn the wheel", "push it away from you, draw it near"},
+    {"arrows, Page up, Page down", "pull it with keys; with Shift slowly"},
     {"drag", "turn the view"},
     {"right drag, Shift+drag", "shift the view"},
     {"wheel", "nearer, farther"},

@@ -27,6 +27,7 @@ enum class Action {
     ToggleOverlay,
     ToggleLesson,
     ToggleHelp,
+    NextDevice,
     Screenshot,
     RestartGraphics,
     Quit

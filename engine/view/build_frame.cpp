@@ -136,6 +136,14 @@ void add_force_arrow(const Simulation& simulation, const TouchModel& touch, Fram
 
 }  // namespace
 
+void add_wish(const Vec3& place, const Vec3& wish, FrameScene& frame) {
+    if (!((wish - place).norm() > 0.1)) return;
+    const glm::vec3 colour{0.45F, 0.60F, 0.80F};
+    frame.spheres.push_back({as_float(wish), 0.14F, colour, wish_pick});
+    frame.cones.push_back(
+        {as_float(place), as_float(wish), 0.03F, 0.03F, colour, colour, wish_pick});
+}
+
 glm::vec3 as_float(const Vec3& v) {
     return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
 }

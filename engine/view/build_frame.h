@@ -26,8 +26,9 @@ struct ViewSettings {
     bool force_arrow = true;  // on the grabbed molecule, 5 Å for 1 nN, at most 3 Å
 };
 
-// Atoms and bonds are picked by the index of the atom (of its first atom); the arrow by this.
-inline constexpr std::uint32_t arrow_pick = UINT32_MAX - 1;
+// Atoms and bonds are picked by the index of the atom (of its first atom); the arrow and the wish
+// of a hand by these.
+inline constexpr std::uint32_t arrow_pick = UINT32_MAX - 1, wish_pick = UINT32_MAX - 2;
 
 // Atoms as spheres, bonds as sticks, in Å as they stand, and the force of `touch` as an arrow. The
 // camera is the caller's (view/orbit_camera.h).
@@ -35,6 +36,10 @@ FrameScene build_frame(const Simulation& simulation, const TouchModel& touch,
                        const ViewSettings& settings);
 // The same with the force as it is now, for which the pairs are summed again.
 FrameScene build_frame(const Simulation& simulation, const ViewSettings& settings);
+
+// Where the hand wants what it has at `place` (Å): a faint dot there and a thread to it. The gap
+// tells of the force. Nothing where they are closer than 0.1 Å.
+void add_wish(const Vec3& place, const Vec3& wish, FrameScene& frame);
 
 // A place as pictures have it.
 glm::vec3 as_float(const Vec3& v);

@@ -54,6 +54,14 @@ void zoom(OrbitCamera& camera, float factor) {
     camera.distance = std::clamp(camera.distance * factor, nearest_view, farthest_view);
 }
 
+void carry(OrbitCamera& camera, const HandRate& rate, double dt_s) {
+    const Eigen::Vector3f way = (dt_s / carried_m * rate.m_per_s).cast<float>();
+    const Eigen::Vector3f turn = (dt_s * rate.rad_per_s).cast<float>();
+    pan(camera, way.x(), -way.y(), 1);
+    zoom(camera, std::exp(-way.z()));
+    orbit(camera, -turn.y(), turn.x());
+}
+
 void frame_all(OrbitCamera& camera, const FrameScene& frame, float aspect) {
     frame_shapes(camera, balls_of(frame), aspect);
 }

@@ -1,5 +1,6 @@
 // A camera that a person turns about what they look at.
 #pragma once
+#include "haptics/device.h"
 #include "render/frame_scene.h"
 
 #include <glm/vec3.hpp>
@@ -30,6 +31,11 @@ void pan(OrbitCamera& camera, float right, float down, float height);
 float angstrom_per_pixel(const OrbitCamera& camera, const glm::vec3& place, float height);
 // Nearer for factors below 1.
 void zoom(OrbitCamera& camera, float factor);
+// What is seen goes at a hand's rate for a time, as if it were in hand: to the right and up by a
+// height of the picture, or nearer by a factor of e, for every `carried_m` of the hand. It turns
+// with the hand, but never over, and does not roll.
+inline constexpr double carried_m = 0.060;
+void carry(OrbitCamera& camera, const HandRate& rate, double dt_s);
 // All shapes, or these, fit a picture of that aspect with a margin, seen in the direction in which
 // the camera looks. Where there are none, nothing changes.
 void frame_all(OrbitCamera& camera, const FrameScene& frame, float aspect);

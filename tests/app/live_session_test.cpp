@@ -3,6 +3,7 @@
 #include "app/live_session.h"
 
 #include "devices/emulated_omni.h"
+#include "devices/mouse_handle.h"
 #include "haptics/hand.h"
 #include "simulation/step.h"
 #include "tests/support/water_scene.h"
@@ -79,6 +80,44 @@ TEST_CASE("the mouse's hand draws the molecule near, and the hand feels it", "[a
     CHECK(live.wait_until([&](const LiveFrame&) { return live.distance() < 3.5; }));
     CHECK(live.wait_until([&](const LiveFrame&) { return live.last.sent_newton.x() < -0.5; }));
     CHECK(live.frame.grabbed_angstrom.x() - live.distance() == Approx(0).margin(1e-9));
+}
+
+TEST_CASE("another device takes hold of the molecule where it is", "[app][threads]") {
+    const std::string mode = GENERATE("mode=guarded", "mode=2");
+    Live live({mode});
+    REQUIRE(live.wait_until([&](const LiveFrame&) {  // waited, risen
+        return live.last.reading.time_s > 1 && live.last.stage == SafetyStage::None;
+    }));
+    live.session.move_hand(Vec3(-0.0975, 0, 0));  // 3.9 Å at 2.5 cm/Å
+    REQUIRE(live.wait_until([&](const LiveFrame&) { return live.last.sent_newton.x() < -0.5; }));
+    HandOrders orders;
+    MouseHandle mouse({.orders = &orders});
+
+    live.session.change_device(mouse, &orders);
+    for (ServoTick tick; live.session.pop_tick(tick);) live.last = tick;  // of the one before
+    REQUIRE(live.wait_for_steps(1));
+    const double there = live.distance();
+    CHECK(there < 5);
+
+    // A hand that stays where it is: no force before it was quiet, in paper mode as soon as it
+    // rests.
+    double strongest = 0, time_s = 0;
+    while (time_s < 0.3) {
+        ServoTick tick;
+        if (!live.session.pop_tick(tick)) continue;
+        time_s = tick.reading.time_s;
+        strongest = std::max(strongest, tick.sent_newton.norm());
+    }
+    CHECK(strongest == 0);
+    REQUIRE(live.wait_until([&](const LiveFrame&) { return live.last.reading.time_s > 1; }));
+    CHECK((live.last.sent_newton.x() < -0.2) == (mode == "mode=2"));
+    CHECK(live.distance() == Approx(there).margin(0.3));
+
+    live.session.move_hand(Vec3(0.075, 0, 0));  // 3 Å outward
+    CHECK(live.wait_until([&](const LiveFrame&) {
+        return live.distance() > there + 2 && live.last.stage == SafetyStage::None;
+    }));
+    live.session.change_device(live.device, &live.orders);  // which outlives the session
 }
 
 TEST_CASE("while paused nothing moves and going on nothing jumps", "[app][threads]") {

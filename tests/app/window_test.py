@@ -76,8 +76,8 @@ class Session(unittest.TestCase):
         self.program = subprocess.Popen(
             [PROGRAM, "run", ROOT / "scenes" / "water", "--screenshots", self.folder, "--json",
              "--validation", *map(str, options)],
-            env={**os.environ, "DISPLAY": display.name}, stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE, text=True)
+            env={**os.environ, "DISPLAY": display.name, "XDG_CONFIG_HOME": str(self.folder)},
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.wait_until(display.focus_window, "the window")
         self.screenshots = 0
         self.screenshot(display)  # the first picture is there: it takes part from now on
@@ -151,6 +151,17 @@ class Session(unittest.TestCase):
             summary = self.quit(display)
         self.assertAlmostEqual(summary["closest_angstrom"], 7, delta=0.7)
 
+    def test_arrow_keys_pull_the_molecule_too(self):
+        with Display() as display:
+            self.start(display)
+            display.do("keydown", "Left")
+            time.sleep(1.5)
+            display.do("keyup", "Left")
+            self.screenshot(display)
+            summary = self.quit(display)
+        self.assertEqual(summary["device"], "mouse and keys")
+        self.assertLess(summary["closest_angstrom"], 6.5)
+
     def test_a_lost_device_comes_back(self):
         with Display() as display:
             self.start(display, "--lose-device-at", 5)
@@ -173,6 +184,44 @@ class Session(unittest.TestCase):
                     self.assertEqual(result.returncode, 2, result.stderr)
                     self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
                     self.assertIn(expected, result.stderr)
+
+    def test_a_device_that_was_chosen_is_remembered(self):
+        chosen = self.folder / "palpa" / "preferences.toml"
+        with Display() as display:
+            self.start(display)
+            display.do("key", "d")  # the Omni's library is there, but nothing on the bus
+            self.wait_until(chosen.exists, "the choice on disk")
+            self.screenshot(display)
+            self.assertEqual(self.quit(display)["device"], "emulated Omni")
+            self.assertIn('device = "emulated"', chosen.read_text().replace("'", '"'))
+
+            for file in self.folder.glob("*.png"):
+                file.unlink()
+            self.start(display)
+            summary = self.quit(display)
+        self.assertEqual(summary["device"], "emulated Omni")
+
+    def test_a_device_that_is_gone_is_said_and_not_forgotten(self):
+        chosen = self.folder / "palpa" / "preferences.toml"
+        chosen.parent.mkdir()
+        for text, told in (("device = 'omni'\n", "--device omni: library: "),
+                           ("device = 'omni\n", "preferences.toml:1:")):
+            with self.subTest(text=text), Display() as display:
+                chosen.write_text(text)
+                for file in self.folder.glob("*.png"):
+                    file.unlink()
+                os.environ["PALPA_OPENHAPTICS"], stub = "/nowhere", os.environ["PALPA_OPENHAPTICS"]
+                try:
+                    self.start(display)
+                finally:
+                    os.environ["PALPA_OPENHAPTICS"] = stub
+                display.do("key", "Escape")
+                out, err = self.program.communicate(timeout=60)
+                self.assertEqual(self.program.returncode, 0, err)
+                self.assertEqual(json.loads(out)["device"], "mouse and keys")
+                self.assertEqual(len(err.strip().splitlines()), 1, err)
+                self.assertIn(told, err)
+                self.assertEqual(chosen.read_text(), text)
 
     def test_the_emulated_hand_can_play(self):
         with Display() as display:

@@ -561,3 +561,24 @@ TEST_CASE("a device that refuses the force gets none, then quiet cycles and the 
     CHECK(rising.newton.x() == Approx(1).margin(0.02));
     CHECK(back.newton.x() == Approx(2));
 }
+
+TEST_CASE("a device's limits are taken over, but none above what a scene allows",
+          "[haptics][safety]") {
+    SafetySettings weak, strong, without_motors;
+    DeviceSpec device;
+
+    limit_to(device, without_motors);
+    device.peak_force_newton = 1.5;
+    device.continuous_force_newton = 0.4;
+    limit_to(device, weak);
+    device.peak_force_newton = 30;
+    limit_to(device, strong);
+
+    CHECK(weak.clamp_newton == 1.5);
+    CHECK(weak.hot_newton == 0.4);
+    CHECK(strong.clamp_newton == SafetySettings{}.clamp_newton);
+    CHECK(weak.frozen_s == SafetySettings{}.frozen_s);
+    CHECK(without_motors.clamp_newton == SafetySettings{}.clamp_newton);
+    CHECK(without_motors.frozen_s == std::numeric_limits<double>::infinity());
+    CHECK(without_motors.frozen_newton == std::numeric_limits<double>::infinity());
+}

@@ -2,6 +2,7 @@
 import json
 import os
 import subprocess
+import tempfile
 import unittest
 from pathlib import Path
 
@@ -83,6 +84,32 @@ class Devices(unittest.TestCase):
         result = palpa("run", WATER, "--device", "omni", stub="absent")
         self.assertEqual(result.returncode, 2)
         self.assertIn("--device omni: init: ", result.stderr)
+
+    def test_a_recorded_hand_plays_again_and_the_trace_is_the_same(self):
+        with tempfile.TemporaryDirectory() as folder:
+            first, second = Path(folder) / "first", Path(folder) / "second"
+            run = ("run", WATER, "--headless", "--seconds", 3)
+            self.assertEqual(palpa(*run, "--record", first).returncode, 0)
+            again = palpa(*run, "--record", second, "--device", f"replay:{first}")
+            self.assertEqual(again.returncode, 0, again.stderr)
+            self.assertEqual((first / "trace.csv").read_bytes(),
+                             (second / "trace.csv").read_bytes())
+            verified = palpa("replay", second, "--verify")
+            self.assertEqual(verified.returncode, 2)
+            self.assertIn("expected one of the emulated hand", verified.stderr)
+
+    def test_a_script_leads_the_molecule_in(self):
+        with tempfile.TemporaryDirectory() as folder:
+            script = Path(folder) / "in.csv"
+            # 3 Å at 2.5 cm/Å, in two seconds, from 7 Å.
+            script.write_text("# inward\ntime_s,handle_x_m,handle_y_m,handle_z_m\n"
+                              "0,0,0,0\n0.5,0,0,0\n2.5,-0.075,0,0\n")
+            result = palpa("run", WATER, "--headless", "--seconds", 3, "--mode", 4, "--json",
+                           "--device", f"script:{script}")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            summary = json.loads(result.stdout)
+            self.assertEqual(summary["device"], "script")
+            self.assertAlmostEqual(summary["last_angstrom"], 4, delta=0.01)
 
 
 if __name__ == "__main__":

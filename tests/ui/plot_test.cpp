@@ -33,4 +33,13 @@ TEST_CASE("history keeps the last ten seconds, one tick of ten", "[ui]") {
     REQUIRE(history.samples().size() == 1000);
     CHECK(history.samples().front().time_s == Approx(15.0));
     CHECK(history.samples().back().time_s == Approx(24.99));
+
+    // Another device's clock.
+    for (int tick = 0; tick < 100; ++tick) {
+        Reading reading;
+        reading.time_s = 1e-3 * tick;
+        history.add(reading);
+    }
+    REQUIRE(history.samples().size() == 10);
+    CHECK(history.samples().front().time_s == 0);
 }

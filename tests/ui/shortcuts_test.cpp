@@ -14,7 +14,10 @@ TEST_CASE("every key means one thing, and the help tells it", "[ui]") {
         CHECK_FALSE(shortcut.name.empty());
         CHECK_FALSE(shortcut.does.empty());
     }
-    // The hand's own key starts nothing else.
-    CHECK_FALSE(find_action(Key::Space, false));
+    // The hand's own keys start nothing else.
+    for (const Key key :
+         {Key::Space, Key::Left, Key::Right, Key::Up, Key::Down, Key::PageUp, Key::PageDown}) {
+        CHECK_FALSE(find_action(key, false));
+    }
     CHECK_FALSE(find_action(Key::P, true));
 }

@@ -51,6 +51,19 @@ TEST_CASE("two waters are six spheres and four sticks, and an arrow along the fo
     CHECK(default_view(simulation).representation == Representation::BallAndStick);
 }
 
+TEST_CASE("the wish of a hand is a thread from what it holds to a dot", "[view]") {
+    FrameScene frame;
+
+    add_wish(Vec3(1, 2, 3), Vec3(1, 2, 3.05), frame);
+    CHECK((frame.spheres.empty() && frame.cones.empty()));
+
+    add_wish(Vec3(1, 2, 3), Vec3(1, 4, 3), frame);
+    REQUIRE((frame.spheres.size() == 1 && frame.cones.size() == 1));
+    CHECK(frame.spheres[0].centre == glm::vec3(1, 4, 3));
+    CHECK(frame.cones[0].a == glm::vec3(1, 2, 3));
+    CHECK(frame.cones[0].b == frame.spheres[0].centre);
+}
+
 TEST_CASE("every atom that nothing hides is seen at its centre, and all fit the picture",
           "[view][gpu]") {
     const auto representation = GENERATE(Representation::BallAndStick, Representation::SpaceFilling,

@@ -75,6 +75,32 @@ TEST_CASE("what is at the target follows a pan by as many pixels", "[view][camer
           Approx(2 * 20 * std::tan(0.3) / view_height));
 }
 
+TEST_CASE("what is seen goes where a hand carries it", "[view][camera]") {
+    const OrbitCamera before{.target = {1, 2, 3}, .distance = 20, .azimuth = 0.7F};
+    const glm::vec3 place = before.target;
+    // In front of the target, so that it shows which way things turn.
+    const glm::vec3 front = place + backward(before);
+    const auto seen_after = [&](const HandRate& rate, const glm::vec3& what) {
+        OrbitCamera camera = before;
+        for (int i = 0; i < 10; ++i) carry(camera, rate, 0.1);
+        return seen_at(camera, what);
+    };
+
+    const glm::vec3 aside = seen_after({Vec3(carried_m / 4, 0, 0), Vec3::Zero()}, place);
+    const glm::vec3 lifted = seen_after({Vec3(0, carried_m / 4, 0), Vec3::Zero()}, place);
+    OrbitCamera nearer = before;
+    carry(nearer, {Vec3(0, 0, carried_m), Vec3::Zero()}, 0.5);
+
+    CHECK(aside.x == Approx(160 + 45).epsilon(0.001));
+    CHECK(aside.y == Approx(90).epsilon(0.001));
+    CHECK(lifted.x == Approx(160).epsilon(0.001));
+    CHECK(lifted.y == Approx(90 - 45).epsilon(0.001));
+    CHECK(nearer.distance == Approx(20 * std::exp(-0.5)));
+    // By the right hand: its front comes to the right, or down.
+    CHECK(seen_after({Vec3::Zero(), Vec3(0, 0.3, 0)}, front).x > 162);
+    CHECK(seen_after({Vec3::Zero(), Vec3(0.3, 0, 0)}, front).y > 92);
+}
+
 TEST_CASE("a zoom changes the distance by its factor, within limits", "[view][camera]") {
     OrbitCamera camera{.distance = 20};
 

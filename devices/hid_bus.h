@@ -1,0 +1,64 @@
+// Human interface devices on USB and Bluetooth, through hidapi: which there are, and a line to one.
+// https://github.com/libusb/hidapi, 0.13; on Linux its hidraw form.
+#pragma once
+#include "devices/device_nodes.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+struct hid_device_;
+
+namespace palpa {
+
+// One usage of one interface of a device that is plugged in.
+struct HidPlace {
+    std::string path;  // "/dev/hidraw3"
+    UsbId id;
+    std::uint16_t usage_page = 0, usage = 0;  // 0 where the system does not tell
+    bool is_bluetooth = false;
+    std::string product;  // in its own words
+};
+
+// A report with its number first; 0 of a device that does not number them.
+using HidBytes = std::span<const std::uint8_t>;
+
+// The longest report of the devices here is 78 bytes; a hidraw read cuts what is longer.
+inline constexpr std::size_t longest_hid_report = 128;
+
+// Empty where hidapi cannot be used.
+std::vector<HidPlace> list_hids();
+
+// "0.13.1", or empty where hidapi cannot be used.
+std::string hidapi_version();
+
+// Used by one thread.
+class HidLine {
+public:
+    // False where it cannot be opened, and why() says why.
+    bool open(const std::string& path);
+    void close() noexcept { handle_.reset(); }
+    bool is_open() const noexcept { return handle_ != nullptr; }
+    const std::string& why() const noexcept { return why_; }
+
+    // Waits for a report for as long. Its bytes in `into`; 0: none came; -1: the device is gone.
+    int read(std::span<std::uint8_t> into, int wait_ms) noexcept;
+
+    // False: the device is gone.
+    bool write(HidBytes report) noexcept;
+
+    // Asks for a feature report, and forgets it: for what the device does on being asked.
+    void ask_for_feature(std::uint8_t number, std::size_t size) noexcept;
+
+private:
+    struct Closer {
+        void operator()(hid_device_* handle) const noexcept;
+    };
+    std::unique_ptr<hid_device_, Closer> handle_;
+    std::string why_;
+};
+
+}  // namespace palpa

@@ -1,0 +1,60 @@
+// A handle for somebody with mouse and keys alone. Nothing is felt; what is seen is how far the
+// handle stays behind the mouse (pseudo-haptics: A. Lecuyer, Presence 18(1), 2009, changes the
+// ratio of control to display in the same way). The hand draws a handle without mass to where the
+// mouse wants it, p, against the force F that a motor would play:
+//
+//   B dx/dt = K (p - x) + F
+//
+// At rest x = p + F/K: the gap shows the force. Where the molecule feels like a spring K_felt, the
+// handle goes by dx/dp = K/(K + K_felt). K and B are by default the medium grip's (haptics/hand.h),
+// whose values are assumed; without a mass the handle is there in B/K = 20 ms, about a frame.
+#pragma once
+#include "devices/ordered_time.h"
+#include "haptics/device.h"
+#include "haptics/hand.h"
+#include "math/vec.h"
+
+#include <cstdint>
+#include <optional>
+
+namespace palpa {
+
+struct MouseHandleSettings {
+    double stiffness_N_per_m = 200;  // K
+    double damping_N_s_per_m = 4;    // B
+    double peak_force_newton = 3.3;  // as the emulated Omni's: scenes look as they feel there
+    Vec3 half_workspace_m = {0.5, 0.5, 0.5};  // a mouse has none: this stands for that
+    HandOrders* orders = nullptr;             // of the window; null: p stays in the middle
+};
+
+// The spring and damper that a hand of that grip has for the handle; the medium one's for nobody.
+MouseHandleSettings mouse_handle_of(const std::optional<HandModel>& hand) noexcept;
+
+// Time is the servo's: each write moves the handle on by one tick, exactly where p and F are held
+// meanwhile: no K shakes by itself. A felt stiffness whose force comes a tick late stays calm below
+// K/(1 - e^(-K T/B)), 2.2 N/mm, ten times what guarded coupling lets through.
+//
+// p goes after the mouse no faster than `live_hand_m_per_s`, and is never so far ahead of the
+// handle that it pulls with more than `live_hand_newton`.
+class MouseHandle final : public Device {
+public:
+    explicit MouseHandle(const MouseHandleSettings& settings);
+
+    const DeviceSpec& spec() const noexcept override { return spec_; }
+    DeviceReading read() noexcept override;
+    void write(const Vec3& force_newton) noexcept override;
+
+    const Vec3& wish_m() const noexcept { return wish_m_; }  // p
+
+private:
+    void step_wish() noexcept;
+
+    MouseHandleSettings settings_;
+    DeviceSpec spec_;
+    OrderedTime time_;
+    double kept_;  // e^(-K T/B): of the way to the place of rest, what a tick leaves
+    std::uint64_t tick_ = 0;
+    Vec3 wish_m_ = Vec3::Zero(), handle_m_ = Vec3::Zero();
+};
+
+}  // namespace palpa

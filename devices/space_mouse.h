@@ -1,0 +1,47 @@
+// SpaceMouse and its older kin: a cap that is pushed and turned, two buttons or more, no motors.
+// The cap's deflection is the handle's speed. The first button is the clutch, the second gives the
+// cap to the camera and back; the light is on while the cap moves the handle.
+//
+// Ids, reports and dead zones as the open programs spacenavd, PySpaceMouse and VRPN have them;
+// nothing was tried on hardware. Little-endian words, -350 to 350 where the cap ends:
+//   1: x, y, z, and on newer ones their turns after them; 2: the turns; 3: a bit a button
+//   4, out: light on or off
+// The cap's axes are x right, y towards the user, z down, turns by the right hand; the handle's
+// are x right, y up, z towards the user.
+#pragma once
+#include "devices/hid_device.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace palpa {
+
+class SpaceMouseProtocol final : public HidProtocol {
+public:
+    // Of the way to the end of the cap: a hand at rest on it, and what pushing along one axis
+    // gives of the others; assumed. spacenavd has 2 of 350, and the hand's skill.
+    static constexpr double dead_zone = 0.06;
+    static constexpr double full_count = 350;
+    // At the end: the box in two seconds, a quarter turn in one; chosen.
+    static constexpr double fastest_m_per_s = 0.060, fastest_rad_per_s = 1.6;
+
+    std::string_view name() const noexcept override { return "SpaceMouse"; }
+    bool is_ours(const HidPlace& place) const noexcept override;
+    std::string_view why_not(UsbId id) const noexcept override;
+    bool is_talkative() const noexcept override { return false; }
+    void begin(HidLine& line, const HidPlace& place) noexcept override;
+    bool decode(HidBytes report, HidInput& input) noexcept override;
+    HidBytes encode(const HidOutput& output) noexcept override;
+    double least_s() const noexcept override { return 0.008; }
+
+private:
+    std::array<std::uint8_t, 2> light_{};
+    std::optional<bool> is_lit_;
+};
+
+// As in the list of devices.
+OpenedDevice open_space_mouse(const DeviceRequest& request);
+
+}  // namespace palpa

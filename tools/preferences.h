@@ -1,0 +1,42 @@
+// What the program remembers of a person's choices, in a file of theirs: TOML, a few keys.
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace palpa {
+
+struct Preferences {
+    std::optional<std::string> device;  // as --device takes it
+
+    friend bool operator==(const Preferences&, const Preferences&) = default;
+};
+
+// Throws LoadError that names `file`, line and column.
+Preferences parse_preferences(std::string_view text, const std::string& file);
+std::string format_preferences(const Preferences& preferences);
+
+// palpa/preferences.toml below XDG_CONFIG_HOME, or ~/.config, or APPDATA on Windows; nothing where
+// none of them is set.
+std::optional<std::filesystem::path> find_preferences_file();
+
+// The file and what is in it. One that cannot be read is said in `problem`, counts as empty, and is
+// never written over: whoever wrote it can mend it.
+class PreferencesFile {
+public:
+    explicit PreferencesFile(std::optional<std::filesystem::path> file);
+
+    const Preferences& now() const noexcept { return now_; }
+    const std::string& problem() const noexcept { return problem_; }
+
+    // Keeps them on disk. Throws LoadError that says why it cannot.
+    void keep(const Preferences& preferences);
+
+private:
+    std::optional<std::filesystem::path> file_;
+    Preferences now_;
+    std::string problem_;
+};
+
+}  // namespace palpa

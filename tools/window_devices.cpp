@@ -1,0 +1,79 @@
+#include "tools/window_devices.h"
+
+#include "core/load_error.h"
+#include "devices/open_device.h"
+#include "tools/run.h"
+
+#include <fmt/format.h>
+#include <utility>
+
+namespace palpa {
+namespace {
+
+// What cannot be seen may well be there.
+bool is_there(const DeviceMaker& maker, const DeviceRequest& request) {
+    return maker.is_emulated || !maker.is_there || maker.is_there(request);
+}
+
+// What a person has to do although the device could be opened.
+void print_failed_checks(const OpenedDevice& opened) {
+    for (const DeviceCheck& check : opened.checks) {
+        if (check.outcome != CheckOutcome::Failed) continue;
+        fmt::print(stderr, "warning: {}: {}; {}\n", check.layer, check.found, check.remedy);
+    }
+}
+
+}  // namespace
+
+WindowDevices::WindowDevices(const EmulatedOmniSettings& emulated, PreferencesFile& preferences)
+    : preferences_(preferences) {
+    request_.emulated = emulated;
+    request_.orders = &orders_;
+}
+
+WindowDevice WindowDevices::open_first(const std::optional<std::string>& asked) {
+    const std::optional<std::string>& chosen = preferences_.now().device;
+    notice_ = preferences_.problem();
+    if (!asked && chosen) {
+        try {
+            current_ = *chosen;
+            return open(current_);
+        } catch (const LoadError& error) {
+            wanted_ = current_;
+            notice_ = fmt::format("{}; until then: {}", error.what(), first_device);
+        }
+    }
+    current_ = asked.value_or(first_device);
+    return open(current_);
+}
+
+WindowDevice WindowDevices::open(const std::string& name) {
+    const DeviceMaker& maker = device_maker_called(name);
+    OpenedDevice opened = open_device(name, request_);
+    print_failed_checks(opened);
+    return {std::move(opened.device), maker.is_emulated ? &orders_ : nullptr,
+            maker.is_led ? mouse_reach_m(request_.emulated) : 0};
+}
+
+DeviceMenu WindowDevices::menu() {
+    DeviceMenu menu;
+    for (const DeviceMaker& maker : device_makers()) {
+        if (!maker.file.empty()) continue;
+        menu.offers.push_back(
+            {std::string(maker.name), std::string(maker.summary), is_there(maker, request_)});
+    }
+    menu.current = current_;
+    menu.wanted = wanted_;
+    menu.is_there = [this](const std::string& name) {
+        return palpa::is_there(device_maker_called(name), request_);
+    };
+    menu.open = [this](const std::string& name) { return open(name); };
+    menu.remember = [this](const std::string& name) {
+        Preferences preferences = preferences_.now();
+        preferences.device = name;
+        preferences_.keep(preferences);
+    };
+    return menu;
+}
+
+}  // namespace palpa
