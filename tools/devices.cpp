@@ -2,6 +2,7 @@
 
 #include "devices/open_device.h"
 #include "haptics/safety.h"
+#include "tools/latency.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -209,6 +210,7 @@ void print_json(const std::vector<Examined>& all, const std::vector<std::string>
 }  // namespace
 
 int devices_command(const DevicesOptions& options) {
+    if (options.times_latency) return latency_command();
     std::vector<Examined> all;
     const DeviceMaker* const only =
         options.name.empty() ? nullptr : &device_maker_called(options.name);

@@ -8,6 +8,7 @@ struct DevicesOptions {
     std::string name;  // as --device takes it; empty: all
     bool json = false;
     bool tests_force = false;
+    bool times_latency = false;
 };
 
 // Exit code 0 if there is a device that can be used, emulated ones beside, else 1.

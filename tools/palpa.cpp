@@ -387,7 +387,11 @@ void add_devices(CLI::App& program, palpa::DevicesOptions& options) {
     devices.add_option("device", options.name,
                        "as --device of palpa run takes it; all unless given");
     devices.add_flag("--force-test", options.tests_force, "push the handle a little, after asking");
-    devices.add_flag("--json", options.json, "print the result as JSON");
+    CLI::Option* const json = devices.add_flag("--json", options.json, "print the result as JSON");
+    devices
+        .add_flag("--latency", options.times_latency,
+                  "time emulated devices instead, from their report to the force")
+        ->excludes(json);
     devices.footer(
         "Exit code 0 if there is a device that can be used, emulated ones beside, else 1.");
 }

@@ -1,5 +1,5 @@
 // What every device has to do, whatever stands behind it. Another device is another rig, and a
-// name in `PALPA_RIGS`.
+// name in `PALPA_MOTOR_RIGS`, or a kind of `HidRig`.
 #include "devices/device_check.h"
 #include "devices/emulated_omni.h"
 #include "devices/game_pad.h"
