@@ -33,6 +33,7 @@ inline constexpr std::string_view udev_remedy =
 struct DeviceRequest {
     EmulatedOmniSettings emulated;            // of devices that are not there, and the hand
     HandOrders* orders = nullptr;             // of a window, for those on the servo's ticks
+    PadLink* pads = nullptr;                  // of a window, which sees game pads
     std::filesystem::path file = {};          // that a device plays
     std::filesystem::path system_root = "/";  // above /dev and /sys; another one in tests
 };

@@ -3,6 +3,7 @@
 #include "core/load_error.h"
 #include "core/text.h"
 #include "devices/emulated_omni.h"
+#include "devices/game_pad.h"
 #include "devices/mouse_handle.h"
 #include "devices/open_haptics.h"
 #include "devices/played_handle.h"
@@ -92,6 +93,11 @@ constexpr std::array makers{
                         return is_hid_there(SonyPadProtocol(SonyModel::DualShock4));
                     },
                 .open = open_dualshock4},
+    DeviceMaker{.name = "gamepad",
+                .summary = "Xbox-class game pad: sticks that set the handle's speed; no force",
+                .needs_window = true,
+                .is_there = is_game_pad_there,
+                .open = open_game_pad},
     DeviceMaker{.name = "replay",
                 .summary = "a recorded hand, as palpa run --record left it",
                 .is_emulated = true,

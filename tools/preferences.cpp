@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 2> key_names{"device", "sound"};
+constexpr std::array<std::string_view, 1> key_names{"device"};
 
 TextPlace place_in(const std::string& file, const toml::source_region& source) {
     return {file, source.begin.line, source.begin.column};
@@ -47,11 +47,6 @@ Preferences parse_preferences(std::string_view text, const std::string& file) {
             if (preferences.device) continue;
             throw LoadError(place, "device is no text; expected a name as --device takes it");
         }
-        if (key == "sound") {
-            if (!value.is_boolean()) throw LoadError(place, "sound is not true or false");
-            preferences.sound = *value.value<bool>();
-            continue;
-        }
         throw LoadError(
             place, fmt::format("unknown key '{}'; expected one of {}{}", key.str(),
                                fmt::join(key_names, ", "), near_name_hint(key.str(), key_names)));
@@ -62,7 +57,6 @@ Preferences parse_preferences(std::string_view text, const std::string& file) {
 std::string format_preferences(const Preferences& preferences) {
     toml::table table;
     if (preferences.device) table.insert("device", *preferences.device);
-    table.insert("sound", preferences.sound);
     std::ostringstream text;
     text << "# What was chosen in Palpa's window.\n" << table << "\n";
     return text.str();

@@ -29,6 +29,7 @@ WindowDevices::WindowDevices(const EmulatedOmniSettings& emulated, PreferencesFi
     : preferences_(preferences) {
     request_.emulated = emulated;
     request_.orders = &orders_;
+    request_.pads = &pads_;
 }
 
 WindowDevice WindowDevices::open_first(const std::optional<std::string>& asked) {

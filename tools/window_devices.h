@@ -29,6 +29,7 @@ public:
     const std::string& notice() const noexcept { return notice_; }
 
     DeviceMenu menu();
+    PadLink& pads() noexcept { return pads_; }
 
 private:
     WindowDevice open(const std::string& name);
@@ -36,6 +37,7 @@ private:
     DeviceRequest request_;
     PreferencesFile& preferences_;
     HandOrders orders_;
+    PadLink pads_;
     std::string current_, wanted_, notice_;
 };
 

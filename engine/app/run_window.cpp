@@ -128,6 +128,7 @@ private:
     void take_input();
     void move_camera(const Input& input);
     void heed_device(const Input& input);
+    void post_pad(const Input& input);
     void move_hand(const Input& input);
     void move_hand_by_keys(const Input& input, double seconds);
     void pull(const glm::vec3& way);
@@ -274,6 +275,7 @@ void Sandbox::take_input() {
     const Input& input = window_.poll();
     must_rebuild_ = must_rebuild_ || input.resized;
     heed_device(input);
+    if (options_.pads) post_pad(input);
     if (!graphics_->ui.wants_keys()) {
         for (const Key key : input.pressed) {
             if (options_.study && key == Key::Enter) press_study_key();
@@ -304,6 +306,18 @@ void Sandbox::move_camera(const Input& input) {
         orbit(camera_, -radians_per_pixel * dx, radians_per_pixel * dy);
     }
     if (input.wheel != 0) zoom(camera_, std::pow(zoom_per_notch, static_cast<float>(input.wheel)));
+}
+
+// Without focus its sticks are meant for others.
+void Sandbox::post_pad(const Input& input) {
+    PadInput pad{.is_there = input.pad.has_value()};
+    if (input.pad && input.focused) {
+        const PadState& state = *input.pad;
+        pad = {true,          state.left_x,  state.left_y,
+               state.right_x, state.right_y, state.right_shoulder};
+    }
+    options_.pads->inputs.post(pad);
+    options_.pads->is_there = pad.is_there;
 }
 
 // What it is told without focus is meant for others.

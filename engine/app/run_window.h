@@ -43,6 +43,7 @@ struct WindowOptions {
     double last_shot_s = 5;
     HandOrders* orders = nullptr;  // of an emulated device's hand
     double mouse_reach_m = 0;      // as of WindowDevice
+    PadLink* pads = nullptr;       // where game pads are posted
     DeviceMenu devices{};
     std::string notice{};  // to begin with
     double most_frames_per_s = 60;

@@ -4,6 +4,7 @@
 #include "math/vec.h"
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -79,6 +80,18 @@ struct HandOrder {
     int granted_ticks = 0;
 };
 using HandOrders = Mailbox<HandOrder>;
+
+// A game pad as a window sees it: sticks from -1 to 1, x to the right and y towards the person.
+// The window posts in every frame, and says beside whether there is a pad at all.
+struct PadInput {
+    bool is_there = false;
+    double left_x = 0, left_y = 0, right_x = 0, right_y = 0;
+    bool clutch = false;
+};
+struct PadLink {
+    Mailbox<PadInput> inputs;
+    std::atomic<bool> is_there{false};
+};
 
 // How a live hand goes after its target: never faster, and with no more pull on the handle, than
 // this. A mouse can be anywhere at once, a hand cannot; its pull stays below the clamp of the

@@ -73,6 +73,18 @@ Window& window_of(GLFWwindow* window) {
     return *static_cast<Window*>(glfwGetWindowUserPointer(window));
 }
 
+std::optional<PadState> find_pad() {
+    for (int joystick = GLFW_JOYSTICK_1; joystick <= GLFW_JOYSTICK_LAST; ++joystick) {
+        GLFWgamepadstate state;
+        if (glfwGetGamepadState(joystick, &state) != GLFW_TRUE) continue;
+        const float* const axes = state.axes;
+        return PadState{axes[GLFW_GAMEPAD_AXIS_LEFT_X], axes[GLFW_GAMEPAD_AXIS_LEFT_Y],
+                        axes[GLFW_GAMEPAD_AXIS_RIGHT_X], axes[GLFW_GAMEPAD_AXIS_RIGHT_Y],
+                        state.buttons[GLFW_GAMEPAD_BUTTON_RIGHT_BUMPER] == GLFW_PRESS};
+    }
+    return std::nullopt;
+}
+
 // Two clicks are one double click within this time and distance.
 constexpr double double_click_s = 0.35, double_click_pixels = 6;
 
@@ -175,6 +187,7 @@ const Input& Window::poll() {
     input_.wheel = 0;
     input_.resized = false;
     glfwPollEvents();
+    input_.pad = find_pad();
     input_.focused = glfwGetWindowAttrib(window_, GLFW_FOCUSED) == GLFW_TRUE;
     int width = 0, height = 0;
     glfwGetWindowSize(window_, &width, &height);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -58,6 +59,12 @@ enum class Key {
     Count
 };
 
+// The first game pad whose buttons are known. Sticks from -1 to 1, y down.
+struct PadState {
+    double left_x = 0, left_y = 0, right_x = 0, right_y = 0;
+    bool right_shoulder = false;
+};
+
 // What came in since the last poll. Mouse places in pixels of the picture, from the upper left.
 struct Input {
     double mouse_x = 0, mouse_y = 0;
@@ -70,6 +77,7 @@ struct Input {
     bool shift = false, control = false;
     bool resized = false;  // of the picture
     bool focused = true;   // keys are meant for this window
+    std::optional<PadState> pad;
 
     bool is_held(Key key) const { return held[static_cast<std::size_t>(key)]; }
     bool is_down(MouseButton button) const { return down[static_cast<std::size_t>(button)]; }

@@ -2,6 +2,7 @@
 // name in `PALPA_MOTOR_RIGS`, or a kind of `HidRig`.
 #include "devices/device_check.h"
 #include "devices/emulated_omni.h"
+#include "devices/game_pad.h"
 #include "devices/hid_device.h"
 #include "devices/mouse_handle.h"
 #include "devices/open_haptics.h"
@@ -11,6 +12,7 @@
 #include "haptics/exchange.h"
 #include "haptics/safety.h"
 #include "haptics/servo.h"
+#include "tests/devices/template_device.h"
 #include "tests/support/hid_reports.h"
 #include "tests/support/open_haptics_stub/load.h"
 
@@ -91,6 +93,70 @@ public:
 class PlayedRig : public CabledRig<PlayedHandle, PlayedHandleSettings> {
 public:
     static constexpr std::array<double, 2> moves_m{0, 0};  // nothing moves it
+};
+
+// As if the hardware's thread ran once a tick: a handle without mass in 4 Ns/m.
+class TemplateRig {
+public:
+    static constexpr bool has_own_thread = true, has_motors = true;
+    static constexpr std::array<double, 2> moves_m{0.0124, 0.0126};  // 1 N/4 Ns/m * 50 ms
+
+    TemplateRig() : device_(test::open_template(wire_).device) {
+        REQUIRE(device_);
+        post();
+    }
+
+    Device& device() { return *device_; }
+    void tick() {
+        if (!wire_.is_plugged) return;
+        wire_.forces.read(force_newton_);
+        handle_m_ += servo_tick_s / 4 * force_newton_;
+        handle_m_ = handle_m_.cwiseMax(-device_->spec().half_workspace_m)
+                        .cwiseMin(device_->spec().half_workspace_m);
+        ++ticks_;
+        post();
+    }
+    void plug(bool is_plugged) {
+        wire_.is_plugged = is_plugged;
+        force_newton_.setZero();
+        DeviceReading gone;
+        if (!is_plugged) wire_.readings.post(gone);
+        CHECK(device_->status().empty() == is_plugged);
+        CHECK((test::open_template(wire_).device != nullptr) == is_plugged);
+    }
+    Vec3 motors() { return force_newton_; }
+    static Vec3 played(const Vec3& force_newton) { return force_newton; }
+
+private:
+    void post() {
+        wire_.readings.post({static_cast<double>(ticks_) * servo_tick_s, handle_m_, 0, true});
+    }
+
+    test::TemplateWire wire_;
+    Vec3 handle_m_ = Vec3::Zero(), force_newton_ = Vec3::Zero();
+    int ticks_ = 0;
+    std::unique_ptr<Device> device_;
+};
+
+class GamePadRig {
+public:
+    static constexpr bool has_own_thread = false, has_motors = false;
+
+    GamePadRig() { tick(); }
+
+    Device& device() { return device_; }
+    void tick() { link_.inputs.post({.is_there = is_plugged_}); }
+    void plug(bool is_plugged) {
+        is_plugged_ = is_plugged;
+        tick();
+    }
+    static Vec3 motors() { return Vec3::Zero(); }
+    static Vec3 played(const Vec3& /*force_newton*/) { return Vec3::Zero(); }
+
+private:
+    PadLink link_;
+    bool is_plugged_ = true;
+    GamePad device_{link_};
 };
 
 class OpenHapticsRig {
@@ -238,8 +304,8 @@ private:
 #define PALPA_HID_RIGS                                                             \
     HidRig<SpaceMouseKind>, HidRig<DualSenseKind>, HidRig<BluetoothDualSenseKind>, \
         HidRig<DualShock4Kind>
-#define PALPA_MOTOR_RIGS EmulatedRig, MouseRig, OpenHapticsRig
-#define PALPA_RIGS PALPA_MOTOR_RIGS, PlayedRig, PALPA_HID_RIGS
+#define PALPA_MOTOR_RIGS EmulatedRig, MouseRig, TemplateRig, OpenHapticsRig
+#define PALPA_RIGS PALPA_MOTOR_RIGS, PlayedRig, GamePadRig, PALPA_HID_RIGS
 
 // The servo with a device at its hands: what a molecule at a fixed place asks for.
 struct ServoRun {
