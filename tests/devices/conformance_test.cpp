@@ -27,17 +27,17 @@ namespace {
 
 // A rig is a device and what a test may do to it:
 //   has_own_thread  whether something else than the servo's thread moves it
-//   has_motors      whether a force moves the handle; else a hand has to push()
 //   device()        what is tested
 //   tick()          after each write: lets a millisecond pass
 //   plug(bool)      takes the cable out, or puts it in
 //   motors()        what the hand gets now, N
 //   played(force)   what of it the hand should get
 //   close()         no device() after that
+//   push(way)       where no force moves the handle: what the hand does to it, 1 at the end
 
 class EmulatedRig {
 public:
-    static constexpr bool has_own_thread = false, has_motors = true;
+    static constexpr bool has_own_thread = false;
 
     Device& device() { return device_; }
     void tick() {}
@@ -72,7 +72,7 @@ private:
 
 class OpenHapticsRig {
 public:
-    static constexpr bool has_own_thread = true, has_motors = true;
+    static constexpr bool has_own_thread = true;
 
     OpenHapticsRig() : stub_(test::load_open_haptics_stub()) {
         OpenHapticsSettings settings;
@@ -160,7 +160,7 @@ struct DualShock4Kind {
 template <class Kind>
 class HidRig {
 public:
-    static constexpr bool has_own_thread = true, has_motors = false;
+    static constexpr bool has_own_thread = true;
 
     HidRig() : number_(bus_.plug(Kind::hid)) {
         if (Kind::protocol()->is_talkative()) bus_.send(number_, Kind::report(push_));
