@@ -38,6 +38,7 @@ namespace {
 //   played(force)   what of it the hand should get
 //   close()         no device() after that
 //   moves_m         how far 1 N moves it in 50 ms, from and to; of those that it moves
+//   push(way)       where no force moves the handle: what the hand does to it, 1 at the end
 
 // A device that is always there, with a cable.
 template <class Inner, class Settings>
