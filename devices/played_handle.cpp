@@ -20,6 +20,7 @@ constexpr std::array<std::string_view, 8> column_names{
     "time_s", "handle_x_m",        "handle_y_m",        "handle_z_m",
     "clutch", "handle_turn_x_rad", "handle_turn_y_rad", "handle_turn_z_rad"};
 constexpr std::size_t needed_columns = 4;  // the first ones
+constexpr std::size_t other_column = column_names.size();
 
 // One value of each column; those that are not there are 0.
 using Values = std::array<double, column_names.size()>;
@@ -27,10 +28,10 @@ using Values = std::array<double, column_names.size()>;
 // A turn of more would be none that a wrist makes.
 constexpr double most_turn_rad = 10;
 
-// Where the columns of a table are: of its values, by their place in the line.
-std::vector<std::optional<std::size_t>> find_columns(std::string_view header,
-                                                     const TextPlace& place, bool takes_others) {
-    std::vector<std::optional<std::size_t>> columns;
+// Which value stands where in a line.
+std::vector<std::size_t> find_columns(std::string_view header, const TextPlace& place,
+                                      bool takes_others) {
+    std::vector<std::size_t> columns;
     std::array<bool, column_names.size()> has{};
     for (std::size_t begin = 0; begin <= header.size();) {
         const std::size_t end = std::min(header.find(',', begin), header.size());
@@ -45,13 +46,13 @@ std::vector<std::optional<std::size_t>> find_columns(std::string_view header,
                     fmt::format("unknown column '{}'; expected names out of {}{}", name,
                                 fmt::join(column_names, ", "), near_name_hint(name, column_names)));
             }
-            columns.emplace_back();
+            columns.push_back(other_column);
             continue;
         }
         if (std::exchange(has[column], true)) {
             throw LoadError(place, fmt::format("column '{}' is there twice", name));
         }
-        columns.emplace_back(column);
+        columns.push_back(column);
     }
     for (std::size_t i = 0; i < needed_columns; ++i) {
         if (has[i]) continue;
@@ -65,19 +66,19 @@ std::vector<std::optional<std::size_t>> find_columns(std::string_view header,
 }
 
 Values parse_values(std::string_view line, const TextPlace& place,
-                    const std::vector<std::optional<std::size_t>>& columns) {
+                    const std::vector<std::size_t>& columns) {
     Values values{};
     std::size_t column = 0;
     for (std::size_t begin = 0; begin <= line.size(); ++column) {
         const std::size_t end = std::min(line.find(',', begin), line.size());
-        if (column < columns.size() && columns[column]) {
+        if (column < columns.size() && columns[column] != other_column) {
             const std::string_view text = line.substr(begin, end - begin);
             const std::optional<double> value = find_real(text);
             if (!value) {
                 throw LoadError(place, fmt::format("'{}' is no number; expected one for {}",
-                                                   trimmed(text), column_names[*columns[column]]));
+                                                   trimmed(text), column_names[columns[column]]));
             }
-            values[*columns[column]] = *value;
+            values[columns[column]] = *value;
         }
         begin = end + 1;
     }
@@ -113,7 +114,7 @@ std::vector<PlayedRow> parse_table(std::string_view text, const std::string& fil
                                    bool is_recorded) {
     // Of a recording only whole lines count.
     if (is_recorded) text = text.substr(0, text.find_last_of('\n') + 1);
-    std::vector<std::optional<std::size_t>> columns;
+    std::vector<std::size_t> columns;
     std::vector<PlayedRow> rows;
     TextPlace place{file, 0};
     for (std::size_t begin = 0; begin < text.size();) {

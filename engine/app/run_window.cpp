@@ -35,6 +35,9 @@ using Clock = std::chrono::steady_clock;
 constexpr float radians_per_pixel = 0.008F;
 constexpr float zoom_per_notch = 0.9F;
 constexpr double angstrom_per_notch = 0.25;  // of the molecule in hand, towards the eye and away
+// Of what the handle stays behind the mouse: the medium hand's newton is 1.2 Å, and leaves the
+// atom.
+constexpr double thread_angstrom_per_m = 240;
 constexpr double key_angstrom_per_s = 2, slow_key = 0.2;
 constexpr double longest_key_s = 0.1;  // that counts at once
 constexpr double notice_s = 4, first_notice_s = 15;
@@ -359,11 +362,11 @@ void Sandbox::pull(const glm::vec3& way) {
     session_.move_hand(hand_m_);
 }
 
-// By how much of its own way the molecule stays behind; a study shows nothing of it.
+// A study shows nothing of it.
 void Sandbox::show_wish() {
-    if (!has_mouse_hand() || options_.study || !(displacement_gain_ > 0)) return;
-    const Vec3 gap = (hand_m_ - handle_m_) / (displacement_gain_ * units::metre_per_angstrom);
-    add_wish(frame_.grabbed_angstrom, frame_.grabbed_angstrom + gap, shown_);
+    if (!has_mouse_hand() || options_.study) return;
+    add_wish(frame_.grabbed_angstrom,
+             frame_.grabbed_angstrom + thread_angstrom_per_m * (hand_m_ - handle_m_), shown_);
 }
 
 // Of what a study leaves to a person: where to look, and the way out.

@@ -209,7 +209,8 @@ void limit_to(const DeviceSpec& device, SafetySettings& settings) noexcept {
     if (device.peak_force_newton > 0) {
         settings.clamp_newton = std::min(settings.clamp_newton, device.peak_force_newton);
     } else {
-        settings.frozen_s = settings.frozen_newton = std::numeric_limits<double>::infinity();
+        constexpr double never = std::numeric_limits<double>::infinity();
+        settings.frozen_s = settings.frozen_newton = settings.hot_newton = never;
     }
     if (device.continuous_force_newton > 0) settings.hot_newton = device.continuous_force_newton;
 }

@@ -56,7 +56,7 @@ struct SafetySettings {
 };
 
 // Takes over what a device says of itself; nothing beside what the settings allow already. Without
-// motors nothing can be seen of them in its readings.
+// motors none can be seen to hang in its readings, and none grows hot.
 void limit_to(const DeviceSpec& device, SafetySettings& settings) noexcept;
 
 // From harmless to grave.

@@ -37,8 +37,8 @@ FrameScene build_frame(const Simulation& simulation, const TouchModel& touch,
 // The same with the force as it is now, for which the pairs are summed again.
 FrameScene build_frame(const Simulation& simulation, const ViewSettings& settings);
 
-// Where the hand wants what it has at `place` (Å): a faint dot there and a thread to it. The gap
-// tells of the force. Nothing where they are closer than 0.1 Å.
+// Whither the hand wants what it has at `place` (Å): a faint dot there and a thread to it, whose
+// length tells of the force. Nothing where they are closer than 0.1 Å.
 void add_wish(const Vec3& place, const Vec3& wish, FrameScene& frame);
 
 // A place as pictures have it.

@@ -5,9 +5,15 @@
 #include "devices/space_mouse.h"
 #include "tests/support/hid_reports.h"
 
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <array>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <condition_variable>
+#include <cstdlib>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -346,6 +352,47 @@ TEST_CASE("a closed pad has neither stiff triggers nor rumble", "[devices][hid]"
     CHECK(last[at + 21] == 0x05);
 }
 
+// A program of its own, as this one started anew: on the bus of the other it plays a force until it
+// is told to leave.
+[[noreturn]] void leave_by_exit() {
+    const OpenedDevice opened = open_pad(SonyModel::DualSense);
+    HidDevice& device = opened_hid(opened);
+    device.write(Vec3(3, 0, 0));
+    wait_until([&] { return device.reports() > 0; });
+    std::exit(0);
+}
+
+TEST_CASE("a pad is at rest after exit(), which destroys nothing on a stack", "[devices][hid]") {
+    constexpr const char* child_mark = "PALPA_TEST_LEAVES_BY_EXIT";
+    if (std::getenv(child_mark)) leave_by_exit();
+    test::HidBus bus;
+    const int number = bus.plug(test::dualsense_hid);
+    setenv(child_mark, "yes", 1);
+    std::string program = std::filesystem::read_symlink("/proc/self/exe");
+    std::string name = "a pad is at rest after exit()*";
+    std::array<char*, 3> arguments{program.data(), name.data(), nullptr};
+    pid_t child = 0;
+    REQUIRE(posix_spawn(&child, program.c_str(), nullptr, nullptr, arguments.data(), environ) == 0);
+    unsetenv(child_mark);
+    Bytes written;
+    wait_until([&] {
+        const Bytes more = bus.take_written(number);
+        written.insert(written.end(), more.begin(), more.end());
+        return written.size() >= 63 && last_report(written, 63)[13] == 255;
+    });
+
+    bus.send(number, test::dualsense_report({}));
+    int status = -1;
+    REQUIRE(waitpid(child, &status, 0) == child);
+
+    CHECK(status == 0);
+    const Bytes last = last_report(bus.take_written(number), 63);
+    CHECK(last[4] == 0);
+    CHECK(last[11] == 0x05);
+    CHECK(last[13] == 0);
+    CHECK(last[22] == 0x05);
+}
+
 TEST_CASE("a closed cap is dark", "[devices][hid]") {
     test::HidBus bus;
     const int number = bus.plug(test::space_mouse_hid);
@@ -390,7 +437,7 @@ TEST_CASE("no more reports are written than the line takes", "[devices][hid]") {
     }
     opened.device.reset();
 
-    CHECK(bus.take_written(number).size() == 2 * 63);
+    CHECK(bus.take_written(number).size() == 126);  // two reports
 }
 
 // Without an end, if it waited.

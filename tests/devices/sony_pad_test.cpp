@@ -14,7 +14,7 @@ using test::PadState;
 
 namespace {
 
-constexpr double fastest = SonyPadProtocol::fastest_m_per_s;
+constexpr double fastest_stick = SonyPadProtocol::fastest_m_per_s;
 
 // A model on one of its two lines, and how it reports there.
 struct PadCase {
@@ -61,7 +61,7 @@ TEST_CASE("sticks at rest move nothing, and pushed ones the handle along", "[dev
     CHECK(rest.rate.m_per_s == Vec3::Zero());
     CHECK(rest.rate.rad_per_s == Vec3::Zero());
     CHECK(rest.buttons == 0);
-    CHECK((pushed.rate.m_per_s - fastest * push).norm() < 1e-12);
+    CHECK((pushed.rate.m_per_s - fastest_stick * push).norm() < 1e-12);
     CHECK(pushed.rate.rad_per_s == Vec3::Zero());
 }
 
@@ -123,7 +123,7 @@ TEST_CASE("the short report of a pad by Bluetooth has sticks and buttons", "[dev
     protocol.use_bluetooth(true);
     REQUIRE(protocol.decode(report, input));
 
-    CHECK((input.rate.m_per_s - Vec3(0, fastest, 0)).norm() < 1e-12);
+    CHECK((input.rate.m_per_s - Vec3(0, fastest_stick, 0)).norm() < 1e-12);
     CHECK(input.rate.rad_per_s == Vec3::Zero());  // it has no gyroscope
     CHECK(input.buttons == 1);
 }
@@ -216,7 +216,7 @@ TEST_CASE("pads are known by maker, number and usage", "[devices][sony-pad]") {
 
 TEST_CASE("a million random reports of pads ask for no more than they can", "[devices][sony-pad]") {
     std::mt19937 random(11);
-    constexpr double fastest_turn = 35 * std::sqrt(3.0) + 2;  // 2000 degrees a second, three times
+    const double fastest_turn = 35 * std::sqrt(3.0) + 2;  // 2000 degrees a second, three times
     int understood = 0;
 
     for (int i = 0; i < 1'000'000; ++i) {
@@ -240,7 +240,8 @@ TEST_CASE("a million random reports of pads ask for no more than they can", "[de
         understood += is_one ? 1 : 0;
         const double speed = input.rate.m_per_s.cwiseAbs().maxCoeff();
         const double turn = input.rate.rad_per_s.norm();
-        if (!(speed <= fastest && turn <= fastest_turn && input.buttons < 4)) FAIL("report " << i);
+        if (!(speed <= fastest_stick && turn <= fastest_turn && input.buttons < 4))
+            FAIL("report " << i);
     }
 
     CHECK(understood > 40'000);

@@ -11,7 +11,7 @@ using test::Bytes;
 
 namespace {
 
-constexpr double fastest = SpaceMouseProtocol::fastest_m_per_s;
+constexpr double fastest_push = SpaceMouseProtocol::fastest_m_per_s;
 constexpr double fastest_turn = SpaceMouseProtocol::fastest_rad_per_s;
 
 HidInput decoded(const Bytes& report, HidInput input = {}) {
@@ -34,10 +34,10 @@ TEST_CASE("a pushed cap sends the handle the same way", "[devices][space-mouse]"
     const Bytes down{1, 0, 0, 0, 0, 0x5e, 0x01};
     const Bytes lifted{1, 0, 0, 0, 0, 0xa2, 0xfe};
 
-    CHECK(decoded(right).rate.m_per_s == Vec3(fastest, 0, 0));
-    CHECK(decoded(towards_user).rate.m_per_s == Vec3(0, 0, fastest));
-    CHECK(decoded(down).rate.m_per_s == Vec3(0, -fastest, 0));
-    CHECK(decoded(lifted).rate.m_per_s == Vec3(0, fastest, 0));
+    CHECK(decoded(right).rate.m_per_s == Vec3(fastest_push, 0, 0));
+    CHECK(decoded(towards_user).rate.m_per_s == Vec3(0, 0, fastest_push));
+    CHECK(decoded(down).rate.m_per_s == Vec3(0, -fastest_push, 0));
+    CHECK(decoded(lifted).rate.m_per_s == Vec3(0, fastest_push, 0));
 }
 
 TEST_CASE("a turned cap turns the handle the same way", "[devices][space-mouse]") {
@@ -61,7 +61,7 @@ TEST_CASE("two reports of an old one say what one of a new one says", "[devices]
     CHECK(at_once.rate.rad_per_s == one_by_one.rate.rad_per_s);
     // 100/350 of the way, of which the dead zone takes its part.
     constexpr double dead = SpaceMouseProtocol::dead_zone;
-    CHECK(at_once.rate.m_per_s.x() == Approx(fastest * (100.0 / 350 - dead) / (1 - dead)));
+    CHECK(at_once.rate.m_per_s.x() == Approx(fastest_push * (100.0 / 350 - dead) / (1 - dead)));
     CHECK(at_once.rate.rad_per_s.z() == Approx(-fastest_turn * (100.0 / 350 - dead) / (1 - dead)));
 }
 
@@ -144,10 +144,11 @@ TEST_CASE("a million random reports of a cap ask for no more than it can",
         understood += mouse.decode(HidBytes(bytes).first(size), input) ? 1 : 0;
         const double speed = input.rate.m_per_s.cwiseAbs().maxCoeff();
         const double turn = input.rate.rad_per_s.cwiseAbs().maxCoeff();
-        if (!(speed <= fastest && turn <= fastest_turn && input.buttons < 4)) FAIL("report " << i);
+        if (!(speed <= fastest_push && turn <= fastest_turn && input.buttons < 4))
+            FAIL("report " << i);
         fastest_found = std::max(fastest_found, speed);
     }
 
     CHECK(understood > 300'000);
-    CHECK(fastest_found == fastest);
+    CHECK(fastest_found == fastest_push);
 }

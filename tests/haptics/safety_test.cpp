@@ -581,4 +581,8 @@ TEST_CASE("a device's limits are taken over, but none above what a scene allows"
     CHECK(without_motors.clamp_newton == SafetySettings{}.clamp_newton);
     CHECK(without_motors.frozen_s == std::numeric_limits<double>::infinity());
     CHECK(without_motors.frozen_newton == std::numeric_limits<double>::infinity());
+    Guard guard;
+    guard.settings = without_motors;
+    (void)guard.tick(2.9, 60'000);  // a minute
+    CHECK(guard.tick(2.9).newton.x() == Approx(2.9));
 }
