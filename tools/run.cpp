@@ -5,6 +5,7 @@
 #include "core/units.h"
 #include "devices/emulated_omni.h"
 #include "devices/open_device.h"
+#include "devices/two_hands.h"
 #include "haptics/gains.h"
 #include "scene/fields.h"
 #include "scene/read_scene.h"
@@ -219,6 +220,28 @@ void check_headless(const std::string& device) {
                     "is held by a person and needs the window; expected it without --headless");
 }
 
+// Of the hand that holds the other molecule; null where nobody does. An emulated one stands still.
+std::unique_ptr<Device> open_second(const RunOptions& options, EmulatedOmniSettings emulated) {
+    if (!options.second) return nullptr;
+    const DeviceMaker& maker = device_maker_called(*options.second);
+    if (maker.needs_window || (options.headless && !maker.is_emulated)) {
+        throw LoadError({fmt::format("--second {}", *options.second)},
+                        maker.is_emulated || !options.headless
+                            ? "is led by the window; expected it as --device"
+                            : "is held by a person and needs the window; expected it without "
+                              "--headless");
+    }
+    emulated.script = {};
+    return open_device(*options.second, {.emulated = emulated}).device;
+}
+
+// Two equal handles with a spring between them are as one of half the mass and damping.
+void hold_with_both_hands(SceneDescription& scene) {
+    DeviceDescription& device = scene.device;
+    device.inertia_kg = in_series(device.inertia_kg, device.inertia_kg);
+    device.viscosity_N_s_per_m = in_series(device.viscosity_N_s_per_m, device.viscosity_N_s_per_m);
+}
+
 int run_in_window(const SceneDescription& scene, const Simulation& simulation,
                   EmulatedOmniSettings settings, const RunOptions& options) {
     if (options.record) {
@@ -231,9 +254,10 @@ int run_in_window(const SceneDescription& scene, const Simulation& simulation,
     }
     // A window needs somebody.
     if (!settings.hand) settings.hand = hand_model(Grip::Medium);
+    const std::unique_ptr<Device> second = open_second(options, settings);
     if (!options.play) give_to_mouse(settings);
     PreferencesFile preferences(find_preferences_file());
-    WindowDevices devices(settings, preferences);
+    WindowDevices devices(settings, preferences, second.get());
     const WindowDevice first =
         devices.open_first(options.play ? std::optional<std::string>("emulated") : options.device);
     if (!devices.notice().empty()) fmt::print(stderr, "warning: {}\n", devices.notice());
@@ -311,9 +335,10 @@ void print_scene_keys() {
 }
 
 int run_command(const RunOptions& options) {
-    const SceneDescription scene = read_scene(options.scene, options.settings);
+    SceneDescription scene = read_scene(options.scene, options.settings);
     Simulation simulation = load_simulation(scene, show_relaxing());
     const EmulatedOmniSettings settings = build_emulated_omni(scene, simulation);
+    if (options.second) hold_with_both_hands(scene);
     std::vector<std::string> warnings = list_warnings(scene, simulation, settings.script);
     if (options.check_only) {
         fmt::print("{}: nothing wrong found\n", scene.file.string());
@@ -342,10 +367,12 @@ int run_command(const RunOptions& options) {
     if (writer) frames = {options.frames_per_second, [&] { write_frame(writer, simulation); }};
     for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
 
-    const OpenedDevice opened =
-        open_device(options.device.value_or("emulated"), {.emulated = settings});
+    std::unique_ptr<Device> device =
+        open_device(options.device.value_or("emulated"), {.emulated = settings}).device;
+    const std::unique_ptr<Device> second = open_second(options, settings);
+    if (second) device = std::make_unique<TwoHands>(std::move(device), *second);
     const Summary summary =
-        run_headless(scene, simulation, *opened.device, warnings, recording ? &*recording : nullptr,
+        run_headless(scene, simulation, *device, warnings, recording ? &*recording : nullptr,
                      find_progress(options.json), frames);
     for (std::size_t i = warnings.size(); i < summary.warnings.size(); ++i) {
         fmt::print(stderr, "warning: {}\n", summary.warnings[i]);

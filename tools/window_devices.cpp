@@ -2,9 +2,11 @@
 
 #include "core/load_error.h"
 #include "devices/open_device.h"
+#include "devices/two_hands.h"
 #include "tools/run.h"
 
 #include <fmt/format.h>
+#include <memory>
 #include <utility>
 
 namespace palpa {
@@ -25,8 +27,9 @@ void print_failed_checks(const OpenedDevice& opened) {
 
 }  // namespace
 
-WindowDevices::WindowDevices(const EmulatedOmniSettings& emulated, PreferencesFile& preferences)
-    : preferences_(preferences) {
+WindowDevices::WindowDevices(const EmulatedOmniSettings& emulated, PreferencesFile& preferences,
+                             Device* second)
+    : preferences_(preferences), second_(second) {
     request_.emulated = emulated;
     request_.orders = &orders_;
     request_.pads = &pads_;
@@ -52,6 +55,7 @@ WindowDevice WindowDevices::open(const std::string& name) {
     const DeviceMaker& maker = device_maker_called(name);
     OpenedDevice opened = open_device(name, request_);
     print_failed_checks(opened);
+    if (second_) opened.device = std::make_unique<TwoHands>(std::move(opened.device), *second_);
     return {std::move(opened.device), maker.is_emulated ? &orders_ : nullptr,
             maker.is_led ? mouse_reach_m(request_.emulated) : 0};
 }

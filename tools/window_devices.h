@@ -17,8 +17,10 @@ inline constexpr const char* first_device = "mouse";
 // One window's. It and the preferences must outlive the window.
 class WindowDevices {
 public:
-    // `emulated`: with a mouse in its hand's place.
-    WindowDevices(const EmulatedOmniSettings& emulated, PreferencesFile& preferences);
+    // `emulated`: with a mouse in its hand's place. `second`: in the other hand, whatever the first
+    // one is; null: there is none.
+    WindowDevices(const EmulatedOmniSettings& emulated, PreferencesFile& preferences,
+                  Device* second);
 
     // The one that was asked for, or else the one that was chosen last, or else the first. Throws
     // LoadError where the first of these cannot be opened; where the second cannot, says so in
@@ -36,6 +38,7 @@ private:
 
     DeviceRequest request_;
     PreferencesFile& preferences_;
+    Device* second_;
     HandOrders orders_;
     PadLink pads_;
     std::string current_, wanted_, notice_;
