@@ -9,6 +9,7 @@
 #include "session/run_headless.h"
 #include "simulation/probe.h"
 #include "simulation/simulation.h"
+#include "tools/bench_row.h"
 #include "tools/run.h"
 
 #include <fmt/format.h>
@@ -20,6 +21,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
+#include <vector>
 
 namespace palpa {
 namespace {
@@ -62,25 +64,28 @@ public:
         flexible_ = build_flexible(scene, flexible.model, flexible.grabbed, flexible.state.tether);
     }
 
-    // kcal/mol/Å, on what is held, from where a state is, once that is held at that place (Å) and
-    // steps towards rest change the force by less than that.
-    Vec3 find_force(const TorsionState& state, const Vec3& held_at, double change) {
+    // On what is held (kcal/mol/Å), from where a state is, once that is held at that place (Å):
+    // after 200 of the paper's steps, whatever was asked, and how much the last 50 of them still
+    // changed.
+    struct Found {
+        Vec3 force;
+        double change;
+    };
+    Found find_force(const TorsionState& state, const Vec3& held_at) {
+        constexpr int steps = 200, last_steps = 50;
         // A first step is short, and they grow by a fifth.
-        constexpr std::size_t fewest = 25, most = 200;
         flexible_.state = state;
         flexible_.statics.h = 0;
         update_positions(flexible_.model, flexible_.state);
         start_flexible(flexible_);
         move_held(flexible_, held_at - find_held(flexible_));
-        (void)step_flexible(flexible_);
-        Vec3 force = find_force_on_held(flexible_);
-        for (std::size_t i = 1; i < most; ++i) {
-            const SettleReport report = step_flexible(flexible_);
-            const Vec3 before = std::exchange(force, find_force_on_held(flexible_));
-            const bool is_taken = report.largest_move > 0;
-            if (i >= fewest && is_taken && (force - before).norm() < change) break;
+        Vec3 before = Vec3::Zero();
+        for (int i = 0; i < steps; ++i) {
+            if (i == steps - last_steps) before = find_force_on_held(flexible_);
+            (void)step_flexible(flexible_);
         }
-        return force;
+        const Vec3 force = find_force_on_held(flexible_);
+        return {force, (force - before).norm()};
     }
 
 private:
@@ -110,6 +115,7 @@ public:
         FeelResult result;
         result.largest_hand_N = largest_hand_N_;
         result.errors_pN = std::move(errors_pN_);
+        if (!changes_pN_.empty()) result.moving_pN = quantile(changes_pN_, 0.5);
         std::vector<double> sorted = result.errors_pN;
         if (sorted.empty()) return result;
         std::ranges::sort(sorted);
@@ -124,12 +130,13 @@ public:
 
 private:
     double find_error(const TouchModel& told) {
-        constexpr double newton = units::newton_per_kcal_per_mol_angstrom, settled = 0.05;
+        constexpr double newton = units::newton_per_kcal_per_mol_angstrom;
         Vec3 force = Vec3::Zero();
         if (reference_ && simulation_.flexible) {
-            force = reference_->find_force(simulation_.flexible->state,
-                                           simulation_.anchor + told.molecule.place_angstrom,
-                                           settled * within_pN_ * 1e-12 / newton);
+            const auto found = reference_->find_force(
+                simulation_.flexible->state, simulation_.anchor + told.molecule.place_angstrom);
+            force = found.force;
+            changes_pN_.push_back(1e12 * newton * found.change);
         } else {
             force = find_rigid_force(simulation_, told.molecule);
         }
@@ -141,7 +148,7 @@ private:
     double within_pN_, ticks_of_run_ = 0, largest_hand_N_ = 0;
     std::optional<RelaxedReference> reference_;
     std::uint64_t tick_ = 0;
-    std::vector<double> errors_pN_;
+    std::vector<double> errors_pN_, changes_pN_;
 };
 
 FeelResult play(const FeelOptions& options, const std::array<double, 2>& range_pN,
@@ -176,6 +183,7 @@ nlohmann::ordered_json as_json(const FeelResult& r) {
             {"within_share", r.within_share},
             {"error_90_pN", r.ninety_pN},
             {"errors_pN", r.errors_pN},
+            {"reference_moving_pN", r.moving_pN},
             {"audits", feel.audits},
             {"audits_within_share", feel.within_share},
             {"audits_error_90_pN", feel.ninety_pN},
@@ -190,18 +198,20 @@ nlohmann::ordered_json as_json(const FeelResult& r) {
 void print_feel_header() {
     fmt::print(
         "| range, pN | within, pN | felt at both ends, N | at most, N | of the cap, % | samples "
-        "within, % | 90 %, pN | audits: 90 %, pN | active | steps | step, ms | gave way |\n"
-        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+        "within, % | 90 %, pN | still moving, pN | audits: 90 %, pN | active | steps | step, ms | "
+        "gave way |\n"
+        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
 }
 
 void print_row(const FeelResult& r) {
     const Feel feel = r.summary.feel.value_or(Feel{});
     const std::vector<std::string> gave_way = find_yielding(feel).all();
     fmt::print(
-        "| {:.6g} to {:.6g} | {:.6g} | {:.3f}, {:.3f} | {:.2f} | {:.1f} | {:.0f} | {:.3g} | {} | "
+        "| {:.6g} to {:.6g} | {:.6g} | {:.3f}, {:.3f} | {:.2f} | {:.1f} | {:.0f} | {:.3g} | {:.3g} "
+        "| {} | "
         "{:.0f} | {:.1f} | {:.3g} | {} |\n",
         r.range_pN[0], r.range_pN[1], r.within_pN, feel.ends_newton[0], feel.ends_newton[1],
-        r.largest_hand_N, 100 * feel.stiffest_share, 100 * r.within_share, r.ninety_pN,
+        r.largest_hand_N, 100 * feel.stiffest_share, 100 * r.within_share, r.ninety_pN, r.moving_pN,
         feel.audits > 0 ? fmt::format("{:.3g}", feel.ninety_pN) : "", feel.active, feel.steps,
         1e-3 * r.summary.step_median_us,
         gave_way.empty() ? "nothing" : fmt::format("{}", fmt::join(gave_way, "; ")));

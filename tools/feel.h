@@ -1,5 +1,5 @@
 // palpa feel: how exactly a scene's stroke is felt, for ranges of forces that must be felt and for
-// tolerances; against references that have nothing to do with the run's own audits.
+// tolerances; against references that do not know what was asked nor the run's own audits.
 #pragma once
 #include "session/statistics.h"
 
@@ -28,6 +28,7 @@ struct FeelResult {
     // Of each sample: the force that the servo told less the reference's.
     std::vector<double> errors_pN;
     double ninety_pN = 0, within_share = 0;
+    double moving_pN = 0;  // by which the last quarter of a reference still changed it, median
 
     // What is asked, and where it is not so and the run did not say that it gave way, in words.
     std::vector<std::string> unsaid() const;

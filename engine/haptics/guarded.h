@@ -22,6 +22,10 @@ struct GuardedSettings {
     // What a hand may feel of a stiffness at most: A_d is raised until that holds. By default half
     // of what a device and this damping keep stable, 0.5 (B_h + B)/(1.5 T).
     double cap_N_per_m = 200;
+    // A_d is no less than this much for each newton that is felt: where the law is steep, a
+    // molecule that is far from any wall would else go further in a tick than the limits of a step
+    // let it.
+    double least_A_d_per_newton = 0;
     double damping_N_s_per_m = 0.5;      // B
     double late_s = 1.5 * servo_tick_s;  // by which the force is foretold
     double stop_newton = 10e-9;          // on it or on one atom; the molecule goes no further in

@@ -26,12 +26,17 @@ Yielding find_yielding(const Feel& feel) {
         yielding.reach =
             fmt::format("the reach: A_d was raised up to {:.3g} times", feel.largest_raise);
     }
+    if (feel.warm_share > 0) {
+        yielding.motors =
+            fmt::format("the motors: for {:.3g} % of the time they were too warm for the force",
+                        100 * feel.warm_share);
+    }
     return yielding;
 }
 
 std::vector<std::string> Yielding::all() const {
     std::vector<std::string> all;
-    for (const std::string& text : {tolerance, period, reach}) {
+    for (const std::string& text : {tolerance, period, reach, motors}) {
         if (!text.empty()) all.push_back(text);
     }
     return all;
@@ -56,6 +61,8 @@ void FeelLog::add(const ServoTick& tick) noexcept {
     told_newton_ = tick.touch.force_newton;
     feel_.stiffest_share = std::max(feel_.stiffest_share, tick.felt_N_per_m / cap_N_per_m_);
     feel_.largest_raise = std::max(feel_.largest_raise, tick.raised);
+    ++ticks_;
+    if (tick.stage == SafetyStage::Hot || tick.stage == SafetyStage::Warm) ++warm_ticks_;
 }
 
 void FeelLog::add_step(const SettleReport& settled) {
@@ -80,6 +87,8 @@ std::optional<Feel> FeelLog::feel(double step_median_us) const {
     if (!is_asked_) return std::nullopt;
     Feel feel = feel_;
     feel.period_share = step_median_us / period_us_;
+    if (ticks_ > 0)
+        feel.warm_share = static_cast<double>(warm_ticks_) / static_cast<double>(ticks_);
     if (steps_ > 0) {
         feel.active /= static_cast<double>(steps_);
         feel.steps /= static_cast<double>(steps_);

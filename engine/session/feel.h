@@ -18,6 +18,7 @@ struct Feel {
     std::array<double, 2> ends_newton{};
     double stiffest_share = 0;  // of the cap, the largest that was felt
     double largest_raise = 1;   // of A_d over its law, so that the cap held
+    double warm_share = 0;      // of the time, that warm motors held the force back
 
     std::optional<double> within_pN;  // as the scene has it
     // What audits found: the force that was told less that of all joints; where nothing moves by
@@ -31,9 +32,9 @@ struct Feel {
     double period_share = 0;  // of the declared period, that a step takes in the median
 };
 
-// In words, each with its factor: the tolerance, the period, the reach of the handle.
+// In words, each with its factor: the tolerance, the period, the reach of the handle, the motors.
 struct Yielding {
-    std::string tolerance, period, reach;  // empty: held
+    std::string tolerance, period, reach, motors;  // empty: held
 
     std::vector<std::string> all() const;
 };
@@ -60,7 +61,7 @@ private:
     bool is_asked_;
     double cap_N_per_m_ = 0, period_us_;
     Vec3 told_newton_ = Vec3::Zero();  // in the last tick
-    std::uint64_t steps_ = 0;
+    std::uint64_t steps_ = 0, ticks_ = 0, warm_ticks_ = 0;
 
     struct Found {
         double error_pN;

@@ -132,6 +132,7 @@ nlohmann::ordered_json feel_as_json(const Feel& feel) {
     }
     json["stiffest_share_of_cap"] = feel.stiffest_share;
     json["largest_raise_of_A_d"] = feel.largest_raise;
+    json["warm_share"] = feel.warm_share;
     if (feel.within_pN) {
         json["within_pN"] = *feel.within_pN;
         json["audits"] = feel.audits;

@@ -53,7 +53,10 @@ ServoSettings build_servo_settings(const SceneDescription& scene, const Simulati
     guarded.cap_N_per_m = guarded_cap(scene.device.viscosity_N_s_per_m, guarded.damping_N_s_per_m,
                                       settings.delay_ticks);
     // Where the scene says what must be felt, no tick feels more than the cap.
-    if (c.feel_pN) guarded.cap_N_per_m /= most_of_cap;
+    if (c.feel_pN) {
+        guarded.cap_N_per_m /= most_of_cap;
+        guarded.least_A_d_per_newton = 0.2e9;
+    }
     guarded.stop_newton = c.stop_nN * 1e-9;
     guarded.late_s = guarded_lateness(guarded.cap_N_per_m, guarded.damping_N_s_per_m,
                                       scene.device.inertia_kg, settings.delay_ticks);

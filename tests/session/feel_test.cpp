@@ -54,6 +54,9 @@ TEST_CASE("what was felt of a range, and what was not so exact", "[session][feel
     FeelLog log = log_of(std::array{20.0, 3000.0}, 50.0);
     for (const auto& [felt, raised] : {std::pair{5.0, 1.0}, {30.0, 4.5}, {10.0, 2.0}})
         log.add(tick_of(felt, raised));
+    ServoTick warm = tick_of(20, 1);
+    warm.stage = SafetyStage::Hot;
+    log.add(warm);
     for (int i = 1; i <= 10; ++i) log.add_step(step_of(30 + 2 * i, 10.0 * i));
     log.add_step(step_of(8, {}));
 
@@ -63,6 +66,7 @@ TEST_CASE("what was felt of a range, and what was not so exact", "[session][feel
     CHECK(feel->ends_newton[1] == Approx(2.7));
     CHECK(feel->stiffest_share == Approx(0.9));
     CHECK(feel->largest_raise == 4.5);
+    CHECK(feel->warm_share == 0.25);
     CHECK(feel->audits == 10);
     CHECK(feel->median_pN == 50);
     CHECK(feel->ninety_pN == 90);
@@ -73,6 +77,7 @@ TEST_CASE("what was felt of a range, and what was not so exact", "[session][feel
     CHECK_THAT(yielding.tolerance, Contains("within 90 pN, 1.8 times the 50 asked"));
     CHECK_THAT(yielding.period, Contains("2.5 times"));
     CHECK_THAT(yielding.reach, Contains("up to 4.5 times"));
+    CHECK_THAT(yielding.motors, Contains("for 25 % of the time"));
     CHECK(yielding.all().size() == 3);
 }
 
