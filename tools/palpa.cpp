@@ -498,7 +498,7 @@ void add_study(CLI::App& program, palpa::ForcedChoiceOptions& choice, bool& is_c
     study.add_option("-o,--output", options.folder,
                      "new folder for trials.csv, summary.json and line.csv; of forced choices for "
                      "choices.csv and summary.json; of people, each of whom adds to it, for "
-                     "trials.csv and line.csv");
+                     "trials.csv, session.json and line.csv");
     study.add_flag("--json", options.json, "print the summary as JSON")->needs(operators);
     study
         .add_flag("--validation", options.validation,
