@@ -42,6 +42,27 @@ class Journey(unittest.TestCase):
         result = journey(ROOT / "scenes" / "water")
         self.assertEqual(result.returncode, 2)
         self.assertIn("nothing moves by itself here", result.stderr)
+        self.assertEqual(result.stdout, "")
+
+    def test_what_is_wrong_is_told_before_anything_is_played_or_printed(self):
+        for arguments, what in ((["--random", 2, "--hands", "firm"], "--hands"),
+                                (["--random", 2, "--periods", "14"], "--periods"),
+                                (["--random", 2, "--modes", "4"], "--modes"),
+                                (["--random", 2, "--active", "4"], "--active"),
+                                (["--random", 2, "--fastest"], "--fastest"),
+                                (["--hands", "medium,firmer"], "hand.grip=firmer"),
+                                (["--set", "hand.grips=firm"], "hand.grips")):
+            with self.subTest(arguments=arguments):
+                result = journey(PEPTIDES, *arguments)
+                self.assertEqual(result.returncode, 2)
+                self.assertEqual(result.stdout, "")
+                self.assertEqual(len(result.stderr.splitlines()), 1)
+                self.assertIn(what, result.stderr)
+
+    def test_all_active_are_told_in_words(self):
+        result = journey(PEPTIDES, "--periods", "50", "--hands", "firm", "--modes", "guarded",
+                         "--active", "1000000", "--set", "run.seconds=0.5")
+        self.assertIn("| all | 50 |", result.stdout)
 
 
 if __name__ == "__main__":
