@@ -27,8 +27,23 @@ class Journey(unittest.TestCase):
         self.assertEqual(result.returncode, 1 if report["missed"] else 0)
         for row in rows:
             self.assertEqual(row["active"], 10)
-            self.assertFalse(row["out"] and row["farthest_angstrom"] < 10)
-            self.assertFalse(row["back"] and not row["out"])
+
+    def test_out_and_back_are_where_the_hand_went(self):
+        # At a constant 1 cm of the handle for 2 Å, away from the other molecule.
+        way = ["--hands", "firm", "--periods", "14", "--modes", "4", "--active", "10", "--json",
+               "--set", "coupling.A_d=5e7", "--set", "hand.stroke=path", "--set", "run.seconds=5"]
+        for far_mm, end_mm, out, back in ((60, 0, True, True), (60, 60, True, False),
+                                          (30, 0, False, False)):
+            path = [[0.2, 0], [2.2, far_mm], [2.4, far_mm], [4.4, end_mm]]
+            with self.subTest(path=path):
+                report = json.loads(journey(PEPTIDES, *way, "--set", f"hand.path={path}").stdout)
+                row, = report["journeys"]
+                self.assertEqual((row["out"], row["back"]), (out, back))
+                self.assertEqual((report["out"], report["back"]), (int(out), int(back)))
+                # The other one's attraction holds it back a little.
+                self.assertAlmostEqual(row["farthest_angstrom"], 0.2 * far_mm, delta=1.5)
+                self.assertEqual("out_s" in row, out)
+                self.assertEqual("back_s" in row, back)
 
     def test_random_ones_repeat(self):
         arguments = PEPTIDES, "--random", 2, "--set", "run.seconds=1", "--json"
