@@ -65,17 +65,15 @@ std::vector<std::string> draw_settings(Draws& draws, bool turn, bool& in_plane) 
 
 // Each force is of all pairs in double, some thousands of times a loop.
 void warn_of_cost(const LoopOptions& options) {
+    constexpr double pair_s = 1.9e-4, most_s = 600;  // a pair in a loop, on scenes/hiv
     const Simulation simulation = load_simulation(read_scene(options.scene, options.settings));
     const std::size_t held = grabbed_points(simulation).positions.size();
     const auto pairs = static_cast<double>(held * (simulation.atoms.positions.size() - held));
-    constexpr double pair_s = 1.5e-4, most_s = 600;
-    const double loop_s = pair_s * pairs, all_s = loop_s * static_cast<double>(options.count);
+    const double all_s = pair_s * pairs * static_cast<double>(options.count);
     if (all_s < most_s) return;
-    fmt::print(
-        stderr,
-        "warning: {:.0f} pairs of atoms: a loop takes a minute or so for every {:.0f} pairs, "
-        "{} loops about {:.1f} h\n",
-        pairs, 60 / pair_s, options.count, all_s / 3600);
+    fmt::print(stderr,
+               "warning: {:.0f} pairs of atoms: a loop takes about {:.2g} s, all {:.2g} h\n", pairs,
+               pair_s * pairs, all_s / 3600);
 }
 
 // Takes every tick of a loop.
