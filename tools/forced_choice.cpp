@@ -20,8 +20,14 @@
 namespace palpa {
 namespace {
 
-// A row of draws for each pair; none that a study has.
-constexpr std::uint64_t first_row = std::uint64_t{1} << 40U;
+// The row of draws that is this pair's alone, whatever else is played; none that a study has.
+std::uint64_t pair_number(std::size_t participant, CouplingMode mode, std::size_t pair) noexcept {
+    constexpr std::uint64_t first_row = std::uint64_t{1} << 40U, most_pairs = 10'000'000;
+    return first_row +
+           most_pairs *
+               (coupling_mode_names.size() * participant + static_cast<std::size_t>(mode)) +
+           pair;
+}
 
 std::string_view name_of(CouplingMode mode) {
     return coupling_mode_names[static_cast<std::size_t>(mode)];
@@ -182,7 +188,7 @@ std::vector<Choice> play_choices(
     for (std::size_t who = 1; who <= study.operators; ++who) {
         for (const CouplingMode mode : study.modes) {
             for (std::size_t pair = 0; pair < pairs; ++pair) {
-                Draws draws(study.seed, first_row + choices.size());
+                Draws draws(study.seed, pair_number(who, mode, pair));
                 const auto compare = [&](const Impression& felt) {
                     if (felt.force_newton <= 0) return 0.0;
                     const double noise = noticeable_newton(felt.force_newton) /

@@ -51,7 +51,8 @@ struct Choice {
     bool is_more = false;                  // answered so of the comparison
 };
 
-// All pairs, in every mode of the study; `on_choice` after each.
+// All pairs, in every mode of the study; `on_choice` after each. A pair is the same whatever else
+// is played.
 std::vector<Choice> play_choices(
     const ForcedChoiceOptions& options,
     const std::function<void(std::size_t done, std::size_t of)>& on_choice = {});

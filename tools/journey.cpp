@@ -108,16 +108,21 @@ private:
     bool was_clutched_ = false, is_limited_ = false;
 };
 
-JourneyResult play(const JourneyOptions& options, std::vector<std::string> settings) {
+SceneDescription read_journey(const JourneyOptions& options, std::vector<std::string>& settings) {
     settings.emplace_back("run.seconds=200");  // it ends sooner where it succeeds
     settings.insert(settings.end(), options.settings.begin(), options.settings.end());
-    const SceneDescription scene = read_scene(options.scene, settings);
-    Simulation simulation = load_simulation(scene);
-    if (!simulation.flexible) {
+    SceneDescription scene = read_scene(options.scene, settings);
+    if (!scene.has_statics()) {
         throw LoadError({scene.file.string()},
                         "nothing moves by itself here, so nothing leaves its pocket; expected a "
                         "flexible scene, as scenes/hiv/flexible.toml");
     }
+    return scene;
+}
+
+JourneyResult play(const JourneyOptions& options, std::vector<std::string> settings) {
+    const SceneDescription scene = read_journey(options, settings);
+    Simulation simulation = load_simulation(scene);
     EmulatedOmni device(build_emulated_omni(scene, simulation));
     JourneyWatch watch(build_servo_settings(scene, simulation, device.spec().half_workspace_m),
                        simulation);
@@ -177,6 +182,11 @@ std::vector<std::string> draw_settings(Draws& draws) {
     return settings;
 }
 
+// All that is wrong with the choices, before the first is played.
+void check_choices(const JourneyOptions& options, std::vector<std::vector<std::string>> choices) {
+    for (std::vector<std::string>& choice : choices) (void)read_journey(options, choice);
+}
+
 bool meets_bars(const JourneyResult& r) {
     const Summary& s = r.summary;
     return r.ripple_N.value_or(0) <= most_ripple_newton && r.cut_share == 0 &&
@@ -233,12 +243,12 @@ void print_row(const JourneyResult& r) {
         "| {} | {} | {} | {} | {} | {:+.4f} | {:+.1f} | {:+.1f} | {:.3f} | {:.1f} | {:.0f} | "
         "{:.2f} | "
         "{}{:.1f} | {} | {}{:.2f} | {} | {} | {:.1f} |\n",
-        r.active, r.period_ms, r.grip, r.mode,
-        r.ripple_N ? fmt::format("{:.3f}", *r.ripple_N) : std::string{}, s.net_work_J,
-        1e3 * r.off_J, 1e3 * r.off_at_limits_J, r.error_N, 100 * r.cut_share, 100 * s.safety_share,
-        journey.closest, r.is_out() ? "yes, " : "no, ", journey.farthest, seconds(r.out_s),
-        r.is_back() ? "yes, " : "no, ", journey.last_rmsd, seconds(r.back_s), r.clutches,
-        1e-3 * s.step_median_us);
+        r.active < StaticsDescription{}.active ? fmt::format("{}", r.active) : "all", r.period_ms,
+        r.grip, r.mode, r.ripple_N ? fmt::format("{:.3f}", *r.ripple_N) : std::string{},
+        s.net_work_J, 1e3 * r.off_J, 1e3 * r.off_at_limits_J, r.error_N, 100 * r.cut_share,
+        100 * s.safety_share, journey.closest, r.is_out() ? "yes, " : "no, ", journey.farthest,
+        seconds(r.out_s), r.is_back() ? "yes, " : "no, ", journey.last_rmsd, seconds(r.back_s),
+        r.clutches, 1e-3 * s.step_median_us);
     std::fflush(stdout);
 }
 
@@ -259,6 +269,7 @@ int journey_command(const JourneyOptions& options) {
         Draws draws(options.seed, i);
         choices.push_back(draw_settings(draws));
     }
+    check_choices(options, choices);
     const bool is_watched = isatty(STDERR_FILENO) != 0;
     if (!options.json) print_header();
     std::vector<JourneyResult> results;

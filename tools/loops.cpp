@@ -2,6 +2,7 @@
 
 #include "core/draws.h"
 #include "core/load_error.h"
+#include "core/text.h"
 #include "devices/emulated_omni.h"
 #include "scene/read_scene.h"
 #include "session/continuous_law.h"
@@ -60,6 +61,19 @@ std::vector<std::string> draw_settings(Draws& draws, bool turn, bool& in_plane) 
     settings.push_back(fmt::format("hand.path=[{}]", fmt::join(points, ", ")));
     settings.push_back(fmt::format("run.seconds={:.3f}", time_s + rest_s));
     return settings;
+}
+
+// Each force is of all pairs in double, some thousands of times a loop.
+void warn_of_cost(const LoopOptions& options) {
+    constexpr double pair_s = 1.9e-4, most_s = 600;  // a pair in a loop, on scenes/hiv
+    const Simulation simulation = load_simulation(read_scene(options.scene, options.settings));
+    const std::size_t held = grabbed_points(simulation).positions.size();
+    const auto pairs = static_cast<double>(held * (simulation.atoms.positions.size() - held));
+    const double all_s = pair_s * pairs * static_cast<double>(options.count);
+    if (all_s < most_s) return;
+    fmt::print(stderr,
+               "warning: {:.0f} pairs of atoms: a loop takes about {:.2g} s, all {:.2g} h\n", pairs,
+               pair_s * pairs, all_s / 3600);
 }
 
 // Takes every tick of a loop.
@@ -123,28 +137,6 @@ private:
     LoopResult result_;
 };
 
-void check_scene(const LoopOptions& options) {
-    const SceneDescription scene = read_scene(options.scene, options.settings);
-    if (scene.coupling.mode != CouplingMode::Guarded) {
-        throw LoadError(scene.place_of("coupling.mode"),
-                        "the continuous law is guarded coupling's; expected coupling.mode = "
-                        "\"guarded\"");
-    }
-    for (const MoleculeDescription& molecule : scene.molecules) {
-        if (molecule.name != scene.grab.molecule) continue;
-        const bool turns = molecule.motion == Motion::WithHandle;
-        if (options.turn && !turns) {
-            throw LoadError(scene.place_of("grab.molecule"),
-                            "does not turn with the handle; expected a molecule whose motion is "
-                            "with-handle, or no --turn");
-        }
-        if (!scene.has_statics() && (turns || molecule.motion == Motion::Translate)) continue;
-        throw LoadError(scene.place_of("grab.molecule"),
-                        "expected a rigid molecule that moves in space, translate or with-handle, "
-                        "and no other that moves by itself");
-    }
-}
-
 nlohmann::ordered_json as_json(std::size_t number, const LoopResult& r) {
     return {{"number", number},
             {"in_plane", r.in_plane},
@@ -165,14 +157,14 @@ nlohmann::ordered_json as_json(std::size_t number, const LoopResult& r) {
             {"settings", r.settings}};
 }
 
-// Median, 90 %, most.
-std::array<double, 3> spread_of(std::vector<double> values) {
-    if (values.empty()) return {};
+// Median, 90 %, most as cells of a table; empty where there is no value.
+std::string format_spread(std::vector<double> values) {
+    if (values.empty()) return " | | ";
     std::ranges::sort(values);
     const auto at = [&](double share) {
         return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
     };
-    return {at(0.5), at(0.9), at(1)};
+    return fmt::format("{:.3g} | {:.3g} | {:.3g}", at(0.5), at(0.9), at(1));
 }
 
 // A row of the table: of which loops, what of them.
@@ -221,9 +213,8 @@ void print_table(const std::vector<LoopResult>& all, bool turned) {
         std::vector<double> values;
         for (const LoopResult& result : all)
             if (row.counts(result)) values.push_back(row.scale * row.value(result));
-        const auto [median, nearly_all, most] = spread_of(values);
-        fmt::print("| {} | {} | {:.3g} | {:.3g} | {:.3g} | {} |\n", row.what, values.size(), median,
-                   nearly_all, most, row.bar);
+        fmt::print("| {} | {} | {} | {} |\n", row.what, values.size(), format_spread(values),
+                   row.bar);
     }
 }
 
@@ -237,6 +228,36 @@ bool meets_bars(const LoopResult& r, bool turned) noexcept {
                        r.drift_angstrom <= most_drift_angstrom;
     return keeps_energy && stays && r.ripple_N <= most_loop_ripple_N &&
            r.felt_share <= most_felt_share && !r.was_held_back;
+}
+
+void check_loops(const LoopOptions& options) {
+    for (const std::string& setting : options.settings) {
+        const std::string key(trimmed(setting.substr(0, setting.find('='))));
+        for (const std::string own : {"hand.stroke", "hand.path", "run.seconds"}) {
+            if (key != own && !own.ends_with("." + key)) continue;
+            throw LoadError({"--set " + setting},
+                            "every loop has a way and a length of its own; expected no " + own);
+        }
+    }
+    const SceneDescription scene = read_scene(options.scene, options.settings);
+    if (scene.coupling.mode != CouplingMode::Guarded) {
+        throw LoadError(scene.place_of("coupling.mode"),
+                        "the continuous law is guarded coupling's; expected coupling.mode = "
+                        "\"guarded\"");
+    }
+    for (const MoleculeDescription& molecule : scene.molecules) {
+        if (molecule.name != scene.grab.molecule) continue;
+        const bool turns = molecule.motion == Motion::WithHandle;
+        if (options.turn && !turns) {
+            throw LoadError(scene.place_of("grab.molecule"),
+                            "does not turn with the handle; expected a molecule whose motion is "
+                            "with-handle, or no --turn");
+        }
+        if (!scene.has_statics() && (turns || molecule.motion == Motion::Translate)) continue;
+        throw LoadError(scene.place_of("grab.molecule"),
+                        "expected a rigid molecule that moves in space, translate or with-handle, "
+                        "and no other that moves by itself");
+    }
 }
 
 LoopResult play_loop(const LoopOptions& options, std::size_t number) {
@@ -271,7 +292,8 @@ std::vector<LoopResult> play_loops(
 }
 
 int loops_command(const LoopOptions& options) {
-    check_scene(options);
+    check_loops(options);
+    warn_of_cost(options);
     const bool is_watched = isatty(STDERR_FILENO) != 0;
     const std::size_t last = options.first + options.count;
     const std::vector<LoopResult> results = play_loops(options, [&](std::size_t number,

@@ -49,6 +49,10 @@ inline constexpr double most_extra_J = 1e-3, most_drift_angstrom = 0.1, near_ang
 
 bool meets_bars(const LoopResult& result, bool turned) noexcept;
 
+// Whether the scene has such loops and a continuous law, and leaves them their ways. Throws
+// LoadError.
+void check_loops(const LoopOptions& options);
+
 // Loop `number` of a seed; the same whatever the others are. Throws LoadError.
 LoopResult play_loop(const LoopOptions& options, std::size_t number);
 

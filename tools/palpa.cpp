@@ -68,6 +68,25 @@ CLI::Validator in_range(double lowest, double highest) {
         fmt::format("{} to {}", lowest, highest));
 }
 
+// A whole number as the key run.seed takes it; CLI11 would wrap others round.
+void add_seed_option(CLI::App& command, std::uint64_t& seed) {
+    static constexpr std::int64_t highest = 1'000'000'000'000'000;
+    command
+        .add_option_function<std::string>(
+            "--seed",
+            [&seed](const std::string& text) {
+                const std::optional<std::int64_t> value = palpa::find_integer(text);
+                if (!value || *value < 0 || *value > highest) {
+                    throw CLI::ValidationError(
+                        "--seed",
+                        fmt::format("'{}' is not a whole number from 0 to {}", text, highest));
+                }
+                seed = static_cast<std::uint64_t>(*value);
+            },
+            "of everything random, 1 unless given")
+        ->type_name("UINT");
+}
+
 void add_size_option(CLI::App& command, const std::string& option, std::uint32_t& width,
                      std::uint32_t& height) {
     command.add_option_function<std::string>(
@@ -342,22 +361,33 @@ void add_journey(CLI::App& program, palpa::JourneyOptions& options) {
     CLI::App& journey = *program.add_subcommand(
         "journey", "A molecule taken out of its pocket and brought back, by hand, period and mode");
     journey.add_option("scene", options.scene, "flexible scene")->required();
-    journey.add_option("--periods", options.periods_ms, "declared T_s in ms, 1,14,83 unless given")
-        ->delimiter(',')
-        ->check(in_range(1, 1e4));
-    journey.add_flag("--fastest", options.fastest,
-                     "and at the shortest T_s that 99 % of steps keep on this machine, measured");
-    journey.add_option("--hands", options.grips, "medium,firm unless given")->delimiter(',');
-    journey.add_option("--modes", options.modes, "guarded,4 unless given")->delimiter(',');
-    journey.add_option("--active", options.active, "degrees of freedom, 40 unless given")
-        ->delimiter(',')
-        ->check(in_range(0, 1e6));
+    CLI::Option* const periods =
+        journey
+            .add_option("--periods", options.periods_ms, "declared T_s in ms, 1,14,83 unless given")
+            ->delimiter(',')
+            ->check(in_range(1, 1e4));
+    CLI::Option* const fastest = journey.add_flag(
+        "--fastest", options.fastest,
+        "and at the shortest T_s that 99 % of steps keep on this machine, measured");
+    CLI::Option* const hands =
+        journey.add_option("--hands", options.grips, "medium,firm unless given")->delimiter(',');
+    CLI::Option* const modes =
+        journey.add_option("--modes", options.modes, "guarded,4 unless given")->delimiter(',');
+    CLI::Option* const active =
+        journey.add_option("--active", options.active, "degrees of freedom, 40 unless given")
+            ->delimiter(',')
+            ->check(in_range(0, 1e6));
     journey
         .add_option("--random", options.random,
                     "so many random hands, devices, periods, ways and numbers of active joints "
                     "instead")
-        ->check(in_range(1, 1e6));
-    journey.add_option("--seed", options.seed, "of everything random, 1 unless given");
+        ->check(in_range(1, 1e6))
+        ->excludes(periods)
+        ->excludes(fastest)
+        ->excludes(hands)
+        ->excludes(modes)
+        ->excludes(active);
+    add_seed_option(journey, options.seed);
     journey.add_flag("--json", options.json, "print every journey as JSON");
     add_set_option(journey, options.settings);
 }
@@ -417,7 +447,7 @@ void add_scenarios(CLI::App& program, palpa::ScenarioOptions& options) {
     scenarios.add_option("--count", options.count, "10000 unless given")->check(in_range(1, 1e7));
     scenarios.add_option("--first", options.first, "number of the first, 0 unless given")
         ->check(in_range(0, 1e12));
-    scenarios.add_option("--seed", options.seed, "of everything random, 1 unless given");
+    add_seed_option(scenarios, options.seed);
     scenarios.add_flag("--json", options.json, "print every scenario as JSON");
     add_set_option(scenarios, options.settings);
 }
@@ -427,12 +457,14 @@ void add_report(CLI::App& program, palpa::ReportOptions& options) {
         "report", "The paper's figures, the acceptance bars and more, computed anew: one page");
     report.add_option("-o,--output", options.output, "page to write, report.html unless given");
     report.add_option("--scene", options.scene, "of one axis, scenes/water unless given");
-    report.add_option(
-        "--hiv", options.flexible,
-        "with molecules that give way, scenes/hiv/flexible.toml unless given; left out "
-        "where it is not there");
-    report.add_flag("--quick", options.quick, "fewer and shorter runs: a minute");
-    report.add_option("--seed", options.seed, "of everything random, 1 unless given");
+    report
+        .add_option(
+            "--hiv", options.flexible,
+            "with molecules that give way; unless given scenes/hiv/flexible.toml, left out where "
+            "that is not there")
+        ->check(CLI::ExistingPath);
+    report.add_flag("--quick", options.quick, "fewer and shorter runs: half a minute");
+    add_seed_option(report, options.seed);
     add_set_option(report, options.settings);
 }
 
@@ -443,7 +475,7 @@ void add_loops(CLI::App& program, palpa::LoopOptions& options) {
     loops.add_option("--count", options.count, "1000 unless given")->check(in_range(1, 1e7));
     loops.add_option("--first", options.first, "number of the first, 0 unless given")
         ->check(in_range(0, 1e12));
-    loops.add_option("--seed", options.seed, "of everything random, 1 unless given");
+    add_seed_option(loops, options.seed);
     loops.add_flag("--json", options.json, "print every loop as JSON");
     loops.add_flag("--turn", options.turn, "the handle turns on its way (molecules with-handle)");
     add_set_option(loops, options.settings);
@@ -496,11 +528,11 @@ void add_study(CLI::App& program, palpa::ForcedChoiceOptions& choice, bool& is_c
         ->check(in_range(1, 3600))
         ->needs(operators)
         ->excludes(question);
-    study.add_option("--seed", options.seed, "of everything random, 1 unless given");
+    add_seed_option(study, options.seed);
     study.add_option("-o,--output", options.folder,
                      "new folder for trials.csv, summary.json and line.csv; of forced choices for "
                      "choices.csv and summary.json; of people, each of whom adds to it, for "
-                     "trials.csv and line.csv");
+                     "trials.csv, session.json and line.csv");
     study.add_flag("--json", options.json, "print the summary as JSON")->needs(operators);
     study
         .add_flag("--validation", options.validation,

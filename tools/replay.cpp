@@ -52,12 +52,17 @@ void check_device(const std::filesystem::path& folder) {
                                 device, folder.string()));
 }
 
-nlohmann::ordered_json as_json(const TraceCheck& check) {
-    nlohmann::ordered_json json{{"recorded", check.recorded()},
-                                {"compared", check.compared()},
-                                {"different", check.different()},
-                                {"cut_off", check.is_cut_off()},
-                                {"largest_N", check.largest_newton()}};
+// How much of a session is there.
+struct RecordedTime {
+    double recorded_s, session_s;
+};
+
+nlohmann::ordered_json as_json(const TraceCheck& check, const RecordedTime& time) {
+    nlohmann::ordered_json json{
+        {"recorded", check.recorded()},   {"compared", check.compared()},
+        {"different", check.different()}, {"cut_off", check.is_cut_off()},
+        {"recorded_s", time.recorded_s},  {"session_s", time.session_s},
+        {"surplus", check.surplus()},     {"largest_N", check.largest_newton()}};
     if (const auto& first = check.first()) {
         json["first"] = {{"row", first->row},
                          {"time_s", first->time_s},
@@ -68,7 +73,7 @@ nlohmann::ordered_json as_json(const TraceCheck& check) {
     return json;
 }
 
-void print_check(const TraceCheck& check) {
+void print_check(const TraceCheck& check, const RecordedTime& time) {
     fmt::print("{} of {} rows played again: ", check.compared(), check.recorded());
     if (const auto& difference = check.first(); !difference) {
         fmt::print("all the same to the last digit\n");
@@ -84,8 +89,12 @@ void print_check(const TraceCheck& check) {
             "  The same bits come from the same program on the same kind of processor "
             "(session.toml says which).\n");
     }
-    if (check.is_cut_off())
-        fmt::print("  The recording was cut off within a line, which is left out.\n");
+    if (check.is_cut_off()) {
+        fmt::print("  cut off     {:.7g} of {:.7g} s were recorded\n", time.recorded_s,
+                   time.session_s);
+    }
+    if (check.surplus() > 0)
+        fmt::print("  too many    rows behind the session's end: {}\n", check.surplus());
 }
 
 }  // namespace
@@ -101,22 +110,24 @@ int replay_command(const ReplayOptions& options) {
     }
     check_repeats(scene);
     check_device(options.recording);
-    TraceCheck check(options.recording, scene.every);
+    TraceCheck check(options.recording, count_ticks(scene), scene.every);
     if (check.recorded() == 0) {
         throw LoadError({(options.recording / "trace.csv").string(), 2},
                         "holds no row; expected a recording that had begun");
     }
     // One that was cut off is played as far as it goes.
     const auto ticks = check.recorded() * static_cast<std::uint64_t>(scene.every);
-    scene.seconds = std::min(scene.seconds, static_cast<double>(ticks) * servo_tick_s);
+    const double session_s = scene.seconds;
+    scene.seconds = std::min(session_s, static_cast<double>(ticks) * servo_tick_s);
+    const RecordedTime time{scene.seconds, session_s};
     Simulation simulation = load_simulation(scene, show_relaxing());
     EmulatedOmni device(build_emulated_omni(scene, simulation));
     (void)run_headless(scene, simulation, device, {}, nullptr, find_progress(options.json), {},
                        [&](const ServoTick& tick) { check.add(tick); });
     if (options.json) {
-        fmt::print("{}\n", as_json(check).dump(2));
+        fmt::print("{}\n", as_json(check, time).dump(2));
     } else {
-        print_check(check);
+        print_check(check, time);
     }
     return check.different() == 0 && check.compared() == check.recorded() ? 0 : 1;
 }

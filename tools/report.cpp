@@ -7,6 +7,7 @@
 #include "simulation/probe.h"
 #include "tools/bench.h"
 #include "tools/bench_row.h"
+#include "tools/report_bars.h"
 #include "tools/report_sections.h"
 
 #include <fmt/chrono.h>
@@ -15,6 +16,9 @@
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
+#include <fstream>
+#include <optional>
+#include <system_error>
 
 namespace palpa {
 namespace {
@@ -54,10 +58,29 @@ std::vector<std::pair<std::string, std::string>> list_facts(const ReportOptions&
                              : fmt::format("{}", fmt::join(options.settings, " "))}};
 }
 
+// Opens what is to be written at the end, and leaves no trace of that.
+void check_output(const std::filesystem::path& output) {
+    const std::filesystem::path folder = output.parent_path();
+    if (!folder.empty() && !std::filesystem::is_directory(folder))
+        throw LoadError({output.string()}, "is in no folder that is there");
+    if (std::filesystem::is_directory(output))
+        throw LoadError({output.string()}, "is a folder; expected a file to write");
+    const bool is_new = !std::filesystem::exists(output);
+    const bool can_write = std::ofstream(output, std::ios::app).is_open();
+    std::error_code ignored;
+    if (is_new) std::filesystem::remove(output, ignored);
+    if (!can_write) throw LoadError({output.string()}, "cannot be written");
+}
+
 // Everything that would be found out only after minutes.
 void check(const ReportOptions& options) {
     check_gnuplot();
     const SceneDescription scene = read_scene(options.scene, options.settings);
+    if (scene.coupling.mode != CouplingMode::Guarded) {
+        throw LoadError(scene.place_of("coupling.mode"),
+                        "the bars of a report are guarded coupling's; expected coupling.mode = "
+                        "\"guarded\"");
+    }
     const Simulation simulation = load_simulation(scene);
     if (moves_in_space(simulation) || simulation.flexible || !equilibrium_distance(simulation)) {
         throw LoadError(scene.place_of("grab.molecule"),
@@ -72,9 +95,8 @@ void check(const ReportOptions& options) {
                             "scenes/hiv/flexible.toml");
         }
     }
-    const std::filesystem::path folder = options.output.parent_path();
-    if (!folder.empty() && !std::filesystem::is_directory(folder))
-        throw LoadError({options.output.string()}, "is in no folder that is there");
+    if (const std::optional<LoopOptions> loops = find_loops(options)) check_loops(*loops);
+    check_output(options.output);
 }
 
 }  // namespace

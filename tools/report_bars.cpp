@@ -3,7 +3,6 @@
 #include "core/units.h"
 #include "haptics/gains.h"
 #include "simulation/probe.h"
-#include "tools/loops.h"
 #include "tools/scenarios.h"
 
 #include <fmt/format.h>
@@ -55,6 +54,18 @@ void add_law_bars(std::vector<BarRow>& rows) {
         {"Eq. 2: slope against differences", "1e-6", fmt::format("{:.1g}", most), most < 1e-6});
 }
 
+std::optional<LoopOptions> find_loops(const ReportOptions& options) {
+    const std::filesystem::path space =
+        (std::filesystem::is_directory(options.scene) ? options.scene
+                                                      : options.scene.parent_path()) /
+        "space.toml";
+    if (!std::filesystem::exists(space)) return std::nullopt;
+    return LoopOptions{.scene = space,
+                       .settings = options.settings,
+                       .count = static_cast<std::size_t>(options.quick ? 20 : 300),
+                       .seed = options.seed};
+}
+
 void add_random_bars(const ReportOptions& options, std::vector<BarRow>& rows) {
     ScenarioOptions scenarios{.scene = options.scene,
                               .settings = options.settings,
@@ -70,17 +81,10 @@ void add_random_bars(const ReportOptions& options, std::vector<BarRow>& rows) {
                     "≤ 1 mJ generated, ripple &lt; 0.02 N, none through",
                     fmt::format("{:+.2f} mJ, {:.4f} N", generated * 1e3, ripple),
                     std::ranges::all_of(played, &ScenarioResult::is_calm)});
-    const std::filesystem::path space =
-        (std::filesystem::is_directory(options.scene) ? options.scene
-                                                      : options.scene.parent_path()) /
-        "space.toml";
-    if (!std::filesystem::exists(space)) return;
-    LoopOptions loops{.scene = space,
-                      .settings = options.settings,
-                      .count = static_cast<std::size_t>(options.quick ? 20 : 300),
-                      .seed = options.seed};
+    const std::optional<LoopOptions> loops = find_loops(options);
+    if (!loops) return;
     double extra = -1e9, drift = 0;
-    const auto looped = play_loops(loops, {});
+    const auto looped = play_loops(*loops, {});
     for (const LoopResult& r : looped) {
         extra = std::max(extra, r.was_limited ? r.extra_joule() : std::abs(r.extra_joule()));
         if (!r.was_limited && r.farthest_angstrom <= near_angstrom)

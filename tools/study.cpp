@@ -193,7 +193,7 @@ StudyResult play_trial(const StudyOptions& options, const StudyTrial& trial) {
     Simulation simulation = load_simulation(scene);
     const double rest = find_rest(scene, simulation);
     Draws draws(options.seed, trial_number(trial));
-    StudyResult result{.trial = trial, .start_angstrom = rest + draws.between(4.0, 6.2)};
+    StudyResult result{.trial = trial, .start_angstrom = rest + draw_start(draws)};
     const OperatorSettings person = draw_operator(options, trial, scene, rest, draws);
     SeekingOperator seeker(person, draws);
     const double wall = find_wall(simulation, result.start_angstrom);

@@ -13,6 +13,7 @@
 
 #include <fmt/format.h>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <random>
 #include <string>
 #include <system_error>
@@ -21,18 +22,51 @@
 namespace palpa {
 namespace {
 
-// Every trial begins so far outside of the place to be found.
-constexpr double start_angstrom = 5;
-
-// With everybody's trials so far, or its names alone.
+// With everybody's trials so far.
 std::string read_table(const std::filesystem::path& table) {
-    std::error_code error;
-    if (!std::filesystem::exists(table, error)) return trial_names();
     std::string text = read_text_file(table);
     if (!text.starts_with(trial_names())) {
         throw LoadError({table.string(), 1}, "is no table of a study; expected another folder");
     }
     return text;
+}
+
+// What everybody's trials in a folder have in common. Keys that tell most stand first.
+nlohmann::ordered_json describe_people(const StudyOptions& options) {
+    const nlohmann::ordered_json study = describe_study(options);
+    nlohmann::ordered_json json{{"seed", options.seed}, {"rounds", options.rounds}};
+    for (const CouplingMode mode : options.modes)
+        json["modes"].push_back(coupling_mode_names[static_cast<std::size_t>(mode)]);
+    for (const char* const key : {"hand", "friction_N", "period_ms", "scene", "rest_angstrom"})
+        json[key] = study[key];
+    json["settings"] = options.settings;
+    json["scene_hash"] = study["scene_hash"];
+    json["versions"] = study["versions"];
+    return json;
+}
+
+// One table is of one study. Throws LoadError that says what differs.
+void check_same_study(const std::filesystem::path& file, const nlohmann::ordered_json& now) {
+    std::error_code error;
+    if (!std::filesystem::exists(file, error)) {
+        throw LoadError({file.string()},
+                        "is missing, so nobody knows the settings of the trials beside it; "
+                        "expected another folder");
+    }
+    const auto before = nlohmann::json::parse(read_text_file(file), nullptr, false);
+    if (!before.is_object())
+        throw LoadError({file.string()}, "tells no settings of a study; expected another folder");
+    const auto was = [&](const std::string& key) { return before.value(key, nlohmann::json()); };
+    for (const auto& [key, value] : now.items()) {
+        // Settings may be the scene's own.
+        if (key == "settings" && was("scene_hash") == now["scene_hash"]) continue;
+        if (was(key) == nlohmann::json(value)) continue;
+        throw LoadError(
+            {file.string()},
+            fmt::format("the trials here have {} = {}, and these would have {}; expected the same "
+                        "settings, or another folder",
+                        key, was(key).dump(), value.dump()));
+    }
 }
 
 // Six digits by the system's chance, nothing of the person.
@@ -52,17 +86,21 @@ int study_in_window(const StudyOptions& options) {
     std::filesystem::create_directories(*options.folder, error);
     if (error) throw LoadError({options.folder->string()}, "cannot be made: " + error.message());
     const std::filesystem::path table = *options.folder / "trials.csv";
-    const std::string before = read_table(table);
+    const std::filesystem::path session = *options.folder / "session.json";
+    const nlohmann::ordered_json study = describe_people(options);
+    const bool is_first = !std::filesystem::exists(table, error);
+    const std::string before = is_first ? trial_names() : read_table(table);
+    if (!is_first) check_same_study(session, study);
 
     const double rest = find_rest(options);
     const SceneDescription scene = read_study_scene(
-        options,
-        {"hand.stroke=hold", fmt::format("hand.start_angstrom={}", rest + start_angstrom)});
+        options, {"hand.stroke=hold",
+                  fmt::format("hand.start_angstrom={}", rest + StudyCourse::practice_angstrom)});
     const Simulation simulation = load_simulation(scene);
     const std::size_t participant = draw_participant();
     StudyCourse course(plan_study(participant, options.rounds, options.modes, options.seed),
                        CouplingMode::Guarded,
-                       {rest, find_wall(simulation, grabbed_distance(simulation))});
+                       {rest, find_wall(simulation, grabbed_distance(simulation))}, options.seed);
     HandOrders orders;
     EmulatedOmniSettings omni = build_study_device(scene, {});
     omni.orders = &orders;
@@ -75,7 +113,10 @@ int study_in_window(const StudyOptions& options) {
     window.orders = &orders;
     window.mouse_reach_m = mouse_reach_m(omni);
     window.study = &course;
-    window.on_trial = [&] { write_text_file(table, before + format_trials(course.results())); };
+    window.on_trial = [&] {
+        if (is_first) write_text_file(session, study.dump(2) + "\n");
+        write_text_file(table, before + format_trials(course.results()));
+    };
     window.validation = options.validation;
     (void)run_window(scene, device, window);
 

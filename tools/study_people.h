@@ -4,8 +4,9 @@
 
 namespace palpa {
 
-// Adds a person's trials to the folder's table, each as soon as it is done. Throws LoadError, also
-// without a folder, PlatformError without a display. Returns the exit code.
+// Adds a person's trials to the folder's table, each as soon as it is done; session.json beside it
+// has the settings. Throws LoadError, also without a folder or where its trials have other
+// settings, PlatformError without a display. Returns the exit code.
 int study_in_window(const StudyOptions& options);
 
 }  // namespace palpa

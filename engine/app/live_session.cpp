@@ -257,7 +257,8 @@ void LiveSession::obey(State& state, const Command& command) {
     } else if (std::holds_alternative<StepOnce>(command)) {
         state.readout.paused = state.step_once = true;
         order_servo(state);
-    } else {
+    } else if (const auto* const anew = std::get_if<Reset>(&command)) {
+        if (anew->start_angstrom) scene_.hand.start_angstrom = anew->start_angstrom;
         reset(state);
     }
 }

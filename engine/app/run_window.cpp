@@ -385,7 +385,7 @@ void Sandbox::press_study_key() {
         session_.send(settings);
         // The mouse's hand stays where the handle is.
         if (has_mouse_hand()) session_.move_hand(hand_m_ = handle_m_);
-        session_.send(Reset{});
+        session_.send(Reset{study.start_angstrom()});
     }
     if (study.results().size() > before && options_.on_trial) options_.on_trial();
 }

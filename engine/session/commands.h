@@ -25,7 +25,11 @@ struct Pause {
     bool paused = true;  // while it lasts nothing moves, and the hand feels nothing
 };
 struct StepOnce {};  // and pause
-struct Reset {};     // load the scene again; the settings stay
+// Load the scene again; the settings stay.
+struct Reset {
+    // On a line, Å: where it is to start from now on, if not where it did.
+    std::optional<double> start_angstrom{};
+};
 using Command = std::variant<LiveSettings, ViewSettings, Pause, StepOnce, Reset>;
 
 // What a running scene tells, all of one moment between two steps.

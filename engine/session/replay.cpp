@@ -24,8 +24,10 @@ std::vector<std::string_view> split_row(std::string_view row) {
 
 }  // namespace
 
-TraceCheck::TraceCheck(const std::filesystem::path& folder, std::int64_t every)
+TraceCheck::TraceCheck(const std::filesystem::path& folder, std::uint64_t ticks, std::int64_t every)
     : text_(read_text_file(folder / "trace.csv")), every_(every) {
+    const auto step = static_cast<std::uint64_t>(every);
+    whole_ = (ticks + step - 1) / step;
     const std::string file = (folder / "trace.csv").string();
     std::string_view rest = text_;
     const auto take_line = [&]() -> std::optional<std::string_view> {
@@ -44,7 +46,6 @@ TraceCheck::TraceCheck(const std::filesystem::path& folder, std::int64_t every)
     }
     columns_ = split_row(*header);
     while (const std::optional<std::string_view> line = take_line()) rows_.push_back(*line);
-    is_cut_off_ = !rest.empty();
 }
 
 void TraceCheck::add(const ServoTick& tick) {
@@ -58,6 +59,10 @@ void TraceCheck::add(const ServoTick& tick) {
 void TraceCheck::note(std::string_view recorded, std::string_view played) {
     ++different_;
     const std::vector<std::string_view> was = split_row(recorded), is = split_row(played);
+    if (was.size() != is.size() && !first_) {
+        first_ = {compared_, std::string(was.front()), "number of columns",
+                  std::to_string(was.size()), std::to_string(is.size())};
+    }
     for (std::size_t i = 0; i < columns_.size(); ++i) {
         const std::string_view before = i < was.size() ? was[i] : "",
                                now = i < is.size() ? is[i] : "";

@@ -15,17 +15,17 @@ namespace palpa {
 struct TraceDifference {
     std::uint64_t row = 0;  // from 1, behind the header: line row + 1 of the file
     std::string time_s;     // as recorded
-    std::string column;
+    std::string column;     // its name, or "number of columns"
     std::string recorded, played;
 };
 
 // Row by row, to the last digit: equal rows have the same bits.
 class TraceCheck {
 public:
-    // Reads trace.csv of a recording whose trace keeps one row of `every` ticks. What is behind the
-    // last whole line of one that was cut off does not count. Throws LoadError if there is none, or
-    // if its columns are not those of this program.
-    TraceCheck(const std::filesystem::path& folder, std::int64_t every);
+    // Reads trace.csv of a recording of so many ticks whose trace keeps one row of `every`. What is
+    // behind the last whole line of one that was cut off does not count. Throws LoadError if there
+    // is none, or if its columns are not those of this program.
+    TraceCheck(const std::filesystem::path& folder, std::uint64_t ticks, std::int64_t every);
 
     // Every tick of the run, in order; those behind the last row recorded do not count.
     void add(const ServoTick& tick);
@@ -33,7 +33,9 @@ public:
     std::uint64_t recorded() const noexcept { return rows_.size(); }
     std::uint64_t compared() const noexcept { return compared_; }
     std::uint64_t different() const noexcept { return different_; }
-    bool is_cut_off() const noexcept { return is_cut_off_; }  // within a line
+    // Of the ticks' rows some are not there; and how many are there that no tick has.
+    bool is_cut_off() const noexcept { return rows_.size() < whole_; }
+    std::uint64_t surplus() const noexcept { return is_cut_off() ? 0 : rows_.size() - whole_; }
     const std::optional<TraceDifference>& first() const noexcept { return first_; }
     double largest_newton() const noexcept { return largest_newton_; }  // of device forces apart
 
@@ -43,8 +45,8 @@ private:
     std::string text_;
     std::vector<std::string_view> rows_, columns_;  // of `text_`
     std::int64_t every_;
+    std::uint64_t whole_;  // rows of a recording that was not cut off
     std::uint64_t tick_ = 0, compared_ = 0, different_ = 0;
-    bool is_cut_off_ = false;
     std::optional<TraceDifference> first_;
     double largest_newton_ = 0;
 };

@@ -33,6 +33,10 @@ WorkspaceMap build_workspace(WorkspaceChoice choice) {
 
 }  // namespace
 
+std::uint64_t count_ticks(const SceneDescription& scene) noexcept {
+    return static_cast<std::uint64_t>(std::ceil(scene.seconds / servo_tick_s - 1e-9));
+}
+
 ServoSettings build_servo_settings(const SceneDescription& scene, const Simulation& simulation,
                                    const Vec3& half_workspace_m) {
     const CouplingDescription& c = scene.coupling;
@@ -232,7 +236,7 @@ Summary run_headless(const SceneDescription& scene, Simulation& simulation, Devi
                      const std::vector<std::string>& warnings, Recording* recording,
                      const ProgressFunction& progress, const FrameClock& frames,
                      const TickFunction& watch, const EndFunction& is_over) {
-    const auto ticks = static_cast<std::uint64_t>(std::ceil(scene.seconds / servo_tick_s - 1e-9));
+    const std::uint64_t ticks = count_ticks(scene);
     const auto ticks_per_step =
         static_cast<std::uint64_t>(std::lround(simulation.period_s / servo_tick_s));
     Statistics statistics(servo_tick_s);

@@ -10,6 +10,7 @@
 #include "simulation/probe.h"
 #include "simulation/simulation.h"
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -26,6 +27,9 @@ struct FrameClock {
     double per_second = 0;
     std::function<void()> draw;
 };
+
+// Servo ticks of the scene's run.
+std::uint64_t count_ticks(const SceneDescription& scene) noexcept;
 
 // `half_workspace_m`: of the device, for what carries a small one over a large scene.
 ServoSettings build_servo_settings(const SceneDescription& scene, const Simulation& simulation,

@@ -1,7 +1,5 @@
 #include "session/study.h"
 
-#include "core/draws.h"
-
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
@@ -52,6 +50,8 @@ std::uint64_t trial_number(const StudyTrial& trial) noexcept {
 std::uint64_t participant_number(std::size_t participant) noexcept {
     return round_number(participant, 0);
 }
+
+double draw_start(Draws& draws) { return draws.between(4.0, 6.2); }
 
 Spread find_spread(std::span<const double> values) {
     const auto count = static_cast<double>(values.size());

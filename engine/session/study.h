@@ -1,6 +1,7 @@
 // The paper's experiment: who looks for the place without force in which mode, how far from it and
 // how soon they say that they are there, and what that comes to.
 #pragma once
+#include "core/draws.h"
 #include "scene/description.h"
 
 #include <cstddef>
@@ -30,6 +31,9 @@ std::vector<StudyTrial> plan_study(std::size_t participant, std::size_t rounds,
 // participant's.
 std::uint64_t trial_number(const StudyTrial& trial) noexcept;
 std::uint64_t participant_number(std::size_t participant) noexcept;
+
+// How far outside of the place to be found (Å) a trial begins: the first of its draws.
+double draw_start(Draws& draws);
 
 struct StudyResult {
     StudyTrial trial;

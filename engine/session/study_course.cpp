@@ -11,11 +11,17 @@ constexpr double slip_s = 1;
 }  // namespace
 
 StudyCourse::StudyCourse(std::vector<StudyTrial> trials, CouplingMode practice,
-                         const StudyLine& line)
-    : trials_(std::move(trials)), practice_(practice), line_(line) {}
+                         const StudyLine& line, std::uint64_t seed)
+    : trials_(std::move(trials)), practice_(practice), line_(line), seed_(seed) {}
 
 CouplingMode StudyCourse::mode() const noexcept {
     return stage_ == Stage::Trial ? trials_[results_.size()].mode : practice_;
+}
+
+double StudyCourse::start_angstrom() const {
+    if (stage_ != Stage::Trial) return line_.rest + practice_angstrom;
+    Draws draws(seed_, trial_number(trials_[results_.size()]));
+    return line_.rest + draw_start(draws);
 }
 
 std::string StudyCourse::text() const {

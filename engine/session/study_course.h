@@ -20,12 +20,17 @@ class StudyCourse {
 public:
     enum class Stage { Consent, Practice, Break, Trial, Done };
 
-    // `practice`: the mode of the round that is not written down.
-    StudyCourse(std::vector<StudyTrial> trials, CouplingMode practice, const StudyLine& line);
+    static constexpr double practice_angstrom = 5;  // it begins so far outside
+
+    // `practice`: the mode of the round that is not written down; `seed`: the plan's.
+    StudyCourse(std::vector<StudyTrial> trials, CouplingMode practice, const StudyLine& line,
+                std::uint64_t seed);
 
     Stage stage() const noexcept { return stage_; }
     // That the coupling is to be in now.
     CouplingMode mode() const noexcept;
+    // Where the molecule is to begin now, Å.
+    double start_angstrom() const;
     // What the person is told.
     std::string text() const;
 
@@ -42,6 +47,7 @@ private:
     std::vector<StudyTrial> trials_;
     CouplingMode practice_;
     StudyLine line_;
+    std::uint64_t seed_;
     Stage stage_ = Stage::Consent;
     StudyResult running_;
     std::vector<StudyResult> results_;

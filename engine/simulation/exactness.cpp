@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace palpa {
 namespace {
@@ -44,6 +45,8 @@ bool Exactness::is_due() const noexcept {
 }
 
 void Exactness::add_audit(double error_pN, const Vec3& told_pN, std::size_t steps) {
+    // No number is as wrong as can be.
+    if (std::isnan(error_pN)) error_pN = std::numeric_limits<double>::infinity();
     audit_work_ = static_cast<double>(steps + 1);  // one sum more than steps
     saved_ -= audit_work_;
     since_audit_ = 0;
@@ -61,7 +64,11 @@ void Exactness::add_audit(double error_pN, const Vec3& told_pN, std::size_t step
     const double aim_pN = aimed_at * tolerance_pN_;
     if (error > aim_pN) {
         rareness_ = 0;
-        for (double left = error; left > aim_pN; left /= 2) raise();
+        Effort raised_from{};
+        for (double left = error; left > aim_pN && raised_from != effort_; left /= 2) {
+            raised_from = effort_;
+            raise();
+        }
     } else {
         rareness_ = std::max(1.0, rareness_);
         const bool is_proven = errors_pN_.size() >= enough && largest_change_pN_ > tolerance_pN_;

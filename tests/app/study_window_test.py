@@ -1,5 +1,6 @@
 """A person takes part in a study, in a window under Xvfb: agrees, practises, does two trials."""
 import csv
+import json
 import os
 import subprocess
 import tempfile
@@ -64,11 +65,34 @@ class StudyWindow(unittest.TestCase):
             self.assertEqual(len({row["participant"] for row in first}), 1)
             self.assertNotEqual(both[2]["participant"], first[0]["participant"])
             for row in both:
-                # Nobody moved the mouse: five Å outside of the place to be found.
-                self.assertAlmostEqual(float(row["start_angstrom"]), 7.767, delta=0.01)
-                self.assertAlmostEqual(float(row["off_angstrom"]), 5, delta=0.3)
+                # Nobody moved the mouse: as far outside of the place to be found as it began.
+                start = float(row["start_angstrom"])
+                self.assertGreaterEqual(start, 2.766 + 4.0)
+                self.assertLessEqual(start, 2.768 + 6.2)
+                self.assertAlmostEqual(float(row["found_angstrom"]), start, delta=0.3)
                 self.assertGreater(float(row["time_s"]), 1)
                 self.assertEqual(len(row["participant"]), 6)
+            self.assertEqual(len({row["start_angstrom"] for row in both}), 3)
+            self.refuses_other_settings(Path(folder))
+
+    def refuses_other_settings(self, folder):
+        session = json.loads((folder / "session.json").read_text())
+        self.assertEqual((session["seed"], session["rounds"], session["modes"], session["hand"],
+                          session["period_ms"], session["settings"]),
+                         (1, 2, ["4", "guarded"], "medium", 14, []))
+        before = (folder / "trials.csv").read_bytes()
+        same = ["--modes", "4,guarded", "--rounds", "2"]
+        for other, named in ((["--seed", "2"], "seed = 1"), (["--hand", "firm"], "hand = "),
+                             (["--period-ms", "20"], "period_ms = 14"),
+                             (["--set", "coupling.clamp_N=2.5"], "settings = []")):
+            with self.subTest(other=other):
+                result = subprocess.run([PROGRAM, "study", ROOT / "scenes" / "water", *same, *other,
+                                         "-o", folder], capture_output=True, text=True,
+                                        env={**os.environ, "DISPLAY": ""})
+                self.assertEqual(result.returncode, 2)
+                self.assertEqual(len(result.stderr.splitlines()), 1)
+                self.assertIn(named, result.stderr)
+        self.assertEqual((folder / "trials.csv").read_bytes(), before)
 
 
 if __name__ == "__main__":

@@ -92,6 +92,33 @@ TEST_CASE("the fitted threshold is the one that the force law predicts", "[sessi
     CHECK(std::abs(fit.curve.middle) < 2.5 * fit.middle_error);
 }
 
+TEST_CASE("choices are the same whatever modes are played beside", "[session][coupling]") {
+    constexpr auto one = CouplingMode::ConstantForceConstantDisplacement;
+    constexpr auto other = CouplingMode::VariableForceConstantDisplacement;
+    const auto choose = [](std::vector<CouplingMode> modes, std::size_t repeats) {
+        ForcedChoiceOptions options = waters(Question::AttractsMore, std::move(modes));
+        options.study.settings.emplace_back("run.period_ms=14");
+        options.study.operators = 2;
+        options.repeats = repeats;
+        std::vector<Choice> own;
+        for (const Choice& choice : play_choices(options))
+            if (choice.mode == one && own.size() < 10) own.push_back(choice);
+        return own;
+    };
+    const std::vector<Choice> alone = choose({one}, 1);
+    REQUIRE(alone.size() == 10);
+
+    const std::vector<Choice> first = choose({one, other}, 1), last = choose({other, one}, 2);
+
+    for (std::size_t i = 0; i < alone.size(); ++i) {
+        for (const Choice& choice : {first[i], last[i]}) {
+            CHECK(choice.reference == alone[i].reference);
+            CHECK(choice.comparison == alone[i].comparison);
+            CHECK(choice.is_more == alone[i].is_more);
+        }
+    }
+}
+
 TEST_CASE("without force nobody can tell", "[session][coupling]") {
     ForcedChoiceOptions options = waters(Question::AttractsMore, {CouplingMode::NoForce});
     options.study.operators = 1;

@@ -1,5 +1,6 @@
 #include "session/study_course.h"
 
+#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <set>
@@ -27,7 +28,7 @@ void play(StudyCourse& course, std::uint32_t start, double distance, int ticks) 
 
 TEST_CASE("a person agrees, practises, and finds one trial after another", "[session][study]") {
     const std::vector<StudyTrial> trials = plan_study(471100, 1, two_modes, 1);
-    StudyCourse course(trials, CouplingMode::Guarded, {.rest = 2.7, .wall = 2.0});
+    StudyCourse course(trials, CouplingMode::Guarded, {.rest = 2.7, .wall = 2.0}, 1);
     std::set<std::string> texts{course.text()};
 
     CHECK(course.stage() == Stage::Consent);
@@ -71,7 +72,7 @@ TEST_CASE("a person agrees, practises, and finds one trial after another", "[ses
 
 TEST_CASE("a key pressed before a trial has begun, or in its first second, ends nothing",
           "[session][study]") {
-    StudyCourse course(plan_study(1, 1, two_modes, 1), CouplingMode::Guarded, {2.7, 2.0});
+    StudyCourse course(plan_study(1, 1, two_modes, 1), CouplingMode::Guarded, {2.7, 2.0}, 1);
     play(course, 5, 7, 10);
     (void)course.press_key();
     play(course, 6, 7, 10);
@@ -89,4 +90,31 @@ TEST_CASE("a key pressed before a trial has begun, or in its first second, ends 
     (void)course.press_key();
     CHECK(course.stage() == Stage::Break);
     CHECK(course.results().size() == 1);
+}
+
+TEST_CASE("every trial begins at a place of its own, 4.0 to 6.2 Å outside", "[session][study]") {
+    constexpr double rest = 2.7;
+    const auto starts = [&](std::uint64_t seed) {
+        StudyCourse course(plan_study(1, 200, two_modes, seed), CouplingMode::Guarded,
+                           {.rest = rest, .wall = 2.0}, seed);
+        std::vector<double> outside;
+        while (course.stage() != Stage::Done) {
+            if (course.stage() == Stage::Trial) outside.push_back(course.start_angstrom() - rest);
+            play(course, 1, 7, 10);
+            play(course, static_cast<std::uint32_t>(2 + course.results().size()), 7, 1100);
+            (void)course.press_key();
+        }
+        return outside;
+    };
+
+    const std::vector<double> outside = starts(1);
+
+    REQUIRE(outside.size() == 400);
+    const auto [nearest, farthest] = std::ranges::minmax(outside);
+    CHECK(nearest >= 4.0);
+    CHECK(nearest < 4.1);
+    CHECK(farthest <= 6.2);
+    CHECK(farthest > 6.1);
+    CHECK(outside == starts(1));
+    CHECK(outside != starts(2));
 }

@@ -9,6 +9,7 @@
 #include <catch2/catch.hpp>
 #include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -103,6 +104,18 @@ TEST_CASE("less than half the error gives back steps, then joints, by a fifth",
     CHECK(after_calm(18) == Effort{25, 2});
     for (int i = 0; i < 40; ++i) (void)after_calm(17);
     CHECK(exactness.effort() == Effort{8, 2});
+}
+
+TEST_CASE("an error without bounds raises everything, and ends", "[simulation][exactness]") {
+    const double error_pN =
+        GENERATE(std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN());
+    Exactness joints_and_steps(50, {8, 2}, 40, false), joints(50, {8, 2}, 40, true);
+
+    joints_and_steps.add_audit(error_pN, Vec3::Zero(), 20);
+    joints.add_audit(error_pN, Vec3::Zero(), 20);
+
+    CHECK(joints_and_steps.effort() == Effort{40, Exactness::most_steps});
+    CHECK(joints.effort() == Effort{40, 2});
 }
 
 TEST_CASE("while the hand rests nothing is proven", "[simulation][exactness]") {

@@ -55,6 +55,13 @@ class Cli(unittest.TestCase):
             with self.subTest(arguments=arguments):
                 self.assert_bad_input(self.palpa(*arguments), "palpa: ")
 
+    def test_a_seed_is_a_whole_number_that_fits(self):
+        for command in ("loops", "journey", "study", "scenarios", "report", "run"):
+            for seed in ("-1", "99999999999999999999", "1.5", "one"):
+                arguments = [] if command == "report" else [WATER]
+                with self.subTest(command=command, seed=seed):
+                    self.assert_bad_input(self.palpa(command, *arguments, "--seed", seed), "seed")
+
     # ---- running
 
     def test_guarded_coupling_is_the_default(self):

@@ -27,8 +27,23 @@ class Journey(unittest.TestCase):
         self.assertEqual(result.returncode, 1 if report["missed"] else 0)
         for row in rows:
             self.assertEqual(row["active"], 10)
-            self.assertFalse(row["out"] and row["farthest_angstrom"] < 10)
-            self.assertFalse(row["back"] and not row["out"])
+
+    def test_out_and_back_are_where_the_hand_went(self):
+        # At a constant 1 cm of the handle for 2 Å, away from the other molecule.
+        way = ["--hands", "firm", "--periods", "14", "--modes", "4", "--active", "10", "--json",
+               "--set", "coupling.A_d=5e7", "--set", "hand.stroke=path", "--set", "run.seconds=5"]
+        for far_mm, end_mm, out, back in ((60, 0, True, True), (60, 60, True, False),
+                                          (30, 0, False, False)):
+            path = [[0.2, 0], [2.2, far_mm], [2.4, far_mm], [4.4, end_mm]]
+            with self.subTest(path=path):
+                report = json.loads(journey(PEPTIDES, *way, "--set", f"hand.path={path}").stdout)
+                row, = report["journeys"]
+                self.assertEqual((row["out"], row["back"]), (out, back))
+                self.assertEqual((report["out"], report["back"]), (int(out), int(back)))
+                # The other one's attraction holds it back a little.
+                self.assertAlmostEqual(row["farthest_angstrom"], 0.2 * far_mm, delta=1.5)
+                self.assertEqual("out_s" in row, out)
+                self.assertEqual("back_s" in row, back)
 
     def test_random_ones_repeat(self):
         arguments = PEPTIDES, "--random", 2, "--set", "run.seconds=1", "--json"
@@ -42,6 +57,27 @@ class Journey(unittest.TestCase):
         result = journey(ROOT / "scenes" / "water")
         self.assertEqual(result.returncode, 2)
         self.assertIn("nothing moves by itself here", result.stderr)
+        self.assertEqual(result.stdout, "")
+
+    def test_what_is_wrong_is_told_before_anything_is_played_or_printed(self):
+        for arguments, what in ((["--random", 2, "--hands", "firm"], "--hands"),
+                                (["--random", 2, "--periods", "14"], "--periods"),
+                                (["--random", 2, "--modes", "4"], "--modes"),
+                                (["--random", 2, "--active", "4"], "--active"),
+                                (["--random", 2, "--fastest"], "--fastest"),
+                                (["--hands", "medium,firmer"], "hand.grip=firmer"),
+                                (["--set", "hand.grips=firm"], "hand.grips")):
+            with self.subTest(arguments=arguments):
+                result = journey(PEPTIDES, *arguments)
+                self.assertEqual(result.returncode, 2)
+                self.assertEqual(result.stdout, "")
+                self.assertEqual(len(result.stderr.splitlines()), 1)
+                self.assertIn(what, result.stderr)
+
+    def test_all_active_are_told_in_words(self):
+        result = journey(PEPTIDES, "--periods", "50", "--hands", "firm", "--modes", "guarded",
+                         "--active", "1000000", "--set", "run.seconds=0.5")
+        self.assertIn("| all | 50 |", result.stdout)
 
 
 if __name__ == "__main__":

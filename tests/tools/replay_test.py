@@ -64,8 +64,50 @@ class Replay(unittest.TestCase):
         running.send_signal(signal.SIGKILL)
         running.wait()
         code, report = self.verify()
-        self.assertEqual((code, report["different"]), (0, 0))
+        self.assertEqual((code, report["different"], report["cut_off"]), (0, 0, True))
         self.assertGreater(report["compared"], 500)
+        self.assertEqual(report["session_s"], 100000)
+        self.assertAlmostEqual(report["recorded_s"], report["compared"] * 1e-3)
+
+    def test_one_that_was_cut_at_the_end_of_a_line_is_told_from_a_whole_one(self):
+        self.record("--seconds", "1", "--every", "3", WATER)
+        lines = self.trace.read_text().splitlines(keepends=True)
+        self.assertEqual(len(lines), 1 + 334)
+        self.assertFalse(self.verify()[1]["cut_off"])
+        self.trace.write_text("".join(lines[:1 + 100]))
+        code, report = self.verify()
+        self.assertEqual((code, report["compared"], report["cut_off"]), (0, 100, True))
+        self.assertAlmostEqual(report["recorded_s"], 0.3)
+        told = palpa("replay", self.folder, "--verify").stdout
+        self.assertIn("0.3 of 1 s were recorded", told)
+
+    def test_a_row_too_many_is_told(self):
+        self.record("--seconds", "0.2", WATER)
+        lines = self.trace.read_text().splitlines(keepends=True)
+        self.trace.write_text("".join(lines + lines[-1:]))
+        code, report = self.verify()
+        self.assertEqual((code, report["different"], report["surplus"]), (1, 0, 1))
+        self.assertFalse(report["cut_off"])
+        told = palpa("replay", self.folder, "--verify").stdout
+        self.assertIn("rows behind the session's end: 1", told)
+
+    def test_columns_too_many_or_too_few_are_told(self):
+        self.record("--seconds", "0.2", WATER)
+        lines = self.trace.read_text().splitlines(keepends=True)
+        columns = len(lines[0].split(","))
+        for row, has in ((lines[50].rstrip("\n") + ",7\n", columns + 1),
+                         (lines[50].rstrip("\n") + ",\n", columns + 1),
+                         (lines[50].rpartition(",")[0] + "\n", columns - 1)):
+            with self.subTest(row=row):
+                self.trace.write_text("".join(lines[:50] + [row] + lines[51:]))
+                code, report = self.verify()
+                self.assertEqual((code, report["different"]), (1, 1))
+                self.assertEqual(report["first"]["row"], 50)
+                self.assertEqual(report["first"]["column"], "number of columns")
+                self.assertEqual((report["first"]["recorded"], report["first"]["played"]),
+                                 (str(has), str(columns)))
+                told = palpa("replay", self.folder, "--verify").stdout
+                self.assertNotIn("all the same", told)
 
     def test_a_force_that_was_another_is_told_with_its_place(self):
         self.record("--seconds", "1", WATER)

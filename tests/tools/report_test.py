@@ -54,6 +54,13 @@ class Report(unittest.TestCase):
                 ("gnuplot-nox", ("-o", page), {"env": {**os.environ, "PATH": str(self.tmp)}}),
                 ("one axis", ("-o", page, "--scene", ROOT / "scenes" / "hiv"), {}),
                 ("no folder", ("-o", nowhere), {}),
+                ("is a folder", ("-o", self.tmp), {}),
+                ("cannot be written", ("-o", "/proc/report.html"), {}),
+                ("typo.toml", ("-o", page, "--hiv", self.tmp / "typo.toml"), {}),
+                ("guarded coupling's", ("-o", page, "--set", "mode=2"), {}),
+                ("start_angstrom", ("-o", page, "--set", "hand.start_angstrom=6"), {}),
+                ("a way and a length of its own", ("-o", page, "--set", "seconds=3"), {}),
+                ("--seed", ("-o", page, "--seed", "-1"), {}),
                 ("coupling.modes", ("-o", page, "--set", "coupling.modes=2"), {})):
             with self.subTest(expected=expected):
                 result = report("--quick", *arguments, **options)

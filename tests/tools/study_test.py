@@ -123,6 +123,9 @@ class Study(unittest.TestCase):
         self.assert_bad_input("folder in which people's trials are kept", WATER)
         (self.tmp / "trials.csv").write_text("something else")
         self.assert_bad_input("is no table of a study", WATER, "-o", self.tmp)
+        folder = self.tmp / "operators"
+        self.study("--operators", 1, "--rounds", 1, "--modes", "4", "-o", folder)
+        self.assert_bad_input("nobody knows the settings", WATER, "--modes", "4", "-o", folder)
         self.assert_bad_input("--repeats", WATER, "--operators", 1, "--repeats", 2)
 
 
