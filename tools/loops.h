@@ -26,8 +26,10 @@ struct LoopResult {
     // By the force at the hand, but for the servo's own damping; by the continuous law along the
     // same way. + = generated.
     double work_J = 0, law_J = 0;
-    double closure_angstrom = 0;   // from where it began to where the continuous law ends
-    double drift_angstrom = 0;     // from there to where the molecule is
+    double drift_angstrom = 0;  // from where the law's molecule ends to where the molecule is
+    // The handle ends so far from where it began; once it is brought home, straight, the law has
+    // done this work, and its molecule is so far from where it began.
+    double open_mm = 0, closed_law_J = 0, closure_angstrom = 0;
     double farthest_angstrom = 0;  // of the reference atoms, by the continuous law
     double ripple_N = 0;           // above 3 Hz, over the last 4 s, which are at rest
     double felt_share =

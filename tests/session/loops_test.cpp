@@ -2,6 +2,7 @@
 #include "tools/loops.h"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 using namespace palpa;
 
@@ -28,6 +29,30 @@ TEST_CASE("closed ways in space do the work of the continuous law and end where 
         INFO(shape << " " << i << ": " << r.extra_joule() << " J, " << r.drift_angstrom << " A, "
                    << r.ripple_N << " N, " << r.felt_share);
         CHECK(meets_bars(r, false));
+    }
+}
+
+// 400 pN are felt as 2.7 N, more than motors stand for long.
+TEST_CASE("what is felt strongly keeps its energy too, but where motors are warm",
+          "[session][coupling]") {
+    std::size_t limited = 0;
+    for (const LoopResult& r : play_loops(loops(20, {"coupling.feel_pN=[50, 400]"}), {})) {
+        INFO(r.extra_joule() << " J, " << r.drift_angstrom << " A, " << r.dropped_mm << " mm");
+        limited += r.was_limited ? 1 : 0;
+        if (!r.was_limited) CHECK(meets_bars(r, false));
+    }
+    CHECK(limited > 2);
+    CHECK(limited < 15);
+}
+
+// A law with constant gains is conservative: around a closed way it does nothing.
+TEST_CASE("constant gains do no work around a way that is brought home", "[session][coupling]") {
+    const std::vector<std::string> constant{"force_law=constant", "A_f=0.3e9",
+                                            "displacement_law=constant", "coupling.A_d=1.25e9"};
+    for (const LoopResult& r : play_loops(loops(10, constant), {})) {
+        CHECK(std::abs(r.closed_law_J) < 1e-6);
+        CHECK(r.closure_angstrom < 1e-6);
+        CHECK(r.open_mm > 0);
     }
 }
 
