@@ -79,7 +79,7 @@ TEST_CASE("the fitted threshold is the one that the force law predicts", "[sessi
     const auto mode = GENERATE(CouplingMode::VariableForceConstantDisplacement,
                                CouplingMode::ConstantForceConstantDisplacement);
     ForcedChoiceOptions options = waters(Question::AttractsMore, {mode});
-    options.study.operators = 4;
+    options.study.operators = 8;
 
     const PsychometricFit fit = fit_psychometric(count_answers(mode, play_choices(options)));
 
