@@ -46,6 +46,21 @@ class Devices(unittest.TestCase):
         self.assertIn("/nowhere/libHD.so", checks["library"]["found"])
         self.assertIn("ldconfig", after[0])
 
+    def test_a_second_hand_shares_the_way(self):
+        def run(*arguments):
+            return palpa("run", WATER, "--headless", "--json", *arguments)
+
+        alone, both = (json.loads(run(*second).stdout) for second in ((), ("--second", "emulated")))
+        self.assertEqual(both["device"], f"{alone['device']} and {alone['device']}")
+        # Of two equal handles half the viscosity is left between them, so that less of the cap is,
+        # and the same way of the first hand brings the molecules less near.
+        self.assertGreater(both["closest_angstrom"], alone["closest_angstrom"] + 0.02)
+        self.assertLess(both["ripple_N"], 0.02)
+        for name, reason in (("mouse", "led by the window"), ("omni", "without --headless")):
+            result = run("--second", name)
+            self.assertEqual(result.returncode, 2)
+            self.assertIn(reason, result.stderr)
+
     def test_warm_motors_are_told(self):
         checks, _ = self.examine(0, stub="free,warm")
         self.assertEqual(checks["motors"]["outcome"], "failed")
