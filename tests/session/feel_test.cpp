@@ -78,7 +78,7 @@ TEST_CASE("what was felt of a range, and what was not so exact", "[session][feel
     CHECK_THAT(yielding.period, Contains("2.5 times"));
     CHECK_THAT(yielding.reach, Contains("up to 4.5 times"));
     CHECK_THAT(yielding.motors, Contains("for 25 % of the time"));
-    CHECK(yielding.all().size() == 3);
+    CHECK(yielding.all().size() == 4);
 }
 
 TEST_CASE("where nothing moves by itself the servo's guess is what is looked at",
