@@ -151,13 +151,20 @@ private:
     std::vector<double> errors_pN_, changes_pN_;
 };
 
-FeelResult play(const FeelOptions& options, const std::array<double, 2>& range_pN,
-                double within_pN) {
+// The options' settings, and what is asked.
+std::vector<std::string> list_settings(const FeelOptions& options,
+                                       const std::array<double, 2>& range_pN, double within_pN) {
     std::vector<std::string> settings = options.settings;
     settings.push_back(fmt::format("coupling.feel_pN=[{}, {}]", format_real(range_pN[0]),
                                    format_real(range_pN[1])));
     settings.push_back(fmt::format("coupling.feel_within_pN={}", format_real(within_pN)));
-    const SceneDescription scene = read_scene(options.scene, settings);
+    return settings;
+}
+
+FeelResult play(const FeelOptions& options, const std::array<double, 2>& range_pN,
+                double within_pN) {
+    const SceneDescription scene =
+        read_scene(options.scene, list_settings(options, range_pN, within_pN));
     Simulation simulation = load_simulation(scene);
     EmulatedOmni device(build_emulated_omni(scene, simulation));
     FeelWatch watch(scene, simulation, options.samples, within_pN);
@@ -240,7 +247,13 @@ std::vector<std::string> FeelResult::unsaid() const {
 
 int feel_command(const FeelOptions& options) {
     std::vector<std::array<double, 2>> ranges_pN;
-    for (const std::string& text : options.ranges) ranges_pN.push_back(range_called(text));
+    for (const std::string& text : options.ranges) {
+        ranges_pN.push_back(range_called(text));
+        for (const double within_pN :
+             options.tolerances_pN) {  // all of it, before anything is played
+            (void)read_scene(options.scene, list_settings(options, ranges_pN.back(), within_pN));
+        }
+    }
     const bool is_watched = isatty(STDERR_FILENO) != 0;
     const std::size_t count = ranges_pN.size() * options.tolerances_pN.size();
     if (!options.json) print_feel_header();

@@ -79,6 +79,7 @@ class Feel(unittest.TestCase):
                 result = palpa("feel", WATER, *arguments)
                 self.assertEqual(result.returncode, 2)
                 self.assertIn(what, result.stderr)
+                self.assertEqual(result.stdout, "")
 
 
 if __name__ == "__main__":
