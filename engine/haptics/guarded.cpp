@@ -216,10 +216,12 @@ double guarded_lateness(double cap_N_per_m, double damping_N_s_per_m, double ine
 
 GuardedGain guarded_gain(const GuardedSettings& settings, const Vec3& force_newton,
                          const Mat3& stiffness) noexcept {
-    const double felt_newton = hand_force(settings.force_law, force_newton).norm();
-    const double law = std::max(displacement_gain(settings.displacement_law, force_newton.norm(),
-                                                  std::abs(extreme_stiffness(stiffness))),
-                                settings.least_A_d_per_newton * felt_newton);
+    double law = displacement_gain(settings.displacement_law, force_newton.norm(),
+                                   std::abs(extreme_stiffness(stiffness)));
+    if (settings.least_A_d_per_newton > 0) {
+        const double felt_newton = hand_force(settings.force_law, force_newton).norm();
+        law = std::max(law, settings.least_A_d_per_newton * felt_newton);
+    }
     const Mat3 felt = force_jacobian(settings.force_law, force_newton) * stiffness;
     if (settings.gain_shape == GainShape::Tensor && felt.allFinite())
         return tensor_gain(law, felt, settings.cap_N_per_m);
