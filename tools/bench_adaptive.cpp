@@ -240,7 +240,8 @@ constexpr std::string_view table_head =
     "| neglected, % | force, % | at rest, % | position, Å | stroke, % |\n"
     "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
 
-std::vector<Variant> list_variants(const BenchStart& start, const std::optional<double>& cutoff) {
+std::vector<Variant> list_variants(const BenchStart& start, const AdaptiveBenchSettings& settings,
+                                   const std::optional<double>& cutoff) {
     std::vector<Variant> variants;
     const PairPrecision pairs = start.scene.statics.pairs;
     variants.push_back({everything, cutoff, JointWeights::Plain, pairs});
@@ -251,6 +252,15 @@ std::vector<Variant> list_variants(const BenchStart& start, const std::optional<
             variants.push_back({active, cutoff, static_cast<JointWeights>(w), pairs});
         }
     }
+    const auto is_wanted = [&](const Variant& variant) {
+        const std::string name = name_of(variant);
+        const auto has = [&](const std::string& part) {
+            return name.find(part) != std::string::npos;
+        };
+        return variant.active == everything || settings.only.empty() ||
+               std::ranges::any_of(settings.only, has);
+    };
+    std::erase_if(variants, [&](const Variant& variant) { return !is_wanted(variant); });
     return variants;
 }
 
@@ -318,7 +328,7 @@ std::string bench_adaptive(const std::string& scene_name, const SceneDescription
         std::vector<Result> results;
         double all_us = 0, worst = 0;
         std::string slowest;
-        for (const Variant& variant : list_variants(start, cutoff)) {
+        for (const Variant& variant : list_variants(start, settings, cutoff)) {
             say(name_of(variant));
             results.push_back(run_variant(start, references, variant));
             const Result& result = results.back();
@@ -331,7 +341,9 @@ std::string bench_adaptive(const std::string& scene_name, const SceneDescription
             }
             add_rows(fmt::format("{}/{}", prefix, name_of(variant)), result, references, all_us,
                      rows);
-            table += table_line(result, all_us);
+            const std::string line = table_line(result, all_us);
+            say(line.substr(0, line.size() - 1));
+            table += line;
         }
         add_relations(prefix, results, rows);
         if (worst == 0) continue;

@@ -11,6 +11,8 @@ namespace palpa {
 struct AdaptiveBenchSettings {
     int poses = 3;           // along the stroke
     int stroke_moves = 200;  // of the hand, half of them back
+    // Where not empty: only variants whose NAME has one of these in it, and all joints.
+    std::vector<std::string> only;
 };
 
 // Every number of active degrees of freedom with every weight, with all pairs and with a cutoff of

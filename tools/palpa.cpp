@@ -202,6 +202,12 @@ void add_adaptive_options(CLI::App& bench, palpa::BenchOptions& options) {
                     "of the hand by 0.005 Å, half of them back; 200 unless given")
         ->check(in_range(20, 1'000'000))
         ->needs(adaptive);
+    bench
+        .add_option("--only", options.adaptive_settings.only,
+                    "all joints and what has this in its name, as active=40/cutoff=12/near-hand")
+        ->excludes("--spheres")
+        ->excludes("--best")
+        ->needs(adaptive);
     bench.add_flag("--table", options.table, "print a table in Markdown")->needs(adaptive);
 }
 
