@@ -40,10 +40,15 @@ WindowDevice WindowDevices::open_first(const std::optional<std::string>& asked) 
     notice_ = preferences_.problem();
     if (!asked && chosen) {
         try {
-            current_ = *chosen;
-            return open(current_);
+            const DeviceMaker& maker = device_maker_called(*chosen);
+            wanted_ = *chosen;
+            // Whether a pad is there only the window can tell, which is not open yet.
+            if (!maker.needs_window || is_there(maker, request_)) {
+                WindowDevice opened = open(wanted_);
+                current_ = std::exchange(wanted_, {});
+                return opened;
+            }
         } catch (const LoadError& error) {
-            wanted_ = current_;
             notice_ = fmt::format("{}; until then: {}", error.what(), first_device);
         }
     }
