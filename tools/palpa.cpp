@@ -132,6 +132,8 @@ void add_run(CLI::App& program, palpa::RunOptions& options) {
         "mouse unless given, headless emulated; list tells which there are");
     run.add_option("--second", options.second,
                    "another device, for a second hand that holds the other molecule");
+    run.add_flag("--sound", options.sound,
+                 "in a window: play the felt force as a tone, the stronger the higher and louder");
     run.add_flag("--check", options.check_only,
                  "only read the scene and say what is wrong with it");
     CLI::Option* const record = run.add_option(

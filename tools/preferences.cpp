@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 1> key_names{"device"};
+constexpr std::array<std::string_view, 2> key_names{"device", "sound"};
 
 TextPlace place_in(const std::string& file, const toml::source_region& source) {
     return {file, source.begin.line, source.begin.column};
@@ -47,6 +47,11 @@ Preferences parse_preferences(std::string_view text, const std::string& file) {
             if (preferences.device) continue;
             throw LoadError(place, "device is no text; expected a name as --device takes it");
         }
+        if (key == "sound") {
+            preferences.sound = value.value_exact<bool>();
+            if (preferences.sound) continue;
+            throw LoadError(place, "sound is no truth value; expected true or false");
+        }
         throw LoadError(
             place, fmt::format("unknown key '{}'; expected one of {}{}", key.str(),
                                fmt::join(key_names, ", "), near_name_hint(key.str(), key_names)));
@@ -57,6 +62,7 @@ Preferences parse_preferences(std::string_view text, const std::string& file) {
 std::string format_preferences(const Preferences& preferences) {
     toml::table table;
     if (preferences.device) table.insert("device", *preferences.device);
+    if (preferences.sound) table.insert("sound", *preferences.sound);
     std::ostringstream text;
     text << "# What was chosen in Palpa's window.\n" << table << "\n";
     return text.str();

@@ -8,7 +8,8 @@
 namespace palpa {
 
 struct Preferences {
-    std::optional<std::string> device;  // as --device takes it
+    std::optional<std::string> device{};  // as --device takes it
+    std::optional<bool> sound{};          // the felt force as a tone
 
     friend bool operator==(const Preferences&, const Preferences&) = default;
 };

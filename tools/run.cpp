@@ -242,6 +242,16 @@ void hold_with_both_hands(SceneDescription& scene) {
     device.viscosity_N_s_per_m = in_series(device.viscosity_N_s_per_m, device.viscosity_N_s_per_m);
 }
 
+// Asked for, or else chosen last.
+SoundChoice build_sound_choice(const RunOptions& options, PreferencesFile& preferences) {
+    return {.is_on = options.sound || preferences.now().sound.value_or(false),
+            .remember = [&preferences](bool is_on) {
+                Preferences chosen = preferences.now();
+                chosen.sound = is_on;
+                preferences.keep(chosen);
+            }};
+}
+
 int run_in_window(const SceneDescription& scene, const Simulation& simulation,
                   EmulatedOmniSettings settings, const RunOptions& options) {
     if (options.record) {
@@ -272,6 +282,7 @@ int run_in_window(const SceneDescription& scene, const Simulation& simulation,
                                             .mouse_reach_m = options.play ? 0 : first.mouse_reach_m,
                                             .pads = &devices.pads(),
                                             .devices = options.play ? DeviceMenu() : devices.menu(),
+                                            .sound = build_sound_choice(options, preferences),
                                             .notice = devices.notice(),
                                             .lose_device_at = options.lose_device_at,
                                             .validation = options.validation});
@@ -346,8 +357,10 @@ int run_command(const RunOptions& options) {
         for (const std::string& warning : warnings) fmt::print("  warning: {}\n", warning);
         return 0;
     }
-    if (options.headless && (options.last_shot || options.play)) {
-        throw LoadError({options.play ? "--play" : "--shot"},
+    if (options.headless && (options.last_shot || options.play || options.sound)) {
+        throw LoadError({options.play    ? "--play"
+                         : options.sound ? "--sound"
+                                         : "--shot"},
                         "is of a window; expected it without --headless");
     }
     if (options.headless && options.device) check_headless(*options.device);

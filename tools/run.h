@@ -24,6 +24,7 @@ struct RunOptions {
     bool headless = false;
     std::optional<std::string> device;  // one of the list in devices/open_device.h
     std::optional<std::string> second;  // the same, of the hand that holds the other molecule
+    bool sound = false;                 // in a window: the felt force as a tone, from the beginning
     bool play = false;  // in a window: the emulated hand plays the scene's stroke, no mouse
     std::uint32_t width = 1280, height = 800;        // of the window
     std::filesystem::path screenshots = ".";         // folder for those of the window

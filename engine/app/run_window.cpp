@@ -9,6 +9,7 @@
 #include "render/picture.h"
 #include "render/renderer.h"
 #include "session/run_headless.h"
+#include "sound/speaker.h"
 #include "ui/backend.h"
 #include "ui/study_panel.h"
 #include "view/build_frame.h"
@@ -111,7 +112,11 @@ public:
         // Drawing, which may be done by threads of the driver, comes after feeling.
         (void)nice(5);
         graphics_ = std::make_unique<Graphics>(window_, options.validation);
-        if (!options.notice.empty()) notice(options.notice, first_notice_s);
+        if (options.sound.is_on) (void)switch_sound(true);
+        if (!options.notice.empty()) {
+            notice(notice_.empty() ? options.notice : options.notice + "\n" + notice_,
+                   first_notice_s);
+        }
     }
 
     WindowReport run();
@@ -127,6 +132,9 @@ private:
     bool change_device(const std::string& name);
     void choose_device(const std::string& name);
     void choose_next_device();
+    bool switch_sound(bool is_on);
+    void choose_sound();
+    void play_force();
     void take_ticks();
     void take_input();
     void move_camera(const Input& input);
@@ -158,6 +166,7 @@ private:
     std::unique_ptr<Graphics> graphics_;
     Overlay overlay_;
     Statistics statistics_;
+    std::optional<Speaker> speaker_;  // while sound is on
 
     LiveFrame frame_;
     bool has_frame_ = false, framed_ = false;
@@ -165,6 +174,7 @@ private:
     Vec3 hand_m_ = Vec3::Zero();    // where the mouse wants the handle
     Vec3 handle_m_ = Vec3::Zero();  // where it is
     double displacement_gain_ = 0;  // A_d at this moment
+    double felt_newton_ = 0;        // sent to the device at this moment
     FrameScene shown_;              // the frame's picture, and what the window puts in it
     Clock::time_point last_input_ = Clock::now();
     VkExtent2D drawn_size_{};  // of the last picture
@@ -227,6 +237,7 @@ void Sandbox::frame() {
     if (has_frame_ && !std::exchange(framed_, has_frame_)) look_at_all();
     take_input();
     look_for_devices();
+    play_force();
     if (frame_ms_.size() + 1 == options_.lose_device_at) {
         frame_ms_.push_back(0);
         throw DeviceLost("the device was given up on request");
@@ -267,6 +278,7 @@ void Sandbox::take_ticks() {
     for (ServoTick tick; session_.pop_tick(tick);) {
         handle_m_ = tick.reading.position_m;
         if (tick.touch.displacement_gain > 0) displacement_gain_ = tick.touch.displacement_gain;
+        felt_newton_ = tick.sent_newton.norm();
         if (frame_.readout.paused) continue;
         statistics_.add(tick);
         overlay_.add_tick(tick);
@@ -408,6 +420,9 @@ void Sandbox::perform(Action action) {
         case Action::NextDevice:
             choose_next_device();
             break;
+        case Action::ToggleSound:
+            choose_sound();
+            break;
         case Action::Screenshot:
             wants_shot_ = true;
             break;
@@ -482,6 +497,40 @@ void Sandbox::choose_next_device() {
     }
 }
 
+// False where it stays off.
+bool Sandbox::switch_sound(bool is_on) {
+    speaker_.reset();
+    if (!is_on) return true;
+    try {
+        speaker_.emplace();
+    } catch (const SoundError& error) {
+        notice(fmt::format("{}: no tone", error.what()), first_notice_s);
+        return false;
+    }
+    return true;
+}
+
+void Sandbox::choose_sound() {
+    if (!switch_sound(!speaker_)) return;
+    notice(speaker_ ? "sound on: the higher and louder the tone, the stronger the force"
+                    : "sound off");
+    if (!options_.sound.remember) return;
+    try {
+        options_.sound.remember(speaker_.has_value());
+    } catch (const LoadError& error) {
+        notice(error.what(), first_notice_s);
+    }
+}
+
+// While paused the hand feels nothing.
+void Sandbox::play_force() {
+    if (!speaker_) return;
+    if (speaker_->is_there())
+        return speaker_->play(tone_of(frame_.readout.paused ? 0 : felt_newton_));
+    speaker_.reset();
+    notice("the sound output has gone away: no tone", first_notice_s);
+}
+
 void Sandbox::look_at_pixel(double x, double y) {
     const VkExtent2D window = graphics_->swapchain.size();
     if (drawn_size_.width == 0 || window.width == 0 || window.height == 0) return;
@@ -514,13 +563,13 @@ void Sandbox::draw() {
         draw_study_panel(*options_.study);
     } else if (has_frame_) {
         const bool is_news = Clock::now() < notice_until_;
-        overlay_.draw(
-            frame_.readout,
-            {session_.servo_health(), device_->spec().name, g.device.name(), last_frame_ms_,
-             scale_.value(), has_mouse_hand(), holding_,
-             is_news ? notice_ : std::string(device_->status()),
-             can_choose_device() ? devices_.offers : std::vector<DeviceOffer>(), devices_.current},
-            commands, actions);
+        overlay_.draw(frame_.readout,
+                      {session_.servo_health(), device_->spec().name, g.device.name(),
+                       last_frame_ms_, scale_.value(), has_mouse_hand(), holding_,
+                       is_news ? notice_ : std::string(device_->status()),
+                       can_choose_device() ? devices_.offers : std::vector<DeviceOffer>(),
+                       devices_.current, speaker_.has_value()},
+                      commands, actions);
     }
     g.ui.end();
     for (const Command& command : commands) session_.send(command);

@@ -35,6 +35,12 @@ struct DeviceMenu {
     std::function<void(const std::string& name)> remember{};      // throws LoadError
 };
 
+// The felt force as a tone.
+struct SoundChoice {
+    bool is_on = false;                    // to begin with
+    std::function<void(bool)> remember{};  // what the person switched it to; throws LoadError
+};
+
 struct WindowOptions {
     ViewSettings view{};
     std::uint32_t width = 1280, height = 800;
@@ -45,6 +51,7 @@ struct WindowOptions {
     double mouse_reach_m = 0;      // as of WindowDevice
     PadLink* pads = nullptr;       // where game pads are posted
     DeviceMenu devices{};
+    SoundChoice sound{};
     std::string notice{};  // to begin with
     double most_frames_per_s = 60;
     std::uint64_t lose_device_at = 0;  // frame at which the graphics device is given up, for tests

@@ -46,6 +46,7 @@ constexpr std::array key_names = std::to_array<KeyName>({
     {GLFW_KEY_O, Key::O},
     {GLFW_KEY_P, Key::P},
     {GLFW_KEY_R, Key::R},
+    {GLFW_KEY_S, Key::S},
     {GLFW_KEY_V, Key::V},
     {GLFW_KEY_Y, Key::Y},
     {GLFW_KEY_Z, Key::Z},

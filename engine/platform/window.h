@@ -53,6 +53,7 @@ enum class Key {
     O,
     P,
     R,
+    S,
     V,
     Y,
     Z,

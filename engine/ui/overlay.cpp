@@ -55,6 +55,18 @@ void reading(const char* name, const std::string& value, const char* explanation
     tip(explanation);
 }
 
+void switch_sound(const OverlayStatus& status, std::vector<Action>& actions) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted("sound");
+    tip("S. The force on the hand as a tone: higher and louder is stronger, nothing is silence. "
+        "The "
+        "choice is remembered.");
+    ImGui::TableNextColumn();
+    bool sounds = status.sounds;
+    if (ImGui::Checkbox("force as a tone", &sounds)) actions.push_back(Action::ToggleSound);
+}
+
 // Centimetres that the handle goes for one Å of the molecule.
 double cm_per_angstrom(double displacement_gain) { return displacement_gain * 1e-8; }
 
@@ -254,11 +266,12 @@ void Overlay::draw_scene(const Readout& readout, const OverlayStatus& status,
     remember_edit(before);
     tip("T_s, ms: how often the simulation answers the hand. In the paper's modes the hand feels a "
         "force that is one period old, and held for one: the longer, the more it vibrates.");
-    draw_readings(readout, status);
+    draw_readings(readout, status, actions);
     ImGui::End();
 }
 
-void Overlay::draw_readings(const Readout& readout, const OverlayStatus& status) {
+void Overlay::draw_readings(const Readout& readout, const OverlayStatus& status,
+                            std::vector<Action>& actions) {
     if (!ImGui::BeginTable("readings", 2)) return;
     ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthFixed, 115);
     const CouplingLaws laws = build_coupling_laws(settings_.coupling);
@@ -312,6 +325,7 @@ void Overlay::draw_readings(const Readout& readout, const OverlayStatus& status)
     } else {
         choose_device(status);
     }
+    switch_sound(status, actions);
     reading("step", fmt::format("{:.3f} ms of {} ms", readout.step_ms, settings_.period_ms),
             "wall time of the last simulation step, and the declared period");
     reading("drawing", fmt::format("{:.1f} ms, scale {:.2f}", status.frame_ms, status.render_scale),

@@ -30,6 +30,7 @@ struct OverlayStatus {
     std::string notice;                // of the last seconds, such as where a screenshot went
     std::vector<DeviceOffer> devices;  // to choose from; none: there is no choice
     std::string device;                // the one in use, of these names
+    bool sounds = false;               // the force is played as a tone
 };
 
 class Overlay {
@@ -61,7 +62,8 @@ public:
 private:
     void draw_scene(const Readout& readout, const OverlayStatus& status,
                     std::vector<Command>& commands, std::vector<Action>& actions);
-    void draw_readings(const Readout& readout, const OverlayStatus& status);
+    void draw_readings(const Readout& readout, const OverlayStatus& status,
+                       std::vector<Action>& actions);
     void choose_device(const OverlayStatus& status);
     void draw_exactness(const Readout& readout);
     void draw_gains(std::vector<Command>& commands);

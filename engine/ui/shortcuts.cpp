@@ -28,6 +28,7 @@ constexpr std::array list = std::to_array<Shortcut>({
     {Key::H, false, Action::ToggleHelp, "H", "this list"},
     {Key::F1, false, Action::ToggleHelp, "F1", "this list"},
     {Key::D, false, Action::NextDevice, "D", "another device"},
+    {Key::S, false, Action::ToggleSound, "S", "force as a tone on, off"},
     {Key::F12, false, Action::Screenshot, "F12", "screenshot"},
     {Key::F5, false, Action::RestartGraphics, "F5", "set the graphics up again"},
     {Key::Escape, false, Action::Quit, "Esc", "quit"},

@@ -28,6 +28,7 @@ enum class Action {
     ToggleLesson,
     ToggleHelp,
     NextDevice,
+    ToggleSound,
     Screenshot,
     RestartGraphics,
     Quit

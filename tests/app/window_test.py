@@ -8,6 +8,7 @@ import subprocess
 import tempfile
 import time
 import unittest
+from array import array
 from pathlib import Path
 
 PROGRAM = os.environ["PALPA_PROGRAM"]
@@ -26,7 +27,8 @@ class Display:
     def __enter__(self):
         read, write = os.pipe()
         self.server = subprocess.Popen(
-            ["Xvfb", "-displayfd", str(write), "-screen", "0", "1280x800x24", "-nolisten", "tcp"],
+            ["Xvfb", "-displayfd", str(write), "-screen", "0", "1280x800x24", "-nolisten", "tcp",
+             "-noreset"],
             pass_fds=[write], stderr=subprocess.DEVNULL)
         os.close(write)
         with os.fdopen(read) as pipe:
@@ -57,6 +59,8 @@ class Display:
 class Session(unittest.TestCase):
     def setUp(self):
         self.folder = Path(tempfile.mkdtemp())
+        self.sound = self.folder / "sound.raw"  # what the sound library plays, into a file
+        os.environ.update(SDL_AUDIODRIVER="disk", SDL_DISKAUDIOFILE=str(self.sound))
 
     def tearDown(self):
         keep = os.environ.get("PALPA_KEEP_SCREENSHOTS")
@@ -88,6 +92,11 @@ class Session(unittest.TestCase):
         display.do("key", "F12")
         self.wait_until(path.exists, path.name)
         return path
+
+    def last_sound(self):
+        """A fifth of a second of samples, the last ones so far."""
+        data = self.sound.read_bytes() if self.sound.exists() else b""
+        return array("f", data[:len(data) // 4 * 4])[-9600:]
 
     def quit(self, display):
         display.do("key", "Escape")
@@ -222,6 +231,54 @@ class Session(unittest.TestCase):
                 self.assertEqual(len(err.strip().splitlines()), 1, err)
                 self.assertIn(told, err)
                 self.assertEqual(chosen.read_text(), text)
+
+    def test_the_force_is_heard_until_it_is_paused(self):
+        with Display() as display:
+            self.start(display, "--sound")
+            display.do("keydown", "Left")
+            self.wait_until(lambda: max(self.last_sound(), default=0) > 0.05, "a tone")
+            self.screenshot(display)
+            self.assertGreater(max(self.last_sound()), 0.05)  # it stays
+            display.do("key", "p")
+            self.wait_until(lambda: not any(self.last_sound()), "silence")
+            display.do("key", "p")
+            self.wait_until(lambda: any(self.last_sound()), "the tone again")
+            display.do("keyup", "Left")
+            self.quit(display)
+        played = array("f", self.sound.read_bytes())
+        self.assertLessEqual(max(map(abs, played)), 0.25)
+        self.assertEqual(played[-1], 0)
+        self.assertFalse((self.folder / "palpa" / "preferences.toml").exists())  # for one run
+
+    def test_sound_is_off_until_it_is_chosen_and_then_remembered(self):
+        chosen = self.folder / "palpa" / "preferences.toml"
+        with Display() as display:
+            self.start(display)
+            self.assertFalse(self.sound.exists())
+            display.do("key", "s")
+            self.wait_until(self.sound.exists, "the sound library")
+            self.wait_until(chosen.exists, "the choice on disk")
+            self.quit(display)
+            self.assertIn("sound = true", chosen.read_text())
+
+            for file in (self.sound, *self.folder.glob("*.png")):
+                file.unlink()
+            self.start(display)
+            self.assertTrue(self.sound.exists())
+            display.do("key", "s")
+            self.wait_until(lambda: "sound = false" in chosen.read_text(), "the choice on disk")
+            self.quit(display)
+
+    def test_sound_stays_off_where_there_is_none(self):
+        for driver, file in (("none of that name", ""), ("disk", "/nowhere"), ("disk", "/dev/full")):
+            with self.subTest(driver=driver, file=file), Display() as display:
+                os.environ.update(SDL_AUDIODRIVER=driver, SDL_DISKAUDIOFILE=file)
+                for picture in self.folder.glob("*.png"):
+                    picture.unlink()
+                self.start(display, "--sound")
+                display.do("key", "s")
+                self.screenshot(display)
+                self.quit(display)
 
     def test_the_emulated_hand_can_play(self):
         with Display() as display:

@@ -238,6 +238,9 @@ class Cli(unittest.TestCase):
             with self.subTest(setting=setting):
                 self.assert_bad_input(self.palpa("run", WATER, "--set", setting), "--set", expected)
 
+    def test_sound_without_a_window(self):
+        self.assert_bad_input(self.palpa("run", WATER, "--headless", "--sound"), "--sound", "is of a window")
+
     def test_no_message_names_a_place_in_our_sources(self):
         result = self.palpa("run", "nowhere")
         self.assertIsNone(re.search(r"\.cpp|\.h:", result.stderr))

@@ -12,9 +12,10 @@ using namespace palpa;
 using Catch::Contains;
 
 TEST_CASE("preferences read as they were written", "[tools][preferences]") {
-    const Preferences odd{.device = "a \"b\"\n"};
+    const Preferences odd{.device = "a \"b\"\n", .sound = GENERATE(true, false)};
 
     CHECK(parse_preferences("device = \"omni\"", "p.toml") == Preferences{.device = "omni"});
+    CHECK(parse_preferences("sound = true", "p.toml") == Preferences{.sound = true});
     CHECK(parse_preferences(format_preferences(odd), "p.toml") == odd);
     CHECK(parse_preferences(format_preferences({}), "p.toml") == Preferences{});
 }
@@ -25,6 +26,7 @@ TEST_CASE("preferences that are wrong say where", "[tools][preferences]") {
     };
     CHECK_THAT(told("device = omni"), Contains("p.toml:1:10"));
     CHECK_THAT(told("\ndevice = 3"), Contains("p.toml:2:10: device is no text"));
+    CHECK_THAT(told("sound = 1"), Contains("p.toml:1:9: sound is no truth value"));
     CHECK_THAT(told("devise = \"omni\""), Contains("did you mean 'device'"));
 }
 

@@ -5,6 +5,7 @@
 #include "tests/support/water_scene.h"
 
 #include <imgui.h>
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <limits>
 #include <variant>
@@ -111,6 +112,20 @@ TEST_CASE("keys switch modes, pause, step and reset", "[ui][overlay]") {
     CHECK(std::holds_alternative<Reset>(commands.at(4)));
     CHECK_FALSE(screen.overlay.perform(Action::Screenshot, commands));
     CHECK_FALSE(screen.overlay.perform(Action::Quit, commands));
+}
+
+TEST_CASE("a click on the box beside sound asks for it", "[ui][overlay]") {
+    Screen screen;
+    screen.frame();
+    screen.frame();
+    const auto asked = [&] {
+        return std::count(screen.actions.begin(), screen.actions.end(), Action::ToggleSound);
+    };
+    // The readings stand in the left column, their values from its middle on.
+    for (float y = 100; y < 790 && asked() == 0; y += 6) screen.drag({160, y}, {160, y});
+
+    CHECK(asked() == 1);
+    CHECK_FALSE(screen.overlay.perform(Action::ToggleSound, screen.commands));  // the window does
 }
 
 TEST_CASE("every mode and size of window can be drawn, whatever the values", "[ui][overlay]") {
