@@ -10,7 +10,7 @@ namespace {
 // The kernel's own limits of a descriptor and a report are 4096 and 16384 bytes.
 constexpr std::size_t longest_descriptor = 4096, most_fields = 4096, most_usages = 1024;
 constexpr std::size_t most_pushed = 16, deepest = 32;
-constexpr std::uint64_t longest_report_bits = 8 * 4096;
+constexpr std::uint64_t longest_report_bits = std::uint64_t{8} * 4096;
 constexpr std::uint32_t longest_value_bits = 32;
 
 // Types and tags of short items, HID 1.11, 6.2.2.4 to 6.2.2.8.
@@ -362,7 +362,7 @@ std::int64_t number_of(const HidDescriptor& descriptor, const HidField& field,
 }
 
 std::optional<std::int64_t> read_field(HidBytes report, const HidField& field) noexcept {
-    if (report.size() < bytes_up_to(field)) return {};
+    if (field.bits == 0 || report.size() < bytes_up_to(field)) return {};
     std::uint64_t value = 0;
     for (std::uint32_t i = 0; i < field.bits; ++i) {
         const std::uint32_t bit = field.bit + i;
