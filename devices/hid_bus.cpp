@@ -1,8 +1,11 @@
 #include "devices/hid_bus.h"
 
 #include <hidapi/hidapi.h>
-#include <array>
+#include <algorithm>
 #include <cwchar>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <mutex>
 
 namespace palpa {
@@ -44,6 +47,12 @@ std::string hidapi_version() {
     return hid_init() == 0 ? hid_version_str() : "";
 }
 
+std::vector<std::uint8_t> read_report_descriptor(const std::string& path) {
+    const std::filesystem::path node = std::filesystem::path(path).filename();
+    std::ifstream file("/sys/class/hidraw" / node / "device/report_descriptor", std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
 bool HidLine::open(const std::string& path) {
     const std::lock_guard lock(hidapi_mutex());
     handle_.reset(hid_open_path(path.c_str()));
@@ -59,9 +68,15 @@ bool HidLine::write(HidBytes report) noexcept {
     return hid_write(handle_.get(), report.data(), report.size()) >= 0;
 }
 
-void HidLine::ask_for_feature(std::uint8_t number, std::size_t size) noexcept {
-    std::array<std::uint8_t, longest_hid_report> report{number};
-    (void)hid_get_feature_report(handle_.get(), report.data(), size);
+bool HidLine::write_feature(HidBytes report) noexcept {
+    return hid_send_feature_report(handle_.get(), report.data(), report.size()) >= 0;
+}
+
+int HidLine::read_feature(std::uint8_t number, std::span<std::uint8_t> into) noexcept {
+    std::fill(into.begin(), into.end(), std::uint8_t{0});
+    if (into.empty()) return -1;
+    into[0] = number;
+    return hid_get_feature_report(handle_.get(), into.data(), into.size());
 }
 
 void HidLine::Closer::operator()(hid_device_* handle) const noexcept { hid_close(handle); }

@@ -35,6 +35,10 @@ std::vector<HidPlace> list_hids();
 // "0.13.1", or empty where hidapi cannot be used.
 std::string hidapi_version();
 
+// What a device says of its reports (devices/hid_descriptor.h): hidapi 0.13 does not give it, so it
+// is Linux's /sys that is read. Empty elsewhere, and where it cannot be read.
+std::vector<std::uint8_t> read_report_descriptor(const std::string& path);
+
 // Used by one thread.
 class HidLine {
 public:
@@ -50,8 +54,12 @@ public:
     // False: the device is gone.
     bool write(HidBytes report) noexcept;
 
-    // Asks for a feature report, and forgets it: for what the device does on being asked.
-    void ask_for_feature(std::uint8_t number, std::size_t size) noexcept;
+    // The same for a feature report.
+    bool write_feature(HidBytes report) noexcept;
+
+    // Asks for the feature report of a number. How many bytes came `into`, the number first; -1:
+    // the device gives none.
+    int read_feature(std::uint8_t number, std::span<std::uint8_t> into) noexcept;
 
 private:
     struct Closer {

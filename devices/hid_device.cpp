@@ -11,7 +11,8 @@ namespace palpa {
 namespace {
 
 constexpr std::uint32_t view_button = 2;
-constexpr int wait_ms = 1;  // for a report, before the newest force is looked at
+constexpr int wait_ms = 1;                  // for a report, before the newest force is looked at
+constexpr std::uint64_t most_at_once = 64;  // reports that Linux keeps for a reader
 
 std::chrono::duration<double> seconds(double s) { return std::chrono::duration<double>(s); }
 
@@ -53,7 +54,7 @@ std::string describe(const HidPlace& place) {
 std::string list_others(const HidProtocol& protocol, const std::vector<HidPlace>& places) {
     std::vector<std::string> others;
     for (const HidPlace& place : places) {
-        const std::string_view why = protocol.why_not(place.id);
+        const std::string why = protocol.why_not(place);
         if (why.empty()) continue;
         std::string words =
             fmt::format("{:04x}:{:04x} is {}", place.id.vendor, place.id.product, why);
@@ -105,7 +106,8 @@ HidDevice::HidDevice(std::unique_ptr<HidProtocol> protocol, HidLine line, const 
     spec_.half_workspace_m.setConstant(RateHandle::half_box_m);
     lost_ = fmt::format("The {} does not answer: check its cable or battery; it is looked for.",
                         protocol_->name());
-    begin(place);
+    protocol_->describe(spec_);
+    start();
     OpenHids::all().add(this);
     thread_ = std::thread([this] { run(); });
 }
@@ -129,6 +131,11 @@ DeviceReading HidDevice::read() noexcept {
     DeviceReading reading;
     reading.time_s = static_cast<double>(ticks_++) * servo_tick_s;
     reading.valid = is_plugged_;
+    has_motors() ? read_place(reading) : read_rate(reading);
+    return reading;
+}
+
+void HidDevice::read_rate(DeviceReading& reading) noexcept {
     const bool is_heard = reading.valid && is_meant_;
     reading.buttons = is_heard ? last_.buttons : 0;
     if (is_pressed(reading.buttons, Button::Clutch)) {
@@ -138,18 +145,37 @@ DeviceReading HidDevice::read() noexcept {
     }
     reading.position_m = handle_.position_m();
     reading.orientation = handle_.orientation();
-    return reading;
+}
+
+// The handle is where it is, whoever is meant: without the window's focus the clutch holds the
+// molecule, so that it does not jump afterwards.
+void HidDevice::read_place(DeviceReading& reading) noexcept {
+    constexpr double share = servo_tick_s / (glide_s + servo_tick_s);
+    constexpr double longest_m = glide_m_per_s * servo_tick_s;
+    reading.valid = reading.valid && last_.place_m;
+    if (!reading.valid) {
+        place_m_.reset();
+        return;
+    }
+    if (!place_m_) place_m_ = last_.place_m;
+    const Vec3 way = share * (*last_.place_m - *place_m_);
+    *place_m_ += way * (longest_m / std::max(way.norm(), longest_m));
+    reading.position_m = *place_m_;
+    reading.buttons = is_meant_ ? last_.buttons : static_cast<std::uint32_t>(Button::Clutch);
 }
 
 void HidDevice::write(const Vec3& force_newton) noexcept {
     const double newton = force_newton.stableNorm();
     const double share = std::isfinite(newton) ? std::min(newton / full_newton, 1.0) : 0;
     slow_share_ += (share - slow_share_) * servo_tick_s / contact_s;
-    outputs_.post({level_of(share), level_of(share - slow_share_), false});
+    HidOutput output{level_of(share), level_of(share - slow_share_)};
+    if (has_motors() && share > 0) output.newton = share * full_newton / newton * force_newton;
+    outputs_.post(output);
 }
 
 std::string_view HidDevice::status() const noexcept {
     if (!is_plugged_) return lost_;
+    if (has_motors() && !is_placed_) return "Move the stick a little: it has not said where it is.";
     if (moves_view_) {
         return "The device moves the camera: its second button gives it back to the molecule.";
     }
@@ -167,25 +193,31 @@ void HidDevice::run() noexcept {
     }
     written_ = {};
     play({});
+    if (line_.is_open()) protocol_->end(line_);
     line_.close();
 }
 
 void HidDevice::serve() noexcept {
     std::array<std::uint8_t, longest_hid_report> bytes{};
-    const int size = line_.read(bytes, wait_ms);
-    if (size < 0) {
-        line_.close();
-        is_plugged_ = false;
-        return;
-    }
-    if (size > 0) {
+    std::uint64_t reports = 0;
+    int size = 0;
+    // All that came while a report was written, or they would queue up.
+    while (reports < most_at_once && (size = line_.read(bytes, reports > 0 ? 0 : wait_ms)) > 0) {
         take({bytes.data(), static_cast<std::size_t>(size)});
-    } else if (Clock::now() - heard_ > seconds(settings_.silent_s)) {
+        ++reports;
+    }
+    if (size < 0) return lose();
+    if (reports == 0 && Clock::now() - heard_ > seconds(settings_.silent_s)) {
         input_.rate = {};
         post(input_);
     }
     play(newest_output());
-    reports_ += size > 0 ? 1 : 0;
+    reports_ += reports;
+}
+
+void HidDevice::lose() noexcept {
+    line_.close();
+    is_plugged_ = false;
 }
 
 void HidDevice::take(HidBytes report) noexcept {
@@ -200,8 +232,9 @@ void HidDevice::take(HidBytes report) noexcept {
 
 void HidDevice::post(const HidInput& input) noexcept {
     const HandRate rate = input.rate;
-    inputs_.post({moves_view_ ? HandRate{} : rate, input.buttons});
+    inputs_.post({moves_view_ ? HandRate{} : rate, input.buttons, input.place_m});
     views_.post(moves_view_ ? rate : HandRate{});
+    is_placed_ = input.place_m.has_value();
 }
 
 HidOutput HidDevice::newest_output() noexcept {
@@ -219,8 +252,13 @@ void HidDevice::play(const HidOutput& output) noexcept {
     if (!line_.is_open() || (has_played_ && output == played_)) return;
     const Clock::time_point now = Clock::now();
     if (settings_.is_paced && now - written_ < seconds(protocol_->least_s())) return;
-    const HidBytes report = protocol_->encode(output);
-    if (!report.empty() && !line_.write(report)) return;  // the next read tells that it is gone
+    HidBytes report = protocol_->encode(output);
+    for (; !report.empty(); report = protocol_->encode_next()) {
+        if (line_.write(report)) continue;
+        // The next read tells that it is gone; a motor must not keep its force until then.
+        if (has_motors()) lose();
+        return;
+    }
     played_ = output;
     has_played_ = true;
     written_ = now;
@@ -228,16 +266,22 @@ void HidDevice::play(const HidOutput& output) noexcept {
 
 void HidDevice::find() noexcept {
     for (const HidPlace& place : list_hids()) {
-        if (!protocol_->is_ours(place) || !line_.open(place.path)) continue;
-        begin(place);
-        return;
+        if (protocol_->is_ours(place) && line_.open(place.path) && begin(place)) return;
     }
     std::unique_lock lock(mutex_);
     wake_.wait_for(lock, seconds(settings_.retry_s), [&] { return is_closing_.load(); });
 }
 
-void HidDevice::begin(const HidPlace& place) noexcept {
-    protocol_->begin(line_, place);
+bool HidDevice::begin(const HidPlace& place) noexcept {
+    if (protocol_->begin(line_, place).outcome == CheckOutcome::Failed) {
+        line_.close();
+        return false;
+    }
+    start();
+    return true;
+}
+
+void HidDevice::start() noexcept {
     input_ = {};
     has_played_ = false;
     heard_ = Clock::now();
@@ -276,6 +320,9 @@ OpenedDevice open_hid(std::unique_ptr<HidProtocol> protocol, const HidSettings& 
         return opened;
     }
     checks.push_back({"open", CheckOutcome::Ok, "it is ours", ""});
+    DeviceCheck begun = protocol->begin(line, *ours);
+    if (!begun.layer.empty()) checks.push_back(std::move(begun));
+    if (checks.back().outcome == CheckOutcome::Failed) return opened;
     const bool is_talkative = protocol->is_talkative();
     auto device =
         std::make_unique<HidDevice>(std::move(protocol), std::move(line), *ours, settings);

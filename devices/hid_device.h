@@ -2,9 +2,10 @@
 // as it can: on a thread of its own the device is found, read, written, and looked for again after
 // it was unplugged. What its reports mean is a HidProtocol's.
 //
-// It senses no place: the handle is one that is not there (devices/rate_handle.h), on the servo's
-// clock, a tick a read. The clutch takes that handle back to the middle of its box. The second
-// button gives the rate to the camera, and back.
+// Where it senses no place the handle is one that is not there (devices/rate_handle.h), on the
+// servo's clock, a tick a read. The clutch takes that handle back to the middle of its box. The
+// second button gives the rate to the camera, and back. Where it senses one, the handle glides from
+// report to report.
 #pragma once
 #include "core/mailbox.h"
 #include "devices/device_check.h"
@@ -20,6 +21,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -30,13 +32,15 @@ namespace palpa {
 struct HidInput {
     HandRate rate;
     std::uint32_t buttons = 0;
+    std::optional<Vec3> place_m;  // of the handle, where it is sensed and was told
 };
 
 // What the device shall do about it: 0 nothing, 255 all it can.
 struct HidOutput {
-    std::uint8_t force = 0;    // the norm of the force, full at full_newton
-    std::uint8_t contact = 0;  // how far that has risen lately
-    bool is_lit = false;       // the person is heard, and moves the handle
+    std::uint8_t force = 0;      // the norm of the force, full at full_newton
+    std::uint8_t contact = 0;    // how far that has risen lately
+    bool is_lit = false;         // the person is heard, and moves the handle
+    Vec3 newton = Vec3::Zero();  // the force itself, on a device with motors
     bool operator==(const HidOutput&) const = default;
 };
 
@@ -51,14 +55,21 @@ public:
     virtual std::string_view name() const noexcept = 0;
     virtual bool is_ours(const HidPlace& place) const noexcept = 0;
 
-    // Of the same maker, and easily taken for one of ours: why it is not; empty for all others.
-    virtual std::string_view why_not(UsbId /*id*/) const noexcept { return {}; }
+    // Easily taken for one of ours: why it is not; empty for all others.
+    virtual std::string why_not(const HidPlace& /*place*/) const { return {}; }
+
+    // Its limits, where it senses a place and has motors: a peak force says that it does.
+    virtual void describe(DeviceSpec& /*spec*/) const noexcept {}
 
     // Whether it reports without being touched.
     virtual bool is_talkative() const noexcept = 0;
 
-    // Just opened: a device of which nothing is known.
-    virtual void begin(HidLine& line, const HidPlace& place) noexcept = 0;
+    // Just opened: a device of which nothing is known. What came of it; of no layer where nothing
+    // can go wrong. It is not used where that failed.
+    virtual DeviceCheck begin(HidLine& line, const HidPlace& place) noexcept = 0;
+
+    // Behind the last report, before the line is closed.
+    virtual void end(HidLine& /*line*/) noexcept {}
 
     // Changes of `input` what the report tells; false, and nothing changed, where it is none that
     // is known.
@@ -66,6 +77,9 @@ public:
 
     // The report that does this, until the next call; empty where there is nothing new to say.
     virtual HidBytes encode(const HidOutput& output) noexcept = 0;
+
+    // The next one that it takes besides, likewise.
+    virtual HidBytes encode_next() noexcept { return {}; }
 
     // Between two reports out: what the line takes without a queue.
     virtual double least_s() const noexcept = 0;
@@ -85,7 +99,11 @@ public:
     // In which what rises counts as contact: long enough to be felt, e^-1.
     static constexpr double contact_s = 0.050;
 
-    // Takes an open line.
+    // In which a handle that is sensed comes nearer to the place of the newest report, to 1/e:
+    // about as long as the next one takes. No faster than the safety chain bears.
+    static constexpr double glide_s = 0.008, glide_m_per_s = 1;
+
+    // Takes an open line on which the protocol has begun.
     HidDevice(std::unique_ptr<HidProtocol> protocol, HidLine line, const HidPlace& place,
               const HidSettings& settings);
     ~HidDevice() override;
@@ -107,6 +125,12 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
 
+    bool has_motors() const noexcept { return spec_.peak_force_newton > 0; }
+
+    // The servo's thread.
+    void read_place(DeviceReading& reading) noexcept;
+    void read_rate(DeviceReading& reading) noexcept;
+
     // Its own thread.
     void run() noexcept;
     void serve() noexcept;
@@ -114,7 +138,9 @@ private:
     void play(const HidOutput& output) noexcept;
     HidOutput newest_output() noexcept;
     void find() noexcept;
-    void begin(const HidPlace& place) noexcept;
+    bool begin(const HidPlace& place) noexcept;
+    void start() noexcept;
+    void lose() noexcept;
     void post(const HidInput& input) noexcept;
 
     const std::unique_ptr<HidProtocol> protocol_;
@@ -126,6 +152,7 @@ private:
     Mailbox<HidOutput> outputs_;
     mutable Mailbox<HandRate> views_;
     std::atomic<bool> is_plugged_{true}, is_meant_{true}, moves_view_{false}, is_closing_{false};
+    std::atomic<bool> is_placed_{false};  // it has told where its handle is
     std::atomic<std::uint64_t> reports_{0}, understood_{0};
 
     // its own thread
@@ -137,6 +164,7 @@ private:
 
     // the servo
     RateHandle handle_;
+    std::optional<Vec3> place_m_;  // instead, where it is sensed
     HidInput last_;
     std::uint64_t ticks_ = 0;
     double slow_share_ = 0;  // of the force, `contact_s` late

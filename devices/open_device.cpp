@@ -3,6 +3,7 @@
 #include "core/load_error.h"
 #include "core/text.h"
 #include "devices/emulated_omni.h"
+#include "devices/force_joystick.h"
 #include "devices/game_pad.h"
 #include "devices/mouse_handle.h"
 #include "devices/open_haptics.h"
@@ -93,6 +94,11 @@ constexpr std::array makers{
                         return is_hid_there(SonyPadProtocol(SonyModel::DualShock4));
                     },
                 .open = open_dualshock4},
+    DeviceMaker{
+        .name = "joystick",
+        .summary = "force-feedback joystick or wheel (HID PID): a force along one axis or two",
+        .is_there = [](const DeviceRequest&) { return is_hid_there(ForceJoystickProtocol()); },
+        .open = open_force_joystick},
     DeviceMaker{.name = "gamepad",
                 .summary = "Xbox-class game pad: sticks that set the handle's speed; no force",
                 .needs_window = true,

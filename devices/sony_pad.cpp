@@ -91,12 +91,14 @@ bool SonyPadProtocol::is_ours(const HidPlace& place) const noexcept {
            std::find(products.begin(), products.end(), place.id.product) != products.end();
 }
 
-void SonyPadProtocol::begin(HidLine& line, const HidPlace& place) noexcept {
+DeviceCheck SonyPadProtocol::begin(HidLine& line, const HidPlace& place) noexcept {
     use_bluetooth(place.is_bluetooth);
     // Its calibration, on both models: by Bluetooth a pad that was asked for it sends long reports.
     constexpr std::uint8_t calibration = 5;
     constexpr std::size_t calibration_size = 41;
-    if (place.is_bluetooth) line.ask_for_feature(calibration, calibration_size);
+    std::array<std::uint8_t, calibration_size> unread{};
+    if (place.is_bluetooth) (void)line.read_feature(calibration, unread);
+    return {};
 }
 
 bool SonyPadProtocol::decode(HidBytes report, HidInput& input) noexcept {

@@ -36,7 +36,7 @@ public:
     std::string_view name() const noexcept override;
     bool is_ours(const HidPlace& place) const noexcept override;
     bool is_talkative() const noexcept override { return true; }
-    void begin(HidLine& line, const HidPlace& place) noexcept override;
+    DeviceCheck begin(HidLine& line, const HidPlace& place) noexcept override;
     bool decode(HidBytes report, HidInput& input) noexcept override;
     HidBytes encode(const HidOutput& output) noexcept override;
     double least_s() const noexcept override;

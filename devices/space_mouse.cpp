@@ -48,13 +48,14 @@ bool SpaceMouseProtocol::is_ours(const HidPlace& place) const noexcept {
     return is_known && place.usage_page == generic_desktop && place.usage == multi_axis_controller;
 }
 
-std::string_view SpaceMouseProtocol::why_not(UsbId id) const noexcept {
-    const bool is_makers = id.vendor == old_vendor || id.vendor == new_vendor;
-    return is_makers && contains(flat_products, id.product) ? "a mouse or a keyboard" : "";
+std::string SpaceMouseProtocol::why_not(const HidPlace& place) const {
+    const bool is_makers = place.id.vendor == old_vendor || place.id.vendor == new_vendor;
+    return is_makers && contains(flat_products, place.id.product) ? "a mouse or a keyboard" : "";
 }
 
-void SpaceMouseProtocol::begin(HidLine& /*line*/, const HidPlace& /*place*/) noexcept {
+DeviceCheck SpaceMouseProtocol::begin(HidLine& /*line*/, const HidPlace& /*place*/) noexcept {
     is_lit_.reset();
+    return {};
 }
 
 bool SpaceMouseProtocol::decode(HidBytes report, HidInput& input) noexcept {

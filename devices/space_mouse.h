@@ -14,6 +14,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace palpa {
@@ -29,9 +30,9 @@ public:
 
     std::string_view name() const noexcept override { return "SpaceMouse"; }
     bool is_ours(const HidPlace& place) const noexcept override;
-    std::string_view why_not(UsbId id) const noexcept override;
+    std::string why_not(const HidPlace& place) const override;
     bool is_talkative() const noexcept override { return false; }
-    void begin(HidLine& line, const HidPlace& place) noexcept override;
+    DeviceCheck begin(HidLine& line, const HidPlace& place) noexcept override;
     bool decode(HidBytes report, HidInput& input) noexcept override;
     HidBytes encode(const HidOutput& output) noexcept override;
     double least_s() const noexcept override { return 0.008; }

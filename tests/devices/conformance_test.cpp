@@ -2,6 +2,7 @@
 // name in `PALPA_MOTOR_RIGS`, or a kind of `HidRig`.
 #include "devices/device_check.h"
 #include "devices/emulated_omni.h"
+#include "devices/force_joystick.h"
 #include "devices/game_pad.h"
 #include "devices/hid_device.h"
 #include "devices/mouse_handle.h"
@@ -15,6 +16,7 @@
 #include "tests/devices/template_device.h"
 #include "tests/support/hid_reports.h"
 #include "tests/support/open_haptics_stub/load.h"
+#include "tests/support/pid_stick.h"
 
 #include <array>
 #include <catch2/catch.hpp>
@@ -23,6 +25,7 @@
 #include <limits>
 #include <memory>
 #include <random>
+#include <string_view>
 #include <thread>
 
 using namespace palpa;
@@ -298,11 +301,62 @@ private:
     test::Bytes last_;
 };
 
+// It feels what is written to it, and says where it is.
+class JoystickRig {
+public:
+    static constexpr bool has_own_thread = true;
+
+    JoystickRig() : number_(bus_.plug(test::force_joystick_hid())) {
+        OpenedDevice opened =
+            open_hid(std::make_unique<ForceJoystickProtocol>(),
+                     {.retry_s = 1e-3, .stale_s = 1e3, .silent_s = 1e3, .is_paced = false});
+        REQUIRE(opened.device);
+        device_ = std::move(opened.device);
+        tick();
+    }
+
+    Device& device() { return *device_; }
+    void tick() {
+        if (!is_plugged_) return;
+        const auto& hid = dynamic_cast<HidDevice&>(*device_);
+        const std::uint64_t before = hid.reports();
+        bus_.send(number_, test::pushed_stick(Vec3::Zero()));
+        while (hid.reports() == before) std::this_thread::yield();
+    }
+    void plug(bool is_plugged) {
+        if (is_plugged == is_plugged_) return;
+        is_plugged_ = is_plugged;
+        stick_ = {};
+        is_plugged ? void(number_ = bus_.plug(test::force_joystick_hid())) : bus_.unplug(number_);
+        const std::string_view told = is_plugged ? "Move the stick" : "The force-feedback joystick";
+        while (!device_->status().starts_with(told)) std::this_thread::yield();
+    }
+    Vec3 motors() {
+        if (is_plugged_) stick_.take(bus_.take_written(number_));
+        return stick_.force_newton();
+    }
+    // Whole steps of a ten thousandth of 3 N, and no more; nothing towards the user.
+    static Vec3 played(const Vec3& force_newton) {
+        const auto step = [](double newton) {
+            return std::trunc(1e4 / 3 * newton + std::copysign(1e-9, newton)) * 3 / 1e4;
+        };
+        return {step(force_newton.x()), step(force_newton.y()), 0};
+    }
+    void close() { device_.reset(); }
+
+private:
+    test::HidBus bus_;
+    int number_;
+    bool is_plugged_ = true;
+    test::PidStick stick_;
+    std::unique_ptr<Device> device_;
+};
+
 #define PALPA_HID_RIGS                                                             \
     HidRig<SpaceMouseKind>, HidRig<DualSenseKind>, HidRig<BluetoothDualSenseKind>, \
         HidRig<DualShock4Kind>
 #define PALPA_MOTOR_RIGS EmulatedRig, MouseRig, TemplateRig, OpenHapticsRig
-#define PALPA_RIGS PALPA_MOTOR_RIGS, PlayedRig, GamePadRig, PALPA_HID_RIGS
+#define PALPA_RIGS PALPA_MOTOR_RIGS, JoystickRig, PlayedRig, GamePadRig, PALPA_HID_RIGS
 
 // The servo with a device at its hands: what a molecule at a fixed place asks for.
 struct ServoRun {
@@ -446,7 +500,7 @@ TEMPLATE_TEST_CASE("what is no force leaves a device in order", "[devices][confo
 }
 
 TEMPLATE_TEST_CASE("a closed device has no force", "[devices][conformance]", OpenHapticsRig,
-                   PALPA_HID_RIGS) {
+                   JoystickRig, PALPA_HID_RIGS) {
     TestType rig;
     for (int i = 0; i < 10; ++i) {
         rig.device().write(Vec3(1, 2, 0));

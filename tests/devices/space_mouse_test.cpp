@@ -123,9 +123,9 @@ TEST_CASE("caps are told from mice of the same makers, and from their receiver's
     CHECK_FALSE(mouse.is_ours(place_of(0x046d, 0xc62c, 1, 8)));
     CHECK_FALSE(mouse.is_ours(place_of(0x046d, 0xc077, 1, 2)));
     CHECK_FALSE(mouse.is_ours(place_of(0x256f, 0xc626, 1, 8)));  // never sold under that name
-    CHECK(mouse.why_not({0x256f, 0xc650}) == "a mouse or a keyboard");
-    CHECK(mouse.why_not({0x256f, 0xc652}).empty());
-    CHECK(mouse.why_not({0x1234, 0xc650}).empty());
+    CHECK(mouse.why_not(place_of(0x256f, 0xc650, 1, 2)) == "a mouse or a keyboard");
+    CHECK(mouse.why_not(place_of(0x256f, 0xc652, 1, 2)).empty());
+    CHECK(mouse.why_not(place_of(0x1234, 0xc650, 1, 2)).empty());
 }
 
 TEST_CASE("a million random reports of a cap ask for no more than it can",

@@ -2,7 +2,7 @@
 // them a made-up /sys and /dev. The program has to be started with its library before all others.
 #pragma once
 #include <cstdint>
-#include <filesystem>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -15,6 +15,10 @@ struct MockHid {
     std::uint8_t usage_page = 1, usage = 0;
     bool is_bluetooth = false;
     std::string name = "a device";
+    std::vector<std::uint8_t> descriptor = {};  // empty: the shortest one that names the usage
+    // What it answers when it is asked for a feature report, by its number: one after the other,
+    // the last one for ever.
+    std::map<std::uint8_t, std::vector<std::vector<std::uint8_t>>> features = {};
 };
 
 // One at a time; its devices are its own.
@@ -34,7 +38,8 @@ public:
     // the node keeps no borders between reports.
     void send(int number, std::span<const std::uint8_t> report);
 
-    // What was written to it since the last call.
+    // What was written to it since the last call: output reports and feature reports in their
+    // order.
     std::vector<std::uint8_t> take_written(int number);
 
 private:
