@@ -98,8 +98,8 @@ int latency_command() {
     const bool is_built = std::filesystem::exists(program, error);
     if (!is_built || std::system(command.c_str()) != 0) {
         fmt::print(
-            "SpaceMouse and game pads: not measured; that takes {}, which is built with the "
-            "tests,\nand the package umockdev\n",
+            "SpaceMouse, game pads and joysticks: not measured; that takes {}, which is\n"
+            "built with the tests, and the package umockdev\n",
             program.string());
     }
     return 0;
