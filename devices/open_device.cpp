@@ -143,9 +143,14 @@ const DeviceMaker& device_maker_called(const std::string& name) {
     return *found;
 }
 
+std::string file_of(const std::string& name) {
+    const std::size_t end = name.find(before_file);
+    return end == std::string::npos ? "" : name.substr(end + 1);
+}
+
 OpenedDevice open_device(const std::string& name, DeviceRequest request) {
     const DeviceMaker& maker = device_maker_called(name);
-    if (!maker.file.empty()) request.file = name.substr(name.find(before_file) + 1);
+    if (!maker.file.empty()) request.file = file_of(name);
     OpenedDevice opened = maker.open(request);
     if (opened.device) return opened;
     const DeviceCheck last = opened.checks.empty() ? DeviceCheck{} : opened.checks.back();

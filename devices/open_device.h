@@ -29,6 +29,9 @@ std::span<const DeviceMaker> device_makers() noexcept;
 // the names, or says that the file is missing or too much.
 const DeviceMaker& device_maker_called(const std::string& name);
 
+// What stands behind the colon of such a name; empty: nothing.
+std::string file_of(const std::string& name);
+
 // With a device in it: otherwise throws LoadError that says which layer failed and what mends it.
 // The file of the name takes the place of the request's.
 OpenedDevice open_device(const std::string& name, DeviceRequest request);

@@ -1,5 +1,6 @@
 #include "tools/devices.h"
 
+#include "core/interrupt.h"
 #include "devices/open_device.h"
 #include "haptics/safety.h"
 #include "tools/latency.h"
@@ -40,7 +41,7 @@ struct Examined {
 template <class Step>
 void run_ticks(Device& device, int ticks, const Step& step) {
     Clock::time_point next = Clock::now();
-    for (int i = 0; i < ticks; ++i) {
+    for (int i = 0; i < ticks && noted_interrupt() == 0; ++i) {
         device.write(step(i, device.read()));
         next = std::max(next + std::chrono::milliseconds(1), Clock::now());
         std::this_thread::sleep_until(next);
@@ -88,6 +89,7 @@ bool is_agreed() {
 // Through the safety chain, as everything that a hand feels.
 DeviceCheck check_force(Device& device) {
     if (!is_agreed()) return {"force", CheckOutcome::Unknown, "not tried", ""};
+    note_interrupts();
     constexpr double push_newton = 0.6;
     // The chain lets a force through when the handle has been quiet; a system that was too busy
     // for the servo gets another chance.
@@ -133,10 +135,9 @@ DeviceCheck check_force(Device& device) {
                                        : std::string(words(worst))};
 }
 
-Examined examine(const DeviceMaker& maker, bool tests_force) {
+Examined examine(const DeviceMaker& maker, const DeviceRequest& request, bool tests_force) {
     Examined examined;
     examined.maker = &maker;
-    const DeviceRequest request;
     OpenedDevice opened = maker.open(request);
     examined.checks = std::move(opened.checks);
     if (!opened.device) return examined;
@@ -182,7 +183,7 @@ void print_text(const std::vector<Examined>& all, const std::vector<std::string>
             if (!check.remedy.empty()) fmt::print("  {:<12} {:<8} -> {}\n", "", "", check.remedy);
         }
     }
-    fmt::print("\nnext:\n");
+    if (!next.empty()) fmt::print("\nnext:\n");
     for (const std::string& line : next) fmt::print("  {}\n", line);
 }
 
@@ -214,16 +215,18 @@ int devices_command(const DevicesOptions& options) {
     std::vector<Examined> all;
     const DeviceMaker* const only =
         options.name.empty() ? nullptr : &device_maker_called(options.name);
+    DeviceRequest request;
+    request.file = file_of(options.name);
     for (const DeviceMaker& maker : device_makers()) {
         const bool is_meant = only ? only == &maker : maker.file.empty();
-        if (is_meant) all.push_back(examine(maker, options.tests_force));
+        if (is_meant) all.push_back(examine(maker, request, options.tests_force));
     }
-    const bool is_any_usable = std::any_of(all.begin(), all.end(), [](const Examined& examined) {
-        return examined.is_usable && !examined.maker->is_emulated;
+    const bool is_any_usable = std::any_of(all.begin(), all.end(), [&](const Examined& examined) {
+        return examined.is_usable && (only || !examined.maker->is_emulated);
     });
     const std::vector<std::string> next = list_next(all, is_any_usable);
     options.json ? print_json(all, next) : print_text(all, next);
-    return is_any_usable ? 0 : 1;
+    return exit_code_after(is_any_usable ? 0 : 1);
 }
 
 void print_device_list() {

@@ -113,7 +113,8 @@ void add_toppar_option(CLI::App& command, std::vector<std::filesystem::path>& to
 }
 
 void add_run(CLI::App& program, palpa::RunOptions& options) {
-    CLI::App& run = *program.add_subcommand("run", "Feel a scene: a hand on an emulated Omni");
+    CLI::App& run = *program.add_subcommand(
+        "run", "Feel a scene, in a window or headless, with one of the devices of 'palpa devices'");
     run.add_option("scene", options.scene, "scene folder, scene file or recorded session.toml")
         ->required();
     run.add_flag("--headless", options.headless,

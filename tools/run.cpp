@@ -1,6 +1,7 @@
 #include "tools/run.h"
 
 #include "app/run_window.h"
+#include "core/interrupt.h"
 #include "core/load_error.h"
 #include "core/units.h"
 #include "devices/emulated_omni.h"
@@ -364,7 +365,8 @@ int run_command(const RunOptions& options) {
                         "is of a window; expected it without --headless");
     }
     if (options.headless && options.device) check_headless(*options.device);
-    if (!options.headless) return run_in_window(scene, simulation, settings, options);
+    if (!options.headless)
+        return exit_code_after(run_in_window(scene, simulation, settings, options));
     std::unique_ptr<FrameWriter> writer;
     if (options.record && options.frames_per_second > 0) {
         try {  // its complaints about the size come before a recording is begun
@@ -376,17 +378,24 @@ int run_command(const RunOptions& options) {
     }
     std::optional<Recording> recording;
     if (options.record) recording.emplace(*options.record, scene);
+    if (options.record && (options.second || options.device.value_or("emulated") != "emulated")) {
+        warnings.emplace_back(
+            "session.toml of this recording plays the scene's own hand; whoever runs it again has "
+            "to name --device and --second again");
+    }
     FrameClock frames;
     if (writer) frames = {options.frames_per_second, [&] { write_frame(writer, simulation); }};
     for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
 
+    note_interrupts();
     std::unique_ptr<Device> device =
         open_device(options.device.value_or("emulated"), {.emulated = settings}).device;
     const std::unique_ptr<Device> second = open_second(options, settings);
     if (second) device = std::make_unique<TwoHands>(std::move(device), *second);
-    const Summary summary =
-        run_headless(scene, simulation, *device, warnings, recording ? &*recording : nullptr,
-                     find_progress(options.json), frames);
+    const Summary summary = run_headless(
+        scene, simulation, *device, warnings, recording ? &*recording : nullptr,
+        find_progress(options.json), frames, {}, [] { return noted_interrupt() != 0; });
+    if (noted_interrupt() != 0) scene.seconds = static_cast<double>(summary.ticks) / servo_rate_hz;
     for (std::size_t i = warnings.size(); i < summary.warnings.size(); ++i) {
         fmt::print(stderr, "warning: {}\n", summary.warnings[i]);
     }
@@ -396,7 +405,7 @@ int run_command(const RunOptions& options) {
         print_summary(scene, summary);
         if (options.record) fmt::print("recorded in {}\n", options.record->string());
     }
-    return 0;
+    return exit_code_after(0);
 }
 
 }  // namespace palpa

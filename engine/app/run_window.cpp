@@ -2,6 +2,7 @@
 
 #include "app/live_session.h"
 #include "app/render_scale.h"
+#include "core/interrupt.h"
 #include "core/load_error.h"
 #include "core/units.h"
 #include "gpu/swapchain.h"
@@ -130,7 +131,7 @@ private:
     bool can_choose_device() const { return devices_.open && !options_.study; }
     void look_for_devices();
     bool change_device(const std::string& name);
-    void choose_device(const std::string& name);
+    bool choose_device(const std::string& name);
     void choose_next_device();
     bool switch_sound(bool is_on);
     void choose_sound();
@@ -185,6 +186,8 @@ private:
     bool is_over_ = false;  // the last screenshot is due
     bool quitting_ = false, wants_shot_ = false, must_rebuild_ = false;
     std::string notice_;
+    std::string refusal_;      // of the device that was tried last
+    bool has_looked_ = false;  // for the device that is wanted
     Clock::time_point notice_until_{};
     std::vector<double> frame_ms_;
     std::vector<std::string> validation_messages_;
@@ -197,7 +200,8 @@ WindowReport Sandbox::run() {
     constexpr int most_losses = 3;  // without a picture in between
     int losses = 0;
     Clock::time_point next = Clock::now();
-    while (!quitting_ && !window_.should_close()) {
+    note_interrupts();
+    while (!quitting_ && !window_.should_close() && noted_interrupt() == 0) {
         try {
             if (losses > 0 || !graphics_) restart_graphics();
             frame();
@@ -441,12 +445,21 @@ void Sandbox::perform(Action action) {
 void Sandbox::look_for_devices() {
     if (!can_choose_device() || Clock::now() < next_look_) return;
     next_look_ = Clock::now() + device_look;
-    bool has_come = false;
+    bool is_wanted_there = false;
     for (DeviceOffer& offer : devices_.offers) {
-        const bool was_there = std::exchange(offer.is_there, devices_.is_there(offer.name));
-        has_come = has_come || (offer.name == devices_.wanted && offer.is_there && !was_there);
+        offer.is_there = devices_.is_there(offer.name);
+        is_wanted_there = is_wanted_there || (offer.name == devices_.wanted && offer.is_there);
     }
-    if (has_come && change_device(devices_.wanted)) devices_.wanted.clear();
+    if (!is_wanted_there) {
+        refusal_.clear();
+        if (!devices_.wanted.empty() && !std::exchange(has_looked_, true) && notice_.empty()) {
+            notice(
+                fmt::format("{} is not there; until it is: {}", devices_.wanted, devices_.current),
+                first_notice_s);
+        }
+    } else if (change_device(devices_.wanted)) {  // or it is tried again: a node may open later
+        devices_.wanted.clear();
+    }
 }
 
 bool Sandbox::change_device(const std::string& name) {
@@ -454,9 +467,11 @@ bool Sandbox::change_device(const std::string& name) {
     try {
         next = devices_.open(name);
     } catch (const LoadError& error) {
-        notice(error.what(), first_notice_s);
+        if (error.what() != refusal_) notice(error.what(), first_notice_s);
+        refusal_ = error.what();
         return false;
     }
+    refusal_.clear();
     session_.change_device(*next.device, next.orders);
     chosen_ = std::move(next.device);
     device_ = chosen_.get();
@@ -468,20 +483,19 @@ bool Sandbox::change_device(const std::string& name) {
     return true;
 }
 
-void Sandbox::choose_device(const std::string& name) {
-    if (name == devices_.current) {
-        devices_.wanted.clear();
-    } else if (!change_device(name)) {
-        return;
-    }
+bool Sandbox::choose_device(const std::string& name) {
+    refusal_.clear();
+    if (name != devices_.current && !change_device(name)) return false;
     devices_.wanted.clear();
     try {
         devices_.remember(name);
     } catch (const LoadError& error) {
         notice(error.what(), first_notice_s);
     }
+    return true;
 }
 
+// What is there and cannot be used is said, and passed over.
 void Sandbox::choose_next_device() {
     if (!can_choose_device()) return;
     const auto& offers = devices_.offers;
@@ -491,10 +505,14 @@ void Sandbox::choose_next_device() {
     const std::size_t from = current == offers.end()
                                  ? offers.size() - 1
                                  : static_cast<std::size_t>(current - offers.begin());
+    std::string refusals;
     for (std::size_t i = 1; i < offers.size(); ++i) {
         const DeviceOffer& next = offers[(from + i) % offers.size()];
-        if (next.is_there) return choose_device(next.name);
+        if (!next.is_there) continue;
+        if (choose_device(next.name)) break;
+        refusals += refusal_ + "\n";
     }
+    if (!refusals.empty()) notice(refusals + notice_, first_notice_s);
 }
 
 // False where it stays off.

@@ -180,7 +180,7 @@ std::string format_summary(const SceneDescription& scene, const Summary& summary
         {"A_d_max", c.A_d_max},         {"A_f", c.A_f},           {"A_d", c.A_d}};
     json["friction_N"] = scene.device.friction_N;
     json["seed"] = scene.seed;
-    json["seconds"] = scene.seconds;
+    json["seconds"] = static_cast<double>(summary.ticks) / servo_rate_hz;
     json["steps"] = summary.steps;
     json["step_median_us"] = summary.step_median_us;
     json["step_p99_us"] = summary.step_p99_us;

@@ -3,6 +3,7 @@ a screenshot, set the graphics up again, change the size, quit. Vulkan's validat
 import json
 import os
 import shutil
+import signal
 import struct
 import subprocess
 import tempfile
@@ -213,7 +214,7 @@ class Session(unittest.TestCase):
     def test_a_device_that_is_gone_is_said_and_not_forgotten(self):
         chosen = self.folder / "palpa" / "preferences.toml"
         chosen.parent.mkdir()
-        for text, told in (("device = 'omni'\n", "--device omni: library: "),
+        for text, told in (("device = 'omni'\n", "omni, which led last, cannot be used now"),
                            ("device = 'omni\n", "preferences.toml:1:")):
             with self.subTest(text=text), Display() as display:
                 chosen.write_text(text)
@@ -297,6 +298,24 @@ class Session(unittest.TestCase):
         self.assertEqual(summary["device"], "emulated PHANTOM Omni")
         self.assertGreater(summary["steps"], 0)
         self.assertFalse(summary["stopped"])
+
+    def test_a_signal_closes_the_window_in_order(self):
+        with Display() as display:
+            self.start(display, "--play")
+            self.program.send_signal(signal.SIGTERM)
+            out, err = self.program.communicate(timeout=60)
+        self.assertEqual(self.program.returncode, 128 + signal.SIGTERM, err)
+        self.assertEqual(json.loads(out)["device"], "emulated Omni")
+
+    def test_a_pad_that_is_not_there_leaves_the_mouse_and_is_waited_for(self):
+        chosen = self.folder / "palpa" / "preferences.toml"
+        chosen.parent.mkdir()
+        chosen.write_text("device = 'gamepad'\n")
+        with Display() as display:
+            self.start(display)
+            summary = self.quit(display)
+        self.assertEqual(summary["device"], "mouse and keys")
+        self.assertEqual(chosen.read_text(), "device = 'gamepad'\n")
 
     def test_no_display_is_one_line(self):
         clean = {key: value for key, value in os.environ.items()

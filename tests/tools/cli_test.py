@@ -3,8 +3,10 @@ import json
 import os
 import re
 import shutil
+import signal
 import subprocess
 import tempfile
+import time
 import unittest
 from pathlib import Path
 
@@ -38,6 +40,26 @@ class Cli(unittest.TestCase):
 
     def copy_of_water(self):
         return Path(shutil.copytree(WATER, self.tmp / "scene"))
+
+    # ---- signals
+
+    def test_a_signal_ends_a_run_in_order(self):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            with self.subTest(signal=number):
+                folder = self.tmp / f"signal{number}"
+                program = subprocess.Popen(
+                    [PROGRAM, "run", WATER, "--headless", "--seconds", "100000", "--every", "1000",
+                     "--record", folder, "--json"],
+                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+                trace = folder / "trace.csv"
+                while not (trace.exists() and trace.stat().st_size > 0):
+                    self.assertIsNone(program.poll(), "it ended early")
+                    time.sleep(0.01)
+                program.send_signal(number)
+                out, err = program.communicate(timeout=120)
+                self.assertEqual(program.returncode, 128 + number, err)
+                self.assertLess(json.loads(out)["seconds"], 100000)
+                self.assertTrue(trace.read_text().endswith("\n"))
 
     # ---- help and usage
 
