@@ -243,8 +243,9 @@ HidOutput HidDevice::newest_output() noexcept {
     } else if (Clock::now() - renewed_ > seconds(settings_.stale_s)) {
         wanted_ = {};
     }
+    if (!is_meant_) return {};
     HidOutput output = wanted_;
-    output.is_lit = is_meant_ && !moves_view_;
+    output.is_lit = !moves_view_;
     return output;
 }
 

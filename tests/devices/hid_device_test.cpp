@@ -3,6 +3,7 @@
 #include "devices/open_device.h"
 #include "devices/sony_pad.h"
 #include "devices/space_mouse.h"
+#include "tests/devices/wait_until.h"
 #include "tests/support/hid_reports.h"
 
 #include <spawn.h>
@@ -18,21 +19,15 @@
 #include <memory>
 #include <mutex>
 #include <string>
-#include <thread>
 
 using namespace palpa;
 using test::Bytes;
+using test::wait_until;
 
 namespace {
 
 // Nothing in these tests lasts; where time is what is tested, it is short, and else endless.
 constexpr HidSettings patient{.retry_s = 1e-3, .stale_s = 1e3, .silent_s = 1e3, .is_paced = false};
-
-// For what another thread will do.
-template <class Condition>
-void wait_until(const Condition& condition) {
-    while (!condition()) std::this_thread::yield();
-}
 
 HidDevice& opened_hid(const OpenedDevice& opened) {
     REQUIRE(opened.device);
@@ -220,6 +215,32 @@ TEST_CASE("without the person's attention the handle rests and no button counts"
     CHECK(device.view_rate().m_per_s ==
           Vec3::Zero());  // that the second button was pressed unheard
     CHECK(last_report(bus.take_written(number), 2) == Bytes{4, 1});
+}
+
+TEST_CASE("without the person's attention a pad has no force, and then it is back",
+          "[devices][hid]") {
+    test::HidBus bus;
+    const int number = bus.plug(test::dualsense_hid);
+    const OpenedDevice opened = open_pad(SonyModel::DualSense);
+    HidDevice& device = opened_hid(opened);
+    const auto played = [&] {
+        tell(bus, number, device, test::dualsense_report({}));
+        tell(bus, number, device, test::dualsense_report({}));  // the first may have been under way
+        return last_report(bus.take_written(number), 63);
+    };
+    device.write(Vec3(0, 3, 0));
+    REQUIRE(played()[13] == 255);
+
+    device.attend(false);
+    device.write(Vec3(0, 3, 0));
+    const Bytes unheard = played();
+    device.attend(true);
+
+    CHECK(unheard[4] == 0);
+    CHECK(unheard[11] == 0x05);
+    CHECK(unheard[13] == 0);
+    CHECK(unheard[24] == 0);
+    CHECK(played()[13] == 255);
 }
 
 TEST_CASE("the second button gives the rate to the camera, and takes it back", "[devices][hid]") {
