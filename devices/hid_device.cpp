@@ -191,10 +191,21 @@ void HidDevice::run() noexcept {
     while (!is_closing_) {
         line_.is_open() ? serve() : find();
     }
-    written_ = {};
-    play({});
+    play_last();
     if (line_.is_open()) protocol_->end(line_);
     line_.close();
+}
+
+void HidDevice::play_last() noexcept {
+    constexpr std::chrono::milliseconds longest(100), pause(1);
+    const Clock::time_point begun = Clock::now();
+    for (;;) {
+        written_ = {};
+        play({});
+        const bool is_done = has_played_ && played_ == HidOutput{};
+        if (is_done || !line_.is_open() || Clock::now() - begun > longest) return;
+        std::this_thread::sleep_for(pause);
+    }
 }
 
 void HidDevice::serve() noexcept {
@@ -256,8 +267,12 @@ void HidDevice::play(const HidOutput& output) noexcept {
     HidBytes report = protocol_->encode(output);
     for (; !report.empty(); report = protocol_->encode_next()) {
         if (line_.write(report)) continue;
-        // The next read tells that it is gone; a motor must not keep its force until then.
-        if (has_motors()) lose();
+        protocol_->forget();
+        has_played_ = false;
+        written_ = now;
+        // The next read tells that it is gone; a motor must not keep its force until then. At the
+        // end there is no next one.
+        if (has_motors() && !is_closing_) lose();
         return;
     }
     played_ = output;
