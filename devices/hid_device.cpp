@@ -218,7 +218,8 @@ void HidDevice::serve() noexcept {
         ++reports;
     }
     if (size < 0) return lose();
-    if (reports == 0 && Clock::now() - heard_ > seconds(settings_.silent_s)) {
+    // Reports that are not understood renew no rate.
+    if (Clock::now() - heard_ > seconds(settings_.silent_s)) {
         input_.rate = {};
         post(input_);
     }

@@ -172,6 +172,42 @@ TEST_CASE("a rate that the device does not renew is none any more", "[devices][h
     CHECK(device.read().valid);
 }
 
+TEST_CASE("reports that are not understood renew no rate", "[devices][hid]") {
+    // Each report is followed by one that says nothing.
+    class Flooded final : public HidProtocol {
+    public:
+        Flooded(test::HidBus& bus, int number) : bus_(bus), number_(number) {}
+        std::string_view name() const noexcept override { return "flooded cap"; }
+        bool is_ours(const HidPlace& place) const noexcept override { return cap_.is_ours(place); }
+        bool is_talkative() const noexcept override { return false; }
+        DeviceCheck begin(HidLine&, const HidPlace&) noexcept override { return {}; }
+        bool decode(HidBytes report, HidInput& input) noexcept override {
+            const bool is_known = cap_.decode(report, input);
+            bus_.send(number_, Bytes{0x7f});
+            return is_known;
+        }
+        HidBytes encode(const HidOutput&) noexcept override { return {}; }
+        double least_s() const noexcept override { return 0; }
+
+    private:
+        test::HidBus& bus_;
+        int number_;
+        SpaceMouseProtocol cap_;
+    };
+    test::HidBus bus;
+    const int number = bus.plug(test::space_mouse_hid);
+    HidSettings hasty = patient;
+    hasty.silent_s = 0.02;
+    const OpenedDevice opened = open_hid(std::make_unique<Flooded>(bus, number), hasty);
+    HidDevice& device = opened_hid(opened);
+
+    tell(bus, number, device, test::pushed_cap(Vec3(1, 0, 0)));
+    wait_until([&] { return way_of(device, 1) == Vec3::Zero(); });
+
+    CHECK(device.understood() == 1);
+    CHECK(device.read().valid);
+}
+
 TEST_CASE("the clutch brings the handle back to the middle", "[devices][hid]") {
     test::HidBus bus;
     const int number = bus.plug(test::space_mouse_hid);
