@@ -65,6 +65,17 @@ std::string list_others(const HidProtocol& protocol, const std::vector<HidPlace>
     return fmt::format("{}", fmt::join(others, ", "));
 }
 
+// The first that nobody here uses; where all are used, the first.
+const HidPlace* find_ours(const HidProtocol& protocol, const std::vector<HidPlace>& places) {
+    const HidPlace* taken = nullptr;
+    for (const HidPlace& place : places) {
+        if (!protocol.is_ours(place)) continue;
+        if (!is_in_use(place.path)) return &place;
+        if (!taken) taken = &place;
+    }
+    return taken;
+}
+
 DeviceCheck check_bus(const HidProtocol& protocol, const std::vector<HidPlace>& places,
                       const HidPlace* ours) {
     if (ours) return {"bus", CheckOutcome::Ok, describe(*ours), ""};
@@ -323,17 +334,17 @@ OpenedDevice open_hid(std::unique_ptr<HidProtocol> protocol, const HidSettings& 
     }
     checks.push_back({"library", CheckOutcome::Ok, "hidapi " + version, ""});
     const std::vector<HidPlace> places = list_hids();
-    const auto ours = std::find_if(places.begin(), places.end(),
-                                   [&](const HidPlace& place) { return protocol->is_ours(place); });
-    const bool is_there = ours != places.end();
-    checks.push_back(check_bus(*protocol, places, is_there ? &*ours : nullptr));
-    if (!is_there) return opened;
+    const HidPlace* const ours = find_ours(*protocol, places);
+    checks.push_back(check_bus(*protocol, places, ours));
+    if (!ours) return opened;
     checks.push_back(check_permission(*ours));
     if (checks.back().outcome == CheckOutcome::Failed) return opened;
     HidLine line;
+    const bool is_taken = is_in_use(ours->path);
     if (!line.open(ours->path)) {
         checks.push_back({"open", CheckOutcome::Failed, line.why(),
-                          "plug it in again; close other programs that use it"});
+                          is_taken ? "plug in a second one, or choose another device"
+                                   : "plug it in again; close other programs that use it"});
         return opened;
     }
     checks.push_back({"open", CheckOutcome::Ok, "it is ours", ""});

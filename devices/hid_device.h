@@ -185,7 +185,7 @@ private:
 // Whether one of that kind is plugged in.
 bool is_hid_there(const HidProtocol& protocol);
 
-// The first device of a kind that can be opened, with every layer's checks.
+// The first device of a kind that this program has not opened yet, with every layer's checks.
 OpenedDevice open_hid(std::unique_ptr<HidProtocol> protocol, const HidSettings& settings = {});
 
 }  // namespace palpa

@@ -208,6 +208,32 @@ TEST_CASE("reports that are not understood renew no rate", "[devices][hid]") {
     CHECK(device.read().valid);
 }
 
+TEST_CASE("two hands have a device each, and a third none", "[devices][hid]") {
+    test::HidBus bus;
+    const int first_number = bus.plug(test::space_mouse_hid);
+    OpenedDevice first = open_cap();
+    REQUIRE(first.device);
+    const auto check_taken = [](const OpenedDevice& opened) {
+        CHECK_FALSE(opened.device);
+        CHECK(opened.checks.back().layer == "open");
+        CHECK(opened.checks.back().outcome == CheckOutcome::Failed);
+        CHECK(opened.checks.back().found == "it is in use by the other hand");
+    };
+    check_taken(open_cap());
+
+    const int second_number = bus.plug(test::space_mouse_hid);
+    const OpenedDevice second = open_cap();
+    REQUIRE(second.device);
+    check_taken(open_cap());
+    tell(bus, first_number, opened_hid(first), test::pushed_cap(Vec3(1, 0, 0)));
+    tell(bus, second_number, opened_hid(second), test::pushed_cap(Vec3(0, 1, 0)));
+    CHECK(way_of(*first.device, 10).normalized() == Vec3(1, 0, 0));
+    CHECK(way_of(*second.device, 10).normalized() == Vec3(0, 1, 0));
+
+    first.device.reset();
+    CHECK(open_cap().device);
+}
+
 TEST_CASE("the clutch brings the handle back to the middle", "[devices][hid]") {
     test::HidBus bus;
     const int number = bus.plug(test::space_mouse_hid);
