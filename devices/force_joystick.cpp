@@ -322,6 +322,10 @@ HidBytes ForceJoystickProtocol::encode_next() noexcept {
     return {};
 }
 
+void ForceJoystickProtocol::forget() noexcept {
+    for (Axis& axis : axes_) axis.magnitude.reset();
+}
+
 OpenedDevice open_force_joystick(const DeviceRequest& /*request*/) {
     return open_hid(std::make_unique<ForceJoystickProtocol>());
 }

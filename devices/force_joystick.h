@@ -42,6 +42,7 @@ public:
     bool decode(HidBytes report, HidInput& input) noexcept override;
     HidBytes encode(const HidOutput& output) noexcept override;
     HidBytes encode_next() noexcept override;
+    void forget() noexcept override;
     double least_s() const noexcept override { return 0.002; }
 
     // Takes the report descriptor of the device. What a force needs and it does not have; empty
@@ -55,8 +56,9 @@ private:
         double direction_deg;  // where a positive magnitude comes from
         int index;             // of the handle's axes
         double sign;           // of the stick's on it
-        std::int64_t block = 0, magnitude = 0;
-        std::vector<std::uint8_t> report = {};  // that sets the magnitude
+        std::int64_t block = 0;
+        std::optional<std::int64_t> magnitude = 0;  // that it was told
+        std::vector<std::uint8_t> report = {};      // that sets the magnitude
     };
     enum class Loaded { Yes, Full, No };
 

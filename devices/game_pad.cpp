@@ -36,7 +36,7 @@ DeviceReading GamePad::read() noexcept {
 
 std::string_view GamePad::status() const noexcept {
     if (link_.is_there) return {};
-    return "no game pad is plugged in that the window knows the buttons of";
+    return "No game pad is plugged in that the window knows the buttons of.";
 }
 
 bool is_game_pad_there(const DeviceRequest& request) {

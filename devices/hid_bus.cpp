@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 #include <mutex>
+#include <set>
 
 namespace palpa {
 namespace {
@@ -16,6 +17,31 @@ std::mutex& hidapi_mutex() {
     static std::mutex mutex;
     return mutex;
 }
+
+// The paths to which lines are open.
+class OpenPaths {
+public:
+    static OpenPaths& all() {
+        static OpenPaths paths;
+        return paths;
+    }
+    bool add(const std::string& path) {
+        const std::lock_guard lock(mutex_);
+        return paths_.insert(path).second;
+    }
+    void remove(const std::string& path) {
+        const std::lock_guard lock(mutex_);
+        paths_.erase(path);
+    }
+    bool contains(const std::string& path) {
+        const std::lock_guard lock(mutex_);
+        return paths_.contains(path);
+    }
+
+private:
+    std::mutex mutex_;
+    std::set<std::string> paths_;
+};
 
 // Letters beyond ASCII are of no use in a name here.
 std::string plain(const wchar_t* text) {
@@ -53,10 +79,18 @@ std::vector<std::uint8_t> read_report_descriptor(const std::string& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
+bool is_in_use(const std::string& path) { return OpenPaths::all().contains(path); }
+
 bool HidLine::open(const std::string& path) {
+    close();
+    if (!OpenPaths::all().add(path)) {
+        why_ = "it is in use by the other hand";
+        return false;
+    }
     const std::lock_guard lock(hidapi_mutex());
-    handle_.reset(hid_open_path(path.c_str()));
+    handle_ = {hid_open_path(path.c_str()), Closer{path}};
     why_ = handle_ ? "" : plain(hid_error(nullptr));
+    if (!handle_) OpenPaths::all().remove(path);
     return is_open();
 }
 
@@ -79,6 +113,9 @@ int HidLine::read_feature(std::uint8_t number, std::span<std::uint8_t> into) noe
     return hid_get_feature_report(handle_.get(), into.data(), into.size());
 }
 
-void HidLine::Closer::operator()(hid_device_* handle) const noexcept { hid_close(handle); }
+void HidLine::Closer::operator()(hid_device_* handle) const noexcept {
+    hid_close(handle);
+    OpenPaths::all().remove(path);
+}
 
 }  // namespace palpa

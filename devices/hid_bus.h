@@ -39,10 +39,13 @@ std::string hidapi_version();
 // is Linux's /sys that is read. Empty elsewhere, and where it cannot be read.
 std::vector<std::uint8_t> read_report_descriptor(const std::string& path);
 
+// Whether a line of this program is open to it.
+bool is_in_use(const std::string& path);
+
 // Used by one thread.
 class HidLine {
 public:
-    // False where it cannot be opened, and why() says why.
+    // False where it cannot be opened, and why() says why: one line to a path at a time.
     bool open(const std::string& path);
     void close() noexcept { handle_.reset(); }
     bool is_open() const noexcept { return handle_ != nullptr; }
@@ -63,6 +66,7 @@ public:
 
 private:
     struct Closer {
+        std::string path;
         void operator()(hid_device_* handle) const noexcept;
     };
     std::unique_ptr<hid_device_, Closer> handle_;

@@ -65,6 +65,17 @@ std::string list_others(const HidProtocol& protocol, const std::vector<HidPlace>
     return fmt::format("{}", fmt::join(others, ", "));
 }
 
+// The first that nobody here uses; where all are used, the first.
+const HidPlace* find_ours(const HidProtocol& protocol, const std::vector<HidPlace>& places) {
+    const HidPlace* taken = nullptr;
+    for (const HidPlace& place : places) {
+        if (!protocol.is_ours(place)) continue;
+        if (!is_in_use(place.path)) return &place;
+        if (!taken) taken = &place;
+    }
+    return taken;
+}
+
 DeviceCheck check_bus(const HidProtocol& protocol, const std::vector<HidPlace>& places,
                       const HidPlace* ours) {
     if (ours) return {"bus", CheckOutcome::Ok, describe(*ours), ""};
@@ -191,10 +202,21 @@ void HidDevice::run() noexcept {
     while (!is_closing_) {
         line_.is_open() ? serve() : find();
     }
-    written_ = {};
-    play({});
+    play_last();
     if (line_.is_open()) protocol_->end(line_);
     line_.close();
+}
+
+void HidDevice::play_last() noexcept {
+    constexpr std::chrono::milliseconds longest(100), pause(1);
+    const Clock::time_point begun = Clock::now();
+    for (;;) {
+        written_ = {};
+        play({});
+        const bool is_done = has_played_ && played_ == HidOutput{};
+        if (is_done || !line_.is_open() || Clock::now() - begun > longest) return;
+        std::this_thread::sleep_for(pause);
+    }
 }
 
 void HidDevice::serve() noexcept {
@@ -207,7 +229,8 @@ void HidDevice::serve() noexcept {
         ++reports;
     }
     if (size < 0) return lose();
-    if (reports == 0 && Clock::now() - heard_ > seconds(settings_.silent_s)) {
+    // Reports that are not understood renew no rate.
+    if (Clock::now() - heard_ > seconds(settings_.silent_s)) {
         input_.rate = {};
         post(input_);
     }
@@ -243,8 +266,9 @@ HidOutput HidDevice::newest_output() noexcept {
     } else if (Clock::now() - renewed_ > seconds(settings_.stale_s)) {
         wanted_ = {};
     }
+    if (!is_meant_) return {};
     HidOutput output = wanted_;
-    output.is_lit = is_meant_ && !moves_view_;
+    output.is_lit = !moves_view_;
     return output;
 }
 
@@ -255,8 +279,12 @@ void HidDevice::play(const HidOutput& output) noexcept {
     HidBytes report = protocol_->encode(output);
     for (; !report.empty(); report = protocol_->encode_next()) {
         if (line_.write(report)) continue;
-        // The next read tells that it is gone; a motor must not keep its force until then.
-        if (has_motors()) lose();
+        protocol_->forget();
+        has_played_ = false;
+        written_ = now;
+        // The next read tells that it is gone; a motor must not keep its force until then. At the
+        // end there is no next one.
+        if (has_motors() && !is_closing_) lose();
         return;
     }
     played_ = output;
@@ -306,17 +334,17 @@ OpenedDevice open_hid(std::unique_ptr<HidProtocol> protocol, const HidSettings& 
     }
     checks.push_back({"library", CheckOutcome::Ok, "hidapi " + version, ""});
     const std::vector<HidPlace> places = list_hids();
-    const auto ours = std::find_if(places.begin(), places.end(),
-                                   [&](const HidPlace& place) { return protocol->is_ours(place); });
-    const bool is_there = ours != places.end();
-    checks.push_back(check_bus(*protocol, places, is_there ? &*ours : nullptr));
-    if (!is_there) return opened;
+    const HidPlace* const ours = find_ours(*protocol, places);
+    checks.push_back(check_bus(*protocol, places, ours));
+    if (!ours) return opened;
     checks.push_back(check_permission(*ours));
     if (checks.back().outcome == CheckOutcome::Failed) return opened;
     HidLine line;
+    const bool is_taken = is_in_use(ours->path);
     if (!line.open(ours->path)) {
         checks.push_back({"open", CheckOutcome::Failed, line.why(),
-                          "plug it in again; close other programs that use it"});
+                          is_taken ? "plug in a second one, or choose another device"
+                                   : "plug it in again; close other programs that use it"});
         return opened;
     }
     checks.push_back({"open", CheckOutcome::Ok, "it is ours", ""});

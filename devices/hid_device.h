@@ -81,6 +81,9 @@ public:
     // The next one that it takes besides, likewise.
     virtual HidBytes encode_next() noexcept { return {}; }
 
+    // The report that was given last was not written: the device does not know it.
+    virtual void forget() noexcept {}
+
     // Between two reports out: what the line takes without a queue.
     virtual double least_s() const noexcept = 0;
 };
@@ -136,6 +139,8 @@ private:
     void serve() noexcept;
     void take(HidBytes report) noexcept;
     void play(const HidOutput& output) noexcept;
+    // Nothing, again for a while where the line does not take it.
+    void play_last() noexcept;
     HidOutput newest_output() noexcept;
     void find() noexcept;
     bool begin(const HidPlace& place) noexcept;
@@ -180,7 +185,7 @@ private:
 // Whether one of that kind is plugged in.
 bool is_hid_there(const HidProtocol& protocol);
 
-// The first device of a kind that can be opened, with every layer's checks.
+// The first device of a kind that this program has not opened yet, with every layer's checks.
 OpenedDevice open_hid(std::unique_ptr<HidProtocol> protocol, const HidSettings& settings = {});
 
 }  // namespace palpa

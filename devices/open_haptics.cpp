@@ -460,12 +460,15 @@ OpenedDevice open_haptics(const OpenHapticsSettings& settings, const DeviceReque
     OpenedDevice opened;
     std::vector<DeviceCheck>& checks = opened.checks;
     const hd::LibrarySearch search = hd::find_library(settings.library);
+    const bool is_whole = search.is_found && search.missing.empty();
+    // The reason is the last check; that the device was seen is told before it.
+    if (!is_whole) check_system(request.system_root, checks);
     checks.push_back(check_library(search));
     if (!search.is_found) return opened;
     checks.push_back(check_symbols(search));
-    if (!search.missing.empty()) return opened;
-    const hd::Library& library = search.library;
+    if (!is_whole) return opened;
     check_system(request.system_root, checks);
+    const hd::Library& library = search.library;
     if (open_one.load()) {
         checks.push_back({"init", CheckOutcome::Failed, "this program has a device open already",
                           "close it first: the library serves one"});
@@ -518,7 +521,9 @@ bool is_omni_there(const DeviceRequest& request) {
 
 OpenedDevice open_omni(const DeviceRequest& request) {
     OpenHapticsSettings settings;
-    if (const char* const path = std::getenv("PALPA_OPENHAPTICS")) settings.library = path;
+    // No name at all would stand for this program itself.
+    const char* const path = std::getenv("PALPA_OPENHAPTICS");
+    if (path && *path != '\0') settings.library = path;
     if (const char* const name = std::getenv("PALPA_OMNI")) settings.device_name = name;
     return open_haptics(settings, request);
 }

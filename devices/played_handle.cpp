@@ -112,6 +112,8 @@ PlayedRow row_of(const Values& values, const TextPlace& place) {
 
 std::vector<PlayedRow> parse_table(std::string_view text, const std::string& file,
                                    bool is_recorded) {
+    constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+    if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
     // Of a recording only whole lines count.
     if (is_recorded) text = text.substr(0, text.find_last_of('\n') + 1);
     std::vector<std::size_t> columns;

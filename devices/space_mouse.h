@@ -35,6 +35,7 @@ public:
     DeviceCheck begin(HidLine& line, const HidPlace& place) noexcept override;
     bool decode(HidBytes report, HidInput& input) noexcept override;
     HidBytes encode(const HidOutput& output) noexcept override;
+    void forget() noexcept override { is_lit_.reset(); }
     double least_s() const noexcept override { return 0.008; }
 
 private:

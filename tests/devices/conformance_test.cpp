@@ -14,6 +14,7 @@
 #include "haptics/safety.h"
 #include "haptics/servo.h"
 #include "tests/devices/template_device.h"
+#include "tests/devices/wait_until.h"
 #include "tests/support/hid_reports.h"
 #include "tests/support/open_haptics_stub/load.h"
 #include "tests/support/pid_stick.h"
@@ -246,6 +247,12 @@ struct DualShock4Kind {
     static constexpr std::size_t size = 32, force_byte = 4;
 };
 
+// Until the device has read the one report that is on its way, and played what is newest.
+void wait_for_answer(const HidDevice& device, std::uint64_t reports_before) {
+    test::wait_until([&] { return device.reports() > reports_before; },
+                     "the device reads its report");
+}
+
 // A force has no direction there: it counts as one along y.
 template <class Kind>
 class HidRig {
@@ -260,6 +267,8 @@ public:
                      {.retry_s = 1e-3, .stale_s = 1e3, .silent_s = 1e3, .is_paced = false});
         REQUIRE(opened.device);
         device_ = std::move(opened.device);
+        // Or the next one would be joined to it.
+        if (Kind::protocol()->is_talkative()) wait_for_answer(hid(), 0);
         tick();
     }
 
@@ -271,14 +280,15 @@ public:
         if (!is_plugged_) return;
         const std::uint64_t before = hid().reports();
         bus_.send(number_, Kind::report(push_));
-        while (hid().reports() == before) std::this_thread::yield();
+        wait_for_answer(hid(), before);
     }
     void plug(bool is_plugged) {
         if (is_plugged == is_plugged_) return;
         is_plugged_ = is_plugged;
         is_plugged ? void(number_ = bus_.plug(Kind::hid)) : bus_.unplug(number_);
         last_.clear();
-        while (hid().status().empty() != is_plugged) std::this_thread::yield();
+        test::wait_until([&] { return hid().status().empty() == is_plugged; },
+                         "the device is lost or found");
     }
     Vec3 motors() {
         const test::Bytes written = is_plugged_ ? bus_.take_written(number_) : test::Bytes{};
@@ -321,7 +331,7 @@ public:
         const auto& hid = dynamic_cast<HidDevice&>(*device_);
         const std::uint64_t before = hid.reports();
         bus_.send(number_, test::pushed_stick(Vec3::Zero()));
-        while (hid.reports() == before) std::this_thread::yield();
+        wait_for_answer(hid, before);
     }
     void plug(bool is_plugged) {
         if (is_plugged == is_plugged_) return;
@@ -329,7 +339,8 @@ public:
         stick_ = {};
         is_plugged ? void(number_ = bus_.plug(test::force_joystick_hid())) : bus_.unplug(number_);
         const std::string_view told = is_plugged ? "Move the stick" : "The force-feedback joystick";
-        while (!device_->status().starts_with(told)) std::this_thread::yield();
+        test::wait_until([&] { return device_->status().starts_with(told); },
+                         "the stick is lost or found");
     }
     Vec3 motors() {
         if (is_plugged_) stick_.take(bus_.take_written(number_));

@@ -3,6 +3,7 @@
 #include "devices/open_device.h"
 #include "devices/sony_pad.h"
 #include "devices/space_mouse.h"
+#include "tests/devices/wait_until.h"
 #include "tests/support/hid_reports.h"
 
 #include <spawn.h>
@@ -18,21 +19,15 @@
 #include <memory>
 #include <mutex>
 #include <string>
-#include <thread>
 
 using namespace palpa;
 using test::Bytes;
+using test::wait_until;
 
 namespace {
 
 // Nothing in these tests lasts; where time is what is tested, it is short, and else endless.
 constexpr HidSettings patient{.retry_s = 1e-3, .stale_s = 1e3, .silent_s = 1e3, .is_paced = false};
-
-// For what another thread will do.
-template <class Condition>
-void wait_until(const Condition& condition) {
-    while (!condition()) std::this_thread::yield();
-}
 
 HidDevice& opened_hid(const OpenedDevice& opened) {
     REQUIRE(opened.device);
@@ -177,6 +172,68 @@ TEST_CASE("a rate that the device does not renew is none any more", "[devices][h
     CHECK(device.read().valid);
 }
 
+TEST_CASE("reports that are not understood renew no rate", "[devices][hid]") {
+    // Each report is followed by one that says nothing.
+    class Flooded final : public HidProtocol {
+    public:
+        Flooded(test::HidBus& bus, int number) : bus_(bus), number_(number) {}
+        std::string_view name() const noexcept override { return "flooded cap"; }
+        bool is_ours(const HidPlace& place) const noexcept override { return cap_.is_ours(place); }
+        bool is_talkative() const noexcept override { return false; }
+        DeviceCheck begin(HidLine&, const HidPlace&) noexcept override { return {}; }
+        bool decode(HidBytes report, HidInput& input) noexcept override {
+            const bool is_known = cap_.decode(report, input);
+            bus_.send(number_, Bytes{0x7f});
+            return is_known;
+        }
+        HidBytes encode(const HidOutput&) noexcept override { return {}; }
+        double least_s() const noexcept override { return 0; }
+
+    private:
+        test::HidBus& bus_;
+        int number_;
+        SpaceMouseProtocol cap_;
+    };
+    test::HidBus bus;
+    const int number = bus.plug(test::space_mouse_hid);
+    HidSettings hasty = patient;
+    hasty.silent_s = 0.02;
+    const OpenedDevice opened = open_hid(std::make_unique<Flooded>(bus, number), hasty);
+    HidDevice& device = opened_hid(opened);
+
+    tell(bus, number, device, test::pushed_cap(Vec3(1, 0, 0)));
+    wait_until([&] { return way_of(device, 1) == Vec3::Zero(); });
+
+    CHECK(device.understood() == 1);
+    CHECK(device.read().valid);
+}
+
+TEST_CASE("two hands have a device each, and a third none", "[devices][hid]") {
+    test::HidBus bus;
+    const int first_number = bus.plug(test::space_mouse_hid);
+    OpenedDevice first = open_cap();
+    REQUIRE(first.device);
+    const auto check_taken = [](const OpenedDevice& opened) {
+        CHECK_FALSE(opened.device);
+        CHECK(opened.checks.back().layer == "open");
+        CHECK(opened.checks.back().outcome == CheckOutcome::Failed);
+        CHECK(opened.checks.back().found == "it is in use by the other hand");
+    };
+    check_taken(open_cap());
+
+    const int second_number = bus.plug(test::space_mouse_hid);
+    const OpenedDevice second = open_cap();
+    REQUIRE(second.device);
+    check_taken(open_cap());
+    tell(bus, first_number, opened_hid(first), test::pushed_cap(Vec3(1, 0, 0)));
+    tell(bus, second_number, opened_hid(second), test::pushed_cap(Vec3(0, 1, 0)));
+    CHECK(way_of(*first.device, 10).normalized() == Vec3(1, 0, 0));
+    CHECK(way_of(*second.device, 10).normalized() == Vec3(0, 1, 0));
+
+    first.device.reset();
+    CHECK(open_cap().device);
+}
+
 TEST_CASE("the clutch brings the handle back to the middle", "[devices][hid]") {
     test::HidBus bus;
     const int number = bus.plug(test::space_mouse_hid);
@@ -220,6 +277,32 @@ TEST_CASE("without the person's attention the handle rests and no button counts"
     CHECK(device.view_rate().m_per_s ==
           Vec3::Zero());  // that the second button was pressed unheard
     CHECK(last_report(bus.take_written(number), 2) == Bytes{4, 1});
+}
+
+TEST_CASE("without the person's attention a pad has no force, and then it is back",
+          "[devices][hid]") {
+    test::HidBus bus;
+    const int number = bus.plug(test::dualsense_hid);
+    const OpenedDevice opened = open_pad(SonyModel::DualSense);
+    HidDevice& device = opened_hid(opened);
+    const auto played = [&] {
+        tell(bus, number, device, test::dualsense_report({}));
+        tell(bus, number, device, test::dualsense_report({}));  // the first may have been under way
+        return last_report(bus.take_written(number), 63);
+    };
+    device.write(Vec3(0, 3, 0));
+    REQUIRE(played()[13] == 255);
+
+    device.attend(false);
+    device.write(Vec3(0, 3, 0));
+    const Bytes unheard = played();
+    device.attend(true);
+
+    CHECK(unheard[4] == 0);
+    CHECK(unheard[11] == 0x05);
+    CHECK(unheard[13] == 0);
+    CHECK(unheard[24] == 0);
+    CHECK(played()[13] == 255);
 }
 
 TEST_CASE("the second button gives the rate to the camera, and takes it back", "[devices][hid]") {

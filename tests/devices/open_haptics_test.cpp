@@ -1,6 +1,7 @@
 #include "devices/open_haptics.h"
 
 #include "tests/support/open_haptics_stub/load.h"
+#include "tests/support/temporary_folder.h"
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -10,6 +11,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <optional>
 #include <set>
 #include <stdexcept>
@@ -302,6 +304,35 @@ TEST_CASE("without a device the layer that failed is told, with what mends it",
     CHECK_THAT(opened.checks.back().found, Catch::Contains(told));
     CHECK_FALSE(opened.checks.back().remedy.empty());
     CHECK(stub.devices_opened() == 0);
+}
+
+TEST_CASE("a device that is plugged in is told where the library is missing",
+          "[devices][open-haptics]") {
+    const test::TemporaryFolder folder;
+    std::filesystem::create_directories(folder.path() / "sys/bus/usb/devices/1-2");
+    (void)folder.add_file("sys/bus/usb/devices/1-2/idVendor", "2988\n");
+    (void)folder.add_file("sys/bus/usb/devices/1-2/idProduct", "0302\n");
+    OpenHapticsSettings settings;
+    settings.library = "/nowhere/libHD.so";
+    DeviceRequest request;
+    request.system_root = folder.path();
+
+    const OpenedDevice opened = open_haptics(settings, request);
+
+    CHECK_FALSE(opened.device);
+    CHECK(check_of(opened, "bus").outcome == CheckOutcome::Ok);
+    CHECK_THAT(check_of(opened, "bus").found, Catch::Contains("2988:0302"));
+    CHECK(check_of(opened, "permission").outcome == CheckOutcome::Unknown);
+    CHECK(opened.checks.back().layer == "library");
+    CHECK(opened.checks.back().outcome == CheckOutcome::Failed);
+}
+
+TEST_CASE("an empty name of the library is none", "[devices][open-haptics]") {
+    setenv("PALPA_OPENHAPTICS", "", 1);
+    const OpenedDevice opened = open_omni({});
+    unsetenv("PALPA_OPENHAPTICS");
+
+    CHECK_THAT(check_of(opened, "library").found, Catch::Contains("libHD"));
 }
 
 TEST_CASE("the names under which the library is installed are tried in turn",

@@ -62,6 +62,14 @@ TEST_CASE("columns stand in any order, the clutch stays pressed until the next r
     CHECK_THAT(handle.read().orientation.z(), WithinAbs(std::sin(0.75), 1e-12));
 }
 
+TEST_CASE("a script may begin with a byte order mark", "[devices][played]") {
+    const std::vector<PlayedRow> rows =
+        parse_script("\xef\xbb\xbf" + header + "0,0.01,0,0\n", "hand.csv");
+
+    REQUIRE(rows.size() == 1);
+    CHECK(rows[0].handle_m == Vec3(0.01, 0, 0));
+}
+
 TEST_CASE("a trace's other columns are passed over, and a line that was cut off",
           "[devices][played]") {
     const test::TemporaryFolder folder;

@@ -74,6 +74,18 @@ TEST_CASE("a hand at rest on the cap moves nothing", "[devices][space-mouse]") {
     CHECK(input.rate.rad_per_s == Vec3::Zero());
 }
 
+TEST_CASE("a light that could not be written is written again", "[devices][space-mouse]") {
+    SpaceMouseProtocol mouse;
+    const HidOutput lit{.is_lit = true};
+    REQUIRE(mouse.encode(lit).size() == 2);
+    REQUIRE(mouse.encode(lit).empty());
+
+    mouse.forget();
+
+    const HidBytes again = mouse.encode(lit);
+    CHECK(Bytes(again.begin(), again.end()) == Bytes{4, 1});
+}
+
 TEST_CASE("of many buttons the first two count", "[devices][space-mouse]") {
     CHECK(decoded({3, 0}).buttons == 0);
     CHECK(decoded({3, 1}).buttons == 1);
