@@ -92,6 +92,13 @@ private:
     UMockdevIoctlData* data_;
 };
 
+// Of all nodes, so that it is older than any: umockdev's thread meets a node at it for the first
+// time.
+std::mutex& nodes_mutex() {
+    static std::mutex mutex;
+    return mutex;
+}
+
 // A node from the device's side. Its questions are answered on a thread of umockdev's.
 class Node {
 public:
@@ -110,13 +117,15 @@ public:
     ~Node() {
         umockdev_testbed_detach_ioctl(bed_, path_.c_str(), nullptr);
         g_object_unref(base_);
+        // Behind the last answer.
+        const std::lock_guard lock(nodes_mutex());
     }
 
     const MockHid& device() const { return device_; }
 
     // Shows it; what it is asked meanwhile waits.
     void plug(const std::string& text) {
-        const std::lock_guard lock(mutex_);
+        const std::lock_guard lock(nodes_mutex());
         GError* error = nullptr;
         umockdev_testbed_add_from_string(bed_, text.c_str(), &error);
         check(error);
@@ -125,7 +134,7 @@ public:
 
     // The testbed keeps the node, and its own end of it, which it closes at its end.
     void hang_up() {
-        const std::lock_guard lock(mutex_);
+        const std::lock_guard lock(nodes_mutex());
         is_gone_ = true;
         const int nothing = open("/dev/null", O_RDWR | O_CLOEXEC);
         dup2(nothing, fd_);
@@ -142,7 +151,7 @@ public:
     }
 
     std::vector<std::uint8_t> take_written() {
-        const std::lock_guard lock(mutex_);
+        const std::lock_guard lock(nodes_mutex());
         take_outputs();
         return std::exchange(written_, {});
     }
@@ -157,7 +166,7 @@ private:
     void answer(UMockdevIoctlClient* client) {
         const gulong request = umockdev_ioctl_client_get_request(client);
         const Argument argument(client);
-        const std::lock_guard lock(mutex_);
+        const std::lock_guard lock(nodes_mutex());
         take_outputs();
         if (is_gone_) return argument.refuse(ENODEV);
         if (request == HIDIOCGRDESCSIZE) return tell_size(argument);
@@ -202,7 +211,6 @@ private:
     UMockdevIoctlBase* base_;
     int fd_ = -1;
     bool is_gone_ = false;
-    std::mutex mutex_;
     std::vector<std::uint8_t> written_;
 };
 
