@@ -509,10 +509,12 @@ void Sandbox::choose_next_device() {
     for (std::size_t i = 1; i < offers.size(); ++i) {
         const DeviceOffer& next = offers[(from + i) % offers.size()];
         if (!next.is_there) continue;
-        if (choose_device(next.name)) break;
+        if (choose_device(next.name)) {
+            if (!refusals.empty()) notice(refusals + notice_, first_notice_s);
+            return;
+        }
         refusals += refusal_ + "\n";
     }
-    if (!refusals.empty()) notice(refusals + notice_, first_notice_s);
 }
 
 // False where it stays off.

@@ -14,13 +14,18 @@ void note(int signal) {
     (void)std::signal(signal, SIG_DFL);
 }
 
+void take(int signal) {
+    // nohup, and shells for what runs in the background, have it ignored.
+    if (std::signal(signal, note) == SIG_IGN) (void)std::signal(signal, SIG_IGN);
+}
+
 }  // namespace
 
 void note_interrupts() noexcept {
-    (void)std::signal(SIGINT, note);
-    (void)std::signal(SIGTERM, note);
+    take(SIGINT);
+    take(SIGTERM);
 #ifdef SIGHUP
-    (void)std::signal(SIGHUP, note);
+    take(SIGHUP);
 #endif
 }
 

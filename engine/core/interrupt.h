@@ -5,7 +5,7 @@
 namespace palpa {
 
 // From now on SIGINT, SIGTERM and SIGHUP are noted; the next of the same kind ends the program at
-// once, as it always did.
+// once, as it always did. One that is ignored stays so.
 void note_interrupts() noexcept;
 
 // The newest of them; 0: none came.

@@ -50,7 +50,8 @@ class Cli(unittest.TestCase):
                 program = subprocess.Popen(
                     [PROGRAM, "run", WATER, "--headless", "--seconds", "100000", "--every", "1000",
                      "--record", folder, "--json"],
-                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                    preexec_fn=lambda: signal.signal(number, signal.SIG_DFL))
                 trace = folder / "trace.csv"
                 while not (trace.exists() and trace.stat().st_size > 0):
                     self.assertIsNone(program.poll(), "it ended early")
