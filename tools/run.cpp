@@ -376,6 +376,7 @@ int run_command(const RunOptions& options) {
             warnings.push_back(fmt::format("no frames are drawn: {}", error.what()));
         }
     }
+    note_interrupts();  // a recording that is begun is ended in order
     std::optional<Recording> recording;
     if (options.record) recording.emplace(*options.record, scene);
     if (options.record && (options.second || options.device.value_or("emulated") != "emulated")) {
@@ -387,7 +388,6 @@ int run_command(const RunOptions& options) {
     if (writer) frames = {options.frames_per_second, [&] { write_frame(writer, simulation); }};
     for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
 
-    note_interrupts();
     std::unique_ptr<Device> device =
         open_device(options.device.value_or("emulated"), {.emulated = settings}).device;
     const std::unique_ptr<Device> second = open_second(options, settings);
