@@ -2,6 +2,20 @@
 
 namespace palpa {
 
+ClusterPlaces find_places(std::span<const std::uint32_t, cluster_size> atoms,
+                          std::span<const Vec3> positions) noexcept {
+    constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
+    ClusterPlaces places;
+    for (std::size_t k = 0; k < cluster_size; ++k) {
+        const bool is_somewhere = atoms[k] < positions.size() && positions[atoms[k]].allFinite();
+        const Vec3 at = is_somewhere ? positions[atoms[k]] : Vec3(Vec3::Constant(nowhere));
+        places.x[k] = at.x();
+        places.y[k] = at.y();
+        places.z[k] = at.z();
+    }
+    return places;
+}
+
 void ClusterTree::build(std::span<const std::uint32_t> atoms, std::span<const Vec3> positions) {
     const std::size_t clusters = atoms.size() / cluster_size;
     places_.resize(clusters);
@@ -19,16 +33,12 @@ void ClusterTree::move(std::span<const std::uint32_t> atoms, std::span<const Vec
 
 void ClusterTree::place(std::span<const std::uint32_t> atoms, std::span<const Vec3> positions,
                         std::size_t cluster) noexcept {
-    constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
+    const ClusterPlaces& places = places_[cluster] =
+        find_places(atoms.subspan(cluster * cluster_size).first<cluster_size>(), positions);
     Box box;
     for (std::size_t k = 0; k < cluster_size; ++k) {
-        const std::uint32_t atom = atoms[cluster * cluster_size + k];
-        const bool is_somewhere = atom < positions.size() && positions[atom].allFinite();
-        const Vec3 at = is_somewhere ? positions[atom] : Vec3(Vec3::Constant(nowhere));
-        if (is_somewhere) box.add(at);
-        places_[cluster].x[k] = at.x();
-        places_[cluster].y[k] = at.y();
-        places_[cluster].z[k] = at.z();
+        const Vec3 at(places.x[k], places.y[k], places.z[k]);
+        if (at.allFinite()) box.add(at);
     }
     boxes_[cluster] = box;
 }

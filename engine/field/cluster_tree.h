@@ -30,6 +30,10 @@ struct Box {
     }
 };
 
+// Where eight atoms are; one that is not among `positions`, or is nowhere, has no place.
+ClusterPlaces find_places(std::span<const std::uint32_t, cluster_size> atoms,
+                          std::span<const Vec3> positions) noexcept;
+
 // Clusters that stand near each other have numbers near each other, or it is slow.
 class ClusterTree {
 public:

@@ -1,6 +1,7 @@
 #include "forces/fast_nonbonded.h"
 
 #include "core/assertion.h"
+#include "field/select_tiles.h"
 
 #include <cmath>
 #include <cstddef>
@@ -78,12 +79,12 @@ void update_replaced(double reach, std::span<const Vec3> positions, FastPairs& p
     }
 }
 
-bool has_wandered(const FastPairs& pairs, std::span<const Vec3> positions) {
+bool are_within(std::span<const Vec3> positions, std::span<const Vec3> places, double most) {
+    if (positions.size() != places.size()) return false;
     for (std::size_t i = 0; i < positions.size(); ++i) {
-        if (!((positions[i] - pairs.positions[i]).squaredNorm() <= 0.25 * margin * margin))
-            return true;
+        if (!((positions[i] - places[i]).squaredNorm() <= most * most)) return false;
     }
-    return false;
+    return true;
 }
 
 void build_list(const Topology& topology, const FastAtoms& atoms, const NonbondedSettings& settings,
@@ -100,7 +101,8 @@ void update_list(const Topology& topology, const FastAtoms& atoms,
                  const NonbondedSettings& settings, double skin, std::span<const Vec3> positions,
                  FastPairs& pairs) {
     if (pairs.builds > 0 && !is_outdated(pairs.list, positions)) return;
-    if (pairs.builds == 0 || has_wandered(pairs, positions)) {
+    pairs.near.selected.clear();
+    if (pairs.builds == 0 || !are_within(positions, pairs.positions, 0.5 * margin)) {
         build_list(topology, atoms, settings, skin, positions, pairs);
     } else if (update_cluster_list(positions, pairs.left_out, pairs.list) != ListChange::Clusters) {
         update_replaced(reach_of(settings, skin), positions, pairs);
@@ -112,6 +114,26 @@ void update_list(const Topology& topology, const FastAtoms& atoms,
         build_pair_workspace(pairs.list, {topology.charge, atoms.sqrt_epsilon, atoms.half_rmin},
                              std::move(pairs.workspace));
     ++pairs.builds;
+}
+
+// Whether `pairs.near` has all pairs, found anew where that pays: it takes as long as a sum of the
+// whole list or two, and spares a quarter of each.
+bool update_near(const Topology& topology, const FastAtoms& atoms,
+                 const NonbondedSettings& settings, double skin, std::span<const Vec3> positions,
+                 FastPairs& pairs) {
+    constexpr double near_skin = 0.6;  // Å
+    if (!has_end(settings) || skin <= near_skin) return false;
+    const bool is_slow = are_within(positions, pairs.summed, near_skin / 8);
+    pairs.summed.assign(positions.begin(), positions.end());
+    FastPairs::NearTiles& near = pairs.near;
+    if (are_within(positions, near.selected, 0.5 * near_skin)) return true;
+    if (!is_slow) return false;
+    near.tiles = select_tiles(pairs.list, {}, positions, near_skin);
+    near.workspace =
+        build_pair_workspace(near.tiles, {topology.charge, atoms.sqrt_epsilon, atoms.half_rmin},
+                             std::move(near.workspace));
+    near.selected.assign(positions.begin(), positions.end());
+    return true;
 }
 
 }  // namespace
@@ -146,8 +168,10 @@ NonbondedEnergy add_fast_nonbonded_forces(const Topology& topology, const FastAt
         return add_nonbonded_forces(topology, settings, positions, forces);
     }
     update_list(topology, atoms, settings, skin, positions, pairs);
+    const bool is_near = update_near(topology, atoms, settings, skin, positions, pairs);
     const std::optional<NonbondedEnergy> energy =
-        add_tile_forces(topology, settings, pairs.list, pairs.workspace, pairs.replaced, positions,
+        add_tile_forces(topology, settings, is_near ? pairs.near.tiles : pairs.list,
+                        is_near ? pairs.near.workspace : pairs.workspace, pairs.replaced, positions,
                         forces, result, threads);
     if (energy) return *energy;
     ++pairs.in_double;

@@ -46,6 +46,13 @@ struct FastPairs {
     std::vector<std::array<std::uint32_t, 2>> replaced;  // of these, those that are near now
     std::vector<Vec3> positions;                         // Å, when it was built
     std::size_t builds = 0, updates = 0;                 // of the list so far
+    // What is near now of a list that ends at a cutoff, where atoms move little from sum to sum.
+    struct NearTiles {
+        ClusterList tiles;
+        PairWorkspace workspace;
+        std::vector<Vec3> selected;  // positions when they were found, Å; empty: there are none
+    } near;
+    std::vector<Vec3> summed;   // positions of the last sum, Å
     std::size_t in_double = 0;  // sums so far that single precision did not do
 };
 

@@ -1,6 +1,6 @@
 #include "forces/group_forces.h"
 
-#include "field/group_tiles.h"
+#include "field/select_tiles.h"
 
 #include <algorithm>
 #include <optional>
@@ -84,12 +84,13 @@ const auto pair_itself = [](const std::array<std::uint32_t, 2>& pair) { return p
 }  // namespace
 
 GroupForces build_fast_group_forces(const Topology& topology, const FastAtoms& atoms,
-                                    const FastPairs& pairs, Groups groups) {
+                                    const FastPairs& pairs, Groups groups,
+                                    std::span<const Vec3> positions, double skin) {
     GroupForces result;
     TermSelector selector(groups, result);
     select_terms(topology, selector, result.terms);
     result.bonded = build_fast_bonded(result.terms);
-    result.tiles = select_tiles_between_groups(pairs.list, groups);
+    result.tiles = select_tiles(pairs.list, groups, positions, skin);
     result.workspace =
         build_pair_workspace(result.tiles, {topology.charge, atoms.sqrt_epsilon, atoms.half_rmin});
     for (const std::uint32_t atom : result.tiles.atoms) {

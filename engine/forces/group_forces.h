@@ -26,9 +26,11 @@ struct GroupForces {
     std::vector<std::uint32_t> atoms;  // on which anything acts, rising
 };
 
-// Pairs by the kernel, of those that are listed; `groups` has a number for each atom.
+// Pairs by the kernel, of those that are listed; `groups` has a number for each atom. Where the
+// list ends at a cutoff, only pairs are sure to be there that were `skin` (Å) beyond it or nearer.
 GroupForces build_fast_group_forces(const Topology& topology, const FastAtoms& atoms,
-                                    const FastPairs& pairs, std::span<const std::uint32_t> groups);
+                                    const FastPairs& pairs, std::span<const std::uint32_t> groups,
+                                    std::span<const Vec3> positions, double skin);
 
 // All pairs in double: those of `list`, or without one all that the topology does not exclude.
 GroupForces build_group_forces(const Topology& topology, const PairList* list,

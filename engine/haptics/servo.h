@@ -25,6 +25,8 @@ struct ServoSettings {
 
 // Everything that one tick leaves to the next.
 struct ServoState {
+    ServoState() { under_way.fill(Vec3::Zero()); }
+
     // clutch
     Vec3 handle_m = Vec3::Zero();         // last valid position
     Vec3 travel_m = Vec3::Zero();         // handle travel outside of the clutch
@@ -37,7 +39,7 @@ struct ServoState {
     double model_age_s = 0;  // since it came
     GuardedState guarded;
     // sending
-    std::array<Vec3, max_servo_delay_ticks + 1> under_way{};  // ring of forces, by tick
+    std::array<Vec3, max_servo_delay_ticks + 1> under_way;  // ring of forces, by tick
     std::uint64_t tick = 0;
     // safety
     SafetyState safety;

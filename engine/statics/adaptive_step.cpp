@@ -27,6 +27,18 @@ double find_rms(const std::vector<Vec3>& forces) {
 
 // ---- forces ----------------------------------------------------------------------------------
 
+// Of atoms that have moved last.
+bool are_near(const AdaptiveStatics& statics, const TorsionState& state,
+              const std::vector<Vec3>& places, double most) {
+    for (std::size_t c = 0; c < statics.clusters.clusters.size(); ++c) {
+        if (statics.is_moved[c] == 0) continue;
+        for (const std::uint32_t i : atoms_of(statics.clusters, c)) {
+            if (!((state.positions[i] - places[i]).squaredNorm() <= most * most)) return false;
+        }
+    }
+    return true;
+}
+
 bool is_list_outdated(const AdaptiveSettings& settings, const TorsionState& state,
                       const AdaptiveStatics& statics) {
     const ForceSettings& forces = settings.step.forces;
@@ -34,14 +46,15 @@ bool is_list_outdated(const AdaptiveSettings& settings, const TorsionState& stat
     const std::vector<Vec3>& listed =
         forces.fast ? statics.memory.fast_pairs.list.positions : statics.memory.list.positions;
     // A step must not leave the list's reach.
-    const double most = 0.5 * forces.skin - settings.step.largest_move;
-    for (std::size_t c = 0; c < statics.clusters.clusters.size(); ++c) {
-        if (statics.is_moved[c] == 0) continue;
-        for (const std::uint32_t i : atoms_of(statics.clusters, c)) {
-            if (!((state.positions[i] - listed[i]).squaredNorm() <= most * most)) return true;
-        }
-    }
-    return false;
+    return !are_near(statics, state, listed, 0.5 * forces.skin - settings.step.largest_move);
+}
+
+// Whether pairs between clusters may be missing after a move by `room`, Å.
+bool are_tiles_outdated(const AdaptiveSettings& settings, const TorsionState& state,
+                        const AdaptiveStatics& statics, double room) {
+    const ForceSettings& forces = settings.step.forces;
+    return is_fast(forces) && has_end(forces.nonbonded) &&
+           !are_near(statics, state, statics.clustered, 0.5 * statics.tile_skin - room);
 }
 
 // The tether's part of the forces, where they are wanted on atoms.
@@ -117,12 +130,16 @@ void rebuild_clusters(const TorsionModel& model, const AdaptiveSettings& setting
 
     const ForceSettings& forces = settings.step.forces;
     const std::vector<std::uint32_t> groups = find_groups(model, statics);
-    statics.across = is_fast(forces)
-                         ? build_fast_group_forces(model.topology, model.fast.atoms,
-                                                   statics.memory.fast_pairs, groups)
-                         : build_group_forces(
-                               model.topology,
-                               has_end(forces.nonbonded) ? &statics.memory.list : nullptr, groups);
+    // A hand that goes fast has room for a few of its moves.
+    statics.tile_skin = std::min(forces.skin, settings.tile_skin + 4 * statics.shift);
+    statics.clustered = state.positions;
+    statics.across =
+        is_fast(forces)
+            ? build_fast_group_forces(model.topology, model.fast.atoms, statics.memory.fast_pairs,
+                                      groups, state.positions, statics.tile_skin)
+            : build_group_forces(model.topology,
+                                 has_end(forces.nonbonded) ? &statics.memory.list : nullptr,
+                                 groups);
     const EnergyTerms all = state.terms;
     statics.rounded_force = std::max(statics.rounded_force, find_rms(state.forces));
     update_across(model, settings, state, statics, statics.across_forces);
@@ -199,7 +216,9 @@ bool is_renewal_due(const AdaptiveSettings& settings, const TorsionState& state,
     if (is_renewal_due(settings, state, statics)) return renew(model, settings, state, statics);
     const std::vector<std::uint8_t> before = statics.selection.is_active;
     choose_joints(model, settings, state, statics);
-    if (statics.selection.is_active != before) rebuild_clusters(model, settings, state, statics);
+    if (statics.selection.is_active != before ||
+        are_tiles_outdated(settings, state, statics, settings.step.largest_move))
+        rebuild_clusters(model, settings, state, statics);
     return true;
 }
 
@@ -374,6 +393,7 @@ AdaptiveStatics build_adaptive_statics(const TorsionModel& model) {
 
 void shift_base(const TorsionModel& model, std::size_t molecule, const Vec3& by,
                 TorsionState& state, AdaptiveStatics& statics) noexcept {
+    statics.shift = by.norm();
     if (statics.is_guided[molecule] == 0) {
         // Until now it was at rest against others.
         statics.is_guided[molecule] = 1;
@@ -396,7 +416,8 @@ void shift_base(const TorsionModel& model, std::size_t molecule, const Vec3& by,
 
 bool update_adaptive_forces(const TorsionModel& model, const AdaptiveSettings& settings,
                             TorsionState& state, AdaptiveStatics& statics) {
-    if (!statics.is_built || is_list_outdated(settings, state, statics))
+    if (!statics.is_built || is_list_outdated(settings, state, statics) ||
+        are_tiles_outdated(settings, state, statics, 0))
         return renew(model, settings, state, statics);
     update_across(model, settings, state, statics, statics.across_forces);
     return std::isfinite(state.energy());
@@ -413,6 +434,9 @@ AdaptiveReport step_adaptive(const TorsionModel& model, const AdaptiveSettings& 
         report.is_finite = renew(model, settings, state, statics);
     } else if (is_choice_due(settings, statics)) {
         report.is_finite = choose_anew(model, settings, state, statics);
+    } else if (are_tiles_outdated(settings, state, statics, settings.step.largest_move)) {
+        complete_forces(model, statics, state);
+        rebuild_clusters(model, settings, state, statics);
     }
     if (!report.is_finite) return result;
     ++statics.steps_since_choice;

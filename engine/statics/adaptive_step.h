@@ -23,6 +23,9 @@ struct AdaptiveSettings {
     MetricWeight weight = MetricWeight::Plain;
     std::vector<double> factors;    // as in MetricWeights
     std::size_t choose_every = 10;  // steps, above 0
+    // Å; of fast pairs between clusters, found again when an atom has moved by about half of it.
+    // Less is less work for each step and more often work in between.
+    double tile_skin = 0.6;
     // Choices between two sums over everything, which take away what single precision has rounded.
     std::size_t renew_every = 32;  // above 0
 };
@@ -64,6 +67,9 @@ struct AdaptiveStatics {
     std::vector<std::uint8_t> is_moved;  // of each cluster
     // The same since the caller wrote 0 or clusters were chosen; for those who keep copies.
     std::vector<std::uint8_t> has_moved;
+    std::vector<Vec3> clustered;  // positions when clusters were built
+    double tile_skin = 0;         // Å, that `across` was built with
+    double shift = 0;             // Å, the newest by hand
     std::vector<Vec3> trial_forces;
     std::vector<Vec3> positions;  // before it, of atoms in clusters that move
     HybridState start;            // before it: frames, wrenches and guides

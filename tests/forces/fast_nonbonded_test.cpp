@@ -297,6 +297,40 @@ TEST_CASE("the list is updated when outdated, and not before", "[forces][fast]")
     CHECK(pairs.replaced.size() < 900);
 }
 
+TEST_CASE("what is near of a list is found again before it is outdated", "[forces][fast]") {
+    const Topology topology = build_salt(300);
+    std::mt19937 random(8);
+    std::vector<Vec3> positions = test::random_positions(random, 300, 16, 2.2);
+    const FastAtoms atoms = build_fast_atoms(topology);
+    const NonbondedSettings settings{.electrostatics = ElectrostaticCutoff::Switch,
+                                     .van_der_waals = VanDerWaalsCutoff::Switch,
+                                     .switch_from = 4.5,  // so that no near pair is missed
+                                     .cutoff = 5};
+    std::normal_distribution<double> velocity(0, 0.015);
+    std::vector<Vec3> moves;
+    for (int i = 0; i < 300; ++i)
+        moves.emplace_back(velocity(random), velocity(random), velocity(random));
+    FastPairs pairs;
+    std::size_t found = 0;
+    Vec3 last = Vec3::Zero();
+
+    for (int step = 0; step < 60; ++step) {
+        for (std::size_t i = 0; i < 300; ++i) positions[i] += (step < 40 ? 1 : -1) * moves[i];
+        std::vector<Vec3> forces(300, Vec3::Zero());
+        const NonbondedEnergy energy = add_fast_nonbonded_forces(
+            topology, atoms, settings, 2, positions, pairs, forces, PairResult::ForcesAndEnergies);
+        Worst worst;
+        check_against(expect(topology, settings, positions), energy, forces, worst);
+        if (pairs.near.selected.empty() || pairs.near.selected[0] == last) continue;
+        ++found;
+        last = pairs.near.selected[0];
+    }
+
+    CHECK(found > 2);
+    CHECK(found < 30);
+    CHECK(pairs.near.tiles.skin == 0.6);
+}
+
 TEST_CASE("what single precision cannot do is the twin's to the bit", "[forces][fast]") {
     const Topology topology = build_salt(30);
     std::mt19937 random(6);

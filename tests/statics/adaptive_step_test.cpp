@@ -40,8 +40,9 @@ AdaptiveSettings settings_of(std::size_t active, bool fast, bool ends) {
         forces.nonbonded.electrostatics = ElectrostaticCutoff::ForceSwitch;
         forces.nonbonded.van_der_waals = VanDerWaalsCutoff::ForceSwitch;
         forces.nonbonded.cutoff = 9;
-        forces.nonbonded.switch_from = 7;
-        forces.skin = 0.6;  // so that lists are built often
+        forces.nonbonded.switch_from = 8.8;  // so that no pair is missed
+        forces.skin = 0.8;  // so that lists are built often, and cut down in between
+        settings.tile_skin = 0.2;
     }
     return settings;
 }

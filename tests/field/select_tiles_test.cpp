@@ -1,4 +1,4 @@
-#include "field/group_tiles.h"
+#include "field/select_tiles.h"
 
 #include <algorithm>
 #include <array>
@@ -26,7 +26,7 @@ std::vector<AtomPair> sorted_pairs(const ClusterList& list) {
 
 }  // namespace
 
-TEST_CASE("tiles between groups hold each pair of two groups once", "[field][list]") {
+TEST_CASE("selected tiles hold each near pair of two groups once", "[field][list]") {
     const std::uint32_t count = GENERATE(3U, 8U, 61U, 200U);
     const int group_count = GENERATE(1, 2, 9, 50);
     const bool ends = GENERATE(false, true);
@@ -46,7 +46,11 @@ TEST_CASE("tiles between groups hold each pair of two groups once", "[field][lis
     const ClusterList whole = ends ? build_cluster_list(places, left_out, 5, 1)
                                    : build_full_cluster_list(count, left_out);
 
-    const ClusterList selected = select_tiles_between_groups(whole, groups);
+    // Since then all have moved a little.
+    const double skin = GENERATE(0.2, 1.0);
+    for (Vec3& at : places) at += 0.02 * Vec3(place(random), place(random), place(random));
+
+    const ClusterList selected = select_tiles(whole, groups, places, skin);
 
     const std::vector<AtomPair> all = sorted_pairs(whole), found = sorted_pairs(selected);
     CHECK(std::ranges::adjacent_find(found) == found.end());
@@ -55,9 +59,14 @@ TEST_CASE("tiles between groups hold each pair of two groups once", "[field][lis
     std::ranges::set_difference(all, found, std::back_inserter(left));
     CHECK(std::ranges::all_of(left, [&](const AtomPair& p) {
         return groups[p[0]] == groups[p[1]] ||
-               // Of a tile whose rows and columns are exchanged, others are too far.
-               (ends && (places[p[0]] - places[p[1]]).norm() > 6);
+               (ends && (places[p[0]] - places[p[1]]).norm() >= 5 + skin);
     }));
     if (group_count == 1) CHECK(selected.clusters() == 0);
+    if (ends && count == 200) CHECK(found.size() < all.size());
+    const std::vector<AtomPair> of_all_groups = sorted_pairs(select_tiles(whole, {}, places, skin));
+    std::erase_if(left, [&](const AtomPair& p) {
+        return (places[p[0]] - places[p[1]]).norm() >= 5 + skin && ends;
+    });
+    CHECK(std::ranges::includes(of_all_groups, left));
     CHECK(selected.positions.empty());
 }
