@@ -127,6 +127,13 @@ void check_against(const Expected& expected, const NonbondedEnergy& energy,
     worst.force = std::max(worst.force, force);
 }
 
+void check_forces(const Expected& expected, const std::vector<Vec3>& forces) {
+    for (std::size_t i = 0; i < forces.size(); ++i) {
+        CHECK((forces[i] - expected.forces[i]).norm() <=
+              2e-5 * std::max(expected.rms_force, expected.forces[i].norm()));
+    }
+}
+
 void check_positions(const Topology& topology, const FastAtoms& atoms,
                      std::span<const Vec3> positions, const std::vector<std::string>& kinds,
                      Worst& worst) {
@@ -276,11 +283,7 @@ TEST_CASE("the list is updated when outdated, and not before", "[forces][fast]")
         std::vector<Vec3> forces(90, Vec3::Zero());
         add_fast_nonbonded_forces(topology, atoms, settings, skin, positions, pairs, forces,
                                   PairResult::Forces);
-        const Expected expected = expect(topology, settings, positions);
-        for (std::size_t i = 0; i < 90; ++i) {
-            CHECK((forces[i] - expected.forces[i]).norm() <=
-                  2e-5 * std::max(expected.rms_force, expected.forces[i].norm()));
-        }
+        check_forces(expect(topology, settings, positions), forces);
     }
 
     // 3.9 Å in pieces of 0.5 to 0.6 Å.
@@ -317,10 +320,9 @@ TEST_CASE("what is near of a list is found again before it is outdated", "[force
     for (int step = 0; step < 60; ++step) {
         for (std::size_t i = 0; i < 300; ++i) positions[i] += (step < 40 ? 1 : -1) * moves[i];
         std::vector<Vec3> forces(300, Vec3::Zero());
-        const NonbondedEnergy energy = add_fast_nonbonded_forces(
-            topology, atoms, settings, 2, positions, pairs, forces, PairResult::ForcesAndEnergies);
-        Worst worst;
-        check_against(expect(topology, settings, positions), energy, forces, worst);
+        add_fast_nonbonded_forces(topology, atoms, settings, 2, positions, pairs, forces,
+                                  PairResult::Forces);
+        check_forces(expect(topology, settings, positions), forces);
         if (pairs.near.selected.empty() || pairs.near.selected[0] == last) continue;
         ++found;
         last = pairs.near.selected[0];
