@@ -16,6 +16,13 @@ namespace {
 
 constexpr std::uint32_t absent = no_atom;
 
+// Bit r becomes bit 8 r.
+std::uint64_t spread(std::uint64_t rows) noexcept {
+    rows = (rows | rows << 28) & 0x0000000f0000000f;
+    rows = (rows | rows << 14) & 0x0003000300030003;
+    return (rows | rows << 7) & 0x0101010101010101;
+}
+
 // The groups of a cluster's atoms; places without an atom have that of the first.
 struct ClusterGroups {
     std::array<std::uint32_t, cluster_size> of;
@@ -31,6 +38,7 @@ struct ClusterGroups {
     std::uint64_t pairs_unlike(const ClusterGroups& columns) const noexcept {
         constexpr std::uint64_t every_row = 0x0101010101010101;
         if (!is_mixed) return columns.rows_unlike(of[0]) * every_row;
+        if (!columns.is_mixed) return spread(rows_unlike(columns.of[0])) * 0xff;
         std::uint64_t pairs = 0;
         for (std::size_t row = 0; row < cluster_size; ++row) {
             pairs |= std::uint64_t{columns.rows_unlike(of[row])} << (row * cluster_size);
