@@ -34,8 +34,9 @@ std::string StudyCourse::text() const {
                    "until then stays in the table.\n\n"
                    "Press Enter if you agree and want to take part, Esc if not.";
         case Stage::Practice:
-            return "Practice. Hold Space and move the mouse: the molecule comes along. Draw it "
-                   "near: first it is pulled in, then pushed back. Between is the place where it "
+            return "Practice. Move the handle (a mouse: hold Space and move it): the molecule "
+                   "comes along. Draw it near: first it is pulled in, then pushed back. Between is "
+                   "the place where it "
                    "feels nothing. Take your time; nothing is written down.\n\n"
                    "Press Enter when you know your way.";
         case Stage::Break:

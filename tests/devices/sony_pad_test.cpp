@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
+#include <cstddef>
+#include <cstdint>
 #include <numbers>
 #include <random>
 
@@ -217,7 +219,7 @@ TEST_CASE("pads are known by maker, number and usage", "[devices][sony-pad]") {
 TEST_CASE("a million random reports of pads ask for no more than they can", "[devices][sony-pad]") {
     std::mt19937 random(11);
     const double fastest_turn = 35 * std::sqrt(3.0) + 2;  // 2000 degrees a second, three times
-    int understood = 0;
+    int understood = 0, long_by_bluetooth = 0;
 
     for (int i = 0; i < 1'000'000; ++i) {
         const PadCase& pad = pad_cases[random() % pad_cases.size()];
@@ -235,9 +237,13 @@ TEST_CASE("a million random reports of pads ask for no more than they can", "[de
         bytes[0] = numbers[random() % numbers.size()];
         std::size_t size = sizes[random() % sizes.size()];
         if (random() % 4 == 0) size = random() % (bytes.size() + 1);
+        Bytes report(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
+        const bool is_sealed = pad.is_bluetooth && size > 4 && random() % 2 == 0;
+        if (is_sealed) report = test::sealed(report, 0xa1);
         HidInput input;
-        const bool is_one = protocol.decode(HidBytes(bytes).first(size), input);
+        const bool is_one = protocol.decode(report, input);
         understood += is_one ? 1 : 0;
+        long_by_bluetooth += is_one && is_sealed && size == 78 ? 1 : 0;
         const double speed = input.rate.m_per_s.cwiseAbs().maxCoeff();
         const double turn = input.rate.rad_per_s.norm();
         if (!(speed <= fastest_stick && turn <= fastest_turn && input.buttons < 4))
@@ -245,4 +251,5 @@ TEST_CASE("a million random reports of pads ask for no more than they can", "[de
     }
 
     CHECK(understood > 40'000);
+    CHECK(long_by_bluetooth > 5'000);
 }

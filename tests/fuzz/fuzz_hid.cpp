@@ -2,6 +2,7 @@
 #include "devices/sony_pad.h"
 #include "devices/space_mouse.h"
 #include "tests/fuzz/expect.h"
+#include "tests/support/hid_reports.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -37,6 +38,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             SonyPadProtocol pad(model);
             pad.use_bluetooth(is_bluetooth);
             expect_within_limits(pad, report);
+            if (!is_bluetooth || size <= 4) continue;
+            const test::Bytes sealed = test::sealed({data, data + size}, 0xa1);
+            expect_within_limits(pad, sealed);
         }
     }
     return 0;
