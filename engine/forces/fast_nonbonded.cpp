@@ -132,6 +132,7 @@ bool update_near(const Topology& topology, const FastAtoms& atoms,
     near.workspace =
         build_pair_workspace(near.tiles, {topology.charge, atoms.sqrt_epsilon, atoms.half_rmin},
                              std::move(near.workspace));
+    near.workspace.origin = pairs.workspace.origin;
     near.selected.assign(positions.begin(), positions.end());
     return true;
 }

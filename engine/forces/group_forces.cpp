@@ -93,6 +93,7 @@ GroupForces build_fast_group_forces(const Topology& topology, const FastAtoms& a
     result.tiles = select_tiles(pairs.list, groups, positions, skin);
     result.workspace =
         build_pair_workspace(result.tiles, {topology.charge, atoms.sqrt_epsilon, atoms.half_rmin});
+    result.workspace.origin = pairs.workspace.origin;
     for (const std::uint32_t atom : result.tiles.atoms) {
         if (atom != no_atom) selector.use(atom);
     }

@@ -630,10 +630,9 @@ void copy_positions(Flexible& flexible, std::vector<Vec3>& positions) {
     }
     FewActive& few = *flexible.adaptive;
     AdaptiveStatics& statics = few.statics;
-    const std::size_t changes = statics.choices + statics.renewals;
-    if (!statics.is_built || few.copied != changes) {
+    if (!statics.is_built || few.copied != statics.rebuilds) {
         positions = flexible.state.positions;
-        few.copied = changes;
+        few.copied = statics.rebuilds;
     } else {
         for (std::size_t c = 0; c < statics.has_moved.size(); ++c) {
             if (statics.has_moved[c] == 0) continue;

@@ -50,7 +50,7 @@ struct FewActive {
     struct {
         Vec3 shift = Vec3::Zero(), place = Vec3::Zero();  // Å, of its base, of its spring
     } held_before;           // where the last step left what is in hand
-    std::size_t copied = 0;  // choices and renewals when positions were copied in full
+    std::size_t copied = 0;  // rebuilds of the clusters when positions were copied in full
 };
 
 // Owned by the simulation; atoms are those of its table.

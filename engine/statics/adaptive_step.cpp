@@ -33,7 +33,7 @@ bool are_near(const AdaptiveStatics& statics, const TorsionState& state,
     for (std::size_t c = 0; c < statics.clusters.clusters.size(); ++c) {
         if (statics.is_moved[c] == 0) continue;
         for (const std::uint32_t i : atoms_of(statics.clusters, c)) {
-            if (!((state.positions[i] - places[i]).squaredNorm() <= most * most)) return false;
+            if (!((state.positions[i] - places[i]).norm() <= most)) return false;
         }
     }
     return true;
@@ -131,7 +131,9 @@ void rebuild_clusters(const TorsionModel& model, const AdaptiveSettings& setting
     const ForceSettings& forces = settings.step.forces;
     const std::vector<std::uint32_t> groups = find_groups(model, statics);
     // A hand that goes fast has room for a few of its moves.
-    statics.tile_skin = std::min(forces.skin, settings.tile_skin + 4 * statics.shift);
+    statics.tile_skin = std::min(
+        forces.skin, settings.tile_skin + 2 * settings.step.largest_move + 4 * statics.shift);
+    ++statics.rebuilds;
     statics.clustered = state.positions;
     statics.across =
         is_fast(forces)

@@ -23,8 +23,9 @@ struct AdaptiveSettings {
     MetricWeight weight = MetricWeight::Plain;
     std::vector<double> factors;    // as in MetricWeights
     std::size_t choose_every = 10;  // steps, above 0
-    // Å; of fast pairs between clusters, found again when an atom has moved by about half of it.
-    // Less is less work for each step and more often work in between.
+    // Å, beside what a step and the hand need; of fast pairs between clusters, found again when an
+    // atom has moved by about half of it. Less is less work for each step and more often work in
+    // between.
     double tile_skin = 0.6;
     // Choices between two sums over everything, which take away what single precision has rounded.
     std::size_t renew_every = 32;  // above 0
@@ -45,7 +46,7 @@ struct AdaptiveStatics {
     AssemblyState whole;
     AccelerationMetric metric;
     JointSelection selection;
-    std::size_t steps_since_choice = 0, choices = 0, renewals = 0;
+    std::size_t steps_since_choice = 0, choices = 0, renewals = 0, rebuilds = 0;
 
     // The clusters, and what acts between them.
     HybridTree clusters;
@@ -65,7 +66,8 @@ struct AdaptiveStatics {
     std::vector<double> turns;           // of each cluster's joint, rad
     std::vector<Vec6> base_moves;        // of each molecule
     std::vector<std::uint8_t> is_moved;  // of each cluster
-    // The same since the caller wrote 0 or clusters were chosen; for those who keep copies.
+    // The same since the caller wrote 0 or clusters were built (`rebuilds`); for those who keep
+    // copies.
     std::vector<std::uint8_t> has_moved;
     std::vector<Vec3> clustered;  // positions when clusters were built
     double tile_skin = 0;         // Å, that `across` was built with

@@ -7,6 +7,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -99,6 +100,8 @@ TEST_CASE("work where something moves agrees with work on everything", "[statics
     if (bases[0] == Held) state.tether = Tether{{50, 51, 52}, 20, state.positions[51]};
     CHECK(update_adaptive_forces(model, settings, state, statics));
     double largest = std::abs(state.energy());
+    std::vector<Vec3> copied = state.positions;
+    std::size_t rebuilds = statics.rebuilds;
 
     for (int i = 0; i < 60; ++i) {
         if (i % 3 == 0) {
@@ -111,6 +114,15 @@ TEST_CASE("work where something moves agrees with work on everything", "[statics
         largest = std::max(largest, std::abs(before));
         const AdaptiveReport report = step_adaptive(model, settings, state, statics);
         REQUIRE(report.step.is_finite);
+        if (statics.rebuilds != rebuilds) copied = state.positions;
+        for (std::size_t c = 0; c < statics.has_moved.size(); ++c) {
+            if (statics.has_moved[c] == 0) continue;
+            for (const std::uint32_t a : atoms_of(statics.clusters, c))
+                copied[a] = state.positions[a];
+        }
+        std::ranges::fill(statics.has_moved, std::uint8_t{0});
+        rebuilds = statics.rebuilds;
+        CHECK(copied == state.positions);
         CHECK(report.step.largest_move <= settings.step.largest_move);
         CHECK(find_active_freedom(model, statics) <= active);
         // To rounding, where everything was summed anew.
