@@ -3,6 +3,7 @@
 #include "assembly/bodies.h"
 #include "formats/psf.h"
 #include "tests/support/load_error_of.h"
+#include "tests/support/paths.h"
 
 #include <fmt/format.h>
 #include <catch2/catch.hpp>
@@ -71,7 +72,7 @@ std::map<JointKind, int> count_kinds(const Joints& joints) {
 }
 
 Connectivity read_hiv(const char* file) {
-    return read_psf(std::filesystem::path(PALPA_ROOT) / "scenes/hiv" / file);
+    return read_psf(test::in_project(std::string("scenes/hiv/") + file));
 }
 
 // With the atoms of a segment a second time.

@@ -9,6 +9,7 @@
 #include "formats/psf.h"
 #include "formats/structure.h"
 #include "molecule/match_atoms.h"
+#include "tests/support/paths.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -62,7 +63,7 @@ Whole row_of_eight() {
 }
 
 Whole read_hiv() {
-    const std::filesystem::path folder = std::filesystem::path(PALPA_ROOT) / "scenes/hiv";
+    const std::filesystem::path folder = test::in_project("scenes/hiv");
     Whole hiv;
     hiv.connectivity = read_psf(folder / "system.psf");
     hiv.positions = match_positions(hiv.connectivity, read_structure(folder / "system.crd"));
@@ -227,7 +228,7 @@ TEST_CASE("a sphere of HIV protease has the energy of its terms in the whole", "
     CHECK((most > hiv.positions.size()) == (cut.atoms.size() == hiv.positions.size()));
     CHECK_THAT(energy_of(cut), WithinRel(sum_directly(hiv, cut.atoms), 1e-11));
     // The same terms as those that the parameters give to what is bonded in the cut.
-    const std::vector<std::filesystem::path> files{PALPA_ROOT "/scenes/hiv/system.prm"};
+    const std::vector<std::filesystem::path> files{test::in_project("scenes/hiv/system.prm")};
     CutSystem anew = cut;
     anew.topology = build_topology(cut.connectivity, read_force_field(files));
     CHECK_THAT(energy_of(anew), WithinRel(energy_of(cut), 1e-11));

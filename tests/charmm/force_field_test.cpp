@@ -2,6 +2,7 @@
 
 #include "tests/support/force_field_of.h"
 #include "tests/support/load_error_of.h"
+#include "tests/support/paths.h"
 #include "tests/support/temporary_folder.h"
 
 #include <fmt/format.h>
@@ -254,7 +255,7 @@ TEST_CASE("CHARMM's own file of water and ions gives TIP3P's published numbers",
 }
 
 TEST_CASE("the scene's own TIP3P file says the same as CHARMM's", "[charmm][force_field]") {
-    const std::filesystem::path file = PALPA_ROOT "/scenes/water/tip3p.str";
+    const std::filesystem::path file = test::in_project("scenes/water/tip3p.str");
 
     const ForceField force_field = read_force_field(std::array{file});
 

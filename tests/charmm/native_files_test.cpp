@@ -10,6 +10,7 @@
 #include "formats/pdb.h"
 #include "formats/psf.h"
 #include "tests/support/native_case.h"
+#include "tests/support/paths.h"
 #include "tests/support/reference_case.h"
 
 #include <fmt/format.h>
@@ -185,7 +186,7 @@ void check_reference(const fs::path& folder, const std::string& name, const Forc
 
 TEST_CASE("a tetrapeptide typed from its part of CHARMM36m has its reference energies",
           "[charmm][native]") {
-    const fs::path folder = PALPA_TEST_DATA;
+    const fs::path folder = test::test_data("");
 
     check_reference(folder, "tetra_aera_c36m",
                     test::read_charmm(folder, {"aera_c36m.rtf", "aera_c36m.prm"}));

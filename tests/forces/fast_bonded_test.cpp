@@ -4,6 +4,7 @@
 #include "field/processor.h"
 #include "forces/bonded.h"
 #include "tests/support/check_forces.h"
+#include "tests/support/paths.h"
 #include "tests/support/reference_case.h"
 
 #include <algorithm>
@@ -65,7 +66,7 @@ void check_against_twin(const Topology& topology, std::span<const Vec3> position
 
 TEST_CASE("a peptide's bonded terms are the twin's, at rest and torn apart", "[forces][bonded]") {
     const std::string name = GENERATE("ala_dipeptide", "tetra_aera_c36m");
-    const std::string path = PALPA_TEST_DATA "/" + name;
+    const std::string path = test::test_data(name);
     const test::ReferenceCase reference = test::read_reference_case(path + ".ff.json");
     std::vector<Vec3> positions = test::read_reference_frames(path + ".frames.json")[0].positions;
     const double shake = GENERATE(0.0, 0.3, 1.5);  // Å

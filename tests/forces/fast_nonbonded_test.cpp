@@ -5,6 +5,7 @@
 #include "forces/force_field.h"
 #include "forces/pair_law.h"
 #include "tests/support/check_forces.h"
+#include "tests/support/paths.h"
 #include "tests/support/reference_case.h"
 #include "tests/support/shared_data.h"
 
@@ -230,7 +231,7 @@ Topology build_salt(std::size_t count) {
 
 TEST_CASE("single precision agrees with the twin and the held forces of small cases",
           "[forces][fast]") {
-    const fs::path folder(PALPA_TEST_DATA);
+    const fs::path folder(test::test_data(""));
     check_case(folder, "ala_dipeptide", "frames");
     check_case(folder, "tetra_aera_c36m", "frames");
 }

@@ -5,6 +5,7 @@
 #include "forces/cmap.h"
 #include "formats/crd.h"
 #include "tests/support/check_forces.h"
+#include "tests/support/paths.h"
 #include "tests/support/reference_case.h"
 
 #include <fmt/format.h>
@@ -148,7 +149,7 @@ void check_case(const fs::path& folder, const std::string& name) {
 
 TEST_CASE("alanine dipeptide and a tetrapeptide have OpenMM's energies and forces",
           "[forces][reference]") {
-    check_case(PALPA_TEST_DATA, GENERATE("ala_dipeptide", "tetra_aera_c36m"));
+    check_case(test::test_data(""), GENERATE("ala_dipeptide", "tetra_aera_c36m"));
 }
 
 TEST_CASE("every reference case has OpenMM's energies and forces", "[forces][reference]") {
@@ -217,9 +218,9 @@ TEST_CASE("crambin has the energies that CHARMM prints, with CHARMM's cutoffs",
 TEST_CASE("a peptide's forces are the derivative of its energy, however it is summed",
           "[forces][reference]") {
     const test::ReferenceCase reference =
-        test::read_reference_case(PALPA_TEST_DATA "/ala_dipeptide.ff.json");
+        test::read_reference_case(test::test_data("ala_dipeptide.ff.json"));
     const test::ReferenceFrame frame =
-        test::read_reference_frames(PALPA_TEST_DATA "/ala_dipeptide.frames.json").front();
+        test::read_reference_frames(test::test_data("ala_dipeptide.frames.json")).front();
     const NonbondedSettings settings =
         GENERATE(NonbondedSettings{}, NonbondedSettings{.distance_dielectric = true},
                  NonbondedSettings{.electrostatics = ElectrostaticCutoff::ForceSwitch,
@@ -237,7 +238,7 @@ TEST_CASE("a peptide's forces are the derivative of its energy, however it is su
 TEST_CASE("a peptide put onto one point or one line has finite energies and forces",
           "[forces][reference]") {
     const test::ReferenceCase reference =
-        test::read_reference_case(PALPA_TEST_DATA "/ala_dipeptide.ff.json");
+        test::read_reference_case(test::test_data("ala_dipeptide.ff.json"));
     std::vector<Vec3> positions(reference.topology.size(), Vec3::Zero());
     if (GENERATE(false, true)) {
         for (std::size_t i = 0; i < positions.size(); ++i) {

@@ -2,6 +2,7 @@
 
 #include "forces/force_field.h"
 #include "tests/support/check_forces.h"
+#include "tests/support/paths.h"
 #include "tests/support/reference_case.h"
 
 #include <array>
@@ -53,8 +54,8 @@ struct Peptide {
 
 // Shaken by up to `noise` Å along each axis.
 Peptide read_peptide(double noise) {
-    Peptide peptide{test::read_reference_case(PALPA_TEST_DATA "/tetra_aera_c36m.ff.json").topology,
-                    test::read_reference_frames(PALPA_TEST_DATA "/tetra_aera_c36m.frames.json")
+    Peptide peptide{test::read_reference_case(test::test_data("tetra_aera_c36m.ff.json")).topology,
+                    test::read_reference_frames(test::test_data("tetra_aera_c36m.frames.json"))
                         .front()
                         .positions};
     std::mt19937 random(43);

@@ -2,6 +2,7 @@
 
 #include "forces/force_field.h"
 #include "tests/support/check_forces.h"
+#include "tests/support/paths.h"
 #include "tests/support/reference_case.h"
 
 #include <algorithm>
@@ -213,9 +214,9 @@ TEST_CASE("a list gives what all pairs with the cutoff give, by every function",
     const NonbondedSettings settings = ended(electrostatics, van_der_waals, distance, 6);
     if (find_problem(settings)) return;
     const test::ReferenceCase reference =
-        test::read_reference_case(PALPA_TEST_DATA "/tetra_aera_c36m.ff.json");
+        test::read_reference_case(test::test_data("tetra_aera_c36m.ff.json"));
     const std::vector<Vec3> positions =
-        test::read_reference_frames(PALPA_TEST_DATA "/tetra_aera_c36m.frames.json")
+        test::read_reference_frames(test::test_data("tetra_aera_c36m.frames.json"))
             .front()
             .positions;
 

@@ -1,6 +1,7 @@
 #include "formats/crd.h"
 
 #include "tests/support/load_error_of.h"
+#include "tests/support/paths.h"
 #include "tests/support/replaced.h"
 #include "tests/support/shared_data.h"
 #include "tests/support/temporary_folder.h"
@@ -91,7 +92,7 @@ TEST_CASE("a file from another system reads the same", "[formats][crd]") {
 }
 
 TEST_CASE("the water dimer of the scenes has TIP3P's shape", "[formats][crd]") {
-    const Structure dimer = read_crd(PALPA_ROOT "/scenes/water/dimer.crd");
+    const Structure dimer = read_crd(test::in_project("scenes/water/dimer.crd"));
 
     REQUIRE(dimer.positions.size() == 6);
     for (const std::size_t oxygen : {0, 3}) {

@@ -6,6 +6,7 @@
 #include "scene/read_scene.h"
 #include "scene/write_scene.h"
 #include "tests/fuzz/expect.h"
+#include "tests/support/paths.h"
 
 #include <array>
 #include <cmath>
@@ -24,7 +25,7 @@ namespace {
 std::optional<SceneDescription> read_or_refuse(std::string_view text,
                                                std::span<const std::string> settings) {
     try {
-        return parse_scene(text, PALPA_ROOT "/scenes/water/fuzz.toml", settings);
+        return parse_scene(text, test::in_project("scenes/water/fuzz.toml"), settings);
     } catch (const LoadError&) {
         return std::nullopt;
     }

@@ -11,6 +11,7 @@
 #include "simulation/step.h"
 #include "tests/hard/ways_of_stepping.h"
 #include "tests/support/load_error_of.h"
+#include "tests/support/paths.h"
 #include "tests/support/replaced.h"
 #include "tests/support/temporary_folder.h"
 #include "tools/run.h"
@@ -31,8 +32,8 @@ using test::WayOfStepping;
 
 namespace {
 
-const std::filesystem::path peptides = PALPA_TEST_DATA "/two_peptides";
-const std::filesystem::path protease = PALPA_ROOT "/scenes/hiv/flexible.toml";
+const std::filesystem::path peptides = test::test_data("two_peptides");
+const std::filesystem::path protease = test::in_project("scenes/hiv/flexible.toml");
 
 // Å, from the molecule in the hand to the other one.
 const Vec3 onto_the_other(-11, -2, -1);

@@ -1,6 +1,7 @@
 #include "scene/read_scene.h"
 
 #include "tests/support/load_error_of.h"
+#include "tests/support/paths.h"
 #include "tests/support/temporary_folder.h"
 
 #include <fmt/format.h>
@@ -21,7 +22,7 @@ namespace fs = std::filesystem;
 namespace {
 
 // A file of this name need not exist, those that a scene names must.
-const std::string file = PALPA_ROOT "/scenes/water/test.toml";
+const std::string file = test::in_project("scenes/water/test.toml");
 
 // 16 lines, so that what is added stands from line 17 on.
 const std::string base = R"(title = "Two waters"
@@ -67,13 +68,13 @@ TEST_CASE("a scene says what it says, and defaults for the rest", "[scene][read]
     CHECK(scene.title == "Two waters");
     CHECK(scene.about.empty());
     REQUIRE(scene.force_field.files.size() == 1);
-    CHECK(scene.force_field.files[0] == fs::path(PALPA_ROOT) / "scenes/water/tip3p.str");
+    CHECK(scene.force_field.files[0] == test::in_project("scenes/water/tip3p.str"));
     CHECK(scene.force_field.coulomb_constant == 332.0716);
     REQUIRE(scene.molecules.size() == 2);
     CHECK(scene.molecules[0].name == "fixed");
     CHECK(scene.molecules[0].motion == Motion::Fixed);
     CHECK(scene.molecules[1].name == "moved");
-    CHECK(scene.molecules[1].structure == fs::path(PALPA_ROOT) / "scenes/water/dimer.crd");
+    CHECK(scene.molecules[1].structure == test::in_project("scenes/water/dimer.crd"));
     CHECK(scene.molecules[1].segment == "MOV");
     CHECK(scene.molecules[1].reference_atom == "OH2");
     CHECK(scene.molecules[1].motion == Motion::AlongX);
@@ -248,7 +249,7 @@ TEST_CASE("a number out of its range or not finite is told with the range", "[sc
 }
 
 TEST_CASE("a file that a scene names must be there", "[scene][errors]") {
-    const std::string folder = PALPA_ROOT "/scenes/water/";
+    const std::string folder = test::in_project("scenes/water/");
 
     CHECK_THAT(error_of(replaced(base, "tip3p.str", "tip4p.str")),
                StartsWith(at(3, 10) + "'force_field.files' names no file: " + folder +
@@ -453,7 +454,7 @@ TEST_CASE("what is wrong with a setting is told with the setting as place", "[sc
 
 TEST_CASE("a scene is a folder with its scene.toml, or a file", "[scene][read]") {
     const test::TemporaryFolder folder;
-    const fs::path water = PALPA_ROOT "/scenes/water";
+    const fs::path water = test::in_project("scenes/water");
     const std::string missing = (folder.path() / "missing").string();
 
     CHECK(read_scene(water).file == water / "scene.toml");

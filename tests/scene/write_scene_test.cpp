@@ -3,6 +3,7 @@
 #include "core/files.h"
 #include "scene/fields.h"
 #include "scene/read_scene.h"
+#include "tests/support/paths.h"
 
 #include <catch2/catch.hpp>
 #include <cstddef>
@@ -18,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const fs::path folder = PALPA_ROOT "/scenes/water";
+const fs::path folder = test::in_project("scenes/water");
 
 std::string formatted(const SceneDescription& scene) {
     return format_scene(
@@ -176,7 +177,7 @@ TEST_CASE("the list of fields names each key once, with its default and range", 
 }
 
 TEST_CASE("every field of a scene is documented", "[scene][fields]") {
-    const std::string readme = read_text_file(PALPA_ROOT "/scenes/README.md");
+    const std::string readme = read_text_file(test::in_project("scenes/README.md"));
 
     for (const FieldNote& field : list_fields()) {
         INFO("scenes/README.md lacks `" << field.key << "`");

@@ -3,6 +3,7 @@
 
 #include "core/draws.h"
 #include "haptics/gains.h"
+#include "tests/support/paths.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -19,7 +20,7 @@ constexpr double rest_angstrom = 2.7667, strongest_newton = 0.322e-9;
 // Neither friction nor a delay worth speaking of, and a hand that follows its way.
 ForcedChoiceOptions waters(Question question, std::vector<CouplingMode> modes) {
     ForcedChoiceOptions options;
-    options.study.scene = PALPA_ROOT "/scenes/water";
+    options.study.scene = test::in_project("scenes/water");
     options.study.settings = {"hand.grip=firm", "device.friction_N=0", "run.period_ms=1"};
     options.study.modes = std::move(modes);
     options.question = question;

@@ -6,6 +6,7 @@
 #include "session/run_headless.h"
 #include "simulation/simulation.h"
 #include "simulation/step.h"
+#include "tests/support/paths.h"
 #include "tools/run.h"
 
 #include <algorithm>
@@ -20,7 +21,7 @@ namespace {
 
 // Every servo tick of a scene, as `palpa run` plays it.
 std::vector<ServoTick> ticks_of(const std::string& path, const std::vector<std::string>& settings) {
-    const SceneDescription scene = read_scene(PALPA_ROOT "/scenes/hiv/" + path, settings);
+    const SceneDescription scene = read_scene(test::in_project("scenes/hiv/" + path), settings);
     Simulation simulation = load_simulation(scene);
     EmulatedOmni device(build_emulated_omni(scene, simulation));
     std::vector<ServoTick> ticks;
@@ -77,7 +78,7 @@ TEST_CASE("TL-3 brought from outside is attracted, meets the surface and leaves 
 TEST_CASE("in space the stiffest the hand feels is an eigenvalue, whatever its direction",
           "[session][coupling]") {
     const SceneDescription scene =
-        read_scene(PALPA_ROOT "/scenes/hiv", std::vector<std::string>{"mode=4"});
+        read_scene(test::in_project("scenes/hiv"), std::vector<std::string>{"mode=4"});
     const Simulation simulation = load_simulation(scene);
     const TouchModel rest = simulation.touch.model;
 
@@ -88,7 +89,7 @@ TEST_CASE("in space the stiffest the hand feels is an eigenvalue, whatever its d
     CHECK(stiffest.newton_per_metre < 2 * rest.stiffness_N_per_m * 0.38 / 2.2);
     CHECK(list_warnings(scene, simulation, {}).empty());
     const SceneDescription strong =
-        read_scene(PALPA_ROOT "/scenes/hiv", std::vector<std::string>{"mode=4", "A_f=3.8e9"});
+        read_scene(test::in_project("scenes/hiv"), std::vector<std::string>{"mode=4", "A_f=3.8e9"});
     CHECK(stiffest_place(strong, load_simulation(strong)).newton_per_metre ==
           Approx(10 * stiffest.newton_per_metre));
     CHECK(list_warnings(strong, load_simulation(strong), {}).size() == 1);

@@ -2,6 +2,7 @@
 
 #include "scene/read_scene.h"
 #include "simulation/simulation.h"
+#include "tests/support/paths.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -14,7 +15,7 @@ using namespace palpa;
 
 TEST_CASE("of a hand on a spring the journey is that of its residue", "[session][journey]") {
     Simulation simulation = load_simulation(read_scene(
-        PALPA_ROOT "/scenes/hiv/flexible.toml",
+        test::in_project("scenes/hiv/flexible.toml"),
         std::vector<std::string>{"grab.molecule=protease_b", "grab.atom=\"50\"",
                                  "molecules.inhibitor.motion=free", "statics.relax_steps=0"}));
     const AtomTable& atoms = simulation.atoms;

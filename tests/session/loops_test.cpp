@@ -1,5 +1,6 @@
 // The first of the loops that `palpa loops` plays, and that its bars can be missed.
 #include "tools/loops.h"
+#include "tests/support/paths.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -10,7 +11,7 @@ namespace {
 
 LoopOptions loops(std::size_t count, const std::vector<std::string>& settings = {}) {
     LoopOptions options;
-    options.scene = PALPA_ROOT "/scenes/water/space.toml";
+    options.scene = test::in_project("scenes/water/space.toml");
     options.settings = settings;
     options.count = count;
     return options;

@@ -3,6 +3,7 @@
 #include "core/files.h"
 #include "core/load_error.h"
 #include "core/text.h"
+#include "tests/support/paths.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/water_run.h"
 
@@ -25,7 +26,7 @@ Summary record(const fs::path& scene_path, const fs::path& folder,
     return run_headless(scene, simulation, device, {}, &recording, {});
 }
 
-const fs::path water = PALPA_ROOT "/scenes/water";
+const fs::path water = test::in_project("scenes/water");
 
 }  // namespace
 

@@ -1,5 +1,6 @@
 // The first of the scenarios that `palpa scenarios` plays, and that its bars can be missed.
 #include "tools/scenarios.h"
+#include "tests/support/paths.h"
 
 #include <catch2/catch.hpp>
 
@@ -7,7 +8,7 @@ using namespace palpa;
 
 namespace {
 
-const char* const two_waters = PALPA_ROOT "/scenes/water";
+const std::string two_waters = test::in_project("scenes/water");
 
 }  // namespace
 

@@ -1,4 +1,5 @@
 // Emulated operators find the place without force as well as theory says that each mode lets them.
+#include "tests/support/paths.h"
 #include "tools/study.h"
 
 #include <array>
@@ -12,7 +13,7 @@ namespace {
 
 StudyOptions waters(const std::vector<std::string>& settings, std::size_t operators) {
     StudyOptions options;
-    options.scene = PALPA_ROOT "/scenes/water";
+    options.scene = test::in_project("scenes/water");
     options.settings = settings;
     options.operators = operators;
     return options;

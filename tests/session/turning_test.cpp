@@ -7,6 +7,7 @@
 #include "simulation/probe.h"
 #include "simulation/simulation.h"
 #include "simulation/step.h"
+#include "tests/support/paths.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -19,7 +20,7 @@ using namespace palpa;
 namespace {
 
 SceneDescription space_scene(const std::vector<std::string>& settings) {
-    return read_scene(PALPA_ROOT "/scenes/water/space.toml", settings);
+    return read_scene(test::in_project("scenes/water/space.toml"), settings);
 }
 
 // A handle that is where it is told at every tick, whatever pushes it.
@@ -138,7 +139,7 @@ TEST_CASE("a turn that would push an atom beyond the stop is not followed", "[se
 
 TEST_CASE("the continuous law is the static law along a line", "[session][coupling]") {
     const SceneDescription scene =
-        read_scene(PALPA_ROOT "/scenes/water", std::vector<std::string>{});
+        read_scene(test::in_project("scenes/water"), std::vector<std::string>{});
     const Simulation simulation = load_simulation(scene);
     const ServoSettings servo = build_servo_settings(scene, simulation);
     ContinuousLaw law(*servo.guarded, load_simulation(scene));

@@ -4,6 +4,7 @@
 #include "scene/read_scene.h"
 #include "simulation/simulation.h"
 #include "simulation/step.h"
+#include "tests/support/paths.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -21,7 +22,7 @@ constexpr double pico_per_kcal = units::newton_per_kcal_per_mol_angstrom * 1e12;
 
 // Two tetrapeptides 11 Å apart, of 32 joints.
 SceneDescription scene_of_peptides(const std::vector<std::string>& settings) {
-    return read_scene(std::filesystem::path(PALPA_TEST_DATA "/two_peptides"), settings);
+    return read_scene(test::test_data("two_peptides"), settings);
 }
 
 struct Played {

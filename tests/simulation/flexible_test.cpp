@@ -12,6 +12,7 @@
 #include "simulation/step.h"
 #include "tests/support/load_error_of.h"
 #include "tests/support/native_case.h"
+#include "tests/support/paths.h"
 #include "tests/support/replaced.h"
 #include "tests/support/temporary_folder.h"
 
@@ -37,7 +38,7 @@ namespace {
 constexpr std::uint32_t peptide_atoms = 62;
 
 // The tetrapeptide AERA twice, 11 Å apart.
-const std::filesystem::path peptides = PALPA_TEST_DATA "/two_peptides";
+const std::filesystem::path peptides = test::test_data("two_peptides");
 
 Simulation load_peptides(const std::vector<std::string>& settings = {}) {
     return load_simulation(read_scene(peptides, settings));
@@ -47,7 +48,7 @@ Structure read_peptides() { return read_structure(peptides / "both.crd"); }
 
 Connectivity connectivity_of(const Structure& structure) {
     return build_connectivity(
-        test::read_charmm(PALPA_TEST_DATA, {"aera_c36m.rtf", "aera_c36m.prm"}), structure);
+        test::read_charmm(test::test_data(""), {"aera_c36m.rtf", "aera_c36m.prm"}), structure);
 }
 
 // The same scene in a folder of its own, to be changed.
@@ -62,7 +63,8 @@ public:
 
     static std::string text() {
         std::string text = read_text_file(peptides / "scene.toml");
-        for (int i = 0; i < 2; ++i) text = test::replaced(text, "\"../", "\"" PALPA_TEST_DATA "/");
+        for (int i = 0; i < 2; ++i)
+            text = test::replaced(text, "\"../", "\"" + test::test_data("") + "/");
         return text;
     }
     SceneDescription scene(const std::vector<std::string>& settings = {}) const {

@@ -11,6 +11,7 @@
 #include "simulation/simulation.h"
 #include "simulation/step.h"
 #include "simulation/touch.h"
+#include "tests/support/paths.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -29,7 +30,7 @@ namespace {
 constexpr double pN = units::newton_per_kcal_per_mol_angstrom * 1e12;
 
 SceneDescription hiv_scene(const std::vector<std::string>& settings = {}) {
-    return read_scene(PALPA_ROOT "/scenes/hiv", settings);
+    return read_scene(test::in_project("scenes/hiv"), settings);
 }
 
 // The numbers behind a row's name.
@@ -50,7 +51,7 @@ struct Shipped {
     Vec3 centre = Vec3::Zero();
 
     Shipped() {
-        const std::string text = read_text_file(PALPA_ROOT "/scenes/hiv/system.crd");
+        const std::string text = read_text_file(test::in_project("scenes/hiv/system.crd"));
         double mass = 0;
         for (const std::string_view line : split_lines(text)) {
             const std::vector<std::string_view> words = split_words(line);
@@ -76,7 +77,7 @@ TEST_CASE("energy, force and torque on TL-3 are those of an independent sum", "[
     const Shipped shipped;
     REQUIRE(shipped.places.size() == 130);
     REQUIRE(environment_points(shipped.simulation).positions.size() == 3145);
-    const std::string text = read_text_file(PALPA_TEST_DATA "/hiv_poses.csv");
+    const std::string text = read_text_file(test::test_data("hiv_poses.csv"));
     const std::vector<std::string_view> rows = split_lines(text);
     REQUIRE(rows.size() == 5);
 

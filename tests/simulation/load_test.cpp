@@ -2,6 +2,7 @@
 #include "simulation/components.h"
 #include "simulation/probe.h"
 #include "simulation/simulation.h"
+#include "tests/support/paths.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/water_scene.h"
 
@@ -24,8 +25,8 @@ double distance(const Simulation& simulation) {
 std::string error_without(const std::string& without) {
     const test::TemporaryFolder temporary;
     const std::filesystem::path& folder = temporary.path();
-    std::filesystem::copy(PALPA_ROOT "/scenes/water", folder);
-    std::ifstream source(PALPA_ROOT "/scenes/water/tip3p.str");
+    std::filesystem::copy(test::in_project("scenes/water"), folder);
+    std::ifstream source(test::in_project("scenes/water/tip3p.str"));
     std::ofstream target(folder / "tip3p.str");
     for (std::string line; std::getline(source, line);) {
         if (!line.starts_with(without)) target << line << '\n';

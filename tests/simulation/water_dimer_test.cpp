@@ -6,6 +6,7 @@
 #include "field/pair_field.h"
 #include "simulation/probe.h"
 #include "simulation/simulation.h"
+#include "tests/support/paths.h"
 #include "tests/support/water_scene.h"
 
 #include <catch2/catch.hpp>
@@ -32,7 +33,7 @@ struct Frame {
 
 std::vector<Frame> read_frames(const std::string& variant) {
     const std::string text =
-        read_text_file(std::string(PALPA_TEST_DATA "/water_dimer_") + variant + ".csv");
+        read_text_file(test::test_data(std::string("water_dimer_") + variant + ".csv"));
     std::vector<Frame> frames;
     for (const std::string_view line : split_lines(text)) {
         std::vector<std::string_view> cells;

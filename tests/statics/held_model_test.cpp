@@ -6,6 +6,7 @@
 #include "formats/structure.h"
 #include "molecule/match_atoms.h"
 #include "statics/torsion_state.h"
+#include "tests/support/paths.h"
 #include "tests/support/torsion_case.h"
 
 #include <algorithm>
@@ -21,7 +22,7 @@ namespace {
 
 // A ball of HIV protease about Asp 25 of chain A.
 CutSystem cut_of_hiv(std::size_t most_atoms) {
-    const std::filesystem::path folder = std::filesystem::path(PALPA_ROOT) / "scenes/hiv";
+    const std::filesystem::path folder = test::in_project("scenes/hiv");
     const Connectivity connectivity = read_psf(folder / "system.psf");
     const std::vector<Vec3> positions =
         match_positions(connectivity, read_structure(folder / "system.crd"));

@@ -1,5 +1,6 @@
 #include "tests/support/torsion_case.h"
 
+#include "tests/support/paths.h"
 #include "tests/support/reference_case.h"
 
 #include <Eigen/Cholesky>
@@ -28,9 +29,9 @@ FlexibleCase read_flexible_case(const std::filesystem::path& folder, const std::
     return result;
 }
 
-FlexibleCase alanine_dipeptide() { return read_flexible_case(PALPA_TEST_DATA, "ala_dipeptide"); }
+FlexibleCase alanine_dipeptide() { return read_flexible_case(test_data(""), "ala_dipeptide"); }
 
-FlexibleCase tetrapeptide() { return read_flexible_case(PALPA_TEST_DATA, "tetra_aera_c36m"); }
+FlexibleCase tetrapeptide() { return read_flexible_case(test_data(""), "tetra_aera_c36m"); }
 
 FlexibleCase with_copy(FlexibleCase c, const Vec3& away) {
     const auto atoms = static_cast<std::uint32_t>(c.topology.size());

@@ -1,6 +1,7 @@
 // The bundled water scene, with settings as --set takes them.
 #pragma once
 #include "scene/read_scene.h"
+#include "tests/support/paths.h"
 
 #include <string>
 #include <vector>
@@ -8,7 +9,7 @@
 namespace palpa::test {
 
 inline SceneDescription water_scene(const std::vector<std::string>& settings = {}) {
-    return read_scene(PALPA_ROOT "/scenes/water", settings);
+    return read_scene(in_project("scenes/water"), settings);
 }
 
 }  // namespace palpa::test
