@@ -4,6 +4,7 @@
 #include "tests/support/force_field_of.h"
 #include "tests/support/load_error_of.h"
 #include "tests/support/native_case.h"
+#include "tests/support/shared_data.h"
 #include "tests/support/structure_of.h"
 
 #include <algorithm>
@@ -11,9 +12,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
-#include <filesystem>
-#include <iostream>
 #include <limits>
 #include <numbers>
 #include <set>
@@ -162,15 +160,12 @@ TEST_CASE("the chain goes on with what '+' names", "[charmm][complete]") {
 }
 
 TEST_CASE("crambin gets back all of its hydrogens", "[charmm][complete]") {
-    const char* const data = std::getenv("PALPA_DATA");
-    if (!data) {
-        std::cout << "SKIPPED: PALPA_DATA is not set, so CHARMM's files are not at hand\n";
-        return;
-    }
-    const std::filesystem::path folder = std::filesystem::path(data) / "data";
+    const auto charmm = test::find_shared_data("data/charmm");
+    const auto energies = test::find_shared_data("data/energies");
+    if (!charmm || !energies) return;
     const ForceField force_field =
-        test::read_charmm(folder / "charmm", {"top_all36_prot.rtf", "par_all36m_prot.prm"});
-    const Structure full = read_crd(folder / "energies/crambin_c36m.crd");
+        test::read_charmm(*charmm, {"top_all36_prot.rtf", "par_all36m_prot.prm"});
+    const Structure full = read_crd(*energies / "crambin_c36m.crd");
     Structure heavy{.file = full.file, .names = {}, .positions = {}, .lines = {}};
     for (std::size_t i = 0; i < full.names.size(); ++i) {
         if (full.names[i].atom.starts_with('H')) continue;

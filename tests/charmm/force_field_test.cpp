@@ -3,14 +3,13 @@
 #include "tests/support/force_field_of.h"
 #include "tests/support/load_error_of.h"
 #include "tests/support/paths.h"
+#include "tests/support/shared_data.h"
 #include "tests/support/temporary_folder.h"
 
 #include <fmt/format.h>
 #include <array>
 #include <catch2/catch.hpp>
-#include <cstdlib>
 #include <filesystem>
-#include <iostream>
 #include <string>
 #include <vector>
 
@@ -237,15 +236,10 @@ TEST_CASE("every entry knows the line it came from", "[charmm][force_field]") {
 
 TEST_CASE("CHARMM's own file of water and ions gives TIP3P's published numbers",
           "[charmm][force_field]") {
-    const char* const data = std::getenv("PALPA_DATA");
-    if (!data) {
-        std::cout << "SKIPPED: PALPA_DATA is not set, so CHARMM's own files are not at hand\n";
-        return;
-    }
-    const std::filesystem::path file =
-        std::filesystem::path(data) / "data/charmm/toppar_water_ions.str";
+    const auto file = test::find_shared_data("data/charmm/toppar_water_ions.str");
+    if (!file) return;
 
-    const ForceField force_field = read_force_field(std::array{file});
+    const ForceField force_field = read_force_field(std::array{*file});
 
     check_is_tip3p(force_field);
     CHECK(force_field.residues.at("SOD").charge == 1);

@@ -12,13 +12,13 @@
 #include "tests/support/native_case.h"
 #include "tests/support/paths.h"
 #include "tests/support/reference_case.h"
+#include "tests/support/shared_data.h"
 
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <map>
@@ -32,11 +32,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// The folder of the larger inputs, or none with a word about it.
+// The folder of the larger inputs; empty, and the test skipped, where it has none of CHARMM's
+// files.
 fs::path data_folder() {
-    const char* const data = std::getenv("PALPA_DATA");
-    if (!data) std::cout << "SKIPPED: PALPA_DATA is not set, so CHARMM's files are not at hand\n";
-    return data ? fs::path(data) : fs::path();
+    const auto charmm = test::find_shared_data("data/charmm");
+    return charmm ? charmm->parent_path().parent_path() : fs::path();
 }
 
 ForceField read_c36m(const fs::path& data) {

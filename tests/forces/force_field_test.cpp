@@ -7,13 +7,13 @@
 #include "tests/support/check_forces.h"
 #include "tests/support/paths.h"
 #include "tests/support/reference_case.h"
+#include "tests/support/shared_data.h"
 
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <iostream>
@@ -153,34 +153,27 @@ TEST_CASE("alanine dipeptide and a tetrapeptide have OpenMM's energies and force
 }
 
 TEST_CASE("every reference case has OpenMM's energies and forces", "[forces][reference]") {
-    const char* const data = std::getenv("PALPA_DATA");
-    if (!data) {
-        std::cout << "SKIPPED: PALPA_DATA is not set, so the reference cases are not at hand\n";
-        return;
-    }
-    const fs::path folder = fs::path(data) / "reference";
+    const auto folder = test::find_shared_data("reference");
+    if (!folder) return;
     std::vector<std::string> names;
-    for (const auto& entry : fs::directory_iterator(folder)) {
+    for (const auto& entry : fs::directory_iterator(*folder)) {
         const std::string file = entry.path().filename().string();
         if (file.ends_with(".ff.json")) names.push_back(file.substr(0, file.size() - 8));
     }
     std::sort(names.begin(), names.end());
     REQUIRE(names.size() >= 10);
 
-    for (const std::string& name : names) check_case(folder, name);
+    for (const std::string& name : names) check_case(*folder, name);
 }
 
 TEST_CASE("crambin has the energies that CHARMM prints, with CHARMM's cutoffs",
           "[forces][reference][cutoff]") {
-    const char* const data = std::getenv("PALPA_DATA");
-    if (!data) {
-        std::cout << "SKIPPED: PALPA_DATA is not set, so CHARMM's test case is not at hand\n";
-        return;
-    }
-    const fs::path folder(data);
+    const auto reference_folder = test::find_shared_data("reference");
+    const auto energies = test::find_shared_data("data/energies");
+    if (!reference_folder || !energies) return;
     const test::ReferenceCase reference =
-        test::read_reference_case(folder / "reference/crambin_c36m.ff.json");
-    const Structure structure = read_crd(folder / "data/energies/crambin_c36m.crd");
+        test::read_reference_case(*reference_folder / "crambin_c36m.ff.json");
+    const Structure structure = read_crd(*energies / "crambin_c36m.crd");
     // The two files name the same atoms in different orders.
     std::map<std::pair<std::string, std::string>, Vec3> places;
     for (std::size_t i = 0; i < structure.names.size(); ++i) {

@@ -4,6 +4,7 @@
 #include "tests/support/check_forces.h"
 #include "tests/support/paths.h"
 #include "tests/support/reference_case.h"
+#include "tests/support/shared_data.h"
 
 #include <algorithm>
 #include <array>
@@ -11,9 +12,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
-#include <filesystem>
-#include <iostream>
 #include <limits>
 #include <random>
 #include <vector>
@@ -228,16 +226,12 @@ TEST_CASE("a list gives what all pairs with the cutoff give, by every function",
 
 TEST_CASE("a list gives what all pairs of a protein give, on any number of threads",
           "[forces][pairs][reference]") {
-    const char* const data = std::getenv("PALPA_DATA");
-    if (!data) {
-        std::cout << "SKIPPED: PALPA_DATA is not set, so the reference cases are not at hand\n";
-        return;
-    }
-    const std::filesystem::path folder = std::filesystem::path(data) / "reference";
+    const auto folder = test::find_shared_data("reference");
+    if (!folder) return;
     const test::ReferenceCase reference =
-        test::read_reference_case(folder / "hiv_tl3_c36m.ff.json");
+        test::read_reference_case(*folder / "hiv_tl3_c36m.ff.json");
     const std::vector<Vec3> positions =
-        test::read_reference_frames(folder / "hiv_tl3_c36m.minimised_300_steps.json")
+        test::read_reference_frames(*folder / "hiv_tl3_c36m.minimised_300_steps.json")
             .front()
             .positions;
 

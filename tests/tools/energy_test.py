@@ -139,7 +139,7 @@ class Energy(unittest.TestCase):
 
     def test_charmm_s_own_numbers_from_native_files(self):
         if not SHARED:
-            self.skipTest("PALPA_DATA is not set")
+            self.skipTest("PALPA_DATA names no folder with data/charmm and data/energies")
         data = Path(SHARED) / "data"
         folder = data / "energies"
         energy = self.energy(folder / "crambin_c36m.crd", "--toppar",

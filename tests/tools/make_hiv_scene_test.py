@@ -34,6 +34,4 @@ class MakeHivScene(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    if not DATA:
-        print("SKIPPED: PALPA_DATA names no folder with data/hiv and data/charmm")
     unittest.main()

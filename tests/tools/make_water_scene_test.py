@@ -11,7 +11,7 @@ MAKER = Path(os.environ["PALPA_PROGRAM"]).with_name("make_water_scene")
 DATA = os.environ.get("PALPA_DATA")
 
 
-@unittest.skipUnless(DATA, "PALPA_DATA names no folder with charmm/toppar_water_ions.str")
+@unittest.skipUnless(DATA, "PALPA_DATA names no folder with data/charmm/toppar_water_ions.str")
 class MakeWaterScene(unittest.TestCase):
     def test_it_makes_what_is_committed(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -29,6 +29,4 @@ class MakeWaterScene(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    if not DATA:
-        print("SKIPPED: PALPA_DATA names no folder with charmm/toppar_water_ions.str")
     unittest.main()

@@ -51,7 +51,7 @@ def residue_keys(rows):
 class Prepare(unittest.TestCase):
     def setUp(self):
         if not SHARED:
-            self.skipTest("PALPA_DATA is not set")
+            self.skipTest("PALPA_DATA names no folder with data/charmm and data/hiv")
         self.data = Path(SHARED) / "data"
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)

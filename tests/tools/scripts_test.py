@@ -19,7 +19,8 @@ def run(*command, **options):
 class Scripts(unittest.TestCase):
     def test_every_tool_explains_itself(self):
         for name in ("build", "run", "test", "plot_stroke", "check_style", "check_windows",
-                     "compare_peers", "compare_tl3", "plot_adaptive", "plot_study"):
+                     "check_skips", "compare_peers", "compare_tl3", "mutate",
+                     "plot_adaptive", "plot_study"):
             with self.subTest(tool=name):
                 result = run(ROOT / "tools" / name, "--help")
                 self.assertEqual(result.returncode, 0)
