@@ -9,8 +9,10 @@
 #include "tests/support/water_scene.h"
 
 #include <algorithm>
+#include <atomic>
 #include <catch2/catch.hpp>
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <thread>
 #include <vector>
@@ -18,6 +20,33 @@
 using namespace palpa;
 
 namespace {
+
+// An emulated Omni whose servo cycles other threads can count: so they wait for what happens, and
+// not for a time.
+class CountedOmni : public Device {
+public:
+    explicit CountedOmni(const EmulatedOmniSettings& settings) : omni_(settings) {}
+
+    const DeviceSpec& spec() const noexcept override { return omni_.spec(); }
+    DeviceReading read() noexcept override { return omni_.read(); }
+    void show(const TouchModel& touch) noexcept override { omni_.show(touch); }
+    void write(const Vec3& force_newton) noexcept override {
+        omni_.write(force_newton);
+        const DeviceReading reading = omni_.read();
+        time_s_ = reading.time_s;
+        handle_m_ = reading.position_m.x();
+        ++cycles_;
+    }
+
+    std::uint64_t cycles() const noexcept { return cycles_; }
+    double time_s() const noexcept { return time_s_; }
+    double handle_m() const noexcept { return handle_m_; }
+
+private:
+    EmulatedOmni omni_;
+    std::atomic<double> time_s_{0}, handle_m_{0};
+    std::atomic<std::uint64_t> cycles_{0};
+};
 
 // A live session of the water scene, with a mouse's hand on the handle or one that follows a path,
 // which is to the session like any device.
@@ -58,10 +87,20 @@ struct Live {
         const std::uint64_t from = frame.readout.steps;
         return wait_until([&](const LiveFrame& f) { return f.readout.steps >= from + more; });
     }
+    // The servo's and the simulation's loops have gone round so often after this call began.
+    bool wait_for_rounds(int rounds) {
+        const std::uint64_t from = device.cycles();
+        for (int i = 0; i < rounds; ++i) {
+            if (!wait_until([](const LiveFrame&) { return true; })) return false;
+        }
+        return wait_until([&](const LiveFrame&) {
+            return device.cycles() > from + static_cast<std::uint64_t>(rounds);
+        });
+    }
     double distance() const { return frame.readout.touch.molecule.place_angstrom.x(); }
 
     HandOrders orders;
-    EmulatedOmni device;
+    CountedOmni device;
     LiveSession session;
     LiveFrame frame;
     ServoTick last;
@@ -135,24 +174,23 @@ TEST_CASE("while paused nothing moves and going on nothing jumps", "[app][thread
     REQUIRE(live.wait_until([&](const LiveFrame&) { return live.last.sent_newton.x() < -0.5; }));
     live.session.send(Pause{true});
     REQUIRE(live.wait_until([](const LiveFrame& f) { return f.readout.paused; }));
-    REQUIRE(live.wait_until([&](const LiveFrame&) {  // the handle stands still as well
-        const double time_s = live.last.reading.time_s;
-        std::this_thread::sleep_for(std::chrono::milliseconds(20));
-        ServoTick tick;
-        while (live.session.pop_tick(tick)) live.last = tick;
-        return live.last.reading.time_s == time_s;
-    }));
-    const double there = live.distance(), handle = live.last.reading.position_m.x();
+    REQUIRE(live.wait_for_rounds(2));  // the handle stands still as well
+    const double there = live.distance();
+    const double handle = live.device.handle_m(), time_s = live.device.time_s();
     const std::uint64_t steps = live.frame.readout.steps;
     live.session.move_hand(Vec3(0.2, 0, 0));
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    REQUIRE(live.wait_until([](const LiveFrame&) { return true; }));
+    REQUIRE(live.wait_for_rounds(50));
     CHECK(live.distance() == there);
     CHECK(live.frame.readout.steps == steps);
-    CHECK(live.last.reading.position_m.x() == handle);
+    CHECK(live.device.handle_m() == handle);
+    CHECK(live.device.time_s() == time_s);
 
     live.session.send(StepOnce{});
     REQUIRE(live.wait_until([&](const LiveFrame& f) { return f.readout.steps == steps + 1; }));
+    REQUIRE(live.wait_for_rounds(50));
+    // The ticks of one period, and not one more.
+    CHECK(live.device.time_s() ==
+          Approx(time_s + live.frame.readout.touch.period_s).margin(0.1 * servo_tick_s));
     CHECK(live.frame.readout.paused);
     CHECK(live.distance() == Approx(there).margin(0.02));
 

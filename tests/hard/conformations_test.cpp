@@ -23,6 +23,12 @@ namespace {
 constexpr double at_rest = 0.5;  // rms force, kcal/mol per radian and Å
 constexpr int most_steps = 300;
 
+// What share of the conformations has to come to rest in that many steps: below what each way of
+// stepping does today (it prints how many), since rounding may send a few elsewhere.
+struct LeastAtRest {
+    double all_joints, few_joints, minimised;
+};
+
 struct Tally {
     std::size_t at_rest = 0, out_of_steps = 0, stuck = 0;
     double highest_start = 0;  // kcal/mol
@@ -58,7 +64,8 @@ void step_to_rest(const TorsionModel& model, const test::WayOfStepping& way, Tor
     const test::Stepper step = way.start(model, settings);
     ForceMemory memory;
     update_forces(model, way.forces, memory, state);
-    tally.highest_start = std::max(tally.highest_start, state.energy());
+    const double start = state.energy();
+    tally.highest_start = std::max(tally.highest_start, start);
     bool is_resting = false;
     for (int i = 0; i < most_steps && !is_resting; ++i) {
         const QuasiStaticReport report = step(state);
@@ -67,6 +74,7 @@ void step_to_rest(const TorsionModel& model, const test::WayOfStepping& way, Tor
         is_resting = rms_force(model, state) <= at_rest;
     }
     check_end(model, state);
+    CHECK((state.energy() < start || is_resting));
     ++(is_resting ? tally.at_rest : tally.out_of_steps);
 }
 
@@ -89,6 +97,7 @@ void minimise(const TorsionModel& model, const ForceSettings& forces, TorsionSta
         });
 
     check_end(model, state);
+    CHECK((state.energy() < report.energy_before || report.steps == 0));
     CHECK(report.rms_force == Approx(rms_force(model, state)));
     CHECK((report.rms_force <= at_rest) == (report.end == RelaxEnd::Converged));
     CHECK((report.end == RelaxEnd::Steps) ==
@@ -102,6 +111,7 @@ void minimise(const TorsionModel& model, const ForceSettings& forces, TorsionSta
 
 // The same conformations each time.
 void relax_conformations(std::string_view how, const TorsionModel& model, std::size_t count,
+                         double least_at_rest,
                          const std::function<void(const TorsionState&, Tally&)>& relax) {
     std::mt19937 random(20);
     Tally tally;
@@ -113,21 +123,26 @@ void relax_conformations(std::string_view how, const TorsionModel& model, std::s
         "  {}: {} of {} at rest after {} steps, {} stuck; from up to {:.0e} "
         "kcal/mol\n",
         how, tally.at_rest, count, most_steps, tally.stuck, tally.highest_start);
+    CHECK(static_cast<double>(tally.at_rest) >= least_at_rest * static_cast<double>(count));
     CHECK(tally.at_rest + tally.out_of_steps + tally.stuck == count);
 }
 
-void relax_conformations(std::string_view name, const test::FlexibleCase& c, std::size_t count) {
+void relax_conformations(std::string_view name, const test::FlexibleCase& c, std::size_t count,
+                         const LeastAtRest& least) {
     const TorsionModel model = test::model_of(c, {BaseFreedom::Free}, test::all_joints);
     std::cout << fmt::format("{}, {} degrees of freedom\n", name, model.coordinates);
     for (const test::WayOfStepping& way : test::all_ways_of_stepping()) {
-        relax_conformations(way.name, model, count, [&](const TorsionState& start, Tally& tally) {
-            step_to_rest(model, way, start, tally);
-        });
+        const bool has_few = way.name.starts_with("few");
+        relax_conformations(way.name, model, count, has_few ? least.few_joints : least.all_joints,
+                            [&](const TorsionState& start, Tally& tally) {
+                                step_to_rest(model, way, start, tally);
+                            });
     }
     for (const ForceSettings& forces : {ForceSettings{}, test::fast_forces()}) {
         relax_conformations(forces.fast ? "limited-memory BFGS, fast pairs"
                                         : "limited-memory BFGS, pairs in double",
-                            model, count, [&](const TorsionState& start, Tally& tally) {
+                            model, count, least.minimised,
+                            [&](const TorsionState& start, Tally& tally) {
                                 minimise(model, forces, start, tally);
                             });
     }
@@ -136,18 +151,20 @@ void relax_conformations(std::string_view name, const test::FlexibleCase& c, std
 }  // namespace
 
 TEST_CASE("500 random conformations of alanine dipeptide go towards rest", "[hard][slow]") {
-    relax_conformations("alanine dipeptide", test::alanine_dipeptide(), 500);
+    relax_conformations("alanine dipeptide", test::alanine_dipeptide(), 500, {0.98, 0.7, 0.99});
 }
 
+// The paper's step takes some thousands for these; what it does in 300 is to go down.
 TEST_CASE("500 random conformations of the tetrapeptide AERA go towards rest", "[hard][slow]") {
-    relax_conformations("AERA", test::tetrapeptide(), 500);
+    relax_conformations("AERA", test::tetrapeptide(), 500, {0, 0, 0.5});
 }
 
 TEST_CASE("random conformations of tetrapeptides with proline and lysine go towards rest",
           "[hard][slow]") {
     const auto folder = test::find_shared_data("reference");
     if (!folder) return;
-    for (const char* const name : {"tetra_ampa_c36m", "tetra_adka_c36m"}) {
-        relax_conformations(name, test::read_flexible_case(*folder, name), 50);
-    }
+    relax_conformations("AMPA", test::read_flexible_case(*folder, "tetra_ampa_c36m"), 50,
+                        {0, 0, 0.8});
+    relax_conformations("ADKA", test::read_flexible_case(*folder, "tetra_adka_c36m"), 50,
+                        {0, 0, 0.6});
 }

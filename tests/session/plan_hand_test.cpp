@@ -1,6 +1,5 @@
 #include "session/plan_hand.h"
 
-#include "core/load_error.h"
 #include "simulation/probe.h"
 #include "tests/support/water_run.h"
 
@@ -8,6 +7,8 @@
 #include <catch2/catch.hpp>
 
 using namespace palpa;
+using Catch::Matchers::Contains;
+using Catch::Matchers::Equals;
 
 namespace {
 
@@ -60,8 +61,21 @@ TEST_CASE("a path is taken as the scene gives it", "[session][hand]") {
     CHECK(script.path[1].x_m == Approx(-0.020));
 }
 
-TEST_CASE("a force that the molecules never reach is an error", "[session][hand]") {
-    CHECK_THROWS_AS(plan({"hand.start_angstrom=2.4"}), LoadError);
+TEST_CASE("a force that the molecules never reach is an error at the peak's key",
+          "[session][hand]") {
+    // At 2.4 Å they repel with more than 3 nN already.
+    CHECK_THROWS_WITH(plan({"hand.start_angstrom=2.4", "peak_nN=3"}),
+                      Equals("--set peak_nN=3: the repulsion reaches 3 nN nowhere inside of 2.4 Å; "
+                             "expected another hand.peak_nN or hand.start_angstrom"));
+}
+
+TEST_CASE("a stroke with a peak is refused where the hand holds a spring", "[session][hand]") {
+    SceneDescription scene = test::water_scene({"hand.stroke=in-out"});
+    const Simulation simulation = load_simulation(scene);
+    scene.grab.atom = "OH2";
+
+    CHECK_THROWS_WITH(plan_hand(scene, simulation, omni_half_workspace_m.x()),
+                      Contains("--set hand.stroke=in-out: ") && Contains("\"path\" or \"hold\""));
 }
 
 TEST_CASE("a fast path beyond the workspace takes the molecule all its way", "[session][hand]") {
@@ -75,10 +89,9 @@ TEST_CASE("a fast path beyond the workspace takes the molecule all its way", "[s
 }
 
 TEST_CASE("a stroke that no hand could follow is an error at its key", "[session][hand]") {
-    CHECK_THROWS_WITH(
-        plan({"stroke=path", "hand.path=[[0, 0], [0.1, 500]]"}),
-        Catch::Matchers::Contains("--set hand.path") && Catch::Matchers::Contains("9.38 m/s"));
-    CHECK_THROWS_WITH(plan({"stroke_s=0.02"}), Catch::Matchers::Contains("--set stroke_s=0.02"));
+    CHECK_THROWS_WITH(plan({"stroke=path", "hand.path=[[0, 0], [0.1, 500]]"}),
+                      Contains("--set hand.path") && Contains("9.38 m/s"));
+    CHECK_THROWS_WITH(plan({"stroke_s=0.02"}), Contains("--set stroke_s=0.02"));
 }
 
 TEST_CASE("a hand that leads brings the water where its path says, whatever the gain",

@@ -1,6 +1,7 @@
-"""palpa study from outside: its files, that they repeat, its figures, bad input."""
+"""palpa study from outside: what operators find, its files, that they repeat, its figures, bad input."""
 import csv
 import json
+import math
 import os
 import struct
 import subprocess
@@ -21,6 +22,40 @@ def run(*command):
 def read_rows(path):
     with open(path, encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
+
+
+def water_force_newton(distance):
+    """The force (N, + outward) between the waters of the scene along their line, from TIP3P's published
+    numbers and the places of dimer.crd, and from nothing of the program's."""
+    charges = {"OH2": -0.834, "H1": 0.417, "H2": 0.417}
+    depths = {"OH2": 0.1521, "H1": 0.046, "H2": 0.046}  # kcal/mol
+    half_rmins = {"OH2": 1.7682, "H1": 0.2245, "H2": 0.2245}  # Å
+    rows = [line.split() for line in (WATER / "dimer.crd").read_text().splitlines()]
+    atoms = {"FIX": [], "MOV": []}
+    for row in rows:
+        if len(row) == 10 and row[2] == "TIP3":
+            atoms[row[7]].append((row[3], tuple(map(float, row[4:7]))))
+    force = 0
+    for name, (x, y, z) in atoms["MOV"]:
+        for other, (ox, oy, oz) in atoms["FIX"]:
+            away = (x - 7 + distance - ox, y - oy, z - oz)  # the file has them 7 Å apart
+            r = math.hypot(*away)
+            depth = math.sqrt(depths[name] * depths[other])
+            s6 = ((half_rmins[name] + half_rmins[other]) / r) ** 6
+            minus_slope = 12 * depth * (s6 * s6 - s6) / r + 332.0716 * charges[name] * charges[other] / r ** 2
+            force += minus_slope * away[0] / r
+    return force * 4184 / 6.02214076e23 * 1e10
+
+
+def water_rest():
+    inside, outside = 2.4, 3.0
+    while outside - inside > 1e-9:
+        middle = (inside + outside) / 2
+        if water_force_newton(middle) > 0:
+            inside = middle
+        else:
+            outside = middle
+    return inside
 
 
 class Study(unittest.TestCase):
@@ -62,6 +97,25 @@ class Study(unittest.TestCase):
         line = read_rows(folder / "line.csv")
         outward = [float(row["distance_angstrom"]) for row in line if float(row["force_nN"]) < -1e-4]
         self.assertAlmostEqual(min(outward), summary["rest_angstrom"], delta=0.011)
+
+    def test_an_operator_is_done_where_no_force_is_left_that_it_would_notice(self):
+        folder = self.tmp / "study"
+        self.study("--operators", 4, "--rounds", 2, "--modes", "4", "--friction", 0, "-o", folder)
+        rest = json.loads((folder / "summary.json").read_text())["rest_angstrom"]
+        self.assertAlmostEqual(rest, water_rest(), places=4)
+        rows = read_rows(folder / "trials.csv")
+        self.assertEqual(len(rows), 8)
+        for row in rows:
+            with self.subTest(participant=row["participant"], round=row["round"]):
+                found = float(row["found_angstrom"])
+                # Mode 4 has 0.64e9 times the force. The dullest notice 0.1 N, and drift a little while
+                # they wait for a second.
+                self.assertLess(abs(0.64e9 * water_force_newton(found)), 0.12)
+                self.assertAlmostEqual(float(row["off_angstrom"]), found - water_rest(), places=4)
+                self.assertLess(abs(found - water_rest()), 0.2)  # far outside nothing is felt either
+                # From 4 Å outside at least, at 6 cm/s at most, 1.6 cm/Å, then a second of waiting.
+                self.assertGreater(float(row["time_s"]), 4 * 0.016 / 0.06 + 1)
+                self.assertEqual(row["is_finished"], "1")
 
     def test_the_same_seed_gives_the_same_bytes_and_another_one_others(self):
         arguments = ["--operators", 1, "--rounds", 1, "--modes", "4,guarded", "--json"]
