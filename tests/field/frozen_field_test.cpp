@@ -1,6 +1,7 @@
 #include "field/frozen_field.h"
 
 #include "core/units.h"
+#include "field/pair_kernel.h"
 #include "field/processor.h"
 
 #include <algorithm>
@@ -131,6 +132,27 @@ TEST_CASE("a frozen field agrees with the twin on every kind of processor", "[fi
     use_processor_kind(list_processor_kinds().front());
 }
 
+TEST_CASE("sums over many points that all push one way lose no digits", "[field][frozen]") {
+    std::mt19937 random(16);
+    PointSet environment = random_points(random, 50, 50, 40, Vec3::Zero());
+    std::ranges::fill(environment.charge, 0.5);
+    PointSet group = random_points(random, 1, 1, 1, Vec3(60, 60, 120));
+    group.charge[0] = 0.5;
+    const FrozenField field =
+        build_frozen_field(group.view(), environment.view(), {coulomb_constant});
+    const FieldSum expected =
+        evaluate_pair_field(group.view(), environment.view(), {coulomb_constant});
+    const Magnitude scale = sum_magnitudes(group, environment, field.origin);
+
+    for (const std::string& kind : list_processor_kinds()) {
+        INFO(kind);
+        use_processor_kind(kind);
+        const FrozenSum sum = evaluate_frozen_field(field, group.positions);
+        CHECK((sum.force - expected.force).norm() < 1e-6 * scale.force);
+    }
+    use_processor_kind(list_processor_kinds().front());
+}
+
 TEST_CASE("the frozen field of nothing, or on nothing, is none", "[field][frozen]") {
     std::mt19937 random(12);
     const PointSet some = random_points(random, 2, 2, 2, Vec3::Zero()), none;
@@ -159,6 +181,24 @@ TEST_CASE("a group that is moved and turned feels what one that stands there fee
     CHECK((moved.force - there.force).norm() < 1e-5 * there.force.norm());
     CHECK((moved.torque - there.torque).norm() < 1e-5 * there.torque.norm());
     CHECK(moved.clearance == Approx(there.clearance).margin(1e-5));
+}
+
+TEST_CASE("single precision does until two points are nearer than its limit", "[field][frozen]") {
+    std::mt19937 random(15);
+    const PointSet environment = random_points(random, 3, 3, 3, Vec3::Zero());
+    PointSet group = random_points(random, 2, 2, 2, Vec3(0, 0, 9));
+    const double distance = GENERATE(0.98, 1.02) * nearest_single_precision;
+    group.positions[5] = environment.positions[6] + Vec3(0, distance, 0);
+
+    const FrozenField field =
+        build_frozen_field(group.view(), environment.view(), {coulomb_constant});
+    const FrozenSum sum = evaluate_frozen_field(field, group.positions);
+    const FieldSum twin = evaluate_pair_field(group.view(), environment.view(), {coulomb_constant});
+
+    // Beyond it differs, by no more than single precision; below it is the twin's.
+    const bool is_twin = distance < nearest_single_precision;
+    CHECK(((sum.force - twin.force).norm() == 0) == is_twin);
+    CHECK((sum.force - twin.force).norm() < 2e-6 * twin.force.norm());
 }
 
 TEST_CASE("where single precision does not do, a frozen field is the twin's", "[field][frozen]") {

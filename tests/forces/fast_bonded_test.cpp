@@ -96,6 +96,21 @@ TEST_CASE("dihedrals of any multiplicity and phase are the twin's, from either e
         check_against_twin(topology, test::random_positions(random, 4, 1.5, 0.8));
 }
 
+TEST_CASE("dihedrals with three atoms almost in line are the twin's, at either end or both",
+          "[forces][bonded]") {
+    // How far off the line a and d are, Å: normals beside torsion_guard, 0.005 Å^2.
+    const double of_a = GENERATE(1e-5, 1e-3, 0.002, 0.01, 1.0), of_d = GENERATE(1e-4, 0.002, 1.0);
+    INFO(of_a << " and " << of_d << " Å off the line");
+    Topology topology;
+    topology.charge.assign(4, 0);
+    topology.dihedrals = {{0, 1, 2, 3, 3, 1.2, 0.5}};
+    topology.impropers = {{0, 1, 2, 3, 20, 0.3}};
+    const std::vector<Vec3> positions{
+        {-1.5, of_a, 0}, {0, 0, 0}, {1.5, 0, 0}, {3, 0.6 * of_d, 0.8 * of_d}};
+
+    check_against_twin(topology, positions);
+}
+
 TEST_CASE("more terms than a block holds count once each", "[forces][bonded]") {
     constexpr std::uint32_t count = 2 * block_size + 3;
     Topology topology;

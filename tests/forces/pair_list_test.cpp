@@ -82,6 +82,16 @@ TEST_CASE("a list has every near pair once, wherever the atoms are", "[forces][p
     CHECK(pairs_of(list) == all_near(exclusions, 6, positions));
 }
 
+TEST_CASE("a list has pairs that are only just within reach, across three cells",
+          "[forces][pairs]") {
+    // Cells a little narrower than half the reach would put the last two atoms three cells apart.
+    const double half = 3 * (1 - 1e-9);
+    const std::vector<Vec3> positions{{0, 0, 0}, {half - 1e-12, 0, 0}, {3 * half, 0, 0}};
+    const Exclusions exclusions = build_exclusions({}, 3);
+
+    CHECK(pairs_of(build_pair_list(exclusions, 5, 1, positions)) == Pairs{{0, 1}, {1, 2}});
+}
+
 TEST_CASE("a list repeats, also in the memory of another", "[forces][pairs]") {
     std::mt19937 random(29);
     const std::vector<Vec3> positions = test::random_positions(random, 300, 12, 0.5);

@@ -128,6 +128,22 @@ TEST_CASE("PDB and mmCIF tell the same assemblies", "[formats][assembly]") {
     }
 }
 
+TEST_CASE("an assembly of one row need not be a loop", "[formats][assembly]") {
+    const std::size_t begin = cif.find("loop_"), end = cif.find("loop_", begin + 1);
+    const std::string pairs =
+        "_pdbx_struct_assembly_gen.assembly_id 7\n"
+        "_pdbx_struct_assembly_gen.oper_expression 1,2\n"
+        "_pdbx_struct_assembly_gen.asym_id_list A,B\n";
+
+    const Structure structure =
+        parse_mmcif(cif.substr(0, begin) + pairs + cif.substr(end), "w.cif");
+
+    REQUIRE(structure.assemblies.size() == 1);
+    CHECK(structure.assemblies[0].name == "7");
+    REQUIRE(structure.assemblies[0].parts.size() == 1);
+    check_part(structure, structure.assemblies[0].parts[0], "A,B,", 2);
+}
+
 TEST_CASE("a chain without a name, and an assembly without a number", "[formats][assembly]") {
     std::string text = replaced(pdb, "CHAINS: C", "CHAINS: NULL");
     text = replaced(text, "REMARK 350 BIOMOLECULE: 1\n", "");

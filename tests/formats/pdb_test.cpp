@@ -273,6 +273,31 @@ TEST_CASE("a structure from a CRD file is written with segments, without chains"
           "ATOM      1  OH2 TIP3    1       1.000  -2.500   0.000  1.00  0.00      WATA\nEND\n");
 }
 
+TEST_CASE("residue numbers that outgrow their columns are written in hybrid-36", "[formats][pdb]") {
+    // R. W. Grosse-Kunstleve's tables of hybrid-36.
+    struct Row {
+        const char *number, *columns_23_to_26;
+    };
+    const auto row = GENERATE(values<Row>({{"-999", "-999"},
+                                           {"9999", "9999"},
+                                           {"10000", "A000"},
+                                           {"10035", "A00Z"},
+                                           {"10036", "A010"},
+                                           {"1223055", "ZZZZ"},
+                                           {"1223056", "a000"},
+                                           {"2436111", "zzzz"},
+                                           {"2436112", nullptr}}));
+    INFO(row.number);
+    Structure structure = parse_pdb(pdb_text, "w.pdb");
+    for (AtomName& name : structure.names) name.number = row.number;
+
+    if (!row.columns_23_to_26) {
+        CHECK_THAT(load_error_of([&] { format_pdb(structure, ""); }), Contains("residue number"));
+        return;
+    }
+    CHECK(format_pdb(structure, "").substr(22, 4) == row.columns_23_to_26);
+}
+
 TEST_CASE("what does not fit the columns is not written", "[formats][pdb]") {
     Structure structure = parse_pdb(pdb_text, "w.pdb");
     std::string error;

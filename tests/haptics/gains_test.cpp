@@ -230,6 +230,9 @@ TEST_CASE("parameters without two ranges have no calibrated law", "[haptics][gai
     const auto p = GENERATE(
         PrintedForceLaw::Parameters{.A_fmin = 1e7},  // low forces alone are steeper at F_0
         PrintedForceLaw::Parameters{.F_0 = 0.2e-9},  // low forces end beyond F_0
+        // A_fmax F_0 is 0.7: above α1 = 2/π and α1 - α2, below α1 + α2 = 3/π.
+        PrintedForceLaw::Parameters{
+            .F_h1 = 1, .F_h2 = 2, .F_0 = 1e-9, .A_fmin = 0.5e9, .A_fmax = 0.7e9},
         PrintedForceLaw::Parameters{.F_h1 = 3, .F_h2 = 3}, PrintedForceLaw::Parameters{.F_h1 = 0},
         PrintedForceLaw::Parameters{.F_0 = 0}, PrintedForceLaw::Parameters{.A_fmin = 0},
         PrintedForceLaw::Parameters{.A_fmin = -1e9}, PrintedForceLaw::Parameters{.A_fmax = -1e9},
@@ -387,6 +390,20 @@ TEST_CASE("the inverse of a force law gives back the molecular force", "[haptics
     // So near to 0 eq. 2 itself is all rounding.
     CHECK(hand_force_inverse(law, 1e-200) > 0);
     CHECK(hand_force_inverse(law, 1e-200) < 1e-205);
+}
+
+TEST_CASE("the inverse of eq. 2 holds where the law rises like a step", "[haptics][gains]") {
+    // Newton's way alone leaves the step at F_0 far on either side.
+    const double A_fmin = GENERATE(6.4e9, 64e9, 6.4e12);
+    const PrintedForceLaw::Parameters p{.A_fmin = A_fmin};
+    const PrintedForceLaw law(p);
+
+    for (const double share : {0.01, 0.5, 0.9, 0.99, 1.0, 1.01, 1.1, 2.0, 30.0}) {
+        INFO("F = " << share << " F_0");
+        const double F = share * p.F_0, F_h = law.value(F), back = law.inverse(F_h);
+        const double rounding = 4e-16 * F_h / law.slope(F);
+        CHECK_THAT(back, WithinAbs(F, 1e-12 * F + 4 * rounding));
+    }
 }
 
 TEST_CASE("beyond a law's limit the inverse is infinite", "[haptics][gains]") {

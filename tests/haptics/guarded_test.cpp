@@ -103,6 +103,32 @@ TEST_CASE("without atoms the local field is the tangent", "[haptics][guarded]") 
     CHECK(there.clearance_angstrom == Approx(0.3));
 }
 
+TEST_CASE("a handle that rests after it drove feels a finite force", "[haptics][guarded]") {
+    // The force drove it, limits cut off what it went, and now nothing is wanted.
+    Guarded guarded(Pair().touch(3.4));
+    guarded.state.handle_m_per_s = Vec3(-0.01, 0, 0);  // as it attracts
+    guarded.state.debt_J = 1e-3;
+
+    const GuardedTick tick = guarded.move(Vec3::Zero());
+
+    REQUIRE(guarded.state.law_newton.dot(guarded.state.handle_m_per_s) > 0);
+    REQUIRE(guarded.state.wanted_m == 0);
+    // The law's, all of it, and the damping.
+    CHECK((tick.hand_newton - guarded.state.law_newton - tick.damping_newton).norm() < 1e-12);
+}
+
+TEST_CASE("A_d is no less than so much for each newton that is felt", "[haptics][guarded]") {
+    GuardedSettings settings;
+    const Vec3 force(2e-9, 0, 0);
+    const double felt = hand_force(settings.force_law, force).norm();
+    const double law = guarded_gain(settings, force, Mat3::Zero()).A_d;
+    const double share = GENERATE(0.5, 2.0);
+
+    settings.least_A_d_per_newton = share * law / felt;
+
+    CHECK(guarded_gain(settings, force, Mat3::Zero()).A_d == Approx(std::max(1.0, share) * law));
+}
+
 TEST_CASE("a new touch model does not make the force jump", "[haptics][guarded]") {
     const Pair pair;
     Guarded guarded(pair.touch(3.9));

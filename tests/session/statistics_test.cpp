@@ -35,6 +35,22 @@ TEST_CASE("the extremes of a run are kept with their signs", "[session][statisti
     CHECK_FALSE(summary.ripple.has_value());
 }
 
+TEST_CASE("what was clamped, and what was wrong, is told as a share of all ticks",
+          "[session][statistics]") {
+    Statistics statistics(1e-3);
+    for (int i = 0; i < 8; ++i) {
+        ServoTick tick = tick_of(0.1, 3);
+        tick.clamped = i < 6;
+        if (i == 7) tick.stage = SafetyStage::NotFinite;
+        statistics.add(tick);
+    }
+
+    CHECK(statistics.summary().clamped_share == 0.75);
+    CHECK(statistics.summary().safety_share == 0.125);
+    CHECK(statistics.summary().gravest == SafetyStage::NotFinite);
+    CHECK(Statistics(1e-3).summary().clamped_share == 0);
+}
+
 TEST_CASE("in space a molecule is as far as it is, and beyond where it was turned from",
           "[session][statistics]") {
     Statistics statistics(1e-3);

@@ -18,6 +18,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstddef>
@@ -334,6 +335,13 @@ TEST_CASE("only joints of flexible molecules turn, and those that the scene name
     CHECK(joints_with({"molecules.resting.shape=rigid", "joints.amide=true"}) == one + 3);
     CHECK(joints_with({"joints.rigid=[\"PEPB 2 CA CB\"]"}) == 2 * one - 1);
     CHECK(joints_with({"joints.turn=[\"PEPA 2 C 3 N\", \"PEPB 1 CA CB\"]"}) == 2 * one + 2);
+    // Of a rigid molecule a bond may be named as rigid, and not as turning.
+    CHECK(joints_with({"molecules.resting.shape=rigid", "joints.rigid=[\"PEPA 2 CA CB\"]"}) == one);
+    CHECK_THAT(load_error_of([&] {
+                   joints_with({"molecules.resting.shape=rigid", "joints.turn=[\"PEPA 2 CA CB\"]"});
+               }),
+               Contains("joints.turn") &&
+                   Contains("bond PEPA GLU 2 CA - PEPA GLU 2 CB is of a rigid molecule"));
 }
 
 TEST_CASE("runs repeat to the bit", "[simulation][flexible]") {
@@ -480,4 +488,74 @@ TEST_CASE("few active joints leave the force that is felt at first as it is",
 
     CHECK(find_active_freedom(*few.flexible) <= 2);
     CHECK((found - expected).norm() < 1e-4 * expected.norm());
+}
+
+TEST_CASE("a joint counts the less the more atoms it moves, and the farther it is from the hand",
+          "[simulation][flexible]") {
+    const std::string weights = GENERATE("light", "near-hand");
+    Simulation simulation =
+        load_peptides({"statics.active=8", "statics.weights=" + weights, "statics.choose_every=1"});
+    (void)step_simulation(simulation, hand_at(Vec3(0.6, 0, 0)), simulation.touch.model);
+    (void)step_simulation(simulation, hand_at(Vec3(1.2, 0, 0)), simulation.touch.model);
+    const Flexible& flexible = *simulation.flexible;
+    const std::vector<double>& factors = flexible.adaptive->settings.factors;
+    const std::vector<Body>& bodies = flexible.model.tree.bodies.bodies;
+    const std::vector<std::array<std::uint32_t, 2>> bonds = connectivity_of(read_peptides()).bonds;
+    // All that is bonded to k once the bond to j is cut: what the joint j -> k turns.
+    const auto count_behind = [&](std::uint32_t j, std::uint32_t k) {
+        std::set<std::uint32_t> behind{k};
+        for (bool grows = true; grows;) {
+            grows = false;
+            for (const auto& [a, b] : bonds) {
+                if ((a == j && b == k) || (a == k && b == j)) continue;
+                if (behind.contains(a) && behind.insert(b).second) grows = true;
+                if (behind.contains(b) && behind.insert(a).second) grows = true;
+            }
+        }
+        return static_cast<double>(behind.size());
+    };
+    REQUIRE(factors.size() == bodies.size());
+
+    std::vector<std::pair<double, double>> by_distance;  // Å from the middle of what is held
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        if (flexible.model.tree.bodies.is_base(b)) continue;
+        const auto [j, k] = bodies[b].axis;
+        const double n = count_behind(j, k);
+        INFO("joint " << j << " -> " << k << ", " << n << " atoms");
+        // 1/2.3 of 8 atoms, 1/25 of 30: by the third power at last.
+        const double light = 1 / ((1 + n / 20) * (1 + n * n / 100));
+        const double nearness = factors[b] / light;
+        if (weights == "light") {
+            CHECK(nearness == Approx(1));
+            continue;
+        }
+        by_distance.emplace_back(
+            (flexible.state.positions[k] - flexible.adaptive->near_to->centre).norm(), nearness);
+    }
+    std::ranges::sort(by_distance);
+    for (std::size_t i = 1; i < by_distance.size(); ++i) {
+        const auto [distance, nearness] = by_distance[i];
+        CHECK(nearness > 0);
+        const double before = by_distance[i - 1].second;
+        // Atoms have moved by less than that since the choice; within what is held all are alike.
+        if (distance > by_distance[i - 1].first + 0.1)
+            CHECK((nearness < before || before > 1 - 1e-9));
+    }
+    if (weights == "near-hand") {
+        CHECK(by_distance.front().second == Approx(1));
+        CHECK(by_distance.back().second < 0.1);
+    }
+}
+
+TEST_CASE("a time budget that nothing has strained leaves joints to be chosen as often as asked",
+          "[simulation][flexible]") {
+    Simulation simulation =
+        load_peptides({"statics.active=8", "statics.choose_every=12", "statics.budget_us=1000000"});
+    Flexible& flexible = *simulation.flexible;
+    REQUIRE(flexible.adaptive->budget);
+
+    move_held(flexible, Vec3(0.1, 0, 0));
+    REQUIRE(step_flexible(flexible).is_chosen);
+
+    CHECK(flexible.adaptive->settings.choose_every == 12);
 }

@@ -102,3 +102,22 @@ TEST_CASE("each mode has the laws of the paper's table", "[simulation][load]") {
     CHECK(hand_force(laws("5").force, F) == 0);
     CHECK(displacement_gain(laws("5").displacement, 0) == 0.25e9);
 }
+
+TEST_CASE("only guarded coupling with eq. 2 calibrated depends on whether that can be",
+          "[simulation][load]") {
+    CouplingDescription coupling;
+    coupling.force_law = ForceLawChoice::Calibrated;
+    CHECK(can_build_laws(coupling));
+
+    coupling.A_f_min = 1e7;  // low forces alone are steeper at F_0
+    CHECK_FALSE(can_build_laws(coupling));
+    CouplingDescription other = coupling;
+    other.mode = CouplingMode::ConstantForceConstantDisplacement;
+    CHECK(can_build_laws(other));
+    other = coupling;
+    other.force_law = ForceLawChoice::Printed;
+    CHECK(can_build_laws(other));
+    other = coupling;
+    other.feel_pN = {20, 3000};
+    CHECK(can_build_laws(other));
+}
