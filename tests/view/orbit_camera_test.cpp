@@ -143,3 +143,21 @@ TEST_CASE("everything that is framed fits, from every side, and not with much to
     focus(same, {1, 2, 3}, 15);
     CHECK(seen_at(same, {1, 2, 3}).z == Approx(15));
 }
+
+TEST_CASE("the near plane is close to what is nearest, and in front of the eye within a molecule",
+          "[view][camera]") {
+    const FrameScene scene = long_box();  // x from 3.5 to 26.5
+    OrbitCamera camera;
+    camera.azimuth = 1.570796F;
+    camera.target = {15, 0, 0};
+
+    camera.distance = 100;
+    const FrameCamera outside = frame_camera(camera, scene);
+    const float nearest = seen_at(camera, scene.spheres[1].centre).z - 1.5F;
+    CHECK(outside.near == Approx(nearest).epsilon(0.05));
+
+    camera.distance = 2;  // half of the spheres are behind the eye
+    const FrameCamera within = frame_camera(camera, scene);
+    CHECK(within.near > 0);
+    CHECK(within.near < 0.1F);
+}
