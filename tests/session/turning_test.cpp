@@ -165,3 +165,22 @@ TEST_CASE("the continuous law is the static law along a line", "[session][coupli
     }
     CHECK(way_in_J == Approx(work).epsilon(1e-3));
 }
+
+TEST_CASE("the continuous law turns what turns with the handle, and nothing else",
+          "[session][coupling]") {
+    const bool turns = GENERATE(true, false);
+    const SceneDescription scene = space_scene(
+        {turns ? "molecules.moved.motion=with-handle" : "molecules.moved.motion=translate",
+         "start_offset_angstrom=[6, 0, 0]"});
+    const Simulation simulation = load_simulation(scene);
+    const ServoSettings servo = build_servo_settings(scene, simulation);
+    ContinuousLaw law(*servo.guarded, load_simulation(scene));
+    const MoleculePose start = law.pose();
+    const Quat turned = turn_of(Vec3(0.3, -0.2, 0.1));
+
+    law.follow({Vec3(0, 0.01, 0), turned});
+
+    CHECK(law.pose().orientation.angularDistance(turns ? Quat(turned * start.orientation)
+                                                       : start.orientation) < 1e-9);
+    CHECK((law.pose().place_angstrom - start.place_angstrom).norm() > 0.01);
+}
