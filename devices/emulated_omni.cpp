@@ -44,6 +44,7 @@ EmulatedOmni::EmulatedOmni(const EmulatedOmniSettings& settings)
       operator_(settings.script, settings.half_workspace_m, most_ahead(settings.hand)),
       time_(settings.orders) {
     spec_.name = "emulated Omni";
+    spec_.is_real = false;
     spec_.peak_force_newton = settings.peak_force_newton;
     spec_.viscosity_N_s_per_m = settings.dynamics.viscosity_N_s_per_m;
     spec_.half_workspace_m = settings.half_workspace_m;

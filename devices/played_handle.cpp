@@ -166,6 +166,7 @@ std::vector<PlayedRow> read_trace(const std::filesystem::path& recording) {
 PlayedHandle::PlayedHandle(PlayedHandleSettings settings)
     : settings_(std::move(settings)), time_(settings_.orders) {
     spec_.name = settings_.name;
+    spec_.is_real = false;
     // The Omni's, as most recordings are of one; more where the table needs it.
     spec_.half_workspace_m = omni_half_workspace_m;
     for (const PlayedRow& row : settings_.rows) {

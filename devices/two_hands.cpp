@@ -24,6 +24,7 @@ TwoHands::TwoHands(std::unique_ptr<Device> first, Device& second)
     const DeviceSpec &one = first_->spec(), &other = second_.spec();
     spec_ = one;
     spec_.name = fmt::format("{} and {}", one.name, other.name);
+    spec_.is_real = one.is_real || other.is_real;
     spec_.peak_force_newton = tighter(one.peak_force_newton, other.peak_force_newton);
     spec_.continuous_force_newton =
         tighter(one.continuous_force_newton, other.continuous_force_newton);

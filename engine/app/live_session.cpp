@@ -16,7 +16,7 @@
 namespace palpa {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using Duration = std::chrono::steady_clock::duration;
 
 constexpr std::chrono::microseconds servo_tick{1'000'000 / static_cast<int>(servo_rate_hz)};
 
@@ -39,17 +39,8 @@ bool ask_for_locked_memory() noexcept {
     return mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0;
 }
 
-// Until that moment: asleep, and awake for the last bit, since the system wakes us late.
-void wait_until(Clock::time_point moment) {
-    constexpr std::chrono::microseconds awake{80};
-    std::this_thread::sleep_until(moment - awake);
-    while (Clock::now() < moment) {
-    }
-}
-
-Clock::duration period_of(const Simulation& simulation) {
-    return std::chrono::duration_cast<Clock::duration>(
-        std::chrono::duration<double>(simulation.period_s));
+Duration period_of(const Simulation& simulation) {
+    return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(simulation.period_s));
 }
 
 // While nothing moves, the hand feels nothing and has no hold.
@@ -70,11 +61,13 @@ SceneDescription limited_by_period(SceneDescription scene) {
 }  // namespace
 
 LiveSession::LiveSession(const SceneDescription& scene, const ViewSettings& view, Device& device,
-                         HandOrders* orders)
-    : scene_(scene),
+                         HandOrders* orders, LiveClock* clock)
+    : clock_(clock ? *clock : machine_clock_),
+      scene_(scene),
       device_(&device),
       orders_(orders),
       state_{load_simulation(limited_by_period(scene)), view, {}, {}, false, {}, {}} {
+    check_period(device.spec(), scene.period_ms * 1e-3);
     order_.granted_ticks = ticks_of(scene.period_ms);
     exchange_.touch.post(state_.simulation.touch);
     start_servo(state_);
@@ -100,7 +93,8 @@ void LiveSession::send(const Command& command) {
     } else if (std::holds_alternative<Reset>(command)) {
         ++order_.restarts;
     } else if (const auto* const settings = std::get_if<LiveSettings>(&command)) {
-        order_.granted_ticks = ticks_of(settings->period_ms);
+        if (bears_period(device_->spec(), settings->period_ms * 1e-3))
+            order_.granted_ticks = ticks_of(settings->period_ms);
     }
     if (orders_) orders_->post(order_);
     {
@@ -111,6 +105,7 @@ void LiveSession::send(const Command& command) {
 }
 
 void LiveSession::change_device(Device& device, HandOrders* orders) {
+    check_period(device.spec(), order_.granted_ticks / servo_rate_hz);
     order_.target_m.setZero();
     if (orders) orders->post(order_);
     std::unique_lock lock(mutex_);
@@ -147,12 +142,12 @@ void LiveSession::stop_servo() {
 }
 
 void LiveSession::run_servo(ServoOrder order) {
-    real_time_ = ask_for_real_time();
+    real_time_ = &clock_ == &machine_clock_ && ask_for_real_time();
     locked_ = ask_for_locked_memory();
     ServoState& state = servo_state_;
     ServoTick last;
-    const Clock::time_point start = Clock::now();
-    Clock::time_point next = start;
+    const LiveClock::Moment start = clock_.now();
+    LiveClock::Moment next = start;
     // The force fades before the last tick.
     constexpr int last_ticks = 12;
     for (int ending = 0; ending < last_ticks; ending += order.settings.is_ending ? 1 : 0) {
@@ -162,7 +157,7 @@ void LiveSession::run_servo(ServoOrder order) {
         const DeviceReading reading = device_->read();
         // An emulated device lives on the servo's ticks, however late they come, and can stand
         // still.
-        const std::chrono::duration<double> real_s = Clock::now() - start;
+        const std::chrono::duration<double> real_s = clock_.now() - start;
         const bool stands_still =
             order.is_paused && !servo_stopping_ && reading.time_s == last.reading.time_s;
         if (!stands_still) {
@@ -173,12 +168,12 @@ void LiveSession::run_servo(ServoOrder order) {
         device_->show(last.touch);
         device_->write(last.sent_newton);
         next += servo_tick;
-        const Clock::time_point now = Clock::now();
+        const LiveClock::Moment now = clock_.now();
         if (now - next > servo_tick) {
             overruns_ += static_cast<std::uint64_t>((now - next) / servo_tick);
             next = now;
         }
-        wait_until(next);
+        clock_.wait_for_tick(next);
     }
 }
 
@@ -186,24 +181,25 @@ void LiveSession::run_servo(ServoOrder order) {
 // the next step starts from the hand's pose at that moment. Commands are obeyed at once, between
 // steps.
 void LiveSession::run_simulation(State& state) {
-    Clock::time_point next = Clock::now();
+    LiveClock::Moment next = clock_.now();
     while (!stopping_) {
-        const bool settles = Clock::now() < state.settled;
+        const bool settles = clock_.now() < state.settled;
         if (!settles && (!state.readout.paused || state.step_once)) {
             step(state);
         } else if (settles || !orders_) {  // a paused emulated handle stands still by itself
             hold(state);
         }
         next += period_of(state.simulation);
-        const Clock::time_point now = Clock::now();
+        const LiveClock::Moment now = clock_.now();
         if (now > next) next = now;  // late: the clock goes on from here
         post_frame_if_wanted(state);
         for (bool waited = false; !waited && !stopping_;) {
             std::vector<Command> commands;
             {
                 std::unique_lock lock(mutex_);
-                waited = !has_command_.wait_until(
-                    lock, next, [&] { return stopping_ || !commands_.empty() || device_change_; });
+                waited = !clock_.wait_for_period(next, lock, has_command_, [&] {
+                    return stopping_ || !commands_.empty() || device_change_;
+                });
                 commands.swap(commands_);
                 if (device_change_) {  // who asked for it waits
                     change_device(state, *device_change_);
@@ -229,9 +225,9 @@ void LiveSession::step(State& state) {
     exchange_.touch.post(state.simulation.touch);
     state.felt = state.simulation.touch.model;
     exchange_.hand.read(state.hand);
-    const Clock::time_point begin = Clock::now();
+    const LiveClock::Moment begin = clock_.now();
     (void)step_simulation(state.simulation, state.hand, state.felt);
-    state.readout.step_ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+    state.readout.step_ms = std::chrono::duration<double, std::milli>(clock_.now() - begin).count();
     ++state.readout.steps;
 }
 
@@ -244,7 +240,12 @@ void LiveSession::obey(State& state, const Command& command) {
             state.readout.problem =
                 "eq. 2 of these numbers cannot have these slopes: the law from before stays";
         }
-        scene_.period_ms = settings->period_ms;
+        try {
+            check_period(device_->spec(), settings->period_ms * 1e-3);
+            scene_.period_ms = settings->period_ms;
+        } catch (const LoadError& error) {
+            state.readout.problem = error.what();
+        }
         set_coupling(scene_.coupling, state.simulation);
         state.simulation.period_s = scene_.period_ms * 1e-3;
         order_servo(state);
@@ -292,7 +293,7 @@ void LiveSession::change_device(State& state, const DeviceChange& change) {
 
 // Once the hand rests; until then it moves nothing.
 void LiveSession::take_hold_anew(State& state) {
-    state.settled = Clock::now() + settle_time;
+    state.settled = clock_.now() + settle_time;
     ++restarts_;
     state.simulation.touch.model.start = restarts_;
     hold(state);
@@ -300,8 +301,7 @@ void LiveSession::take_hold_anew(State& state) {
 
 // A hand takes hold quietly; laws that are exchanged glide.
 LiveSession::ServoOrder LiveSession::build_order(const State& state) {
-    ServoOrder order{
-        build_servo_settings(scene_, state.simulation, device_->spec().half_workspace_m)};
+    ServoOrder order{build_servo_settings(scene_, state.simulation, device_->spec())};
     order.is_paused = orders_ && state.readout.paused;
     SafetySettings& safety = order.settings.safety;
     safety.starts_engaged = false;

@@ -2,6 +2,7 @@
 // each on a thread of its own, and what a third one, with the window, may ask of them and see of
 // them.
 #pragma once
+#include "app/live_clock.h"
 #include "core/mailbox.h"
 #include "core/ring.h"
 #include "haptics/device.h"
@@ -38,9 +39,10 @@ struct LiveFrame {
 class LiveSession {
 public:
     // Loads the scene and starts both threads. `orders`: of an emulated device's hand; null where
-    // the device cannot stand still. Throws LoadError.
+    // the device cannot stand still. `clock`: null is the machine's. Throws LoadError, and where
+    // the device must not be run with the scene's period (check_period).
     LiveSession(const SceneDescription& scene, const ViewSettings& view, Device& device,
-                HandOrders* orders);
+                HandOrders* orders, LiveClock* clock = nullptr);
     LiveSession(const LiveSession&) = delete;
     LiveSession& operator=(const LiveSession&) = delete;
     ~LiveSession();
@@ -49,7 +51,8 @@ public:
 
     // Puts another device in the hand's place, which takes hold of the molecule where it is: no
     // force, then quiet cycles and ramp. Waits for the step that is under way; the device before is
-    // the caller's again.
+    // the caller's again. Throws LoadError, and changes nothing, where the other one must not be
+    // run with the present period.
     void change_device(Device& device, HandOrders* orders);
 
     // Where a live hand wants the handle, m.
@@ -71,7 +74,7 @@ private:
         HandPose hand;
         TouchModel felt;  // by the hand now; the last step's answer is the simulation's
         bool step_once = false;
-        std::chrono::steady_clock::time_point settled{};  // after a reset, until the hand rests
+        LiveClock::Moment settled{};  // after a reset, until the hand rests
         Readout readout;
     };
 
@@ -103,6 +106,8 @@ private:
 
     static constexpr std::size_t ring_size = 8192;  // 8 s of ticks
 
+    LiveClock machine_clock_;
+    LiveClock& clock_;
     SceneDescription scene_;
     Device* device_;
     HandOrders* orders_;

@@ -466,13 +466,13 @@ bool Sandbox::change_device(const std::string& name) {
     WindowDevice next;
     try {
         next = devices_.open(name);
+        session_.change_device(*next.device, next.orders);
     } catch (const LoadError& error) {
         if (error.what() != refusal_) notice(error.what(), first_notice_s);
         refusal_ = error.what();
         return false;
     }
     refusal_.clear();
-    session_.change_device(*next.device, next.orders);
     chosen_ = std::move(next.device);
     device_ = chosen_.get();
     orders_ = next.orders;

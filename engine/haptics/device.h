@@ -22,6 +22,9 @@ struct DeviceSpec {
     double continuous_force_newton = 0;  // what they give for ever; 0 if not known
     double viscosity_N_s_per_m = 0;      // what is known of the device's own damping; 0 if nothing
     Vec3 half_workspace_m = Vec3::Zero();  // the box in which the handle can move, from its centre
+    // False where nothing can hurt anybody: emulated, or led by a mouse. The whole safety chain
+    // guards every real device, whatever the mode.
+    bool is_real = true;
 };
 
 // What a device that still answers says of its motors.

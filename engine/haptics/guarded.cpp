@@ -231,6 +231,11 @@ GuardedGain guarded_gain(const GuardedSettings& settings, const Vec3& force_newt
             felt / A_d, A_d / law};
 }
 
+Vec3 filtered_velocity(const Vec3& before_m_per_s, const Vec3& moved_m) noexcept {
+    const double keep = velocity_filter_s / (velocity_filter_s + servo_tick_s);
+    return keep * before_m_per_s + (1 - keep) / servo_tick_s * moved_m;
+}
+
 void take_touch(const Touch& touch, GuardedState& state) noexcept {
     const TouchModel& model = touch.model;
     const Vec3 felt = state.at_place.force_newton + state.jump_newton;
@@ -257,8 +262,7 @@ GuardedTick step_guarded(const GuardedSettings& settings, const Touch& touch, co
     const Vec3& moved_m = handle.moved_m;
     GuardedTick tick;
     const TouchModel& model = touch.model;
-    const double keep = velocity_filter_s / (velocity_filter_s + servo_tick_s);
-    state.handle_m_per_s = keep * state.handle_m_per_s + (1 - keep) / servo_tick_s * moved_m;
+    state.handle_m_per_s = filtered_velocity(state.handle_m_per_s, moved_m);
     if (!state.is_placed || model.is_still) return tick;
 
     const Vec3 before = state.at_place.force_newton + state.jump_newton;

@@ -110,6 +110,9 @@ struct HandleStep {
     Quat turned = Quat::Identity();
 };
 
+// The handle's velocity after a tick in which it moved by that much, through a low-pass.
+Vec3 filtered_velocity(const Vec3& before_m_per_s, const Vec3& moved_m) noexcept;
+
 // A touch model has come, in place of `before`'s. To be called in the tick in which it is first
 // seen, before step_guarded.
 void take_touch(const Touch& touch, GuardedState& state) noexcept;

@@ -205,6 +205,11 @@ SafetyResult guard_papers_force(const SafetySettings& settings, SafetyState& sta
 
 }  // namespace
 
+bool bears_period(const DeviceSpec& device, double period_s) noexcept {
+    const bool gives_force = device.is_real && device.peak_force_newton > 0;
+    return !gives_force || period_s <= longest_real_period_s;
+}
+
 void limit_to(const DeviceSpec& device, SafetySettings& settings) noexcept {
     if (device.peak_force_newton > 0) {
         settings.clamp_newton = std::min(settings.clamp_newton, device.peak_force_newton);

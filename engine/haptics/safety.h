@@ -55,6 +55,13 @@ struct SafetySettings {
     double ramp_s = 2;
 };
 
+// A real device with motors is not run with a longer period of the simulation: for as long as two
+// of them it plays the force of a simulation that has died.
+inline constexpr double longest_real_period_s = 1;
+
+// Whether the device may be run with that period.
+bool bears_period(const DeviceSpec& device, double period_s) noexcept;
+
 // Takes over what a device says of itself; nothing beside what the settings allow already. Without
 // motors none can be seen to hang in its readings, and none grows hot.
 void limit_to(const DeviceSpec& device, SafetySettings& settings) noexcept;

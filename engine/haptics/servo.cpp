@@ -111,7 +111,9 @@ ServoTick step_servo(const ServoSettings& settings, ServoState& state, Exchange&
         tick.touch = touch_now(state.touch, guarded, done);
         if (guarded.is_placed) pose.molecule = guarded.molecule;
     } else {
+        const Vec3 velocity = filtered_velocity(state.guarded.handle_m_per_s, handle.moved_m);
         state.guarded = {};
+        state.guarded.handle_m_per_s = velocity;
         wanted = hand_force(settings.force_law, state.touch.force_newton);
     }
     exchange.hand.post(pose);
@@ -124,6 +126,7 @@ ServoTick step_servo(const ServoSettings& settings, ServoState& state, Exchange&
     tick.stage = safe.stage;
     tick.reason = safe.reason;
     tick.stopped = is_latched(state.safety);
+    tick.is_safety_full = settings.safety.is_full;
     tick.clamped = safe.stage == SafetyStage::Clamped;
     const ForceLaw& law = settings.guarded ? settings.guarded->force_law : settings.force_law;
     tick.force_gain = force_gain(law, tick.touch.force_newton.norm());

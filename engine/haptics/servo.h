@@ -60,6 +60,7 @@ struct ServoTick {
     bool clutched = false;
     bool clamped = false;                    // the clamp acted
     bool stopped = false;                    // a force was not finite; latched
+    bool is_safety_full = true;              // the whole chain acted, or the paper's part of it
     SafetyStage stage = SafetyStage::None;   // the gravest that acted
     SafetyStage reason = SafetyStage::None;  // why the force is not back in full
     // Guarded coupling alone.

@@ -210,6 +210,7 @@ std::string format_summary(const SceneDescription& scene, const Summary& summary
     }
     if (summary.feel) json["feel"] = feel_as_json(*summary.feel);
     json["clamped_share"] = summary.clamped_share;
+    json["safety"] = summary.is_safety_full ? "full" : "paper";
     json["safety_share"] = summary.safety_share;
     json["stopped"] = summary.stopped;
     json["overruns"] = summary.overruns;

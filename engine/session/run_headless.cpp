@@ -1,5 +1,6 @@
 #include "session/run_headless.h"
 
+#include "core/load_error.h"
 #include "core/units.h"
 #include "haptics/hand.h"
 #include "haptics/plant.h"
@@ -44,6 +45,8 @@ ServoSettings build_servo_settings(const SceneDescription& scene, const Simulati
                            {.clamp_newton = c.clamp_N, .is_full = simulation.is_guarded},
                            static_cast<int>(scene.device.servo_delay_ticks)};
     settings.safety.starts_engaged = c.engage == Engage::AtOnce;
+    // Friction is lost twice on turning round, and the rest has to show (haptics/safety.h).
+    settings.safety.frozen_newton = 2 + 2 * scene.device.friction_N;
     if (!simulation.is_guarded) return settings;
     GuardedSettings& guarded = settings.guarded.emplace();
     guarded.force_law = simulation.laws.force;
@@ -65,9 +68,25 @@ ServoSettings build_servo_settings(const SceneDescription& scene, const Simulati
     guarded.stop_newton = c.stop_nN * 1e-9;
     guarded.late_s = guarded_lateness(guarded.cap_N_per_m, guarded.damping_N_s_per_m,
                                       scene.device.inertia_kg, settings.delay_ticks);
-    // Friction is lost twice on turning round, and the rest has to show (haptics/safety.h).
-    settings.safety.frozen_newton = 2 + 2 * scene.device.friction_N;
     return settings;
+}
+
+ServoSettings build_servo_settings(const SceneDescription& scene, const Simulation& simulation,
+                                   const DeviceSpec& device) {
+    ServoSettings settings = build_servo_settings(scene, simulation, device.half_workspace_m);
+    if (!device.is_real) return settings;
+    settings.safety.is_full = true;
+    settings.safety.starts_engaged = false;
+    limit_to(device, settings.safety);
+    return settings;
+}
+
+void check_period(const DeviceSpec& device, double period_s) {
+    if (bears_period(device, period_s)) return;
+    throw LoadError({"run.period_ms"},
+                    fmt::format("is {:.6g} ms, and {} would play a force that is as old; expected "
+                                "at most {:.6g} ms with a device that has motors",
+                                1e3 * period_s, device.name, 1e3 * longest_real_period_s));
 }
 
 double gain_where(const ServoSettings& servo, const Simulation& simulation,
@@ -242,8 +261,8 @@ Summary run_headless(const SceneDescription& scene, Simulation& simulation, Devi
         static_cast<std::uint64_t>(std::lround(simulation.period_s / servo_tick_s));
     Statistics statistics(servo_tick_s);
     ActivityLog activity;
-    const ServoSettings servo =
-        build_servo_settings(scene, simulation, device.spec().half_workspace_m);
+    check_period(device.spec(), simulation.period_s);
+    const ServoSettings servo = build_servo_settings(scene, simulation, device.spec());
     FeelLog feel(scene, servo);
     std::optional<JourneyLog> journey;
     if (simulation.flexible) journey.emplace(simulation);

@@ -31,9 +31,19 @@ struct FrameClock {
 // Servo ticks of the scene's run.
 std::uint64_t count_ticks(const SceneDescription& scene) noexcept;
 
+// For an emulated device, whose safety chain is the whole one in guarded coupling alone.
 // `half_workspace_m`: of the device, for what carries a small one over a large scene.
 ServoSettings build_servo_settings(const SceneDescription& scene, const Simulation& simulation,
                                    const Vec3& half_workspace_m = Vec3::Constant(0.1));
+
+// For this device. The whole safety chain guards a real one in every mode, within its limits, and
+// it engages by quiet cycles and ramp.
+ServoSettings build_servo_settings(const SceneDescription& scene, const Simulation& simulation,
+                                   const DeviceSpec& device);
+
+// Throws LoadError where this device must not be run with that period of the simulation: a real one
+// with motors, beyond `longest_real_period_s`.
+void check_period(const DeviceSpec& device, double period_s);
 
 // A_d of the scene's coupling, the paper's or guarded, where the molecule feels this force (N) and
 // stiffness (N/m).

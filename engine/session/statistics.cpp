@@ -50,6 +50,7 @@ void Statistics::add(const ServoTick& tick) {
     running_.largest_attraction_N = std::max(running_.largest_attraction_N, -tick.sent_newton.x());
     running_.largest_repulsion_N = std::max(running_.largest_repulsion_N, tick.sent_newton.x());
     running_.stopped = tick.stopped;
+    running_.is_safety_full = running_.is_safety_full && tick.is_safety_full;
     if (tick.clamped) ++clamped_ticks_;
     if (const SafetyStage trouble = trouble_of(tick); trouble != SafetyStage::None) {
         ++safety_ticks_;

@@ -42,6 +42,7 @@ struct Summary {
     // Of the time in which something was wrong that held the force back, and the gravest of that.
     double safety_share = 0;
     SafetyStage gravest = SafetyStage::None;
+    bool is_safety_full = true;      // the whole chain guarded every tick
     bool stopped = false;            // a force was not finite
     std::uint64_t overruns = 0;      // servo ticks that came too late; none in lockstep
     std::optional<Journey> journey;  // in space, where something moves by itself

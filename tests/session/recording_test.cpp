@@ -157,3 +157,13 @@ TEST_CASE("only our own recordings are replaced, and whole", "[session][recordin
     fs::create_directory(folder.path() / "trace.csv");
     CHECK_THROWS_AS(Recording(folder.path(), test::water_scene()), LoadError);
 }
+
+TEST_CASE("the summary says which safety chain guarded the run", "[session][recording]") {
+    const test::TemporaryFolder folder;
+    const std::string mode = GENERATE("1", "2", "3", "4", "5", "guarded");
+
+    record(water, folder.path(), {"seconds=0.1", "mode=" + mode});
+
+    const auto summary = nlohmann::json::parse(read_text_file(folder.path() / "summary.json"));
+    CHECK(summary.at("safety") == (mode == "guarded" ? "full" : "paper"));
+}
