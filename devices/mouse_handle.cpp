@@ -28,7 +28,6 @@ MouseHandle::MouseHandle(const MouseHandleSettings& settings)
       kept_(std::exp(-settings.stiffness_N_per_m * servo_tick_s / settings.damping_N_s_per_m)) {
     spec_.name = "mouse and keys";
     spec_.is_real = false;
-    spec_.peak_force_newton = settings.peak_force_newton;
     spec_.half_workspace_m = settings.half_workspace_m;
 }
 

@@ -1,6 +1,7 @@
 #include "devices/mouse_handle.h"
 
 #include "haptics/hand.h"
+#include "haptics/safety.h"
 
 #include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
@@ -157,4 +158,24 @@ TEST_CASE("the grip of a scene is the mouse's spring and damper", "[devices][mou
     CHECK(firm.damping_N_s_per_m == 10);
     CHECK(mouse_handle_of(hand_model(Grip::FirmGrip)).stiffness_N_per_m == Approx(1000.0 / 3));
     CHECK(mouse_handle_of(hand_model(Grip::None)).stiffness_N_per_m == K);
+}
+
+TEST_CASE("a mouse that pulls for a minute is told of no warm motors", "[devices]") {
+    MouseHandle mouse{MouseHandleSettings{}};
+    SafetySettings settings;
+    limit_to(mouse.spec(), settings);
+    SafetyState state;
+    SafetyResult result;
+
+    for (int i = 0; i < 60'000; ++i) {
+        SafetyInput input;
+        input.wanted_newton = Vec3(2.4, 0, 0);
+        input.reading = mouse.read();
+        input.now_s = input.reading.time_s;
+        result = guard_force(settings, state, input);
+        mouse.write(result.newton);
+    }
+
+    CHECK(result.newton.x() == 2.4);
+    CHECK(result.stage == SafetyStage::None);
 }
