@@ -96,6 +96,8 @@ public:
             first_ = reading;
         }
         before_ = reading;
+        // Warm motors played this share of the force, and the molecule took it of the way.
+        step.moved_m *= tick.followed;
         // The force of the tick before did this, with a damping that was so much older.
         damped_J_ += under_way_[tick_ % under_way_.size()].dot(step.moved_m);
         under_way_[tick_ % under_way_.size()] = tick.damping_newton;

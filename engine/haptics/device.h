@@ -2,6 +2,7 @@
 #pragma once
 #include "math/vec.h"
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -43,6 +44,12 @@ struct DeviceReading {
     Quat orientation = Quat::Identity();  // of the handle, where the device senses it
     DeviceTrouble trouble = DeviceTrouble::None;
 };
+
+// Valid, and every value a number.
+inline bool is_sane(const DeviceReading& reading) noexcept {
+    return reading.valid && std::isfinite(reading.time_s) && reading.position_m.allFinite() &&
+           reading.orientation.coeffs().allFinite();
+}
 
 enum class Button : std::uint32_t { Clutch = 1 };
 

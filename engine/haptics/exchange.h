@@ -12,7 +12,9 @@ namespace palpa {
 // What the servo tells the simulation, every tick.
 struct HandPose {
     double time_s = 0;
-    Vec3 travel_m = Vec3::Zero();  // handle travel so far, but for what was travelled clutched
+    // Handle travel so far, but for what was travelled clutched, or under motors that were too warm
+    // to play the whole force.
+    Vec3 travel_m = Vec3::Zero();
     Quat turn = Quat::Identity();  // and handle turn
     // Where guarded coupling has put the molecule. Without it the simulation moves the molecule by
     // travel and turn.

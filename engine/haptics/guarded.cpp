@@ -233,7 +233,12 @@ GuardedGain guarded_gain(const GuardedSettings& settings, const Vec3& force_newt
 
 Vec3 filtered_velocity(const Vec3& before_m_per_s, const Vec3& moved_m) noexcept {
     const double keep = velocity_filter_s / (velocity_filter_s + servo_tick_s);
-    return keep * before_m_per_s + (1 - keep) / servo_tick_s * moved_m;
+    constexpr double most_m = 1;
+    const double norm = moved_m.stableNorm();
+    Vec3 counted = moved_m;
+    if (!std::isfinite(norm)) counted = Vec3(most_m, 0, 0);  // no direction is left of it
+    if (norm > most_m && std::isfinite(norm)) counted *= most_m / norm;
+    return keep * before_m_per_s + (1 - keep) / servo_tick_s * counted;
 }
 
 void take_touch(const Touch& touch, GuardedState& state) noexcept {
@@ -271,7 +276,7 @@ GuardedTick step_guarded(const GuardedSettings& settings, const Touch& touch, co
     Vec3 own = Vec3::Zero(), extra = Vec3::Zero();
     if (!is_clutched) {
         extra = model.projector * find_extra_travel(settings, handle_m, moved_m, state);
-        own = model.projector * moved_m + extra;
+        own = model.projector * (handle.followed * moved_m) + extra;
     }
     const Vec3 wanted = own + state.kept_m;
     const bool turns = model.turns_with_handle && !is_clutched;

@@ -108,9 +108,11 @@ struct GuardedTick {
 struct HandleStep {
     Vec3 moved_m = Vec3::Zero();
     Quat turned = Quat::Identity();
+    double followed = 1;  // share of the travel that is to be the molecule's
 };
 
-// The handle's velocity after a tick in which it moved by that much, through a low-pass.
+// The handle's velocity after a tick in which it moved by that much, through a low-pass. What no
+// handle does, more than a metre in a tick, counts as a metre, and is soon forgotten.
 Vec3 filtered_velocity(const Vec3& before_m_per_s, const Vec3& moved_m) noexcept;
 
 // A touch model has come, in place of `before`'s. To be called in the tick in which it is first

@@ -36,6 +36,16 @@ Elapsed update_clock(const SafetySettings& settings, SafetyState& state, double 
     return {elapsed_s};
 }
 
+// Whether ticks are slow on average, none of them being late by itself.
+bool update_pace(SafetyState& state, double elapsed_s) noexcept {
+    const auto elapsed_us = static_cast<std::uint32_t>(std::lround(1e6 * elapsed_s));
+    std::uint32_t& oldest_us = state.ticks_us[state.next_tick];
+    state.ticks_sum_us += elapsed_us - oldest_us;
+    oldest_us = elapsed_us;
+    state.next_tick = (state.next_tick + 1) % slow_window_ticks;
+    return state.ticks_sum_us > slow_window_us;
+}
+
 // Both watches run on once they have run out, until the reading changes.
 bool update_frozen(const SafetySettings& settings, SafetyState& state, bool has_moved,
                    double stamp_s, double elapsed_s) noexcept {
@@ -59,7 +69,9 @@ bool update_frozen(const SafetySettings& settings, SafetyState& state, bool has_
         state.still_newton += change * (elapsed_s / state.still_s);
     } else if (state.pushed_s < limit_s) {
         const double change = (state.sent_newton - state.still_newton).norm();
-        state.pushed_s = change > settings.frozen_newton ? state.pushed_s + elapsed_s : 0;
+        constexpr double makes_up = 0.25;
+        state.pushed_s += change > settings.frozen_newton ? elapsed_s : -makes_up * elapsed_s;
+        state.pushed_s = std::max(state.pushed_s, 0.0);
     }
     const bool is_hung = state.stamp_runs && state.hung_changed && state.hung_s >= limit_s;
     return is_hung || state.pushed_s >= limit_s;
@@ -68,7 +80,7 @@ bool update_frozen(const SafetySettings& settings, SafetyState& state, bool has_
 SafetyStage update_reading(const SafetySettings& settings, SafetyState& state,
                            const DeviceReading& reading, double elapsed_s) noexcept {
     state.unread_s += elapsed_s;
-    if (!reading.valid || !reading.position_m.allFinite()) {
+    if (!is_sane(reading)) {
         if (state.unread_s < settings.gone_s - rounding_s) return SafetyStage::None;
         state.has_reading = false;
         return SafetyStage::Unplugged;
@@ -93,26 +105,23 @@ SafetyStage update_reading(const SafetySettings& settings, SafetyState& state,
     return is_frozen ? SafetyStage::Frozen : SafetyStage::None;
 }
 
-bool is_stale(const SafetySettings& settings, double age_s, double period_s) noexcept {
-    if (!std::isfinite(age_s)) return true;
-    const double periods_s = std::isfinite(period_s) ? settings.stale_periods * period_s : 0;
-    return age_s > std::max(periods_s, settings.stale_s);
-}
-
 // A model that comes back before all has faded brings the force back as quickly as it went.
 void update_stale(const SafetySettings& settings, SafetyState& state, const SafetyInput& input,
                   double elapsed_s) noexcept {
-    const double change = elapsed_s / settings.fade_s;
-    const bool fades = is_stale(settings, input.model_age_s, input.period_s);
+    const double period_s = std::isfinite(input.period_s) ? input.period_s : 0;
+    const double stale_s = std::max(settings.stale_periods * period_s, settings.stale_s);
+    const double dead_s = std::max(settings.dead_periods * period_s, settings.dead_s);
+    const bool fades = !(input.model_age_s <= stale_s);  // no number: it fades
+    const double change = elapsed_s / (dead_s - stale_s);
     state.faded = std::clamp(state.faded + (fades ? change : -change), 0.0, 1.0);
-    if (state.faded > 1 - rounding_s) state.faded = 1;
+    if (state.faded > 1 - rounding_s || input.model_age_s > dead_s - rounding_s) state.faded = 1;
 }
 
 // What motors say that are warmer than the heat of our own forces tells.
 void update_warm(const SafetySettings& settings, SafetyState& state, DeviceTrouble trouble,
                  double elapsed_s) noexcept {
     const bool is_warm = trouble == DeviceTrouble::WarmMotors;
-    const double change = elapsed_s / settings.fade_s;
+    const double change = elapsed_s / settings.warm_s;
     state.warmed = std::clamp(state.warmed + (is_warm ? change : -change), 0.0, 1.0);
     if (state.warmed > 1 - rounding_s) state.warmed = 1;
     const double hot = settings.hot_newton * settings.hot_newton;
@@ -132,12 +141,17 @@ double update_heat(const SafetySettings& settings, SafetyState& state, double el
     state.mean_square_newton2 += (state.sent_newton.squaredNorm() - state.mean_square_newton2) *
                                  -std::expm1(-elapsed_s / settings.heat_s);
     const double hot = settings.hot_newton * settings.hot_newton;
-    if (state.mean_square_newton2 >= hot) state.is_hot = true;
+    const double lowest = std::min(settings.hot_newton, settings.clamp_newton);
+    if (!state.is_hot && state.mean_square_newton2 >= hot) {
+        state.is_hot = true;
+        state.hot_from_newton = std::clamp(state.sent_newton.norm(), lowest, settings.clamp_newton);
+    }
     if (state.mean_square_newton2 < settings.cooled_share * hot) state.is_hot = false;
     const double change = elapsed_s / settings.glide_s;
     state.glided = std::clamp(state.glided + (state.is_hot ? change : -change), 0.0, 1.0);
-    const double lowest = std::min(settings.hot_newton, settings.clamp_newton);
-    return settings.clamp_newton - state.glided * (settings.clamp_newton - lowest);
+    const double highest = state.is_hot ? std::min(state.hot_from_newton, settings.clamp_newton)
+                                        : settings.clamp_newton;
+    return highest - state.glided * (std::max(highest, lowest) - lowest);
 }
 
 // Clock and reading begin anew.
@@ -204,6 +218,11 @@ SafetyResult guard_papers_force(const SafetySettings& settings, SafetyState& sta
 }
 
 }  // namespace
+
+SafetyState::SafetyState() noexcept {
+    ticks_us.fill(static_cast<std::uint32_t>(std::lround(1e6 * servo_tick_s)));
+    for (const std::uint32_t tick_us : ticks_us) ticks_sum_us += tick_us;
+}
 
 bool bears_period(const DeviceSpec& device, double period_s) noexcept {
     const bool gives_force = device.is_real && device.peak_force_newton > 0;
@@ -279,6 +298,7 @@ SafetyResult guard_force(const SafetySettings& settings, SafetyState& state,
     update_stale(settings, state, input, elapsed.s);
     const double ending_share = update_ending(settings, state, input.is_ending, elapsed.s);
     SafetyStage fault = elapsed.fault;
+    if (update_pace(state, elapsed.s)) fault = std::max(fault, SafetyStage::Late);
     fault = std::max(fault, update_reading(settings, state, input.reading, elapsed.s));
     if (!(input.velocity_m_per_s.norm() <= settings.fastest_m_per_s)) {  // no number: too fast
         fault = std::max(fault, SafetyStage::TooFast);
@@ -298,8 +318,10 @@ SafetyResult guard_force(const SafetySettings& settings, SafetyState& state,
     }
     if (fault != SafetyStage::None) {
         stop(state, fault);
-        state.sent_newton.setZero();
-        return {Vec3::Zero(), fault, state.reason, 0};
+        const bool is_sudden = fault > SafetyStage::Warm;
+        const Vec3 from = is_sudden ? Vec3(Vec3::Zero()) : state.sent_newton;
+        state.sent_newton = slewed(settings, from, Vec3::Zero(), elapsed.s, fault);
+        return {state.sent_newton, fault, state.reason, 0};
     }
     SafetyResult result;
     result.stage = update_engagement(settings, state, input.wanted_newton, elapsed.s);
@@ -314,6 +336,7 @@ SafetyResult guard_force(const SafetySettings& settings, SafetyState& state,
     if (result.share < before) {
         const SafetyStage clamp = state.glided > 0 ? SafetyStage::Hot : SafetyStage::Clamped;
         result.stage = std::max(result.stage, clamp);
+        if (state.glided > 0) result.heat_share = result.share / before;
     }
     result.newton = slewed(settings, state.sent_newton, force, elapsed.s, result.stage);
     result.reason = state.reason;

@@ -3,12 +3,19 @@
 #include "haptics/device.h"
 #include "math/vec.h"
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <string_view>
 
 namespace palpa {
 
 // Times count from the event to the tick that sends zero.
+// A mean tick of more than twice the servo's over half a second is late, though no tick is.
+inline constexpr std::uint32_t slow_window_us = 500'000;
+inline constexpr std::size_t slow_window_ticks = 250;
+
 struct SafetySettings {
     double clamp_newton = 3;  // on the norm of the force; lowered, it is reached within the slew
     // False: only clamp and non-finite, as in the paper's loop. Nothing else of this struct, nor
@@ -26,23 +33,27 @@ struct SafetySettings {
 
     // A reading that stands still while the force changes. If the device's own time stamp stands
     // still too, after having run, any change of the force counts. Else the position must have
-    // stood still for `frozen_s`, and then for as long under forces that all differ by more than
-    // `frozen_newton` from the mean before: twice the friction of 0.26 N is lost on turning round,
+    // stood still for `frozen_s`, and then for as long under forces that differ by more than
+    // `frozen_newton` from the mean before; four times as long under others makes up for that, so
+    // forces that alternate count too. Twice the friction of 0.26 N is lost on turning round,
     // and the 1.48 N left move the stiffest thing that holds a handle, a stop of 20 N/mm with a
     // firm hand, by 0.07 mm, more than an encoder step of 0.055 mm; a firm hand of 0.5 N/mm by 50
     // steps. Infinity for both on a device without motors.
     double frozen_s = 0.05;
     double frozen_newton = 2;
 
-    // A touch model older than the larger of the two is stale; the force then fades.
-    double stale_periods = 3;
+    // A touch model older than the larger of the first two is stale. The force then fades, to zero
+    // when it is older than the larger of the others.
+    double stale_periods = 1.5;
     double stale_s = 0.1;
-    double fade_s = 0.1;
+    double dead_periods = 2;
+    double dead_s = 0.2;
 
-    // Motors: while the device says that they are warm the force fades in `fade_s`, and they count
+    // Motors: while the device says that they are warm the force fades in `warm_s`, and they count
     // as hot from then on. Once the leaky mean of F^2 over `heat_s` reaches hot_newton^2, the clamp
-    // glides to hot_newton, the force that the motors stand for ever; once the mean is below
-    // `cooled_share` of that, it glides back.
+    // glides from what is sent to hot_newton, the force that the motors stand for ever; once the
+    // mean is below `cooled_share` of that, it glides back.
+    double warm_s = 0.1;
     double hot_newton = 0.88;
     double heat_s = 30;
     double cooled_share = 0.8;
@@ -103,12 +114,17 @@ struct SafetyInput {
 
 // Everything that one tick leaves to the next. A fresh one starts anew.
 struct SafetyState {
+    SafetyState() noexcept;
+
     // non-finite
     bool not_finite = false;  // latched
     // clock
     double last_s = 0;
     bool has_clock = false;
     double stood_s = 0;  // without a tick of time; each tick counts as one
+    std::array<std::uint32_t, slow_window_ticks> ticks_us;  // the last ones, a ring
+    std::uint32_t ticks_sum_us = 0;
+    std::size_t next_tick = 0;
     // reading
     Vec3 handle_m = Vec3::Zero();  // last valid position
     bool has_reading = false;
@@ -130,7 +146,8 @@ struct SafetyState {
     // heat
     double mean_square_newton2 = 0;  // leaky mean
     bool is_hot = false;
-    double glided = 0;  // 0: clamp as set, 1: clamp at hot_newton
+    double hot_from_newton = 0;  // what was sent when they got hot
+    double glided = 0;           // 0: clamp as set, 1: clamp at hot_newton
     // engaging
     enum class Engagement { Fresh, Off, Waiting, Rising, On };
     Engagement engagement = Engagement::Fresh;
@@ -148,6 +165,10 @@ struct SafetyResult {
     // Why the force is not back in full, while it waits or rises; else None.
     SafetyStage reason = SafetyStage::None;
     double share = 1;  // of the wanted force that fades and clamp let through; slew not counted
+    // Of that what the heat of the motors lets through. Where the molecule follows this share of
+    // the handle's travel until the next tick, the limit gives no energy: what the hand does not
+    // pay for is not gone.
+    double heat_share = 1;
 };
 
 // The force that may be sent in this tick. Whatever comes in, it is finite and its norm is not

@@ -9,9 +9,7 @@ namespace {
 
 // What the handle did since the last valid reading, clutched or not.
 HandleStep take_reading(ServoState& state, const DeviceReading& reading) noexcept {
-    if (!reading.valid || !reading.position_m.allFinite() ||
-        !reading.orientation.coeffs().allFinite())
-        return {};
+    if (!is_sane(reading)) return {};
     HandleStep step;
     if (state.has_reading) {
         step.moved_m = reading.position_m - state.handle_m;
@@ -73,13 +71,14 @@ ServoTick step_servo(const ServoSettings& settings, ServoState& state, Exchange&
                      const DeviceReading& reading, double now_s) noexcept {
     PALPA_ASSERT(settings.delay_ticks >= 0 && settings.delay_ticks <= max_servo_delay_ticks);
     follow_safety(settings.safety, state);
-    const HandleStep handle = take_reading(state, reading);
+    HandleStep handle = take_reading(state, reading);
+    handle.followed = state.heat_share;
     // What the last force did while the handle went from there to here.
     state.hand_energy_J += state.safety.sent_newton.dot(handle.moved_m);
     // A clutched handle moves, the molecule does not: that travel does not count.
     const bool clutched = is_pressed(reading.buttons, Button::Clutch);
     if (!clutched) {
-        state.travel_m += handle.moved_m;
+        state.travel_m += handle.followed * handle.moved_m;
         state.turn = (handle.turned * state.turn).normalized();
     }
 
@@ -88,7 +87,8 @@ ServoTick step_servo(const ServoSettings& settings, ServoState& state, Exchange&
     if (is_new) state.touch = touch.model;
     follow_stillness(state.touch, state);
     state.has_touch = state.has_touch || is_new;
-    state.model_age_s = is_new || !state.has_touch ? 0 : state.model_age_s + servo_tick_s;
+    // A clock that goes back makes no model younger.
+    if (is_new || !state.has_touch || now_s < state.model_s) state.model_s = now_s;
 
     ServoTick tick;
     tick.reading = reading;
@@ -120,12 +120,14 @@ ServoTick step_servo(const ServoSettings& settings, ServoState& state, Exchange&
 
     const SafetyResult safe =
         guard_force(settings.safety, state.safety,
-                    {delayed(settings, state, wanted), reading, now_s, state.model_age_s,
+                    {delayed(settings, state, wanted), reading, now_s, now_s - state.model_s,
                      state.touch.period_s, state.guarded.handle_m_per_s, settings.is_ending});
     tick.sent_newton = safe.newton;
     tick.stage = safe.stage;
     tick.reason = safe.reason;
     tick.stopped = is_latched(state.safety);
+    state.heat_share = safe.heat_share;
+    tick.followed = handle.followed;
     tick.is_safety_full = settings.safety.is_full;
     tick.clamped = safe.stage == SafetyStage::Clamped;
     const ForceLaw& law = settings.guarded ? settings.guarded->force_law : settings.force_law;

@@ -29,14 +29,14 @@ struct ServoState {
 
     // clutch
     Vec3 handle_m = Vec3::Zero();         // last valid position
-    Vec3 travel_m = Vec3::Zero();         // handle travel outside of the clutch
+    Vec3 travel_m = Vec3::Zero();         // handle travel that the molecule is to follow
     Quat orientation = Quat::Identity();  // last valid one
     Quat turn = Quat::Identity();         // handle turn outside of the clutch
     bool has_reading = false;
     // touch model
     TouchModel touch;  // the newest that came
     bool has_touch = false;
-    double model_age_s = 0;  // since it came
+    double model_s = 0;  // when it came, on the servo's clock
     GuardedState guarded;
     // sending
     std::array<Vec3, max_servo_delay_ticks + 1> under_way;  // ring of forces, by tick
@@ -44,6 +44,7 @@ struct ServoState {
     // safety
     SafetyState safety;
     bool was_still = false, was_full = false;
+    double heat_share = 1;  // of the last force, see SafetyResult
     // energy observer
     double hand_energy_J = 0;  // work done on the hand so far; + = given to it
 };
@@ -60,6 +61,7 @@ struct ServoTick {
     bool clutched = false;
     bool clamped = false;                    // the clamp acted
     bool stopped = false;                    // a force was not finite; latched
+    double followed = 1;                     // of the handle's travel, but for clutch and limits
     bool is_safety_full = true;              // the whole chain acted, or the paper's part of it
     SafetyStage stage = SafetyStage::None;   // the gravest that acted
     SafetyStage reason = SafetyStage::None;  // why the force is not back in full

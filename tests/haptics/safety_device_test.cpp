@@ -95,17 +95,19 @@ TEST_CASE("no hand on the emulated device that holds still is taken for a frozen
     std::uniform_real_distribution<double> component(-3, 3);
     std::uniform_int_distribution<int> ticks(5, 400);
     const bool is_along_x = seed == 2;
+    const int half_ms = GENERATE(0, 12, 25, 40);  // of a force that alternates; 0: at random
     Vec3 wanted = no_force;
     int next = 0;
     bool tripped = false;
     double largest = 0;
 
-    for (int i = 0; i < 60'000; ++i) {
+    for (int i = 0; i < (half_ms > 0 ? 6'000 : 60'000); ++i) {
         if (i == next) {
             wanted = Vec3(component(random), component(random), component(random));
             if (is_along_x) wanted = Vec3(wanted.x(), 0, 0);
             next += ticks(random);
         }
+        if (half_ms > 0) wanted = Vec3(i / half_ms % 2 == 0 ? 2.95 : -2.95, 0, 0);
         SafetyInput input;
         input.wanted_newton = wanted;
         input.now_s = i * servo_tick_s;

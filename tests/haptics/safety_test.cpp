@@ -243,31 +243,116 @@ TEST_CASE("a clock that stands still stops the force after twenty ticks, and no 
     CHECK(guard.tick(1).newton.x() > 0);
 }
 
-TEST_CASE("an old model fades the force within a tenth of a second", "[haptics][safety]") {
+TEST_CASE("an old model fades the force, to zero at 0.2 s or two periods", "[haptics][safety]") {
+    const auto [period_s, stale_s, dead_s] = GENERATE(table<double, double, double>({
+        {0.001, 0.1, 0.2},
+        {0.083, 0.1245, 0.2},
+        {0.1, 0.15, 0.2},
+        {0.15, 0.225, 0.3},
+        {1, 1.5, 2},
+        {no_number, 0.1, 0.2},
+        {infinite, 0.1, 0.2},
+        {-1, 0.1, 0.2},
+    }));
+    CAPTURE(period_s);
     Guard guard;
-    guard.input.period_s = GENERATE(0.001, 0.083, no_number, infinite, -1.0);
-    const double limit = guard.input.period_s == 0.083 ? 0.249 : 0.1;
+    guard.settings.hot_newton = infinite;
+    guard.input.period_s = period_s;
     guard.tick(2, 100);
-    guard.input.model_age_s = limit - 1e-6;
-    CHECK(guard.tick(2, 1000).newton.x() == 2);
+    guard.input.model_age_s = stale_s - 1e-6;
+    CHECK(guard.tick(2, 3000).newton.x() == 2);
 
-    guard.input.model_age_s = GENERATE(0.3, 1e300, infinite, no_number);
-    CHECK(guard.tick(2, 50).newton.x() == Approx(1));
-    CHECK(guard.tick(2).stage == SafetyStage::Stale);
-
-    SECTION("and back, if a new one comes in time") {
+    SECTION("an age that grows") {
+        while (guard.input.model_age_s < (stale_s + dead_s) / 2) {
+            guard.input.model_age_s += servo_tick_s;
+            (void)guard.tick(2);
+        }
+        CHECK(guard.tick(2).newton.x() == Approx(1).margin(0.1));  // a tick or two of 50
+        CHECK(guard.tick(2).stage == SafetyStage::Stale);
+        while (guard.input.model_age_s < dead_s) {
+            guard.input.model_age_s += servo_tick_s;
+            (void)guard.tick(2);
+        }
+        CHECK(guard.tick(2).newton == zero);
+        CHECK(guard.tick(2).reason == SafetyStage::Stale);
+    }
+    SECTION("a new one that comes in time brings it back") {
+        guard.input.model_age_s = stale_s + 0.001;
+        const double half = guard.tick(2, 20).newton.x();
         guard.input.model_age_s = 0;
-        CHECK(guard.tick(2, 51).newton.x() == Approx(2));
+        CHECK(half < 2);
+        CHECK(guard.tick(2, 21).newton.x() == Approx(2));
         CHECK(guard.tick(2).stage == SafetyStage::None);
     }
-    SECTION("then through quiet cycles and ramp") {
-        CHECK(guard.tick(2, 49).newton == zero);
+    SECTION("else through quiet cycles and ramp") {
+        guard.input.model_age_s = GENERATE(3.0, 1e300, infinite, no_number);
+        CHECK(guard.tick(2, 501).newton == zero);
         guard.input.model_age_s = 0;
         CHECK(guard.tick(2, 1000).stage == SafetyStage::Waiting);
         CHECK(guard.tick(2).reason == SafetyStage::Stale);
         guard.tick(0, 4);
         CHECK(guard.tick(2, 1999).newton.x() == Approx(2));
     }
+}
+
+TEST_CASE("ticks that are slow on average take the force away within half a second",
+          "[haptics][safety]") {
+    const auto tick_us = GENERATE(1000, 1900, 2100, 5000, 19'900);
+    CAPTURE(tick_us);
+    Guard guard;
+    guard.tick(1, 1000);
+    double now_s = guard.input.now_s;
+    double off_s = -1;
+
+    for (double s = 0; s < 3; s += 1e-6 * tick_us) {
+        now_s += 1e-6 * tick_us;
+        guard.input.now_s = guard.input.reading.time_s = now_s;
+        guard.input.reading.position_m.x() += 1e-5;
+        const SafetyResult result = guard.guard(Vec3(1, 0, 0));
+        if (result.newton == zero && off_s < 0) off_s = s;
+        if (off_s >= 0) REQUIRE(result.newton == zero);
+    }
+
+    if (tick_us < 2000) {
+        CHECK(off_s < 0);
+    } else {
+        CHECK(off_s >= 0);
+        CHECK(off_s <= 0.53);  // what came before was quick
+    }
+}
+
+TEST_CASE("some ticks of 19 ms are none of a slow loop", "[haptics][safety]") {
+    Guard guard;
+    double now_s = 0;
+
+    for (int i = 0; i < 5000; ++i) {
+        now_s += i % 100 == 0 ? 0.019 : 0.001;
+        guard.input.now_s = guard.input.reading.time_s = now_s;
+        guard.input.reading.valid = true;
+        guard.input.reading.position_m.x() += 1e-5;
+        REQUIRE(guard.guard(Vec3(1, 0, 0)).stage <= SafetyStage::Slewed);
+    }
+}
+
+TEST_CASE("what fades keeps to the slew at long ticks", "[haptics][safety]") {
+    const int cause = GENERATE(0, 1, 2);
+    const SafetyStage stage =
+        std::vector{SafetyStage::Ending, SafetyStage::Stale, SafetyStage::Warm}[cause];
+    Guard guard;
+    guard.tick(3, 20);
+    if (cause == 0) guard.input.is_ending = true;
+    if (cause == 1) guard.input.model_age_s = 10;
+    if (cause == 2) guard.input.reading.trouble = DeviceTrouble::WarmMotors;
+    double last = 3;
+
+    for (int i = 0; i < 13; ++i) {
+        guard.ticks += 14;
+        const SafetyResult result = guard.tick(3);
+        CHECK(last - result.newton.x() <= 0.5 + 1e-12);
+        CHECK(result.stage >= stage);
+        last = result.newton.x();
+    }
+    CHECK(last == 0);
 }
 
 TEST_CASE("three newtons are felt for 2.7 s, then 0.88 N for as long as wanted",
@@ -381,6 +466,56 @@ TEST_CASE("a position that withstands a change of two newtons for 50 ms is that 
     for (int i = 0; i < 100; ++i) REQUIRE(still_tick(0).stage == SafetyStage::Frozen);
     guard.tick(0);  // one of two ticks moves by a step
     CHECK(guard.tick(0).stage == SafetyStage::Waiting);
+}
+
+TEST_CASE("a position that withstands a force that alternates is that of no device",
+          "[haptics][safety]") {
+    const int half_ms = GENERATE(15, 20, 40, 49, 100);
+    CAPTURE(half_ms);
+    Guard guard;
+    guard.settings.hot_newton = infinite;
+    guard.tick(0, 100);
+    const Vec3 held = guard.input.reading.position_m;
+    int ticks = 0;
+    SafetyResult result;
+
+    while (ticks < 2000 && result.stage != SafetyStage::Frozen) {
+        ++guard.ticks;
+        guard.input.now_s = guard.input.reading.time_s = guard.ticks * servo_tick_s;
+        guard.input.reading.position_m = held;
+        result = guard.guard(Vec3(ticks / half_ms % 2 == 0 ? 2.9 : -2.9, 0, 0));
+        ++ticks;
+    }
+
+    CHECK(ticks <= 400);
+    CHECK(result.newton == zero);
+}
+
+TEST_CASE("a time stamp that is no number does not keep the force", "[haptics][safety]") {
+    const double stamp_s = GENERATE(no_number, infinite);
+    Guard guard;
+    guard.tick(1, 100);
+    const DeviceReading last = guard.input.reading;
+    SafetyResult result;
+
+    for (int i = 0; i < 10; ++i) {
+        guard.input.now_s += servo_tick_s;
+        guard.input.reading = last;
+        guard.input.reading.time_s = stamp_s;
+        result = guard.guard(Vec3(1 + 0.01 * i, 0, 0));
+    }
+
+    CHECK(result.newton == zero);
+    CHECK(result.stage == SafetyStage::Unplugged);
+}
+
+TEST_CASE("a handle whose turn is no number is unplugged", "[haptics][safety]") {
+    Guard guard;
+    guard.tick(1, 100);
+
+    guard.input.reading.orientation.x() = no_number;
+
+    CHECK(guard.tick(1, 10).stage == SafetyStage::Unplugged);
 }
 
 TEST_CASE("disengaged, the force goes within the slew and stays away whatever happens",

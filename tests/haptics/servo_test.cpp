@@ -134,6 +134,35 @@ TEST_CASE("a reading that is not valid moves nothing", "[haptics][servo]") {
     CHECK(std::isfinite(servo.state.hand_energy_J));
 }
 
+TEST_CASE("a handle that is too fast gets no force in the paper's coupling either",
+          "[haptics][servo]") {
+    const bool is_mad = GENERATE(false, true);
+    Servo servo;
+    servo.settings.force_law = ConstantForceLaw{1e9};
+    servo.settings.safety.is_full = true;
+    servo.exchange.touch.post(touch_of({1e-9, 0, 0}));
+    for (int i = 0; i < 10; ++i) CHECK(servo.tick(reading_at(0.01)).sent_newton.x() > 0);
+
+    double x_m = 0.01;
+    ServoTick tick;
+    if (is_mad) {
+        (void)servo.tick(reading_at(1e308));
+        tick = servo.tick(reading_at(-1e308));
+    } else {
+        for (int i = 0; i < 5; ++i) tick = servo.tick(reading_at(x_m += 2e-3));
+        CHECK(tick.stage == SafetyStage::TooFast);
+    }
+    CHECK(tick.sent_newton == Vec3::Zero());
+
+    // Once it is slow the force comes back.
+    servo.exchange.touch.post(touch_of(Vec3::Zero()));
+    for (int i = 0; i < 2100; ++i) {
+        if (i % 50 == 0) servo.exchange.touch.post(touch_of({i < 50 ? 0 : 1e-9, 0, 0}));
+        tick = servo.tick(reading_at(x_m));
+    }
+    CHECK(tick.sent_newton.x() > 0.9);
+}
+
 TEST_CASE("the safety chain begins to watch where the paper's coupling left off",
           "[haptics][servo]") {
     Servo servo;

@@ -257,3 +257,71 @@ TEST_CASE("guarded, a hand that clutches in the wall is given nothing", "[sessio
     CHECK(summary.net_work_J <= 0.001);
     CHECK(summary.largest_repulsion_N > 1);
 }
+
+namespace {
+
+// A handle that is led along x, whatever pushes it: in until the molecule is in its well, there
+// until the force has gone down, out until the molecule is where it began.
+class LedHandle final : public Device {
+public:
+    const DeviceSpec& spec() const noexcept override { return spec_; }
+    DeviceReading read() noexcept override {
+        return {static_cast<double>(tick_) * servo_tick_s, Vec3(x_m_, 0, 0), 0, true};
+    }
+    void show(const TouchModel& touch) noexcept override {
+        place_angstrom_ = touch.molecule.place_angstrom.x();
+    }
+    void write(const Vec3& force_newton) noexcept override {
+        constexpr double step_m = 5e-6, well_angstrom = 3.2, start_angstrom = 7, low_newton = 0.21;
+        ++tick_;
+        largest_newton = std::max(largest_newton, force_newton.norm());
+        if (way_ == Way::In && place_angstrom_ < well_angstrom) way_ = Way::Rest;
+        if (way_ == Way::Rest && force_newton.norm() < low_newton) way_ = Way::Out;
+        if (way_ == Way::Out && place_angstrom_ > start_angstrom) way_ = Way::Home;
+        if (way_ == Way::In) x_m_ -= step_m;
+        if (way_ == Way::Out) x_m_ += step_m;
+    }
+    bool is_home() const noexcept { return way_ == Way::Home; }
+
+    double largest_newton = 0;
+
+private:
+    enum class Way { In, Rest, Out, Home };
+
+    DeviceSpec spec_{.name = "led", .is_real = false};
+    Way way_ = Way::In;
+    double x_m_ = 0, place_angstrom_ = 7;
+    std::uint64_t tick_ = 0;
+};
+
+}  // namespace
+
+// Into the well with the whole attraction, and out when the motors are warm: nobody would have paid
+// for the difference.
+TEST_CASE("guarded, no way into the well and out of it with warm motors gives energy",
+          "[session][coupling]") {
+    const bool gets_hot = GENERATE(true, false);
+    const SceneDescription scene =
+        water_scene({"mode=guarded", "start_angstrom=7", "period_ms=14"});
+    Simulation simulation = load_simulation(scene);
+    ServoSettings servo = build_servo_settings(scene, simulation);
+    servo.safety.hot_newton = gets_hot ? 0.2 : 0.9;
+    servo.safety.heat_s = gets_hot ? 100 : 1e9;
+    if (!gets_hot) servo.safety.clamp_newton = 0.2;  // on the way in as well: nothing to find
+    LedHandle handle;
+    const auto step = [&](const HandPose& hand, const TouchModel& felt) {
+        (void)step_simulation(simulation, hand, felt);
+        return simulation.touch;
+    };
+    double work_J = 0;
+
+    run_lockstep(
+        {200'000, 14}, servo, handle, simulation.touch, step,
+        [&](const ServoTick& tick) { work_J = tick.hand_energy_J; },
+        [&] { return handle.is_home(); });
+
+    REQUIRE(handle.is_home());
+    if (gets_hot) CHECK(handle.largest_newton > 0.85);
+    CHECK(work_J < 0.5e-3);
+    CHECK(work_J > -5e-3);
+}
