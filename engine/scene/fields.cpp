@@ -269,7 +269,7 @@ void visit_device(FieldVisitor& v, DeviceDescription& d) {
     v.real({.key = "encoder_step_mm",
             .meaning = "step of the position sensor; 0 reads exactly",
             .lowest = 0,
-            .highest = 4},
+            .highest = 1},
            d.encoder_step_mm);
     v.integer({.key = "servo_delay_ticks",
                .meaning = "servo ticks from a force to its sending",
@@ -310,12 +310,12 @@ void visit_coupling(FieldVisitor& v, CouplingDescription& c) {
     v.real({.key = "A_f_min",
             .meaning = "eq. 2: gain of high forces",
             .lowest = positive,
-            .highest = 1e15},
+            .highest = 1e13},
            c.A_f_min);
     v.real({.key = "A_f_max",
             .meaning = "eq. 2: gain of low forces",
             .lowest = positive,
-            .highest = 1e15},
+            .highest = 1e13},
            c.A_f_max);
     v.real({.key = "gamma_per_N",
             .meaning = "eq. 3: sharpness of the transition",
@@ -341,7 +341,7 @@ void visit_coupling(FieldVisitor& v, CouplingDescription& c) {
     v.real({.key = "A_f",
             .meaning = "constant force gain of modes 3 and 4",
             .lowest = 0,
-            .highest = 1e15},
+            .highest = 1e13},
            c.A_f);
     v.real({.key = "A_d",
             .meaning = "constant displacement gain of modes 2, 4 and 5",

@@ -68,8 +68,9 @@ double calm_stiffness(const SceneDescription& scene, const std::optional<HandMod
                       double period_s);
 
 // In words, what about the scene makes trouble: a spring stiffer than this hand, device, period and
-// servo delay keep calm (haptics/plant.h), atoms on each other, molecules that are not at rest, a
-// stroke longer than the run.
+// servo delay keep calm (haptics/plant.h); guarded, a position sensor too coarse for stiffness and
+// damping, or gains that play rounding errors; atoms on each other, molecules that are not at rest,
+// a stroke longer than the run.
 std::vector<std::string> list_warnings(const SceneDescription& scene, const Simulation& simulation,
                                        const HandScript& script);
 

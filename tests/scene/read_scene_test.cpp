@@ -230,7 +230,7 @@ TEST_CASE("a number out of its range or not finite is told with the range", "[sc
          "'coupling.clamp_N' is 3.31; expected a number from 0 to 3.3"},
         {"[coupling]\nclamp_N = -0.1", 18, 11, "expected a number from 0 to 3.3"},
         {"[coupling]\n\nA_f_min = 0", 19, 11,
-         "'coupling.A_f_min' is 0; expected a number above 0 up to 1000000000000000"},
+         "'coupling.A_f_min' is 0; expected a number above 0 up to 10000000000000"},
         {"[device]\nservo_delay_ticks = 8", 18, 21, "expected a whole number from 0 to 7"},
         {"[device]\nservo_delay_ticks = -1", 18, 21, "expected a whole number from 0 to 7"},
         {"[run]\nseed = 9223372036854775807", 18, 8, "expected a whole number from 0"},

@@ -167,7 +167,7 @@ TEST_CASE("the list of fields names each key once, with its default and range", 
         if (field.key == "molecules.NAME.motion") CHECK(field.fallback == "\"fixed\"");
         if (field.key == "grab.molecule") CHECK(field.fallback == "required");
         if (field.key == "coupling.A_f_min")
-            CHECK(field.type == "number, above 0 to 1000000000000000");
+            CHECK(field.type == "number, above 0 to 10000000000000");
     }
 
     CHECK(keys.count("title") == 1);

@@ -1,4 +1,5 @@
 // What the program says about settings that make trouble, against what then happens.
+#include "core/load_error.h"
 #include "core/units.h"
 #include "haptics/gains.h"
 #include "simulation/probe.h"
@@ -71,4 +72,70 @@ TEST_CASE("a run that is too short for its stroke, or goes through, says so",
                   "hand.start_angstrom=4", "clamp_N=1"}),
         Contains("through the other one"));
     CHECK(warnings({}).empty());
+}
+
+namespace {
+
+// What somebody warned of in a run that does not go well: a handle that nobody holds, knocked.
+struct Knocked {
+    explicit Knocked(std::vector<std::string> settings) {
+        const std::vector<std::string> all{"stroke=hold", "grip=none", "friction_N=0",
+                                           "kick_N_s=0.005", "seconds=10"};
+        settings.insert(settings.end(), all.begin(), all.end());
+        const Summary summary = test::run_water(settings);
+        is_bad = summary.ripple.value().rms > 0.02 || summary.net_work_J > 1e-3;
+        for (const std::string& warning : summary.warnings) words += warning + "; ";
+    }
+
+    bool is_bad = false;
+    std::string words;
+};
+
+}  // namespace
+
+TEST_CASE("settings that vibrate or gain energy by themselves are warned of",
+          "[session][coupling]") {
+    SECTION("coarse position sensors") {
+        const std::string step = GENERATE("0.5", "1");
+        const std::string workspace = GENERATE("clutch", "bubble");
+        const Knocked knocked({"encoder_step_mm=" + step, "workspace=" + workspace});
+        CHECK(knocked.is_bad);
+        CHECK_THAT(knocked.words, Contains("a step of its position sensor of " + step + " mm"));
+    }
+    SECTION("strong damping of a handle that is read in steps") {
+        const Knocked knocked({"damping_N_s_per_m=" + std::string(GENERATE("2", "5"))});
+        CHECK(knocked.is_bad);
+        CHECK_THAT(knocked.words, Contains("less damping"));
+    }
+    SECTION("a law as steep as rounding errors are small") {
+        const Knocked knocked(
+            {"force_law=perceptual", "F_lo_pN=1e-6", "F_hi_nN=" + std::string(GENERATE("3", "1"))});
+        CHECK_THAT(knocked.words, Contains("this force law plays rounding errors"));
+    }
+}
+
+TEST_CASE("settings that are calm are not warned of", "[session][coupling]") {
+    const auto [step, damping, delay, inertia] =
+        GENERATE(table<std::string, std::string, std::string, std::string>({
+            {"0.055", "0.5", "1", "0.045"},
+            {"0.1", "0.5", "1", "0.045"},
+            {"0.055", "1", "0", "0.1"},
+            {"0.055", "5", "7", "0.045"},
+            {"0.12", "0.5", "3", "0.1"},
+            {"0", "5", "1", "0.045"},
+        }));
+    INFO(step << " mm, " << damping << " N s/m, " << delay << " ticks, " << inertia << " kg");
+    const Knocked knocked({"encoder_step_mm=" + step, "damping_N_s_per_m=" + damping,
+                           "servo_delay_ticks=" + delay, "inertia_kg=" + inertia});
+
+    CHECK_FALSE(knocked.is_bad);
+    CHECK_THAT(knocked.words, !Contains("position sensor") && !Contains("rounding"));
+}
+
+TEST_CASE("gains and steps beyond what any device can use are refused", "[session]") {
+    for (const std::string setting :
+         {"encoder_step_mm=4", "A_f_max=1e15", "A_f_min=1e15", "coupling.A_f=1e15"}) {
+        INFO(setting);
+        CHECK_THROWS_AS(test::water_scene({setting}), LoadError);
+    }
 }
