@@ -25,6 +25,9 @@ constexpr std::size_t other_column = column_names.size();
 // One value of each column; those that are not there are 0.
 using Values = std::array<double, column_names.size()>;
 
+// Letters of a word, in a message.
+constexpr std::size_t most_quoted = 40;
+
 // A turn of more would be none that a wrist makes.
 constexpr double most_turn_rad = 10;
 
@@ -42,9 +45,9 @@ std::vector<std::size_t> find_columns(std::string_view header, const TextPlace& 
         if (found == column_names.end()) {
             if (!takes_others) {
                 throw LoadError(
-                    place,
-                    fmt::format("unknown column '{}'; expected names out of {}{}", name,
-                                fmt::join(column_names, ", "), near_name_hint(name, column_names)));
+                    place, fmt::format("unknown column '{}'; expected names out of {}{}",
+                                       name.substr(0, most_quoted), fmt::join(column_names, ", "),
+                                       near_name_hint(name, column_names)));
             }
             columns.push_back(other_column);
             continue;
@@ -76,7 +79,8 @@ Values parse_values(std::string_view line, const TextPlace& place,
             const std::optional<double> value = find_real(text);
             if (!value) {
                 throw LoadError(place, fmt::format("'{}' is no number; expected one for {}",
-                                                   trimmed(text), column_names[columns[column]]));
+                                                   trimmed(text).substr(0, most_quoted),
+                                                   column_names[columns[column]]));
             }
             values[columns[column]] = *value;
         }

@@ -134,18 +134,20 @@ std::array<NamedTerm, 11> list_terms(const EnergyTerms& e) {
             {"total", e.total()}};
 }
 
-void write_forces(const std::filesystem::path& path, const Connectivity& connectivity,
-                  std::span<const Vec3> forces) {
-    std::string text =
-        "segment,residue,number,atom,force_x_kcal_per_mol_angstrom,"
-        "force_y_kcal_per_mol_angstrom,force_z_kcal_per_mol_angstrom\n";
+// The first line of a file of forces, by which it is known again.
+constexpr std::string_view force_columns =
+    "segment,residue,number,atom,force_x_kcal_per_mol_angstrom,force_y_kcal_per_mol_angstrom,"
+    "force_z_kcal_per_mol_angstrom\n";
+
+std::string format_forces(const Connectivity& connectivity, std::span<const Vec3> forces) {
+    std::string text(force_columns);
     for (std::size_t i = 0; i < forces.size(); ++i) {
         const AtomName& name = connectivity.names[i];
         fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{}\n", name.segment,
                        name.residue, name.number, name.atom, forces[i].x(), forces[i].y(),
                        forces[i].z());
     }
-    write_text_file(path, text);
+    return text;
 }
 
 }  // namespace
@@ -157,6 +159,9 @@ int energy_command(const EnergyOptions& options) {
         throw LoadError({options.system.string()},
                         "a PSF holds no coordinates; expected --coordinates FILE with it");
     }
+    const Existing existing = options.forces
+                                  ? check_output(*options.forces, force_columns, options.overwrites)
+                                  : Existing::Refuse;
     const ForceField force_field = read_force_field(options.toppar);
     const Structure structure = read_structure(is_psf ? *options.coordinates : options.system);
     const Connectivity connectivity =
@@ -169,7 +174,9 @@ int energy_command(const EnergyOptions& options) {
     std::vector<Vec3> forces(positions.size(), Vec3::Zero());
     const EnergyTerms energy = add_forces(topology, settings, positions, forces);
 
-    if (options.forces) write_forces(*options.forces, connectivity, forces);
+    if (options.forces) {
+        write_text_file(*options.forces, format_forces(connectivity, forces), existing);
+    }
     if (options.json) {
         nlohmann::ordered_json json;
         for (const auto& [name, value] : list_terms(energy)) json[name] = value;

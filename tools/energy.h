@@ -18,6 +18,7 @@ struct EnergyOptions {
     std::optional<double> cutoff, switch_from;                 // Å; 12 and 10 unless given
     std::optional<std::string> electrostatics, van_der_waals;  // "fshift" and "switch" unless given
     std::optional<std::filesystem::path> forces;               // CSV to write
+    bool overwrites = false;                                   // an earlier file of this command
     bool json = false;
 };
 

@@ -226,7 +226,10 @@ std::vector<AnsweredLevel> count_answers(CouplingMode mode, const std::vector<Ch
 
 int forced_choice_command(const ForcedChoiceOptions& options) {
     check_study(options.study);
-    if (options.study.folder) make_study_folder(*options.study.folder, "choices.csv");
+    std::unique_ptr<FolderLock> lock;
+    if (options.study.folder) {
+        lock = make_study_folder(*options.study.folder, {"choices.csv", "summary.json"});
+    }
     const bool is_watched = isatty(STDERR_FILENO) != 0;
     const std::vector<Choice> choices =
         play_choices(options, [&](std::size_t done, std::size_t of) {

@@ -4,6 +4,7 @@
 #include "core/version.h"
 #include "gpu/device.h"
 #include "platform/window.h"
+#include "scene/read_scene.h"
 #include "tools/bench.h"
 #include "tools/devices.h"
 #include "tools/energy.h"
@@ -27,6 +28,7 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <new>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -55,6 +57,10 @@ void add_set_option(CLI::App& command, std::vector<std::string>& settings) {
             "lists them")
         ->trigger_on_parse()
         ->take_last();
+    command.add_flag_callback(
+        std::string(palpa::allow_outside),
+        [&settings] { settings.emplace_back(palpa::allow_outside); },
+        "let the scene name files outside of its folder");
 }
 
 // A number between two, which a NaN is not.
@@ -101,10 +107,20 @@ void add_size_option(CLI::App& command, const std::string& option, std::uint32_t
                 throw CLI::ValidationError(option,
                                            "'" + text + "' is no size; expected WIDTHxHEIGHT");
             }
+            if (*wide * *high > palpa::most_pixels) {
+                throw CLI::ValidationError(
+                    option, fmt::format("'{}' has more than {} pixels", text, palpa::most_pixels));
+            }
             width = static_cast<std::uint32_t>(*wide);
             height = static_cast<std::uint32_t>(*high);
         },
         fmt::format("WIDTHxHEIGHT in pixels, {}x{} unless given", width, height));
+}
+
+// Of every command that writes files.
+void add_overwrite_flag(CLI::App& command, bool& overwrites) {
+    command.add_flag("--overwrite", overwrites,
+                     "replace what this command wrote before; other files are never replaced");
 }
 
 void add_toppar_option(CLI::App& command, std::vector<std::filesystem::path>& toppar) {
@@ -121,6 +137,7 @@ void add_run(CLI::App& program, palpa::RunOptions& options) {
                  "in lockstep on a virtual clock, without a window");
     run.add_flag("--play", options.play,
                  "in a window: let the emulated hand play the scene's stroke, not the mouse");
+    add_overwrite_flag(run, options.overwrites);
     run.add_option_function<std::string>(
         "--device",
         [&options](const std::string& name) {
@@ -262,6 +279,7 @@ void add_render(CLI::App& program, palpa::RenderOptions& options) {
     CLI::App& render = *program.add_subcommand("render", "A picture of a scene; needs no display");
     render.add_option("scene", options.scene, "scene folder or file")->required();
     render.add_option("-o,--output", options.image, "PNG file to write")->required();
+    add_overwrite_flag(render, options.overwrites);
     add_size_option(render, "--size", options.width, options.height);
     render.add_option("--time", options.time_s, "seconds that the hand plays before the picture")
         ->check(in_range(0.0, 1e5));
@@ -306,6 +324,7 @@ void add_energy(CLI::App& program, palpa::EnergyOptions& options) {
                       "with cutoff: switch or fswitch (switch unless given)");
     energy.add_option("--forces", options.forces,
                       "CSV file for the force on every atom, kcal/mol/Å");
+    add_overwrite_flag(energy, options.overwrites);
     energy.add_flag("--json", options.json, "print JSON");
 }
 
@@ -352,7 +371,7 @@ void add_prepare(CLI::App& program, palpa::PrepareOptions& options) {
                        "segment that scene.toml gives to the hand, the smallest unless given; "
                        "without a second segment there is no scene.toml");
     prepare.add_option("--title", options.title, "what the files say of themselves");
-    prepare.add_flag("--overwrite", options.overwrites, "replace files of an earlier run");
+    add_overwrite_flag(prepare, options.overwrites);
     prepare.add_flag("--json", options.json, "print counts and warnings as JSON");
 }
 
@@ -415,7 +434,7 @@ void add_feel(CLI::App& program, palpa::FeelOptions& options) {
         ->delimiter(',');
     feel.add_option("--tolerances", options.tolerances_pN, "pN, 50,150,500 unless given")
         ->delimiter(',')
-        ->check(in_range(1e-9, 1e6));
+        ->check(in_range(1e-6, 1e6));
     feel.add_option("--samples", options.samples,
                     "ticks of each stroke whose force is held against a reference, 20 unless given")
         ->check(in_range(1, 1e6));
@@ -445,6 +464,7 @@ void add_relax(CLI::App& program, palpa::RelaxOptions& options) {
     relax.add_option("scene", options.scene, "scene folder or file")->required();
     relax.add_option("-o,--output", options.coordinates,
                      "CHARMM coordinates (.crd) to write: where they rest");
+    add_overwrite_flag(relax, options.overwrites);
     relax.add_flag("--json", options.json, "print JSON");
     add_set_option(relax, options.settings);
 }
@@ -465,6 +485,7 @@ void add_report(CLI::App& program, palpa::ReportOptions& options) {
     CLI::App& report = *program.add_subcommand(
         "report", "The paper's figures, the acceptance bars and more, computed anew: one page");
     report.add_option("-o,--output", options.output, "page to write, report.html unless given");
+    add_overwrite_flag(report, options.overwrites);
     report.add_option("--scene", options.scene, "of one axis, scenes/water unless given");
     report
         .add_option(
@@ -643,6 +664,11 @@ int main(int argc, char** argv) {
     } catch (const palpa::LoadError& error) {
         fmt::print(stderr, "{}\n", error.what());
         for (const std::string& problem : error.further()) fmt::print(stderr, "{}\n", problem);
+        return bad_input;
+    } catch (const std::bad_alloc&) {
+        fmt::print(stderr,
+                   "palpa: not enough memory for this; expected a smaller file, molecule or "
+                   "picture\n");
         return bad_input;
     } catch (const std::exception& error) {
         fmt::print(stderr, "palpa: internal error: {}\n", error.what());

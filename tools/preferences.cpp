@@ -97,7 +97,7 @@ void PreferencesFile::keep(const Preferences& preferences) {
         throw LoadError(place, fmt::format("is not remembered: {} cannot be made: {}",
                                            file_->parent_path().string(), error.message()));
     }
-    write_text_file(*file_, format_preferences(preferences));
+    write_text_file(*file_, format_preferences(preferences), Existing::Replace);
     now_ = preferences;
 }
 

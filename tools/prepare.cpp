@@ -1,6 +1,7 @@
 #include "tools/prepare.h"
 
 #include "charmm/force_field.h"
+#include "core/files.h"
 #include "core/load_error.h"
 #include "core/text.h"
 #include "formats/structure.h"
@@ -8,10 +9,10 @@
 
 #include <fmt/format.h>
 #include <unistd.h>
-#include <array>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 namespace palpa {
@@ -82,17 +83,12 @@ PrepareSettings build_settings(const PrepareOptions& options) {
     return settings;
 }
 
-constexpr std::array<std::string_view, 6> written{"system.psf", "system.pdb", "system.crd",
-                                                  "system.prm", "report.txt", "scene.toml"};
-
-void refuse_overwriting(const PrepareOptions& options) {
-    if (options.overwrites) return;
-    for (const std::string_view name : written) {
-        const std::filesystem::path path = options.folder / name;
-        if (std::filesystem::exists(path)) {
-            throw LoadError({path.string()},
-                            "is there already; expected another folder, or --overwrite");
-        }
+void check_outputs(const PrepareOptions& options) {
+    std::error_code error;
+    if (!std::filesystem::exists(options.folder, error)) return;
+    for (const char* const name :
+         {"system.psf", "system.pdb", "system.crd", "system.prm", "report.txt", "scene.toml"}) {
+        (void)check_output(options.folder / name, prepared_mark, options.overwrites);
     }
 }
 
@@ -100,7 +96,7 @@ void refuse_overwriting(const PrepareOptions& options) {
 
 int prepare_command(const PrepareOptions& options) {
     const PrepareSettings settings = build_settings(options);
-    refuse_overwriting(options);
+    check_outputs(options);
     const ForceField force_field = read_force_field(options.toppar);
     const Structure structure = read_structure(options.structure);
     const bool shows_progress = !options.json && isatty(fileno(stderr)) != 0;
@@ -117,7 +113,7 @@ int prepare_command(const PrepareOptions& options) {
                         : format_scene_of(system, in_hand, options.structure.stem().string());
     write_prepared(system, options.folder,
                    options.title.empty() ? origin : fmt::format("{}\n{}", options.title, origin),
-                   scene);
+                   scene, options.overwrites ? Existing::Replace : Existing::Refuse);
     if (options.json) {
         nlohmann::ordered_json json;
         json["atoms"] = system.structure.names.size();

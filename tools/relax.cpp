@@ -1,6 +1,7 @@
 #include "tools/relax.h"
 
 #include "core/files.h"
+#include "core/text.h"
 #include "formats/crd.h"
 #include "molecule/coincident_atoms.h"
 #include "scene/read_scene.h"
@@ -46,6 +47,9 @@ void print_json(const Flexible& flexible) {
     fmt::print("{}\n", json.dump(2));
 }
 
+// Stands in the title of what is written, by which it is known again.
+constexpr std::string_view coordinates_mark = "* Written by palpa relax.\n";
+
 }  // namespace
 
 RelaxProgressFunction show_relaxing() {
@@ -64,6 +68,10 @@ RelaxProgressFunction show_relaxing() {
 
 int relax_command(const RelaxOptions& options) {
     const SceneDescription scene = read_scene(options.scene, options.settings);
+    const Existing existing =
+        options.coordinates
+            ? check_output(*options.coordinates, coordinates_mark, options.overwrites)
+            : Existing::Refuse;
     const RelaxProgressFunction progress = show_relaxing();
     const Simulation simulation = load_simulation(scene, progress);
     if (progress) fmt::print(stderr, "{:70}\r", "");
@@ -81,12 +89,13 @@ int relax_command(const RelaxOptions& options) {
             *options.coordinates,
             format_crd(structure,
                        fmt::format("{}: relaxed, {} joints, rms force {:.3g} "
-                                   "kcal/mol per radian and angstrom",
-                                   scene.title, flexible.joints, flexible.relaxed.rms_force)));
+                                   "kcal/mol per radian and angstrom\nWritten by palpa relax.",
+                                   scene.title, flexible.joints, flexible.relaxed.rms_force)),
+            existing);
     }
     if (const auto closest = describe_coincident_atoms(
             simulation.atoms.names, flexible.model.reference, nearest_single_precision)) {
-        fmt::print(stderr, "warning: atoms are on each other: {}\n", *closest);
+        fmt::print(stderr, "warning: atoms are on each other: {}\n", printable(*closest));
     }
     options.json ? print_json(flexible) : print_report(flexible);
     return flexible.relaxed.end == RelaxEnd::Converged ? 0 : 1;

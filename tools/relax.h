@@ -13,6 +13,7 @@ struct RelaxOptions {
     std::filesystem::path scene;
     std::optional<std::filesystem::path> coordinates;  // to write
     std::vector<std::string> settings;
+    bool overwrites = false;  // an earlier file of this command
     bool json = false;
 };
 

@@ -63,6 +63,12 @@ CameraChoice read_camera(std::string_view text) {
 
 int render_command(const RenderOptions& options) {
     SceneDescription scene = read_scene(options.scene, options.settings);
+    const Existing existing = check_output(options.image, picture_mark, options.overwrites);
+    const std::int64_t pixels = std::int64_t{options.width} * options.height * options.samples;
+    if (pixels > most_pixels) {
+        throw LoadError({"--samples"},
+                        fmt::format("{} pixels in all; expected {} at most", pixels, most_pixels));
+    }
     const CameraChoice choice = read_camera(options.camera);
     const auto colouring =
         static_cast<Colouring>(choice_called("--colour", options.colouring, colouring_names));
@@ -98,7 +104,7 @@ int render_command(const RenderOptions& options) {
     const Picture drawn =
         renderer.draw(frame, side * options.width, side * options.height, PictureContent::Colours);
     const Picture picture = side == 1 ? drawn : average_down(drawn, side);
-    write_png(options.image, picture);
+    write_png(options.image, picture, existing);
     fmt::print("{}: {}x{} on {}\n", options.image.string(), picture.width, picture.height,
                gpu.name());
     return 0;

@@ -14,6 +14,9 @@
 
 namespace palpa {
 
+// Of a picture with all its samples: it takes some 2 GiB until it is written.
+inline constexpr std::int64_t most_pixels = std::int64_t{1} << 26;
+
 struct RenderOptions {
     std::filesystem::path scene;
     std::vector<std::string> settings;
@@ -25,6 +28,7 @@ struct RenderOptions {
     std::string camera = "0,0";  // azimuth, elevation in degrees, zoom
     std::string look_at;         // a molecule's name; all of them if empty
     std::uint32_t samples = 1;   // a pixel: 1, 4, 9 or 16
+    bool overwrites = false;     // an earlier file of this command
     bool arrow = true;
 };
 

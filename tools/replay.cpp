@@ -1,6 +1,8 @@
 #include "tools/replay.h"
 
+#include "core/files.h"
 #include "core/load_error.h"
+#include "core/text.h"
 #include "devices/emulated_omni.h"
 #include "scene/read_scene.h"
 #include "session/replay.h"
@@ -12,9 +14,9 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <system_error>
 
 namespace palpa {
 namespace {
@@ -41,10 +43,13 @@ void check_repeats(const SceneDescription& scene) {
 // The session's file brings back the emulated hand, and no other. A recording that was cut off has
 // no summary, and only the trace will tell.
 void check_device(const std::filesystem::path& folder) {
-    std::ifstream file(folder / "summary.json");
-    const auto summary = nlohmann::json::parse(file, nullptr, false);
-    if (!summary.is_object()) return;
-    const std::string device = summary.value("device", "emulated Omni");
+    const std::filesystem::path file = folder / "summary.json";
+    std::error_code error;
+    if (!std::filesystem::exists(file, error)) return;
+    const auto summary = nlohmann::json::parse(read_text_file(file), nullptr, false);
+    if (!summary.is_object() || !summary.contains("device")) return;
+    const std::string device =
+        summary["device"].is_string() ? summary["device"].get<std::string>().substr(0, 80) : "";
     if (device == "emulated Omni") return;
     throw LoadError({(folder / "summary.json").string()},
                     fmt::format("the device was '{}'; expected one of the emulated hand (palpa run "
@@ -59,10 +64,11 @@ struct RecordedTime {
 
 nlohmann::ordered_json as_json(const TraceCheck& check, const RecordedTime& time) {
     nlohmann::ordered_json json{
-        {"recorded", check.recorded()},   {"compared", check.compared()},
-        {"different", check.different()}, {"cut_off", check.is_cut_off()},
-        {"recorded_s", time.recorded_s},  {"session_s", time.session_s},
-        {"surplus", check.surplus()},     {"largest_N", check.largest_newton()}};
+        {"recorded", check.recorded()},       {"compared", check.compared()},
+        {"different", check.different()},     {"cut_off", check.is_cut_off()},
+        {"recorded_s", time.recorded_s},      {"session_s", time.session_s},
+        {"surplus", check.surplus()},         {"not_finite", check.not_finite()},
+        {"largest_N", check.largest_newton()}};
     if (const auto& first = check.first()) {
         json["first"] = {{"row", first->row},
                          {"time_s", first->time_s},
@@ -75,7 +81,9 @@ nlohmann::ordered_json as_json(const TraceCheck& check, const RecordedTime& time
 
 void print_check(const TraceCheck& check, const RecordedTime& time) {
     fmt::print("{} of {} rows played again: ", check.compared(), check.recorded());
-    if (const auto& difference = check.first(); !difference) {
+    if (check.different() == 0 && check.not_finite() > 0) {
+        fmt::print("all the same, and not all finite\n");
+    } else if (const auto& difference = check.first(); !difference) {
         fmt::print("all the same to the last digit\n");
     } else {
         const TraceDifference& first = *difference;
@@ -83,8 +91,8 @@ void print_check(const TraceCheck& check, const RecordedTime& time) {
             "{} differ\n  first       row {}, {} s: {} was {}, now {}\n  forces      {:.3g} N "
             "apart "
             "at most\n",
-            check.different(), first.row, first.time_s, first.column, first.recorded, first.played,
-            check.largest_newton());
+            check.different(), first.row, printable(first.time_s), first.column,
+            printable(first.recorded), first.played, check.largest_newton());
         fmt::print(
             "  The same bits come from the same program on the same kind of processor "
             "(session.toml says which).\n");
@@ -93,6 +101,8 @@ void print_check(const TraceCheck& check, const RecordedTime& time) {
         fmt::print("  cut off     {:.7g} of {:.7g} s were recorded\n", time.recorded_s,
                    time.session_s);
     }
+    if (check.not_finite() > 0)
+        fmt::print("  not finite  a number in each of {} rows\n", check.not_finite());
     if (check.surplus() > 0)
         fmt::print("  too many    rows behind the session's end: {}\n", check.surplus());
 }
@@ -129,7 +139,8 @@ int replay_command(const ReplayOptions& options) {
     } else {
         print_check(check, time);
     }
-    return check.different() == 0 && check.compared() == check.recorded() ? 0 : 1;
+    const bool is_whole = check.compared() == check.recorded();
+    return check.different() == 0 && check.not_finite() == 0 && is_whole ? 0 : 1;
 }
 
 }  // namespace palpa

@@ -16,9 +16,7 @@
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
-#include <fstream>
 #include <optional>
-#include <system_error>
 
 namespace palpa {
 namespace {
@@ -58,22 +56,8 @@ std::vector<std::pair<std::string, std::string>> list_facts(const ReportOptions&
                              : fmt::format("{}", fmt::join(options.settings, " "))}};
 }
 
-// Opens what is to be written at the end, and leaves no trace of that.
-void check_output(const std::filesystem::path& output) {
-    const std::filesystem::path folder = output.parent_path();
-    if (!folder.empty() && !std::filesystem::is_directory(folder))
-        throw LoadError({output.string()}, "is in no folder that is there");
-    if (std::filesystem::is_directory(output))
-        throw LoadError({output.string()}, "is a folder; expected a file to write");
-    const bool is_new = !std::filesystem::exists(output);
-    const bool can_write = std::ofstream(output, std::ios::app).is_open();
-    std::error_code ignored;
-    if (is_new) std::filesystem::remove(output, ignored);
-    if (!can_write) throw LoadError({output.string()}, "cannot be written");
-}
-
-// Everything that would be found out only after minutes.
-void check(const ReportOptions& options) {
+// Everything that would be found out only after minutes; with what to write the page.
+Existing check(const ReportOptions& options) {
     check_gnuplot();
     const SceneDescription scene = read_scene(options.scene, options.settings);
     if (scene.coupling.mode != CouplingMode::Guarded) {
@@ -96,7 +80,7 @@ void check(const ReportOptions& options) {
         }
     }
     if (const std::optional<LoopOptions> loops = find_loops(options)) check_loops(*loops);
-    check_output(options.output);
+    return check_output(options.output, page_mark, options.overwrites);
 }
 
 }  // namespace
@@ -107,7 +91,7 @@ void report_progress(const std::string& what) {
 }
 
 int report_command(const ReportOptions& options) {
-    check(options);
+    const Existing existing = check(options);
     std::vector<ReportSection> sections;
     double total = 0;
     const auto functions = list_sections(options);
@@ -120,7 +104,7 @@ int report_command(const ReportOptions& options) {
                    section.title, seconds);
         sections.push_back(std::move(section));
     }
-    write_text_file(options.output, format_page(list_facts(options, total), sections));
+    write_text_file(options.output, format_page(list_facts(options, total), sections), existing);
     const bool is_met = std::ranges::all_of(sections, &ReportSection::meets_bars);
     fmt::print("written: {}{}\n", options.output.string(), is_met ? "" : "; a bar is missed");
     return is_met ? 0 : 1;

@@ -12,7 +12,8 @@ struct ReportOptions {
     std::filesystem::path flexible = "scenes/hiv/flexible.toml";  // left out where it is not there
     std::vector<std::string> settings;                            // "key=value", over the scene
     std::filesystem::path output = "report.html";
-    bool quick = false;  // fewer and shorter runs
+    bool overwrites = false;  // an earlier file of this command
+    bool quick = false;       // fewer and shorter runs
     std::uint64_t seed = 1;
 };
 

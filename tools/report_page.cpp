@@ -145,9 +145,9 @@ std::string draw_figure(const std::string& script, const std::string& caption, P
 
 std::string format_page(std::span<const std::pair<std::string, std::string>> facts,
                         std::span<const ReportSection> sections) {
-    std::string text =
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\">"
-        "<title>Palpa: report</title>\n<style>";
+    std::string text = "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\">";
+    text += page_mark;
+    text += "\n<style>";
     text += style;
     text += "</style></head>\n<body>\n<h1>Palpa: variable gain coupling, measured</h1>\n";
     std::vector<std::vector<std::string>> rows{{"this run", ""}};

@@ -2,6 +2,7 @@
 #pragma once
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -16,6 +17,9 @@ struct ReportSection {
     bool meets_bars = true;
     double seconds = 0;  // it took
 };
+
+// Its title, by which a report is known again.
+inline constexpr std::string_view page_mark = "<title>Palpa: report</title>";
 
 // For text that is no HTML.
 std::string escaped(std::string_view text);

@@ -3,6 +3,7 @@
 #include "app/run_window.h"
 #include "core/interrupt.h"
 #include "core/load_error.h"
+#include "core/text.h"
 #include "core/units.h"
 #include "devices/emulated_omni.h"
 #include "devices/open_device.h"
@@ -160,9 +161,10 @@ void print_feel(const Feel& f) {
 }
 
 void print_summary(const SceneDescription& scene, const Summary& s) {
-    fmt::print("{}: {} s, mode {}, T_s = {} ms, {} hand, friction {} N, stroke {}\n", scene.title,
-               scene.seconds, coupling_mode_names[static_cast<std::size_t>(scene.coupling.mode)],
-               scene.period_ms, hand_names[scene.hand.grip], scene.device.friction_N,
+    fmt::print("{}: {} s, mode {}, T_s = {} ms, {} hand, friction {} N, stroke {}\n",
+               printable(scene.title), scene.seconds,
+               coupling_mode_names[static_cast<std::size_t>(scene.coupling.mode)], scene.period_ms,
+               hand_names[scene.hand.grip], scene.device.friction_N,
                stroke_names[static_cast<std::size_t>(scene.hand.stroke)]);
     fmt::print("  felt        {:.3f} N of attraction and {:.3f} N of repulsion at most\n",
                s.largest_attraction_N, s.largest_repulsion_N);
@@ -263,6 +265,9 @@ int run_in_window(const SceneDescription& scene, const Simulation& simulation,
     if (options.play && options.device && *options.device != "emulated") {
         throw LoadError({"--play"}, "is of the emulated hand; expected it without --device");
     }
+    const Existing shot_existing =
+        options.last_shot ? check_output(*options.last_shot, picture_mark, options.overwrites)
+                          : Existing::Refuse;
     // A window needs somebody.
     if (!settings.hand) settings.hand = hand_model(Grip::Medium);
     const std::unique_ptr<Device> second = open_second(options, settings);
@@ -278,6 +283,7 @@ int run_in_window(const SceneDescription& scene, const Simulation& simulation,
                                             .height = options.height,
                                             .screenshots = options.screenshots,
                                             .last_shot = options.last_shot,
+                                            .last_shot_existing = shot_existing,
                                             .last_shot_s = options.last_shot_s,
                                             .orders = first.orders,
                                             .mouse_reach_m = options.play ? 0 : first.mouse_reach_m,
@@ -348,6 +354,9 @@ void print_scene_keys() {
 
 int run_command(const RunOptions& options) {
     SceneDescription scene = read_scene(options.scene, options.settings);
+    if (options.record && options.headless && !options.check_only) {
+        check_record_folder(*options.record, options.overwrites);
+    }
     Simulation simulation = load_simulation(scene, show_relaxing());
     const EmulatedOmniSettings settings = build_emulated_omni(scene, simulation);
     if (options.second) hold_with_both_hands(scene);
@@ -355,7 +364,9 @@ int run_command(const RunOptions& options) {
     if (options.check_only) {
         fmt::print("{}: nothing wrong found\n", scene.file.string());
         print_line(scene, simulation);
-        for (const std::string& warning : warnings) fmt::print("  warning: {}\n", warning);
+        for (const std::string& warning : warnings) {
+            fmt::print("  warning: {}\n", printable(warning));
+        }
         return 0;
     }
     if (options.headless && (options.last_shot || options.play || options.sound)) {
@@ -376,9 +387,14 @@ int run_command(const RunOptions& options) {
             warnings.push_back(fmt::format("no frames are drawn: {}", error.what()));
         }
     }
+    // A signal ends the program at once until here, however long a file takes to be read.
+    std::unique_ptr<Device> device =
+        open_device(options.device.value_or("emulated"), {.emulated = settings}).device;
+    const std::unique_ptr<Device> second = open_second(options, settings);
+    if (second) device = std::make_unique<TwoHands>(std::move(device), *second);
     note_interrupts();  // a recording that is begun is ended in order
     std::optional<Recording> recording;
-    if (options.record) recording.emplace(*options.record, scene);
+    if (options.record) recording.emplace(*options.record, scene, options.overwrites);
     if (options.record && (options.second || options.device.value_or("emulated") != "emulated")) {
         warnings.emplace_back(
             "session.toml of this recording plays the scene's own hand; whoever runs it again has "
@@ -386,18 +402,16 @@ int run_command(const RunOptions& options) {
     }
     FrameClock frames;
     if (writer) frames = {options.frames_per_second, [&] { write_frame(writer, simulation); }};
-    for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
+    for (const std::string& warning : warnings) {
+        fmt::print(stderr, "warning: {}\n", printable(warning));
+    }
 
-    std::unique_ptr<Device> device =
-        open_device(options.device.value_or("emulated"), {.emulated = settings}).device;
-    const std::unique_ptr<Device> second = open_second(options, settings);
-    if (second) device = std::make_unique<TwoHands>(std::move(device), *second);
     const Summary summary = run_headless(
         scene, simulation, *device, warnings, recording ? &*recording : nullptr,
         find_progress(options.json), frames, {}, [] { return noted_interrupt() != 0; });
     if (noted_interrupt() != 0) scene.seconds = static_cast<double>(summary.ticks) / servo_rate_hz;
     for (std::size_t i = warnings.size(); i < summary.warnings.size(); ++i) {
-        fmt::print(stderr, "warning: {}\n", summary.warnings[i]);
+        fmt::print(stderr, "warning: {}\n", printable(summary.warnings[i]));
     }
     if (options.json) {
         fmt::print("{}", format_summary(scene, summary));

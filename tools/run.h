@@ -17,6 +17,7 @@ struct RunOptions {
     std::filesystem::path scene;
     std::vector<std::string> settings;  // "key=value", over the scene file
     std::optional<std::filesystem::path> record;
+    bool overwrites = false;       // an earlier recording, or an earlier picture of --shot
     double frames_per_second = 0;  // 0: no frames in the recording
     std::uint32_t frame_width = 640, frame_height = 360;
     bool check_only = false;

@@ -114,7 +114,7 @@ std::string format_line(const StudyOptions& options) {
     const SceneDescription scene = read_study_scene(options, {});
     const Simulation simulation = load_simulation(scene);
     const double rest = find_rest(scene, simulation);
-    std::string text = "distance_angstrom,force_nN\n";
+    std::string text(line_names);
     for (int i = -100; i <= 700; ++i) {
         const double distance = rest + 0.01 * i;
         const double force = force_along_line_at(simulation, distance).force * nN;
@@ -156,13 +156,18 @@ nlohmann::ordered_json describe_study(const StudyOptions& options) {
             {"rest_angstrom", find_rest(scene, load_simulation(scene))}};
 }
 
-void make_study_folder(const std::filesystem::path& folder, const std::string& table) {
+std::unique_ptr<FolderLock> make_study_folder(const std::filesystem::path& folder,
+                                              std::initializer_list<const char*> files) {
     std::error_code error;
-    if (std::filesystem::exists(folder / table, error)) {
-        throw LoadError({folder.string()}, "holds a study already; expected a new folder");
+    for (const char* const file : files) {
+        if (!std::filesystem::exists(std::filesystem::symlink_status(folder / file, error)))
+            continue;
+        throw LoadError({(folder / file).string()},
+                        "is there, so the folder holds a study already; expected a new folder");
     }
     std::filesystem::create_directories(folder, error);
     if (error) throw LoadError({folder.string()}, "cannot be made: " + error.message());
+    return std::make_unique<FolderLock>(folder);
 }
 
 std::vector<CouplingMode> modes_called(const std::string& names) {
@@ -246,7 +251,10 @@ std::vector<StudyResult> play_study(
 int study_command(const StudyOptions& options) {
     check_study(options);
     if (options.operators == 0) return study_in_window(options);
-    if (options.folder) make_study_folder(*options.folder, "trials.csv");
+    std::unique_ptr<FolderLock> lock;
+    if (options.folder) {
+        lock = make_study_folder(*options.folder, {"trials.csv", "summary.json", "line.csv"});
+    }
     const bool is_watched = isatty(STDERR_FILENO) != 0;
     const std::vector<StudyResult> results =
         play_study(options, [&](std::size_t done, std::size_t of) {

@@ -1,5 +1,6 @@
 // palpa study: the paper's experiment, done by emulated operators or by people.
 #pragma once
+#include "core/files.h"
 #include "devices/emulated_omni.h"
 #include "devices/seeking_operator.h"
 #include "haptics/hand.h"
@@ -11,9 +12,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <initializer_list>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace palpa {
@@ -62,7 +66,8 @@ double find_rest(const SceneDescription& scene, const Simulation& simulation);
 double find_rest(const StudyOptions& options);
 // Who is further in than this (Å) went through: no hand tells the forces there from each other.
 double find_wall(const Simulation& simulation, double outermost);
-// The force that was searched, from 3 nN of repulsion outward, for figures.
+// The force that was searched, from 3 nN of repulsion outward, for figures; and its columns.
+inline constexpr std::string_view line_names = "distance_angstrom,force_nN\n";
 std::string format_line(const StudyOptions& options);
 // Whether there is such a place, and a hand.
 void check_study(const StudyOptions& options);
@@ -71,9 +76,10 @@ void check_study(const StudyOptions& options);
 EmulatedOmniSettings build_study_device(const SceneDescription& scene, const HandScript& script);
 // How every summary begins.
 nlohmann::ordered_json describe_study(const StudyOptions& options);
-// Before anything is played. What people or operators did before, a table in it, is never written
-// over.
-void make_study_folder(const std::filesystem::path& folder, const std::string& table);
+// Before anything is played: makes the folder and locks it. What people or operators did before is
+// never written over: throws LoadError where one of `files` is there.
+std::unique_ptr<FolderLock> make_study_folder(const std::filesystem::path& folder,
+                                              std::initializer_list<const char*> files);
 
 // Throws LoadError on bad input. Returns the exit code.
 int study_command(const StudyOptions& options);

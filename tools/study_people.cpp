@@ -85,12 +85,19 @@ int study_in_window(const StudyOptions& options) {
     std::error_code error;
     std::filesystem::create_directories(*options.folder, error);
     if (error) throw LoadError({options.folder->string()}, "cannot be made: " + error.message());
+    const FolderLock lock(*options.folder);  // a second window would lose the first one's trials
     const std::filesystem::path table = *options.folder / "trials.csv";
+    const std::filesystem::path line = *options.folder / "line.csv";
     const std::filesystem::path session = *options.folder / "session.json";
     const nlohmann::ordered_json study = describe_people(options);
     const bool is_first = !std::filesystem::exists(table, error);
+    const Existing line_existing = check_output(line, line_names, true);
     const std::string before = is_first ? trial_names() : read_table(table);
-    if (!is_first) check_same_study(session, study);
+    if (is_first) {
+        (void)check_output(session, {}, false);
+    } else {
+        check_same_study(session, study);
+    }
 
     const double rest = find_rest(options);
     const SceneDescription scene = read_study_scene(
@@ -114,14 +121,14 @@ int study_in_window(const StudyOptions& options) {
     window.mouse_reach_m = mouse_reach_m(omni);
     window.study = &course;
     window.on_trial = [&] {
-        if (is_first) write_text_file(session, study.dump(2) + "\n");
-        write_text_file(table, before + format_trials(course.results()));
+        if (is_first) write_text_file(session, study.dump(2) + "\n", Existing::Replace);
+        write_text_file(table, before + format_trials(course.results()), Existing::Replace);
     };
     window.validation = options.validation;
     (void)run_window(scene, device, window);
 
     if (course.results().empty()) return 0;
-    write_text_file(*options.folder / "line.csv", format_line(options));
+    write_text_file(line, format_line(options), line_existing);
     fmt::print("participant {}: {} of {} trials, in {}\n{}", participant, course.results().size(),
                options.rounds * options.modes.size(), table.string(),
                format_study_table(summarise_study(options.modes, course.results())));

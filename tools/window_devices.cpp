@@ -1,6 +1,7 @@
 #include "tools/window_devices.h"
 
 #include "core/load_error.h"
+#include "core/text.h"
 #include "devices/open_device.h"
 #include "devices/two_hands.h"
 #include "tools/run.h"
@@ -21,7 +22,8 @@ bool is_there(const DeviceMaker& maker, const DeviceRequest& request) {
 void print_failed_checks(const OpenedDevice& opened) {
     for (const DeviceCheck& check : opened.checks) {
         if (check.outcome != CheckOutcome::Failed) continue;
-        fmt::print(stderr, "warning: {}: {}; {}\n", check.layer, check.found, check.remedy);
+        fmt::print(stderr, "warning: {}: {}; {}\n", check.layer, printable(check.found),
+                   check.remedy);
     }
 }
 

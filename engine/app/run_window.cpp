@@ -618,7 +618,8 @@ void Sandbox::draw() {
 
 void Sandbox::save(const WindowShot& shot) {
     if (is_over_ && options_.last_shot) {  // asked for on the command line: an error if it fails
-        write_png(*options_.last_shot, {shot.width, shot.height, shot.rgba, {}, {}});
+        write_png(*options_.last_shot, {shot.width, shot.height, shot.rgba, {}, {}},
+                  options_.last_shot_existing);
         quitting_ = true;
         return;
     }

@@ -1,5 +1,6 @@
 // The sandbox in a window: draws a running scene, and lets a person take part.
 #pragma once
+#include "core/files.h"
 #include "haptics/device.h"
 #include "haptics/hand.h"
 #include "scene/description.h"
@@ -46,6 +47,7 @@ struct WindowOptions {
     std::uint32_t width = 1280, height = 800;
     std::filesystem::path screenshots{"."};            // folder
     std::optional<std::filesystem::path> last_shot{};  // taken after `last_shot_s`, then it quits
+    Existing last_shot_existing = Existing::Refuse;
     double last_shot_s = 5;
     HandOrders* orders = nullptr;  // of an emulated device's hand
     double mouse_reach_m = 0;      // as of WindowDevice

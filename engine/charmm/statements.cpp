@@ -25,6 +25,12 @@ bool Statements::next() {
         statement_ += upper_case(line);
     }
     words_ = split_words(statement_);
+    for (const std::string_view word : words_) {
+        constexpr std::size_t most = 100, shown = 20;  // no name or number is that long
+        if (word.size() <= most) continue;
+        fail(fmt::format("'{}...' has {} letters; expected words of {} at most",
+                         word.substr(0, shown), word.size(), most));
+    }
     return !words_.empty();
 }
 

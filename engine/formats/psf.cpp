@@ -198,7 +198,8 @@ private:
                              words.size()));
         }
         if (whole_number(words[0], lines_.number(), "number of an atom") != atom + 1) {
-            fail(lines_.number(), fmt::format("atom number {}; expected {}", words[0], atom + 1));
+            fail(lines_.number(),
+                 fmt::format("atom number {}; expected {}", shortened(words[0]), atom + 1));
         }
         AtomName name{std::string(words[1]), std::string(words[3]), std::string(words[2]),
                       std::string(words[4])};

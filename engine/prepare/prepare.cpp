@@ -78,6 +78,36 @@ void check_size(const Structure& structure) {
                                                   atoms, most_atoms));
 }
 
+// A PDB file has one column for a chain; longer names become letters that are free, in turn.
+Structure with_short_chains(Structure structure) {
+    constexpr std::string_view letters =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789";
+    std::map<std::string, std::string> names;
+    std::set<std::string> taken;
+    for (const AtomRecord& record : structure.records) {
+        if (record.chain.size() <= 1) taken.insert(record.chain);
+    }
+    for (AtomRecord& record : structure.records) {
+        if (record.chain.size() <= 1) continue;
+        const auto [name, is_new] = names.try_emplace(record.chain);
+        if (is_new) {
+            std::size_t at = 0;
+            while (at < letters.size() && taken.contains(std::string(1, letters[at]))) ++at;
+            name->second = std::string(1, letters[at < letters.size() ? at : 0]);
+            taken.insert(name->second);
+        }
+        record.chain = name->second;
+    }
+    return structure;
+}
+
+// Names and numbers must fit the columns of the files that will be written, which is known before
+// the long work.
+void check_formats(Structure structure) {
+    structure.positions.assign(structure.names.size(), Vec3::Zero());
+    (void)format_pdb(with_short_chains(std::move(structure)), {});
+}
+
 void report_charge(PreparedSystem& system) {
     double charge = 0;
     for (const double q : system.topology.charge) charge += q;
@@ -201,29 +231,6 @@ void relax_system(PreparedSystem& system, std::span<const std::uint8_t> is_built
     }
 }
 
-// A PDB file has one column for a chain; longer names become letters that are free, in turn.
-Structure with_short_chains(Structure structure) {
-    constexpr std::string_view letters =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789";
-    std::map<std::string, std::string> names;
-    std::set<std::string> taken;
-    for (const AtomRecord& record : structure.records) {
-        if (record.chain.size() <= 1) taken.insert(record.chain);
-    }
-    for (AtomRecord& record : structure.records) {
-        if (record.chain.size() <= 1) continue;
-        const auto [name, is_new] = names.try_emplace(record.chain);
-        if (is_new) {
-            std::size_t at = 0;
-            while (at < letters.size() && taken.contains(std::string(1, letters[at]))) ++at;
-            name->second = std::string(1, letters[at < letters.size() ? at : 0]);
-            taken.insert(name->second);
-        }
-        record.chain = name->second;
-    }
-    return structure;
-}
-
 void create_folder(const std::filesystem::path& folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
@@ -259,6 +266,7 @@ PreparedSystem prepare_system(const ForceField& force_field, const Structure& st
     check_size(result.structure);
     std::vector<std::uint8_t> is_added(result.structure.names.size(), 0);
     for (const std::uint32_t atom : system.completed.added) is_added[atom] = 1;
+    check_formats(result.structure);
     check_coordinates(result.structure, result.topology, is_added, report);
     report_charge(result);
 
@@ -278,7 +286,7 @@ PreparedSystem prepare_system(const ForceField& force_field, const Structure& st
 }
 
 void write_prepared(const PreparedSystem& system, const std::filesystem::path& folder,
-                    std::string_view title, std::string_view scene) {
+                    std::string_view title, std::string_view scene, Existing existing) {
     std::vector<TextFile> files{
         {folder / "system.psf", format_psf(system.connectivity, title)},
         {folder / "system.pdb", format_pdb(with_short_chains(system.structure), title)},
@@ -286,6 +294,7 @@ void write_prepared(const PreparedSystem& system, const std::filesystem::path& f
         {folder / "system.prm", format_parameters(system.parameters, title)},
         {folder / "report.txt", fmt::format("{}\n\n{}", title, system.report.to_text())}};
     if (!scene.empty()) files.push_back({folder / "scene.toml", std::string(scene)});
+    for (TextFile& file : files) file.existing = existing;
     create_folder(folder);
     write_text_files(files);
 }

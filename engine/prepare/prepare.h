@@ -2,6 +2,7 @@
 #pragma once
 #include "charmm/force_field.h"
 #include "charmm/topology.h"
+#include "core/files.h"
 #include "molecule/atoms.h"
 #include "molecule/connectivity.h"
 #include "prepare/report.h"
@@ -41,8 +42,11 @@ std::string format_scene_of(const PreparedSystem& system, const std::string& seg
 std::string find_smallest_segment(const PreparedSystem& system);
 
 // system.psf, system.pdb, system.crd, system.prm, report.txt and, unless `scene` is empty,
-// scene.toml: all of them or none. `title`: what the files say of themselves.
+// scene.toml: all of them or none. `title`: what the files say of themselves; it ends with
+// prepared_mark, by which they are known again.
 void write_prepared(const PreparedSystem& system, const std::filesystem::path& folder,
-                    std::string_view title, std::string_view scene);
+                    std::string_view title, std::string_view scene,
+                    Existing existing = Existing::Refuse);
+inline constexpr std::string_view prepared_mark = "by palpa prepare";
 
 }  // namespace palpa

@@ -107,11 +107,18 @@ private:
                structure_.records[residues_[index].first].residue_number + 1;
     }
 
+    // A PDB file has four columns for it; a number takes the place of letters where they are full.
     std::string unique_segment(const std::string& wanted) {
-        for (int count = 1;; ++count) {
-            const std::string name = count == 1 ? wanted : fmt::format("{}{}", wanted, count);
+        constexpr std::size_t most = 4, most_segments = 9999;
+        for (std::size_t count = 1; count <= most_segments; ++count) {
+            const std::string number = count == 1 ? "" : fmt::format("{}", count);
+            const std::string name = wanted.substr(0, most - number.size()) + number;
             if (segments_.insert(name).second) return name;
         }
+        throw LoadError({structure_.file},
+                        fmt::format("more than {} segments; expected fewer, --without leaves out "
+                                    "what is not needed",
+                                    most_segments));
     }
 
     void set_segment(std::size_t index, const std::string& segment) {

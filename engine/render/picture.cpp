@@ -4,6 +4,7 @@
 #include "core/load_error.h"
 
 #include <png.h>
+#include <zlib.h>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -22,6 +23,23 @@ std::uint8_t encode(float light) {
     const float encoded =
         light <= 0.0031308F ? 12.92F * light : 1.055F * std::pow(light, 1 / 2.4F) - 0.055F;
     return static_cast<std::uint8_t>(std::lround(255 * encoded));
+}
+
+// Four bytes, the most significant first, as PNG has numbers.
+std::string big_endian(std::uint32_t number) {
+    std::string bytes;
+    for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(number >> shift & 0xff);
+    return bytes;
+}
+
+// A chunk of text that says which program wrote the file; libpng's simple functions write none.
+std::string software_chunk() {
+    std::string checked = "tEXt";
+    checked += picture_mark;
+    const auto sum =
+        crc32(0, reinterpret_cast<const Bytef*>(checked.data()), static_cast<uInt>(checked.size()));
+    return big_endian(static_cast<std::uint32_t>(picture_mark.size())) + checked +
+           big_endian(static_cast<std::uint32_t>(sum));
 }
 
 }  // namespace
@@ -47,7 +65,7 @@ Picture average_down(const Picture& picture, std::uint32_t factor) {
     return smaller;
 }
 
-void write_png(const std::filesystem::path& path, const Picture& picture) {
+void write_png(const std::filesystem::path& path, const Picture& picture, Existing existing) {
     png_image image{};
     image.version = PNG_IMAGE_VERSION;
     image.width = picture.width;
@@ -63,7 +81,9 @@ void write_png(const std::filesystem::path& path, const Picture& picture) {
                                             0, nullptr) == 0) {
         throw LoadError({path.string()}, std::string("cannot be made: ") + image.message);
     }
-    write_text_file(path, content);
+    constexpr std::size_t header_end = 8 + 25;  // the signature and the chunk IHDR
+    content.insert(header_end, software_chunk());
+    write_text_file(path, content, existing);
 }
 
 }  // namespace palpa

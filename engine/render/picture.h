@@ -1,7 +1,10 @@
 // Pictures in memory, and as PNG files.
 #pragma once
+#include "core/files.h"
+
 #include <cstdint>
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 namespace palpa {
@@ -23,7 +26,11 @@ enum class PictureContent { Colours, All };
 // factor x factor. The size must be a multiple.
 Picture average_down(const Picture& picture, std::uint32_t factor);
 
+// A PNG file's word for the program that wrote it, as it stands near the file's beginning.
+inline constexpr std::string_view picture_mark{"Software\0Palpa", 14};
+
 // Writes the colours as PNG, whole or not at all. Throws LoadError if it cannot.
-void write_png(const std::filesystem::path& path, const Picture& picture);
+void write_png(const std::filesystem::path& path, const Picture& picture,
+               Existing existing = Existing::Refuse);
 
 }  // namespace palpa

@@ -6,8 +6,6 @@
 namespace palpa {
 namespace {
 
-constexpr double positive = std::numeric_limits<double>::min();
-
 template <class Enum, std::size_t Count>
 void choose(FieldVisitor& visitor, const Field& field,
             const std::array<std::string_view, Count>& names, Enum& value) {
@@ -246,7 +244,9 @@ void visit_hand(FieldVisitor& v, HandDescription& h) {
             .meaning = "path: where the hand is to be, [s, mm along x], [s, mm, mm, mm], or that "
                        "and a turn about x, y and z in degrees (a rotation vector), minimum jerk "
                        "in between; lead: where it is to have brought the molecule, [s, Å along "
-                       "x] or [s, Å, Å, Å] from its start"},
+                       "x] or [s, Å, Å, Å] from its start",
+            .lowest = -1e5,
+            .highest = 1e5},
            h.path);
     v.leave_table();
 }
@@ -268,8 +268,9 @@ void visit_device(FieldVisitor& v, DeviceDescription& d) {
            d.friction_N);
     v.real({.key = "encoder_step_mm",
             .meaning = "step of the position sensor; 0 reads exactly",
-            .lowest = 0,
-            .highest = 1},
+            .lowest = 1e-6,
+            .highest = 1,
+            .zero = true},
            d.encoder_step_mm);
     v.integer({.key = "servo_delay_ticks",
                .meaning = "servo ticks from a force to its sending",
@@ -307,19 +308,14 @@ void visit_coupling(FieldVisitor& v, CouplingDescription& c) {
             .lowest = 0,
             .highest = 1e3},
            c.F_0_nN);
-    v.real({.key = "A_f_min",
-            .meaning = "eq. 2: gain of high forces",
-            .lowest = positive,
-            .highest = 1e13},
-           c.A_f_min);
-    v.real({.key = "A_f_max",
-            .meaning = "eq. 2: gain of low forces",
-            .lowest = positive,
-            .highest = 1e13},
+    v.real(
+        {.key = "A_f_min", .meaning = "eq. 2: gain of high forces", .lowest = 1, .highest = 1e13},
+        c.A_f_min);
+    v.real({.key = "A_f_max", .meaning = "eq. 2: gain of low forces", .lowest = 1, .highest = 1e13},
            c.A_f_max);
     v.real({.key = "gamma_per_N",
             .meaning = "eq. 3: sharpness of the transition",
-            .lowest = positive,
+            .lowest = 1e-3,
             .highest = 1e18},
            c.gamma_per_N);
     v.real({.key = "F_off_pN",
@@ -352,14 +348,14 @@ void visit_coupling(FieldVisitor& v, CouplingDescription& c) {
                      .meaning = "guarded: [weakest, strongest] molecular force that must be felt, "
                                 "as 0.3 N or more and 2.7 N or less, in place of force_law; the "
                                 "cap makes the molecule go less far for it; unset: force_law",
-                     .lowest = positive,
+                     .lowest = 1e-3,
                      .highest = 1e6},
                     c.feel_pN);
     v.optional_real({.key = "feel_within_pN",
                      .meaning = "how far the force may be from what all joints would give; where "
                                 "something moves by itself, active joints and steps follow "
                                 "(quasi-static); unset: they are as [statics] has them",
-                     .lowest = positive,
+                     .lowest = 1e-6,
                      .highest = 1e6},
                     c.feel_within_pN);
     choose(
@@ -384,12 +380,12 @@ void visit_coupling(FieldVisitor& v, CouplingDescription& c) {
            workspace_names, c.workspace);
     v.real({.key = "F_lo_pN",
             .meaning = "perceptual law: molecular force that is felt as 0.3 N",
-            .lowest = positive,
+            .lowest = 1e-3,
             .highest = 1e6},
            c.F_lo_pN);
     v.real({.key = "F_hi_nN",
             .meaning = "perceptual law: molecular force that is felt as 3 N, above 2 F_lo",
-            .lowest = positive,
+            .lowest = 1e-6,
             .highest = 1e6},
            c.F_hi_nN);
     v.real({.key = "damping_N_s_per_m",
@@ -401,7 +397,7 @@ void visit_coupling(FieldVisitor& v, CouplingDescription& c) {
         {.key = "stop_nN",
          .meaning =
              "guarded: force on the molecule or one atom of it beyond which it goes no further in",
-         .lowest = positive,
+         .lowest = 1e-3,
          .highest = 1e3},
         c.stop_nN);
     v.integer({.key = "pairs_per_tick",
@@ -426,8 +422,14 @@ void visit_lesson_step(FieldVisitor& v, LessonStepDescription& s) {
             .meaning = "what tells that it was done: the distance of the reference atoms, the "
                        "force on the molecule or on the hand (+ repels), the coupling's mode"},
            lesson_quantity_names, s.quantity);
-    v.optional_real({.key = "at_least", .meaning = "smallest value that will do"}, s.at_least);
-    v.optional_real({.key = "at_most", .meaning = "largest value that will do"}, s.at_most);
+    v.optional_real({.key = "at_least",
+                     .meaning = "smallest value that will do",
+                     .lowest = -1e6,
+                     .highest = 1e6},
+                    s.at_least);
+    v.optional_real(
+        {.key = "at_most", .meaning = "largest value that will do", .lowest = -1e6, .highest = 1e6},
+        s.at_most);
     v.real({.key = "for_s",
             .meaning = "how long without a break, in simulated seconds",
             .lowest = 0,
@@ -500,17 +502,12 @@ public:
         add(field, "list of file names", "[]");
     }
     void path(const Field& field, std::vector<PathPoint>& /*value*/) override {
-        add(field, "list of 2, 4 or 7 numbers each", "[]");
+        add(field, fmt::format("list of 2, 4 or 7 numbers each{}", range(field)), "[]");
     }
 
 private:
     static std::string range(const Field& field) {
-        const double limit = std::numeric_limits<double>::max();
-        if (field.lowest == positive) return fmt::format(", above 0 to {}", field.highest);
-        if (field.lowest > -limit && field.highest < limit) {
-            return fmt::format(", {} to {}", field.lowest, field.highest);
-        }
-        return "";
+        return fmt::format(", {}{} to {}", field.zero ? "0 or " : "", field.lowest, field.highest);
     }
     void add(const Field& field, std::string type, std::string fallback) {
         notes.push_back({path_ + std::string(field.key), std::move(type),
@@ -526,10 +523,11 @@ private:
 void visit_scene(FieldVisitor& v, SceneDescription& scene) {
     v.text({.key = "title", .meaning = "name of the scene"}, scene.title);
     v.text({.key = "about", .meaning = "what it shows, in a few sentences"}, scene.about);
-    v.text({.key = "made_by",
-            .meaning = "command that makes the files that the scene names, told where one is "
-                       "missing"},
-           scene.made_by);
+    v.text(
+        {.key = "made_by",
+         .meaning = "how the files that the scene names are made, for who reads it; nothing runs "
+                    "it"},
+        scene.made_by);
     visit_force_field(v, scene.force_field);
     visit_molecules(v, scene.molecules);
     visit_joints(v, scene.joints);

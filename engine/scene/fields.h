@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -19,8 +18,8 @@ namespace palpa {
 struct Field {
     std::string_view key;
     std::string_view meaning;
-    double lowest = -std::numeric_limits<double>::max();
-    double highest = std::numeric_limits<double>::max();
+    double lowest = 0, highest = 0;  // of a number; every one has a range, which a test looks at
+    bool zero = false;               // 0 will do, below `lowest`
     bool required = false;
 };
 

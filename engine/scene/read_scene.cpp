@@ -12,7 +12,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <optional>
 #include <system_error>
@@ -38,6 +37,12 @@ TextPlace place_of(const toml::source_region& source) {
     return place;
 }
 
+// What a message quotes of a word that may be as long as the file.
+std::string quote_word(std::string_view text) {
+    constexpr std::size_t most = 80;
+    return fmt::format("\"{}\"{}", text.substr(0, most), text.size() > most ? "..." : "");
+}
+
 // What a node holds, as a person would call it.
 std::string kind_of(const toml::node& node) {
     switch (node.type()) {
@@ -46,7 +51,7 @@ std::string kind_of(const toml::node& node) {
         case toml::node_type::array:
             return "a list";
         case toml::node_type::string:
-            return fmt::format("the text \"{}\"", node.ref<std::string>());
+            return "the text " + quote_word(node.ref<std::string>());
         case toml::node_type::integer:
             return fmt::format("{}", node.ref<std::int64_t>());
         case toml::node_type::floating_point:
@@ -61,16 +66,43 @@ std::string kind_of(const toml::node& node) {
     return "nothing";
 }
 
+// ---- which files a scene may name --------------------------------------------------------------
+
+// The scenes that come with the program: installed beside it, or in the source tree of a build.
+std::vector<fs::path> find_own_scenes() {
+    const fs::path program = find_program_folder();
+    if (program.empty()) return {};
+    std::vector<fs::path> folders{program.parent_path() / "share" / "palpa" / "scenes"};
+    const fs::path builds = program.parent_path().parent_path();  // build/PRESET/bin
+    if (builds.filename() == "build") folders.push_back(builds.parent_path() / "scenes");
+    return folders;
+}
+
+// Where links lead.
+fs::path real_path(const fs::path& path) {
+    std::error_code error;
+    const fs::path absolute = fs::absolute(path, error);
+    const fs::path real = fs::weakly_canonical(absolute, error);
+    return error ? absolute.lexically_normal() : real;
+}
+
+bool is_below(const fs::path& path, const fs::path& folder) {
+    return std::mismatch(path.begin(), path.end(), folder.begin(), folder.end()).second ==
+           folder.end();
+}
+
 // ---- reading ---------------------------------------------------------------------------------
 
 // Fills a description from a table. Problems are gathered, so that the first one in the file is
 // told and not the first one in our list.
 class Reader final : public FieldVisitor {
 public:
-    Reader(const toml::table& root, fs::path file)
-        : file_(std::move(file)),
-          folder_(file_.parent_path()),
-          made_by_(root["made_by"].value_or(std::string())) {
+    Reader(const toml::table& root, fs::path file, bool allows_outside)
+        : file_(std::move(file)), folder_(file_.parent_path()), is_made_(root.contains("made_by")) {
+        if (!allows_outside) {
+            may_read_ = {real_path(folder_.empty() ? "." : folder_)};
+            for (const fs::path& folder : find_own_scenes()) may_read_.push_back(real_path(folder));
+        }
         levels_.push_back({&root, "", place_or_start(root), {}, false});
     }
 
@@ -157,7 +189,8 @@ public:
         const double read = node->is_integer() ? static_cast<double>(node->ref<std::int64_t>())
                                                : node->ref<double>();
         if (!std::isfinite(read)) return problem(*node, expected(field, *node, "a finite number"));
-        if (read < field.lowest || read > field.highest) {
+        const bool is_zero = read == 0 && field.zero;
+        if (!is_zero && (read < field.lowest || read > field.highest)) {
             return problem(*node, expected(field, *node, range(field, "a number")));
         }
         value = read;
@@ -176,10 +209,8 @@ public:
             value = *read;
         } else {
             problem(*node, expected(field, *node,
-                                    fmt::format("two numbers {}{} to {}, [20.0, 3000.0]",
-                                                field.lowest == positive ? "above " : "from ",
-                                                field.lowest == positive ? 0 : field.lowest,
-                                                field.highest)));
+                                    fmt::format("two numbers from {} to {}, [20.0, 3000.0]",
+                                                field.lowest, field.highest)));
         }
     }
 
@@ -279,13 +310,13 @@ public:
         if (!list) return problem(*node, expected(field, *node, "a list of points, [[0.0, 1.0]]"));
         value.clear();
         for (const toml::node& entry : *list) {
-            const std::optional<PathPoint> point = find_path_point(entry);
+            const std::optional<PathPoint> point = find_path_point(field, entry);
             if (!point) {
                 return problem(
                     entry, fmt::format("an entry of '{}' is no point of a path; expected [s, mm], "
                                        "[s, mm, mm, mm] or [s, mm, mm, mm, degrees, degrees, "
-                                       "degrees], finite numbers",
-                                       full_key(field.key)));
+                                       "degrees], numbers from {} to {}",
+                                       full_key(field.key), field.lowest, field.highest));
             }
             value.push_back(*point);
         }
@@ -300,8 +331,6 @@ private:
         std::vector<std::string> known;  // keys that were asked for
         bool missing;                    // told already
     };
-
-    static constexpr double positive = std::numeric_limits<double>::min();
 
     // A list of so many numbers in the field's range.
     template <std::size_t Count>
@@ -319,14 +348,15 @@ private:
         return numbers;
     }
 
-    static std::optional<PathPoint> find_path_point(const toml::node& node) {
+    static std::optional<PathPoint> find_path_point(const Field& field, const toml::node& node) {
         const toml::array* const numbers = node.as_array();
         if (!numbers || (numbers->size() != 2 && numbers->size() != 4 && numbers->size() != 7))
             return std::nullopt;
         std::array<double, 7> all{};
         for (std::size_t i = 0; i < numbers->size(); ++i) {
             const std::optional<double> number = numbers->get(i)->value<double>();
-            if (!number || !std::isfinite(*number)) return std::nullopt;
+            if (!number || !(*number >= field.lowest && *number <= field.highest))
+                return std::nullopt;
             all[i] = *number;
         }
         return PathPoint{all[0], {all[1], all[2], all[3]}, {all[4], all[5], all[6]}};
@@ -368,10 +398,8 @@ private:
     }
 
     static std::string range(const Field& field, std::string_view kind) {
-        if (field.lowest == positive) {
-            return fmt::format("{} above 0 up to {}", kind, field.highest);
-        }
-        return fmt::format("{} from {} to {}", kind, field.lowest, field.highest);
+        return fmt::format("{} {}from {} to {}", kind, field.zero ? "that is 0, or " : "",
+                           field.lowest, field.highest);
     }
 
     bool read_file_name(const Field& field, const toml::node& node, fs::path& value) {
@@ -380,13 +408,22 @@ private:
             return false;
         }
         value = folder_ / node.ref<std::string>();
+        const fs::path real = real_path(value);
+        if (!may_read_.empty() && std::ranges::none_of(may_read_, [&](const fs::path& folder) {
+                return is_below(real, folder);
+            })) {
+            problem(node, fmt::format("'{}' names {}, which is outside of the scene's folder; "
+                                      "expected a file below it, or --allow-outside where the "
+                                      "scene is trusted",
+                                      full_key(field.key), quote_word(node.ref<std::string>())));
+            return false;
+        }
         std::error_code error;
         if (fs::is_regular_file(value, error)) return true;
-        problem(node,
-                fmt::format("'{}' names no file: {} is not there; expected {}", full_key(field.key),
-                            value.generic_string(),
-                            made_by_.empty() ? "a file beside the scene"
-                                             : fmt::format("what {} makes, run first", made_by_)));
+        problem(node, fmt::format("'{}' names no file: {} is not there; expected a file beside the "
+                                  "scene{}",
+                                  full_key(field.key), value.generic_string(),
+                                  is_made_ ? ", whose made_by tells how it is made" : ""));
         return false;
     }
 
@@ -406,7 +443,8 @@ private:
     }
 
     fs::path file_, folder_;
-    std::string made_by_;  // the command that makes files that are not there
+    std::vector<fs::path> may_read_;  // folders, links resolved; empty: everything
+    bool is_made_;                    // the scene says how its files are made
     std::vector<Level> levels_;
     std::vector<Problem> problems_;
     std::map<std::string, TextPlace, std::less<>> places_;  // by full key
@@ -700,11 +738,18 @@ SceneDescription parse_scene(std::string_view text, const fs::path& file,
         throw LoadError({file.string(), 1, 1},
                         "an empty scene; expected [force_field], [molecules.NAME] and [grab]");
     }
-    for (const std::string& setting : settings) apply_setting(setting, root);
+    bool allows_outside = false;
+    for (const std::string& setting : settings) {
+        if (setting == allow_outside) {
+            allows_outside = true;
+        } else {
+            apply_setting(setting, root);
+        }
+    }
 
     SceneDescription scene;
     scene.file = file;
-    Reader reader(root, file);
+    Reader reader(root, file, allows_outside);
     visit_scene(reader, scene);
     check_grab(scene, reader);
     check_ranges(scene, reader);

@@ -15,6 +15,11 @@ namespace palpa {
 // file:line:column, what was read and what would be right, for: a missing file, bad TOML, an
 // unknown key (with the near name), a wrong type, a value out of range or not finite, a field that
 // is missing, a named file that does not exist, and fields that contradict each other.
+//
+// A scene may come from anybody, so it may name only files below its own folder and below the
+// scenes that come with the program, wherever links lead. With `allow_outside` among the settings
+// any file will do.
+inline constexpr std::string_view allow_outside = "--allow-outside";
 SceneDescription read_scene(const std::filesystem::path& path,
                             std::span<const std::string> settings = {});
 

@@ -29,13 +29,19 @@ double handle_travel(const SceneDescription& scene, const Simulation& simulation
     const bool constant = !servo.guarded && std::holds_alternative<ConstantDisplacementLaw>(
                                                 simulation.laws.displacement);
     const double fineness = moves_in_space(simulation) ? 0.02 : 1e-3;  // Å
-    const auto steps = constant ? 1 : static_cast<int>(std::ceil((far - near) / fineness));
-    const double width = (far - near) / steps;
-    double sum = 0;
-    for (int i = 0; i < steps; ++i)
-        sum += gain_where(servo, simulation,
-                          force_along_line_at(simulation, near + (i + 0.5) * width));
-    return sum * width * units::metre_per_angstrom;
+    const auto integral = [&](double from, double to, double step) {
+        const auto steps = constant ? 1 : static_cast<int>(std::ceil((to - from) / step));
+        const double width = (to - from) / steps;
+        double sum = 0;
+        for (int i = 0; i < steps; ++i)
+            sum += gain_where(servo, simulation,
+                              force_along_line_at(simulation, from + (i + 0.5) * width));
+        return sum * width * units::metre_per_angstrom;
+    };
+    // Far out the gain hardly changes.
+    constexpr double calm = 100;
+    if (far - near <= calm) return integral(near, far, fineness);
+    return integral(near, near + calm, fineness) + integral(near + calm, far, 1);
 }
 
 HandScript plan_in_out(const SceneDescription& scene, const Simulation& simulation,

@@ -5,6 +5,7 @@
 #include "core/text.h"
 #include "core/version.h"
 #include "field/processor.h"
+#include "render/picture.h"
 #include "scene/write_scene.h"
 #include "session/feel.h"
 
@@ -12,7 +13,6 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cstddef>
 #include <iterator>
 #include <map>
@@ -101,27 +101,97 @@ std::string format_session(const SceneDescription& scene) {
 }
 
 bool is_recording(const fs::path& folder) {
-    std::ifstream session(folder / "session.toml");
-    std::string line;
-    return std::getline(session, line) && line.starts_with(session_mark);
+    return has_mark(folder / "session.toml", session_mark);
+}
+
+bool is_there(const fs::path& path) {
+    std::error_code error;
+    return fs::exists(fs::symlink_status(path, error));
+}
+
+// The files in one of a recording's own folders; none where that is not there. A link to another
+// folder is not followed.
+std::vector<fs::path> list_folder(const fs::path& folder) {
+    std::error_code error;
+    if (!is_there(folder)) return {};
+    if (!fs::is_directory(fs::symlink_status(folder, error))) {
+        throw LoadError({folder.string()}, "is no folder; expected a recording's own");
+    }
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::directory_iterator(folder, error)) files.push_back(entry.path());
+    return files;
+}
+
+// All that was written for the recording in a folder, and not what somebody put beside it: inputs
+// are those that its session names, frames are numbered and ours.
+std::vector<fs::path> list_recorded(const fs::path& folder) {
+    const std::string session = read_text_file(folder / "session.toml");
+    std::vector<fs::path> files;
+    for (const char* const name : {"summary.json", "trace.csv"}) {
+        const fs::path file = folder / name;
+        std::error_code error;
+        if (!is_there(file)) continue;
+        if (!fs::is_regular_file(fs::symlink_status(file, error))) {
+            throw LoadError({file.string()}, "is no regular file; expected a recording's own");
+        }
+        files.push_back(file);
+    }
+    for (const fs::path& file : list_folder(folder / "inputs")) {
+        const std::string name = fmt::format("\"inputs/{}\"", file.filename().string());
+        if (session.find(name) != std::string::npos) files.push_back(file);
+    }
+    for (const fs::path& file : list_folder(folder / "frames")) {
+        const std::string name = file.stem().string();
+        const bool is_numbered =
+            name.size() >= 4 && name.find_first_not_of("0123456789") == std::string::npos;
+        if (is_numbered && has_mark(file, picture_mark)) files.push_back(file);
+    }
+    files.push_back(folder / "session.toml");  // last, since it tells of the others
+    return files;
 }
 
 void make_folder(const fs::path& folder) {
     std::error_code error;
-    if (fs::exists(folder, error) && !fs::is_directory(folder, error)) {
-        throw LoadError({folder.string()}, "is a file; expected a folder to record into");
-    }
-    if (fs::is_directory(folder, error) && !fs::is_empty(folder, error) && !is_recording(folder)) {
-        throw LoadError({folder.string()},
-                        "holds something that is no recording; expected a new or empty folder");
-    }
-    for (const char* const name : {"trace.csv", "summary.json"}) {
-        if (fs::is_directory(folder / name, error)) {
-            throw LoadError({(folder / name).string()}, "is a folder; expected a recording's file");
-        }
-    }
     fs::create_directories(folder, error);
     if (error) throw LoadError({folder.string()}, "cannot be made: " + error.message());
+}
+
+}  // namespace
+
+void check_record_folder(const fs::path& folder, bool overwrites) {
+    std::error_code error;
+    if (!fs::exists(folder, error)) return;
+    if (!fs::is_directory(folder, error)) {
+        throw LoadError({folder.string()}, "is a file; expected a folder to record into");
+    }
+    if (fs::is_empty(folder, error)) return;
+    if (!overwrites) {
+        throw LoadError({folder.string()}, is_recording(folder)
+                                               ? "holds a recording already; expected a new or "
+                                                 "empty folder, or --overwrite"
+                                               : "holds something that is no recording; expected a "
+                                                 "new or empty folder");
+    }
+    if (!is_recording(folder)) {
+        throw LoadError({folder.string()},
+                        "holds something that is no recording, and is not overwritten; expected a "
+                        "new or empty folder");
+    }
+    (void)list_recorded(folder);
+}
+
+namespace {
+
+// Before the first byte is written: what check_record_folder lets pass goes.
+void make_room(const fs::path& folder) {
+    std::error_code error;
+    if (fs::is_empty(folder, error)) return;
+    for (const fs::path& file : list_recorded(folder)) {
+        fs::remove(file, error);
+        if (error) throw LoadError({file.string()}, "cannot be replaced: " + error.message());
+    }
+    for (const char* const name : {"inputs", "frames"})
+        fs::remove(folder / name, error);  // if empty
 }
 
 nlohmann::ordered_json feel_as_json(const Feel& feel) {
@@ -219,23 +289,22 @@ std::string format_summary(const SceneDescription& scene, const Summary& summary
     return json.dump(2) + "\n";
 }
 
-Recording::Recording(const fs::path& folder, const SceneDescription& scene)
+Recording::Recording(const fs::path& folder, const SceneDescription& scene, bool overwrites)
     : folder_(folder), scene_(scene) {
     const std::vector<fs::path> files = input_files(scene);
     // Read everything before the first byte is written: the folder may hold the inputs themselves.
     std::vector<std::string> contents;
     for (const fs::path& file : files) contents.push_back(read_text_file(file));
     make_folder(folder);
+    lock_.emplace(folder);
+    check_record_folder(folder, overwrites);
+    make_room(folder);
     // The trace first: where it cannot be written, nothing is.
-    errno = 0;
-    trace_.open(folder / "trace.csv", std::ios::binary | std::ios::trunc);
+    trace_.emplace(folder / "trace.csv");
     rows_ = trace_header() + "\n";
     flush();
     std::error_code error;
-    fs::remove(folder / "summary.json", error);
-    fs::remove_all(folder / "inputs", error);
-    fs::remove_all(folder / "frames", error);
-    fs::create_directories(folder / "inputs", error);
+    fs::create_directory(folder / "inputs", error);
     if (error) throw LoadError({folder.string()}, "cannot be written: " + error.message());
     const std::map<fs::path, std::string> names = input_names(files);
     for (std::size_t i = 0; i < files.size(); ++i) {
@@ -282,12 +351,7 @@ void Recording::finish(const Summary& summary) {
 }
 
 void Recording::flush() {
-    trace_.write(rows_.data(), static_cast<std::streamsize>(rows_.size()));
-    trace_.flush();
-    if (!trace_) {
-        throw LoadError({(folder_ / "trace.csv").string()},
-                        "cannot be written: " + std::generic_category().message(errno));
-    }
+    trace_->write(rows_);
     rows_.clear();
 }
 

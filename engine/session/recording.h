@@ -1,12 +1,13 @@
 // A session on disk: a folder with trace.csv, summary.json, session.toml and the scene's inputs.
 #pragma once
+#include "core/files.h"
 #include "haptics/servo.h"
 #include "scene/description.h"
 #include "session/statistics.h"
 
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
+#include <optional>
 #include <string>
 
 namespace palpa {
@@ -24,12 +25,17 @@ std::string trace_row(const ServoTick& tick);
 // The summary as a JSON object; scripts rely on its keys, which the README of tools lists.
 std::string format_summary(const SceneDescription& scene, const Summary& summary);
 
+// Throws LoadError where a Recording in the folder would, before anything long is done for it.
+void check_record_folder(const std::filesystem::path& folder, bool overwrites);
+
 class Recording {
 public:
-    // Makes the folder, or takes the place of the recording in it, and writes session.toml and the
-    // inputs: what is needed to run the session again is there from the first moment. Throws
-    // LoadError if the folder cannot be written or holds something else.
-    Recording(const std::filesystem::path& folder, const SceneDescription& scene);
+    // Makes the folder and writes session.toml and the inputs: what is needed to run the session
+    // again is there from the first moment. Throws LoadError if the folder cannot be written, if
+    // another run records into it, or if it is not empty. A recording in it is replaced if
+    // `overwrites`: the files that belong to one, and nothing else.
+    Recording(const std::filesystem::path& folder, const SceneDescription& scene,
+              bool overwrites = false);
 
     // Every `every`th tick becomes a row. What was written stays readable if the run is cut off.
     void add(const ServoTick& tick);
@@ -42,7 +48,8 @@ private:
 
     std::filesystem::path folder_;
     SceneDescription scene_;
-    std::ofstream trace_;
+    std::optional<FolderLock> lock_;
+    std::optional<NewFile> trace_;
     std::string rows_;
     std::uint64_t tick_ = 0;
 };

@@ -53,6 +53,9 @@ void TraceCheck::add(const ServoTick& tick) {
     const std::string_view recorded = rows_[compared_++];
     std::string played = trace_row(tick);
     played.pop_back();  // its end of line
+    // "nan" and "inf" have a letter that no finite number has.
+    const auto is_finite = [](std::string_view row) { return row.find_first_of("nN") == row.npos; };
+    if (!is_finite(recorded) || !is_finite(played)) ++not_finite_;
     if (played != recorded) note(recorded, played);
 }
 

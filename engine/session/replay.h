@@ -36,6 +36,8 @@ public:
     // Of the ticks' rows some are not there; and how many are there that no tick has.
     bool is_cut_off() const noexcept { return rows_.size() < whole_; }
     std::uint64_t surplus() const noexcept { return is_cut_off() ? 0 : rows_.size() - whole_; }
+    // Rows with a number that is none or endless, as recorded or as played.
+    std::uint64_t not_finite() const noexcept { return not_finite_; }
     const std::optional<TraceDifference>& first() const noexcept { return first_; }
     double largest_newton() const noexcept { return largest_newton_; }  // of device forces apart
 
@@ -46,7 +48,7 @@ private:
     std::vector<std::string_view> rows_, columns_;  // of `text_`
     std::int64_t every_;
     std::uint64_t whole_;  // rows of a recording that was not cut off
-    std::uint64_t tick_ = 0, compared_ = 0, different_ = 0;
+    std::uint64_t tick_ = 0, compared_ = 0, different_ = 0, not_finite_ = 0;
     std::optional<TraceDifference> first_;
     double largest_newton_ = 0;
 };

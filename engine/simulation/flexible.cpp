@@ -1,5 +1,6 @@
 #include "simulation/flexible.h"
 
+#include "core/interrupt.h"
 #include "core/text.h"
 #include "core/units.h"
 
@@ -394,11 +395,15 @@ void update_audit(const Flexible& flexible, FewActive& few, SettleReport& report
     do {
         if (audit.is_under_way)
             step_audit(flexible.model, few.settings.step, flexible.grabbed, limits, audit);
-    } while (audit.is_under_way && !exactness.has_budget());
+    } while (audit.is_under_way && !exactness.has_budget() && noted_interrupt() == 0);
     if (audit.is_under_way || !audit.is_finite) return;
     report.audited_pN = (audit.told - audit.found).norm() / kcal;
     exactness.add_audit(*report.audited_pN, audit.told / kcal, audit.steps);
 }
+
+// Whether a step of the simulation makes another of its own. One that somebody ended is the run's
+// last, and nothing of it is felt or recorded.
+bool goes_on(const SettleReport& report) { return report.is_finite && noted_interrupt() == 0; }
 
 SettleReport step_adaptively(Flexible& flexible, FewActive& few) {
     const TorsionModel& model = flexible.model;
@@ -413,7 +418,7 @@ SettleReport step_adaptively(Flexible& flexible, FewActive& few) {
     report.steps = few.exactness ? few.exactness->effort().steps : flexible.settings.steps;
     // Many steps where all is at rest leave nothing of h but what rounding did not take.
     if (few.exactness) statics.h = std::max(statics.h, settings.step.first_h);
-    for (std::size_t i = 0; i < report.steps && report.is_finite; ++i) {
+    for (std::size_t i = 0; i < report.steps && goes_on(report); ++i) {
         if (statics.steps_since_choice >= settings.choose_every) prepare_choice(flexible, few);
         const AdaptiveReport step = step_adaptive(model, settings, state, statics);
         report.is_finite = step.step.is_finite;
@@ -563,14 +568,16 @@ SettleReport step_flexible(Flexible& flexible) {
     if (settings.method == RelaxMethod::QuasiStatic) {
         update_forces(model, settings.step.forces, flexible.statics.memory, state);
         report.hand_work = state.energy() - before;
-        for (std::size_t i = 0; i < settings.steps && report.is_finite; ++i) {
+        for (std::size_t i = 0; i < settings.steps && goes_on(report); ++i) {
             const QuasiStaticReport step =
                 step_quasi_static(model, settings.step, state, flexible.statics);
             report.is_finite = step.is_finite;
             if (step.is_taken) report.energy_change += step.energy_change;
         }
     } else {
-        const JointRelaxReport relaxed = relax_joints(model, settings, state, flexible.statics);
+        const JointRelaxReport relaxed =
+            relax_joints(model, settings, state, flexible.statics,
+                         [](const RelaxProgress&) { return noted_interrupt() == 0; });
         report.hand_work = relaxed.energy_before - before;
         report.energy_change = relaxed.energy_after - relaxed.energy_before;
         report.is_finite = relaxed.end != RelaxEnd::NotFinite;

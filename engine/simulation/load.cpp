@@ -187,6 +187,17 @@ void relax_grabbed(const SceneDescription& scene, const Molecule& grabbed, Simul
     simulation.relaxed = report;
 }
 
+// Nothing is felt from farther away, and looking for what is would take minutes.
+void check_distance(const SceneDescription& scene, const Simulation& simulation) {
+    constexpr double farthest = 1000;  // Å
+    const double distance = (grabbed_place(simulation) - simulation.anchor).norm();
+    if (distance <= farthest) return;
+    throw LoadError(scene.place_of("grab.measured_from"),
+                    fmt::format("the reference atoms of '{}' and '{}' are {:.6g} Å apart; expected "
+                                "{} Å at most",
+                                scene.grab.molecule, scene.grab.measured_from, distance, farthest));
+}
+
 // Where the hand holds a molecule on a line.
 double find_start(const SceneDescription& scene, const Simulation& simulation, double distance) {
     if (scene.hand.start_angstrom) return *scene.hand.start_angstrom;
@@ -366,6 +377,7 @@ Simulation load_simulation(const SceneDescription& scene, const RelaxProgressFun
         load_flexible(scene, force_field, files, molecules, entities, on_relax, simulation);
     }
     start_grabbed(scene, simulation);
+    check_distance(scene, simulation);
     set_coupling(scene.coupling, simulation);
     return simulation;
 }

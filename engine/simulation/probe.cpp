@@ -2,7 +2,10 @@
 
 #include "simulation/components.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace palpa {
@@ -42,6 +45,19 @@ double bisect(const Simulation& simulation, double level, double inside, double 
         (above ? inside : outside) = middle;
     }
     return 0.5 * (inside + outside);
+}
+
+// The shortest distance between an atom in the hand and one of the others.
+double distance_at(const Simulation& simulation, double distance) {
+    const Vec3 by =
+        simulation.anchor + place_on_line(simulation, distance) - grabbed_place(simulation);
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Vec3& a : grabbed_points(simulation).positions) {
+        for (const Vec3& b : environment_points(simulation).positions) {
+            nearest = std::min(nearest, (a + by - b).squaredNorm());
+        }
+    }
+    return std::sqrt(nearest);
 }
 
 }  // namespace
@@ -116,10 +132,16 @@ std::optional<double> repulsion_distance(const Simulation& simulation, double fo
                                          double outermost) {
     if (force_along_line_at(simulation, outermost).force > force) return std::nullopt;
     const Scan scan = scan_of(simulation);
-    for (double distance = outermost; distance > scan.innermost; distance -= scan.step) {
+    // At least, in Å, from one molecule to the other where the hand is at `outermost`.
+    const double apart = distance_at(simulation, outermost);
+    double step = scan.step;
+    for (double distance = outermost; distance > scan.innermost; distance -= step) {
         if (force_along_line_at(simulation, distance).force > force) {
-            return bisect(simulation, force, distance, distance + scan.step);
+            return bisect(simulation, force, distance, distance + step);
         }
+        // Where nothing is near, the force changes slowly with the way that is left.
+        constexpr double near = 30, share = 0.05;
+        step = std::max(scan.step, share * (apart - (outermost - distance) - near));
     }
     return std::nullopt;
 }

@@ -189,7 +189,7 @@ TEST_CASE("a tetrapeptide typed from its part of CHARMM36m has its reference ene
     const fs::path folder = test::test_data("");
 
     check_reference(folder, "tetra_aera_c36m",
-                    test::read_charmm(folder, {"aera_c36m.rtf", "aera_c36m.prm"}));
+                    test::read_charmm(folder / "two_peptides", {"aera_c36m.rtf", "aera_c36m.prm"}));
 }
 
 TEST_CASE("every force field file of CHARMM's that is at hand is read", "[charmm][native]") {

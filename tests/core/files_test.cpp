@@ -3,6 +3,7 @@
 #include "tests/support/load_error_of.h"
 #include "tests/support/temporary_folder.h"
 
+#include <sys/stat.h>
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
@@ -42,6 +43,79 @@ TEST_CASE("a file that cannot be read is named with the reason", "[core][files]"
                StartsWith(folder.path().string() + ": is a folder"));
 }
 
+TEST_CASE("a file that is too large, or no regular one, is refused at once", "[core][files]") {
+    const test::TemporaryFolder folder;
+    const fs::path sparse = folder.add_file("sparse", "");
+    fs::resize_file(sparse, std::uintmax_t{40} << 30);
+    CHECK(load_error_of([&] { read_text_file(sparse); }) ==
+          sparse.string() + ": is 40.0 GiB large; expected at most 1.0 GiB");
+
+    const fs::path pipe = folder.path() / "pipe";
+    REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+    for (const fs::path& path : {pipe, fs::path("/dev/zero")}) {
+        CHECK(load_error_of([&] { read_text_file(path); }) ==
+              path.string() + ": is no regular file, one was expected");
+    }
+}
+
+TEST_CASE("what is there is replaced only where that is said", "[core][files]") {
+    const test::TemporaryFolder folder;
+    const fs::path path = folder.add_file("a", "old");
+
+    CHECK(load_error_of([&] { write_text_file(path, "new"); }) ==
+          path.string() + ": is there already; expected another name, or --overwrite");
+    CHECK(load_error_of([&] {
+              write_text_files(std::vector<TextFile>{{folder.path() / "b", "1"}, {path, "2"}});
+          }) == path.string() + ": is there already; expected another name, or --overwrite");
+    CHECK(read_text_file(path) == "old");
+    CHECK(files_in(folder.path()) == 1);
+
+    write_text_file(path, "new", Existing::Replace);
+    CHECK(read_text_file(path) == "new");
+}
+
+TEST_CASE("a link is replaced and not written through", "[core][files]") {
+    const test::TemporaryFolder folder;
+    const fs::path target = folder.add_file("target", "old"), link = folder.path() / "link";
+    fs::create_symlink(target, link);
+
+    CHECK_THROWS_AS(write_text_file(link, "new"), LoadError);
+    CHECK_THROWS_AS(NewFile(link), LoadError);
+    CHECK_THROWS_AS(check_output(link, "old", true), LoadError);
+    CHECK_FALSE(has_mark(link, "old"));
+    CHECK(fs::is_symlink(link));
+
+    write_text_file(link, "new", Existing::Replace);
+    CHECK_FALSE(fs::is_symlink(link));
+    CHECK(read_text_file(target) == "old");
+}
+
+TEST_CASE("before long work it is known whether its output can be written", "[core][files]") {
+    const test::TemporaryFolder folder;
+    const fs::path ours = folder.add_file("ours", "# mark\n"),
+                   other = folder.add_file("other", "mine"), fresh = folder.path() / "fresh";
+
+    CHECK(check_output(fresh, "# mark", false) == Existing::Refuse);
+    CHECK(check_output(fresh, "# mark", true) == Existing::Refuse);
+    CHECK(check_output(ours, "# mark", true) == Existing::Replace);
+    CHECK_THROWS_AS(check_output(ours, "# mark", false), LoadError);
+    CHECK_THROWS_AS(check_output(other, "# mark", true), LoadError);
+    CHECK_THROWS_AS(check_output(folder.path(), "# mark", true), LoadError);
+    CHECK_THROWS_AS(check_output(folder.path() / "no" / "x", "# mark", true), LoadError);
+    CHECK(check_output("/dev/null", "# mark", false) == Existing::Replace);
+    CHECK(files_in(folder.path()) == 2);
+}
+
+TEST_CASE("a folder is locked for one at a time", "[core][files]") {
+    const test::TemporaryFolder folder;
+    {
+        const FolderLock first(folder.path());
+        CHECK_THAT(load_error_of([&] { const FolderLock second(folder.path()); }),
+                   Catch::Contains("another run is writing"));
+    }
+    CHECK_NOTHROW(FolderLock(folder.path()));
+}
+
 TEST_CASE("writing makes a file, then replaces it, and leaves nothing else", "[core][files]") {
     const test::TemporaryFolder folder;
     const fs::path path = folder.path() / "out.csv";
@@ -49,7 +123,7 @@ TEST_CASE("writing makes a file, then replaces it, and leaves nothing else", "[c
     const std::string shorter("b\r\n\0", 4);
 
     for (const std::string& text : {longer, shorter}) {
-        write_text_file(path, text);
+        write_text_file(path, text, Existing::Replace);
         std::ifstream file(path, std::ios::binary);
         CHECK(std::string(std::istreambuf_iterator<char>(file), {}) == text);
     }
@@ -70,7 +144,7 @@ TEST_CASE("a failed write tells why, harms nothing and leaves nothing behind", "
         const fs::path path = folder.path() / "taken";
         fs::create_directory(path);
         folder.add_file("taken/inside", "kept");
-        CHECK_THAT(load_error_of([&] { write_text_file(path, "text"); }),
+        CHECK_THAT(load_error_of([&] { write_text_file(path, "text", Existing::Replace); }),
                    StartsWith(path.string() + ": cannot be written: "));
         CHECK(read_text_file(path / "inside") == "kept");
         CHECK(files_in(folder.path()) == 1);
@@ -80,9 +154,10 @@ TEST_CASE("a failed write tells why, harms nothing and leaves nothing behind", "
 TEST_CASE("several files are all written, or none of them", "[core][files]") {
     const test::TemporaryFolder folder;
     const fs::path first = folder.add_file("first", "old"), second = folder.path() / "second";
+    const TextFile one{first, "1", Existing::Replace};
 
     SECTION("all") {
-        write_text_files(std::vector<TextFile>{{first, "1"}, {second, "2"}});
+        write_text_files(std::vector<TextFile>{one, {second, "2"}});
         CHECK(read_text_file(first) == "1");
         CHECK(read_text_file(second) == "2");
         CHECK(files_in(folder.path()) == 2);
@@ -90,8 +165,7 @@ TEST_CASE("several files are all written, or none of them", "[core][files]") {
     SECTION("none, as the last one's folder is not there") {
         const fs::path missing = folder.path() / "missing" / "third";
         CHECK_THAT(load_error_of([&] {
-                       write_text_files(
-                           std::vector<TextFile>{{first, "1"}, {second, "2"}, {missing, "3"}});
+                       write_text_files(std::vector<TextFile>{one, {second, "2"}, {missing, "3"}});
                    }),
                    StartsWith(missing.string() + ": cannot be written: "));
         CHECK(read_text_file(first) == "old");
@@ -99,10 +173,9 @@ TEST_CASE("several files are all written, or none of them", "[core][files]") {
     }
     SECTION("none, as the last one is a folder") {
         fs::create_directory(second);
-        CHECK_THAT(load_error_of([&] {
-                       write_text_files(std::vector<TextFile>{{first, "1"}, {second, "2"}});
-                   }),
-                   StartsWith(second.string() + ": is a folder"));
+        CHECK_THAT(
+            load_error_of([&] { write_text_files(std::vector<TextFile>{one, {second, "2"}}); }),
+            StartsWith(second.string() + ": is a folder"));
         CHECK(read_text_file(first) == "old");
         CHECK(files_in(folder.path()) == 2);
     }

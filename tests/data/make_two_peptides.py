@@ -28,7 +28,7 @@ def main():
     write_peptides(folder / "both.crd")
     with tempfile.TemporaryDirectory() as prepared:
         subprocess.run([sys.argv[1], "prepare", folder / "both.crd", "--toppar",
-                        DATA / "aera_c36m.rtf", DATA / "aera_c36m.prm", "--no-relax",
+                        folder / "aera_c36m.rtf", folder / "aera_c36m.prm", "--no-relax",
                         "-o", prepared], check=True)
         (folder / "both.psf").write_bytes((Path(prepared) / "system.psf").read_bytes())
 

@@ -231,6 +231,30 @@ TEST_CASE("ligands, waters and ions get segments of their own", "[prepare]") {
     CHECK(named.structure.names[10].atom == "OH2");
 }
 
+TEST_CASE("segments of many equal ligands have names that fit a PDB file", "[prepare]") {
+    constexpr int ligands = 120;
+    StructureWriter writer;
+    for (int i = 1; i <= ligands; ++i) {
+        const double x = 10.0 * i;
+        for (const int atom : {1, 2, 3})
+            writer.atom("LIG", "A", i, "C" + std::to_string(atom), {x + 1.5 * atom, 0, 0}, "C");
+    }
+
+    const Named named = name_all(writer.structure());
+
+    std::map<std::string, int> atoms;
+    for (const AtomName& name : named.structure.names) ++atoms[name.segment];
+    CHECK(atoms.size() == ligands);
+    for (const auto& [segment, count] : atoms) {
+        INFO(segment);
+        CHECK(segment.size() <= 4);
+        CHECK(count == 3);
+    }
+    CHECK(atoms.contains("LIG9"));
+    CHECK(atoms.contains("LI10"));
+    CHECK(atoms.contains("L120"));
+}
+
 TEST_CASE("what cannot become a system is told all at once", "[prepare]") {
     StructureWriter writer;
     writer.backbone("ALA", "A", 1, 0);

@@ -21,6 +21,8 @@ TEST_CASE("a PNG holds the picture's colours, row by row from the top", "[render
 
     write_png(path, picture);
 
+    CHECK(has_mark(path, picture_mark));
+    CHECK_THROWS_AS(write_png(path, picture), LoadError);
     png_image image{};
     image.version = PNG_IMAGE_VERSION;
     REQUIRE(png_image_begin_read_from_file(&image, path.string().c_str()) != 0);

@@ -166,9 +166,9 @@ TEST_CASE("a value of the wrong type is told with what it is and should be", "[s
         {"[coupling]\nclamp_N = [1]", 18, 11, "'coupling.clamp_N' is a list; expected a number"},
         {"[coupling]\nclamp_N = 2020-01-01", 18, 11, "is a date or time; expected a number"},
         {"[hand]\nstart_angstrom = \"far\"", 18, 18, "expected a number"},
-        {"[coupling]\nfeel_pN = [1, 2, 3]", 18, 11, "expected two numbers above 0 to 1000000"},
-        {"[coupling]\nfeel_pN = [0, 2]", 18, 11, "expected two numbers above 0"},
-        {"[coupling]\nfeel_pN = 20", 18, 11, "expected two numbers above 0"},
+        {"[coupling]\nfeel_pN = [1, 2, 3]", 18, 11, "expected two numbers from 0.001 to 1000000"},
+        {"[coupling]\nfeel_pN = [0, 2]", 18, 11, "expected two numbers from 0.001"},
+        {"[coupling]\nfeel_pN = 20", 18, 11, "expected two numbers from 0.001"},
         {"[coupling]\nfeel_within_pN = 0", 18, 18, "'coupling.feel_within_pN' is 0"},
         {"[hand]\nstart_offset_angstrom = [1, 2]", 18, 25, "expected three numbers from -1000"},
         {"[hand]\nstart_offset_angstrom = [1, 2, 3e3]", 18, 25, "expected three numbers"},
@@ -230,7 +230,12 @@ TEST_CASE("a number out of its range or not finite is told with the range", "[sc
          "'coupling.clamp_N' is 3.31; expected a number from 0 to 3.3"},
         {"[coupling]\nclamp_N = -0.1", 18, 11, "expected a number from 0 to 3.3"},
         {"[coupling]\n\nA_f_min = 0", 19, 11,
-         "'coupling.A_f_min' is 0; expected a number above 0 up to 10000000000000"},
+         "'coupling.A_f_min' is 0; expected a number from 1 to 10000000000000"},
+        {"[device]\nencoder_step_mm = 1e-310", 18, 19,
+         "expected a number that is 0, or from 1e-06 to 1"},
+        {"[lesson.a]\ntext = \"x\"\ntask = \"y\"\nat_least = 1e300\nat_most = 1", 20, 12,
+         "expected a number from -1000000 to 1000000"},
+        {"[hand]\npath = [[0, 1], [1, 1e300]]", 18, 17, "numbers from -100000 to 100000"},
         {"[device]\nservo_delay_ticks = 8", 18, 21, "expected a whole number from 0 to 7"},
         {"[device]\nservo_delay_ticks = -1", 18, 21, "expected a whole number from 0 to 7"},
         {"[run]\nseed = 9223372036854775807", 18, 8, "expected a whole number from 0"},
@@ -259,9 +264,61 @@ TEST_CASE("a file that a scene names must be there", "[scene][errors]") {
     const std::string made =
         replaced(base, "[force_field]", "made_by = \"tools/make_it\"\n[force_field]");
     CHECK_THAT(error_of(replaced(made, "tip3p.str", "tip4p.str")),
-               Contains("tip4p.str is not there; expected what tools/make_it makes"));
+               Contains("tip4p.str is not there; expected a file beside the scene, whose made_by "
+                        "tells how it is made") &&
+                   !Contains("make_it"));
     // A folder is no file.
     CHECK_THAT(error_of(replaced(base, "dimer.crd", "../water")), StartsWith(at(5, 13)));
+}
+
+TEST_CASE("a scene names only files below its folder, wherever links lead", "[scene][errors]") {
+    const test::TemporaryFolder folder;
+    const fs::path scene = folder.path() / "scene", file = scene / "scene.toml";
+    fs::copy(PALPA_ROOT "/scenes/water", scene);
+    fs::create_directory(scene / "sub");
+    fs::rename(scene / "tip3p.str", scene / "sub" / "tip3p.str");
+    const fs::path outside = folder.add_file("outside.crd", "secret words\n");
+    fs::create_symlink(outside, scene / "link.crd");
+    fs::create_symlink(scene / "dimer.crd", scene / "inner.crd");
+    fs::create_symlink(folder.path(), scene / "up");
+    const std::string below = replaced(base, "tip3p.str", "sub/tip3p.str");
+    const auto error_with = [&](const std::string& name) {
+        const std::string text = replaced(below, "\"dimer.crd\"", "\"" + name + "\"");
+        return test::load_error_of([&] { (void)parse_scene(text, file); });
+    };
+
+    for (const std::string& name :
+         {std::string("../outside.crd"), outside.string(), std::string("link.crd"),
+          std::string("up/outside.crd"), std::string("sub/../../outside.crd"),
+          std::string("/proc/self/environ"), std::string("../not-there.crd")}) {
+        CHECK(error_with(name) ==
+              fmt::format("{}:5:13: 'molecules.fixed.structure' names \"{}\", which is outside of "
+                          "the scene's folder; expected a file below it, or --allow-outside where "
+                          "the scene is trusted",
+                          file.string(), name));
+    }
+    for (const char* const name : {"dimer.crd", "./dimer.crd", "inner.crd", "sub/../dimer.crd"}) {
+        CHECK_NOTHROW(
+            parse_scene(replaced(below, "\"dimer.crd\"", fmt::format("\"{}\"", name)), file));
+    }
+    // What comes with the program; and everything, where somebody says so.
+    CHECK_NOTHROW(
+        parse_scene(replaced(below, "sub/tip3p.str", PALPA_ROOT "/scenes/water/tip3p.str"), file));
+    const std::vector<std::string> allowed{std::string(allow_outside)};
+    CHECK_NOTHROW(
+        parse_scene(replaced(below, "\"dimer.crd\"", "\"../outside.crd\""), file, allowed));
+    // The file itself cannot say so.
+    CHECK_THAT(test::load_error_of(
+                   [&] { (void)parse_scene("\"--allow-outside\" = true\n" + below, file); }),
+               Contains("unknown key"));
+}
+
+TEST_CASE("a message quotes no more than the beginning of a long word", "[scene][errors]") {
+    const std::string error =
+        error_of(base + "[coupling]\nclamp_N = \"" + std::string(5000, 'x') + "\"\n");
+
+    CHECK(error.size() < 400);
+    CHECK_THAT(error, Contains("xxx\"...; expected a number"));
 }
 
 TEST_CASE("what is required and missing is told where it should be", "[scene][errors]") {

@@ -18,11 +18,11 @@ namespace fs = std::filesystem;
 namespace {
 
 Summary record(const fs::path& scene_path, const fs::path& folder,
-               const std::vector<std::string>& settings) {
+               const std::vector<std::string>& settings, bool overwrites = false) {
     const SceneDescription scene = read_scene(scene_path, settings);
     Simulation simulation = load_simulation(scene);
     EmulatedOmni device(build_emulated_omni(scene, simulation));
-    Recording recording(folder, scene);
+    Recording recording(folder, scene, overwrites);
     return run_headless(scene, simulation, device, {}, &recording, {});
 }
 
@@ -52,7 +52,7 @@ TEST_CASE("a recording can be run again in its own place", "[session][recording]
     record(water, folder.path(), {"seconds=0.3"});
     const std::string trace = read_text_file(folder.path() / "trace.csv");
 
-    record(folder.path() / "session.toml", folder.path(), {});
+    record(folder.path() / "session.toml", folder.path(), {}, true);
 
     CHECK(read_text_file(folder.path() / "trace.csv") == trace);
 }
@@ -142,20 +142,23 @@ TEST_CASE("inputs of one name from several folders stay apart", "[session][recor
           read_text_file(folder.path() / "b" / "trace.csv"));
 }
 
-TEST_CASE("only our own recordings are replaced, and whole", "[session][recording]") {
+TEST_CASE("only our own recordings are replaced, and only where that is said",
+          "[session][recording]") {
     const test::TemporaryFolder folder;
     std::ofstream(folder.path() / "session.toml") << "title = \"a scene of that name\"\n";
-    CHECK_THROWS_AS(Recording(folder.path(), test::water_scene()), LoadError);
+    CHECK_THROWS_AS(Recording(folder.path(), test::water_scene(), true), LoadError);
 
     fs::remove(folder.path() / "session.toml");
     record(water, folder.path(), {"seconds=0.1"});
-    std::ofstream(folder.path() / "inputs" / "stale.crd") << "from before";
-    record(water, folder.path(), {"seconds=0.1"});
-    CHECK_FALSE(fs::exists(folder.path() / "inputs" / "stale.crd"));
+    CHECK_THROWS_AS(Recording(folder.path(), test::water_scene()), LoadError);
+    std::ofstream(folder.path() / "inputs" / "other.crd") << "of somebody else";
+    record(water, folder.path(), {"seconds=0.1"}, true);
+    CHECK(read_text_file(folder.path() / "inputs" / "other.crd") == "of somebody else");
 
     fs::remove(folder.path() / "trace.csv");
     fs::create_directory(folder.path() / "trace.csv");
-    CHECK_THROWS_AS(Recording(folder.path(), test::water_scene()), LoadError);
+    CHECK_THROWS_AS(Recording(folder.path(), test::water_scene(), true), LoadError);
+    CHECK(fs::exists(folder.path() / "summary.json"));
 }
 
 TEST_CASE("the summary says which safety chain guarded the run", "[session][recording]") {

@@ -48,8 +48,8 @@ Simulation load_peptides(const std::vector<std::string>& settings = {}) {
 Structure read_peptides() { return read_structure(peptides / "both.crd"); }
 
 Connectivity connectivity_of(const Structure& structure) {
-    return build_connectivity(
-        test::read_charmm(test::test_data(""), {"aera_c36m.rtf", "aera_c36m.prm"}), structure);
+    return build_connectivity(test::read_charmm(peptides, {"aera_c36m.rtf", "aera_c36m.prm"}),
+                              structure);
 }
 
 // The same scene in a folder of its own, to be changed.
@@ -60,14 +60,11 @@ public:
         folder_.add_file("both.crd", format_crd(structure, "two peptides"));
         folder_.add_file("both.psf", format_psf(connectivity, "two peptides"));
         folder_.add_file("scene.toml", text());
+        for (const char* const name : {"aera_c36m.rtf", "aera_c36m.prm"})
+            std::filesystem::copy_file(peptides / name, folder_.path() / name);
     }
 
-    static std::string text() {
-        std::string text = read_text_file(peptides / "scene.toml");
-        for (int i = 0; i < 2; ++i)
-            text = test::replaced(text, "\"../", "\"" + test::test_data("") + "/");
-        return text;
-    }
+    static std::string text() { return read_text_file(peptides / "scene.toml"); }
     SceneDescription scene(const std::vector<std::string>& settings = {}) const {
         return read_scene(folder_.path(), settings);
     }

@@ -9,6 +9,7 @@ from pathlib import Path
 
 PROGRAM = os.environ["PALPA_PROGRAM"]
 DATA = Path(os.environ["PALPA_ROOT"]) / "tests" / "data"
+PEPTIDES = DATA / "two_peptides"
 SHARED = os.environ.get("PALPA_DATA")
 KJ_PER_KCAL = 4.184
 
@@ -50,7 +51,7 @@ class Energy(unittest.TestCase):
     def test_a_structure_is_typed_and_summed_as_by_another_program(self):
         path, frame = self.aera()
         forces = self.folder / "forces.csv"
-        energy = self.energy(path, "--toppar", DATA / "aera_c36m.rtf", DATA / "aera_c36m.prm",
+        energy = self.energy(path, "--toppar", PEPTIDES / "aera_c36m.rtf", PEPTIDES / "aera_c36m.prm",
                              "--coulomb-constant", 332.06371, "--forces", forces)
         theirs = frame["energy"]
         for ours, name in (("bond", "bond"), ("angle", "angle"), ("urey_bradley", "urey"),
@@ -69,14 +70,14 @@ class Energy(unittest.TestCase):
 
     def test_bad_input_is_one_line(self):
         path, _ = self.aera()
-        toppar = ["--toppar", DATA / "aera_c36m.rtf", DATA / "aera_c36m.prm"]
+        toppar = ["--toppar", PEPTIDES / "aera_c36m.rtf", PEPTIDES / "aera_c36m.prm"]
         psf = self.folder / "some.psf"
         psf.write_text("PSF\n")
         for arguments, expected in (
                 ([psf, *toppar], "expected --coordinates"),
                 ([path, *toppar, "--method", "cutof"], "did you mean 'cutoff'?"),
                 ([path, *toppar, "--method", "cutoff", "--cutoff", 8], "--method cutoff"),
-                ([path, "--toppar", DATA / "aera_c36m.rtf"], "aera"),
+                ([path, "--toppar", PEPTIDES / "aera_c36m.rtf"], "aera"),
                 ([self.folder / "none.crd", *toppar], "none.crd"),
                 ([path, *toppar, "--cutoff", 12], "expected --method cutoff"),
                 ([path, *toppar, "--forces", "/dev/full"], "cannot be written"),
@@ -101,7 +102,7 @@ class Energy(unittest.TestCase):
         return structure
 
     def test_what_is_to_be_prepared_first_is_one_line(self):
-        toppar = ["--toppar", DATA / "aera_c36m.rtf", DATA / "aera_c36m.prm"]
+        toppar = ["--toppar", PEPTIDES / "aera_c36m.rtf", PEPTIDES / "aera_c36m.prm"]
         def without_hydrogens(lines):
             return [line for line in lines if not line[12:16].strip().startswith("H")]
         def in_two_places(lines):
@@ -120,7 +121,7 @@ class Energy(unittest.TestCase):
                 self.assertIn("palpa prepare", result.stderr)
 
     def test_atoms_in_one_place_are_named(self):
-        toppar = ["--toppar", DATA / "aera_c36m.rtf", DATA / "aera_c36m.prm"]
+        toppar = ["--toppar", PEPTIDES / "aera_c36m.rtf", PEPTIDES / "aera_c36m.prm"]
         def unchanged(lines):
             return lines
         def last_at_the_one_before(lines):  # the two oxygens of the end

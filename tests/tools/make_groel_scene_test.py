@@ -91,10 +91,10 @@ class MakeGroelScene(unittest.TestCase):
         self.assertEqual(result.returncode, 2)
         self.assertFalse(made.exists())
 
-    def test_the_scene_without_its_inputs_names_the_command(self):
+    def test_the_scene_without_its_inputs_says_where_to_look(self):
         shutil.copy(ROOT / "scenes" / "groel" / "scene.toml", self.folder)
         result = run(PROGRAM, "run", "--check", self.folder)
-        self.refused(result, "is not there", "tools/make_groel_scene")
+        self.refused(result, "is not there", "whose made_by tells")
 
 
 if __name__ == "__main__":

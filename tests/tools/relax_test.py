@@ -21,8 +21,6 @@ class Relax(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name) / "two_peptides"
         shutil.copytree(DATA / "two_peptides", self.folder)
-        for name in ("aera_c36m.rtf", "aera_c36m.prm"):
-            shutil.copy(DATA / name, folder.name)
 
     def palpa(self, *arguments):
         return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True,

@@ -21,7 +21,7 @@ class Render(unittest.TestCase):
     def render(self, *arguments, **environment):
         clean = {key: value for key, value in os.environ.items()
                  if key not in ("DISPLAY", "WAYLAND_DISPLAY")}
-        return subprocess.run([PROGRAM, "render", WATER, *map(str, arguments)], capture_output=True,
+        return subprocess.run([PROGRAM, "render", WATER, "--overwrite", *map(str, arguments)], capture_output=True,
                               text=True, env={**clean, **environment})
 
     def size_of_image(self):
@@ -80,7 +80,7 @@ class Render(unittest.TestCase):
         clean = {key: value for key, value in os.environ.items()
                  if key not in ("DISPLAY", "WAYLAND_DISPLAY")}
         recording = Path(self.folder.name) / "recording"
-        result = subprocess.run([PROGRAM, "run", WATER, "--headless", "--seconds", "2", "--record",
+        result = subprocess.run([PROGRAM, "run", WATER, "--headless", "--overwrite", "--seconds", "2", "--record",
                                  recording, *arguments], capture_output=True, text=True,
                                 env={**clean, **environment})
         return result, recording
@@ -119,7 +119,7 @@ class Render(unittest.TestCase):
         self.assert_bad_input(self.render("-o", self.image, "--as", "liquorice"),
                               "did you mean 'licorice'?")
         self.assert_bad_input(self.render("-o", Path(self.folder.name) / "no" / "a.png"),
-                              "cannot be written")
+                              "is in no folder")
         self.assert_bad_input(self.render("-o", self.image, VK_DRIVER_FILES="/nowhere",
                                           VK_ICD_FILENAMES="/nowhere"), "Vulkan")
 

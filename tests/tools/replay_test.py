@@ -26,7 +26,7 @@ class Replay(unittest.TestCase):
         self.trace = self.folder / "trace.csv"
 
     def record(self, *arguments):
-        result = palpa("run", "--headless", "--record", self.folder, *arguments)
+        result = palpa("run", "--headless", "--overwrite", "--record", self.folder, *arguments)
         self.assertEqual(result.returncode, 0, result.stderr)
 
     def verify(self):

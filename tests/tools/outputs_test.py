@@ -1,0 +1,201 @@
+"""No command replaces what is there unless told --overwrite, and then only what it wrote itself."""
+import os
+import shutil
+import subprocess
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+PROGRAM = os.environ["PALPA_PROGRAM"]
+ROOT = Path(os.environ["PALPA_ROOT"])
+WATER = ROOT / "scenes" / "water"
+PEPTIDES = ROOT / "tests" / "data" / "two_peptides"
+
+
+class Outputs(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.tmp = Path(temporary.name)
+        self.folder = self.tmp / "recording"
+
+    def palpa(self, *arguments, code=0):
+        result = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True,
+                                cwd=self.tmp, stdin=subprocess.DEVNULL)
+        self.assertEqual(result.returncode, code, result.stdout + result.stderr)
+        return result
+
+    def assert_refused(self, *arguments, told):
+        result = self.palpa(*arguments, code=2)
+        self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
+        self.assertIn(told, result.stderr)
+
+    def record(self, *arguments, **expected):
+        return self.palpa("run", WATER, "--headless", "--seconds", "0.1", "--record", self.folder,
+                          *arguments, **expected)
+
+    def files(self):
+        return {path.relative_to(self.tmp): path.read_bytes()
+                for path in self.tmp.rglob("*") if path.is_file()}
+
+    def energy(self, system, *arguments):
+        return ("energy", system, "--toppar", WATER / "tip3p.str", *arguments)
+
+    # ---- one file
+
+    def test_an_output_is_replaced_on_demand_only(self):
+        relax = ("relax", PEPTIDES, "--set", "relax_steps=2")
+        energy = ("energy", PEPTIDES / "both.psf", "--coordinates", PEPTIDES / "both.crd",
+                  "--toppar", PEPTIDES / "aera_c36m.rtf", PEPTIDES / "aera_c36m.prm", "--forces")
+        for name, command, code in (("forces.csv", energy, 0),
+                                    ("rest.crd", (*relax, "-o"), 1)):
+            with self.subTest(name=name):
+                output = self.tmp / name
+                self.palpa(*command, output, code=code)
+                before = output.read_bytes()
+                self.assert_refused(*command, output, told=f"{name}: is there already")
+                self.assertEqual(output.read_bytes(), before)
+                self.palpa(*command, output, "--overwrite", code=code)
+                self.assertEqual(output.read_bytes(), before)
+                output.write_text("mine\n")
+                self.assert_refused(*command, output, "--overwrite", told="is no file that this")
+                self.assertEqual(output.read_text(), "mine\n")
+        self.assertEqual(sorted(path.name for path in self.tmp.iterdir()),
+                         ["forces.csv", "rest.crd"])
+
+    def test_an_input_is_not_replaced(self):
+        scene = Path(shutil.copytree(PEPTIDES, self.tmp / "scene"))
+        shutil.copy(WATER / "dimer.crd", self.tmp / "dimer.crd")
+        before = self.files()
+        for overwrite in ((), ("--overwrite",)):
+            self.palpa(*self.energy("dimer.crd", "--forces", "dimer.crd", *overwrite), code=2)
+            self.palpa("relax", scene, "-o", scene / "both.crd", *overwrite, code=2)
+        self.assertEqual(self.files(), before)
+
+    def test_a_link_is_not_written_through(self):
+        target = self.tmp / "target"
+        link = self.tmp / "forces.csv"
+        link.symlink_to(target)
+        command = self.energy(WATER / "dimer.crd", "--forces", link)
+        self.assert_refused(*command, told="is there already")
+        self.assert_refused(*command, "--overwrite", told="is a link")
+        self.assertFalse(target.exists())
+
+    def test_an_output_without_a_folder_is_told_before_the_work(self):
+        self.assert_refused("relax", PEPTIDES, "-o", self.tmp / "no" / "x.crd",
+                            told="is in no folder that is there")
+
+    def test_a_picture_is_replaced_on_demand_only(self):
+        image = self.tmp / "image.png"
+        render = ("render", WATER, "-o", image, "--size", "16x16")
+        image.write_bytes((WATER / "waters.png").read_bytes()[:33] + b"mine")
+        before = image.read_bytes()
+        for overwrite in ((), ("--overwrite",)):
+            self.palpa(*render, *overwrite, code=2)
+        self.assertEqual(image.read_bytes(), before)
+
+    def test_a_report_is_replaced_on_demand_only(self):
+        page = self.tmp / "page.html"
+        page.write_text("mine")
+        self.assert_refused("report", "--scene", WATER, "--hiv", WATER / "space.toml", "-o", page,
+                            told="")
+        self.assertEqual(page.read_text(), "mine")
+
+    def test_prepared_files_of_others_are_not_replaced(self):
+        folder = self.tmp / "out"
+        folder.mkdir()
+        (folder / "report.txt").write_text("mine")
+        prepare = ("prepare", WATER / "dimer.crd", "--keep-waters", "--toppar", WATER / "tip3p.str",
+                   "-o", folder)
+        self.assert_refused(*prepare, told="report.txt: is there already")
+        self.assert_refused(*prepare, "--overwrite", told="report.txt: is no file that this")
+        self.assertEqual(self.files(), {Path("out/report.txt"): b"mine"})
+
+    # ---- recordings
+
+    def test_a_recording_is_replaced_on_demand_only(self):
+        self.record()
+        before = self.files()
+        result = self.record(code=2)
+        self.assertIn("holds a recording already", result.stderr)
+        self.assertEqual(self.files(), before)
+        self.record("--overwrite")
+        self.assertEqual(set(self.files()), set(before))
+        self.palpa("replay", self.folder, "--verify")
+
+    def test_what_somebody_put_into_a_recording_stays(self):
+        self.record()
+        (self.folder / "frames").mkdir()
+        mine = [self.folder / name for name in
+                ("notes.txt", "inputs/notes.txt", "frames/notes.txt", "frames/0000.png",
+                 "inputs/other.crd")]
+        for path in mine:
+            path.write_text("mine")
+        self.record("--overwrite")
+        for path in mine:
+            self.assertEqual(path.read_text(), "mine")
+
+    def test_links_in_a_recording_are_not_followed(self):
+        outside = self.tmp / "outside"
+        outside.mkdir()
+        (outside / "dimer.crd").write_text("mine")
+        for name in ("inputs", "frames", "trace.csv", "summary.json"):
+            with self.subTest(name=name):
+                shutil.rmtree(self.folder, ignore_errors=True)
+                self.record()
+                path = self.folder / name
+                shutil.rmtree(path) if path.is_dir() else path.unlink(missing_ok=True)
+                path.symlink_to(outside if name in ("inputs", "frames") else outside / "dimer.crd")
+                self.record("--overwrite", code=2)
+                self.assertEqual([file.name for file in outside.iterdir()], ["dimer.crd"])
+                self.assertEqual((outside / "dimer.crd").read_text(), "mine")
+
+    def test_a_folder_without_a_recording_is_not_overwritten(self):
+        self.folder.mkdir()
+        (self.folder / "trace.csv").write_text("mine")
+        self.assertIn("no recording", self.record(code=2).stderr)
+        self.assertIn("no recording", self.record("--overwrite", code=2).stderr)
+        self.assertEqual(self.files(), {Path("recording/trace.csv"): b"mine"})
+
+    def test_of_two_runs_into_one_folder_the_second_is_refused(self):
+        first = subprocess.Popen([PROGRAM, "run", WATER, "--headless", "--seconds", "100000",
+                                  "--record", self.folder], stdout=subprocess.DEVNULL,
+                                 stderr=subprocess.DEVNULL)
+        self.addCleanup(first.wait)
+        self.addCleanup(first.kill)
+        while not (self.folder / "session.toml").exists():
+            self.assertIsNone(first.poll())
+            time.sleep(0.01)
+        session = (self.folder / "session.toml").read_bytes()
+        self.assertIn("already", self.record(code=2).stderr)
+        self.assertIn("another run", self.record("--overwrite", code=2).stderr)
+        self.assertEqual((self.folder / "session.toml").read_bytes(), session)
+        first.kill()  # after which nothing is locked any more
+        first.wait()
+        self.record("--overwrite")
+
+    def test_a_refusal_comes_before_the_work(self):
+        self.record()
+        result = self.palpa("run", WATER, "--headless", "--record", self.folder, "--set",
+                            "molecules.moved.structure=no.crd", code=2)
+        self.assertIn("no.crd", result.stderr)  # the scene is read first
+        result = self.palpa("run", WATER, "--headless", "--record", self.folder, "--set",
+                            "molecules.moved.segment=NONE", code=2)
+        self.assertIn("holds a recording already", result.stderr)
+
+    # ---- studies
+
+    def test_no_file_of_a_study_is_replaced(self):
+        for name in ("trials.csv", "summary.json", "line.csv"):
+            with self.subTest(name=name):
+                folder = self.tmp / name
+                folder.mkdir()
+                (folder / name).write_text("mine")
+                self.assert_refused("study", WATER, "--operators", "1", "--rounds", "1", "--modes",
+                                    "4", "-o", folder, told="holds a study already")
+                self.assertEqual((folder / name).read_text(), "mine")
+
+
+if __name__ == "__main__":
+    unittest.main()
