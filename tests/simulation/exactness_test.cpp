@@ -107,6 +107,22 @@ TEST_CASE("less than half the error gives back steps, then joints, by a fifth",
     CHECK(exactness.effort() == Effort{8, 2});
 }
 
+TEST_CASE("of many steps a fifth is given back at a time", "[simulation][exactness]") {
+    Exactness exactness(50, {40, 2}, 40, false);
+    for (int i = 0; i < 30; ++i) exactness.add_audit(60, Vec3::Zero(), 20);
+    REQUIRE(exactness.effort() == Effort{40, Exactness::most_steps});
+    static_assert(Exactness::most_steps == 20);
+
+    std::vector<std::size_t> seen{exactness.effort().steps};
+    for (int i = 0; i < 60 && seen.size() < 4; ++i) {
+        exactness.add_audit(17, Vec3(20.0 * i, 0, 0), 20);
+        if (exactness.effort().steps != seen.back()) seen.push_back(exactness.effort().steps);
+    }
+
+    CHECK(seen == std::vector<std::size_t>{20, 16, 12, 9});
+    CHECK(exactness.effort().active == 40);
+}
+
 TEST_CASE("an error without bounds raises everything, and ends", "[simulation][exactness]") {
     const double error_pN =
         GENERATE(std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN());
