@@ -274,7 +274,7 @@ TEST_CASE("a file that a scene names must be there", "[scene][errors]") {
 TEST_CASE("a scene names only files below its folder, wherever links lead", "[scene][errors]") {
     const test::TemporaryFolder folder;
     const fs::path scene = folder.path() / "scene", file = scene / "scene.toml";
-    fs::copy(PALPA_ROOT "/scenes/water", scene);
+    fs::copy(test::in_project("scenes/water"), scene);
     fs::create_directory(scene / "sub");
     fs::rename(scene / "tip3p.str", scene / "sub" / "tip3p.str");
     const fs::path outside = folder.add_file("outside.crd", "secret words\n");
@@ -302,8 +302,8 @@ TEST_CASE("a scene names only files below its folder, wherever links lead", "[sc
             parse_scene(replaced(below, "\"dimer.crd\"", fmt::format("\"{}\"", name)), file));
     }
     // What comes with the program; and everything, where somebody says so.
-    CHECK_NOTHROW(
-        parse_scene(replaced(below, "sub/tip3p.str", PALPA_ROOT "/scenes/water/tip3p.str"), file));
+    CHECK_NOTHROW(parse_scene(
+        replaced(below, "sub/tip3p.str", test::in_project("scenes/water/tip3p.str")), file));
     const std::vector<std::string> allowed{std::string(allow_outside)};
     CHECK_NOTHROW(
         parse_scene(replaced(below, "\"dimer.crd\"", "\"../outside.crd\""), file, allowed));
