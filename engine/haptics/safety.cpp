@@ -336,7 +336,10 @@ SafetyResult guard_force(const SafetySettings& settings, SafetyState& state,
     if (result.share < before) {
         const SafetyStage clamp = state.glided > 0 ? SafetyStage::Hot : SafetyStage::Clamped;
         result.stage = std::max(result.stage, clamp);
-        if (state.glided > 0) result.heat_share = result.share / before;
+        // Cold motors would have been clamped too, and that has given no energy.
+        const double cold_newton =
+            std::min(input.wanted_newton.norm() * before, settings.clamp_newton);
+        if (state.glided > 0) result.heat_share = std::min(1.0, force.norm() / cold_newton);
     }
     result.newton = slewed(settings, state.sent_newton, force, elapsed.s, result.stage);
     result.reason = state.reason;

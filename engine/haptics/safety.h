@@ -165,9 +165,9 @@ struct SafetyResult {
     // Why the force is not back in full, while it waits or rises; else None.
     SafetyStage reason = SafetyStage::None;
     double share = 1;  // of the wanted force that fades and clamp let through; slew not counted
-    // Of that what the heat of the motors lets through. Where the molecule follows this share of
-    // the handle's travel until the next tick, the limit gives no energy: what the hand does not
-    // pay for is not gone.
+    // Of what cold motors would play, what the heat of the motors lets through. Where the molecule
+    // follows this share of the handle's travel until the next tick, the limit gives no energy: the
+    // hand goes only as far as it pays for.
     double heat_share = 1;
 };
 

@@ -186,7 +186,8 @@ class Session(unittest.TestCase):
     def test_what_a_window_cannot_be(self):
         with Display() as display:
             for options, environment, expected in (
-                    (["--size", "99999x99999"], {}, "a window of "),
+                    (["--size", "99999x99999"], {}, "more than 67108864 pixels"),
+                    (["--size", "99999x600"], {}, "a window of "),
                     ([], {"VK_DRIVER_FILES": "/nowhere", "VK_ICD_FILENAMES": "/nowhere"},
                      "is a driver installed"),
                     (["--screenshots", "/nowhere"], {}, "/nowhere"),

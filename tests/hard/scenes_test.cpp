@@ -230,7 +230,7 @@ TEST_CASE("molecules that lie on each other in the file come apart, or are told 
         INFO(way.name);
         Watched watched(peptides, way,
                         {"molecules.resting.structure=" + file, "molecules.held.structure=" + file,
-                         "statics.relax_steps=100"});
+                         "statics.relax_steps=100", std::string(allow_outside)});
         const Flexible& flexible = watched.flexible();
         const std::string warnings =
             all_of(list_warnings(watched.scene(), watched.simulation(), {}));
@@ -256,7 +256,8 @@ TEST_CASE("charges whose energies are no numbers are refused in words", "[hard]"
         INFO(way.name);
         const SceneDescription scene =
             scene_in(peptides, way,
-                     {"molecules.resting.topology=" + file, "molecules.held.topology=" + file});
+                     {"molecules.resting.topology=" + file, "molecules.held.topology=" + file,
+                      std::string(allow_outside)});
 
         CHECK_THAT(test::load_error_of([&] { load_simulation(scene); }),
                    Contains("scene.toml:") && Contains("the energy at the start is not finite; "
