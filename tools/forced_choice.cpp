@@ -168,9 +168,8 @@ Impression feel_molecule(const ForcedChoiceOptions& options, CouplingMode mode, 
         static_cast<std::uint64_t>(std::lround(script.path.back().time_s / servo_tick_s));
     const auto ticks_per_step =
         static_cast<std::uint64_t>(std::lround(simulation.period_s / servo_tick_s));
-    run_lockstep({ticks, ticks_per_step},
-                 build_servo_settings(scene, simulation, device.spec()), device,
-                 simulation.touch, step, on_tick);
+    run_lockstep({ticks, ticks_per_step}, build_servo_settings(scene, simulation, device.spec()),
+                 device, simulation.touch, step, on_tick);
     return impression;
 }
 

@@ -224,9 +224,8 @@ StudyResult play_trial(const StudyOptions& options, const StudyTrial& trial) {
     const auto limit = static_cast<std::uint64_t>(std::ceil(options.limit_s / servo_tick_s));
     const auto ticks_per_step =
         static_cast<std::uint64_t>(std::lround(simulation.period_s / servo_tick_s));
-    run_lockstep({limit, ticks_per_step},
-                 build_servo_settings(scene, simulation, device.spec()), device,
-                 simulation.touch, step, on_tick, [&] { return seeker.is_done(); });
+    run_lockstep({limit, ticks_per_step}, build_servo_settings(scene, simulation, device.spec()),
+                 device, simulation.touch, step, on_tick, [&] { return seeker.is_done(); });
     result.off_angstrom = result.found_angstrom - rest;
     result.is_finished = seeker.is_done();
     return result;

@@ -108,8 +108,8 @@ TEST_CASE("settings that vibrate or gain energy by themselves are warned of",
         CHECK_THAT(knocked.words, Contains("less damping"));
     }
     SECTION("a law as steep as rounding errors are small") {
-        const Knocked knocked(
-            {"force_law=perceptual", "F_lo_pN=0.001", "F_hi_nN=" + std::string(GENERATE("3", "1"))});
+        const Knocked knocked({"force_law=perceptual", "F_lo_pN=0.001",
+                               "F_hi_nN=" + std::string(GENERATE("3", "1"))});
         CHECK_THAT(knocked.words, Contains("this force law plays rounding errors"));
     }
 }
