@@ -88,8 +88,8 @@ int relax_command(const RelaxOptions& options) {
         write_text_file(
             *options.coordinates,
             format_crd(structure,
-                       fmt::format("{}: relaxed, {} joints, rms force {:.3g} "
-                                   "kcal/mol per radian and angstrom\nWritten by palpa relax.",
+                       fmt::format("Written by palpa relax.\n{}: relaxed, {} joints, rms force "
+                                   "{:.3g} kcal/mol per radian and angstrom",
                                    scene.title, flexible.joints, flexible.relaxed.rms_force)),
             existing);
     }

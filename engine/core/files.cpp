@@ -153,6 +153,15 @@ bool read_some(int descriptor, std::size_t most, std::string& content) {
     return true;
 }
 
+// Of a regular file that is no link; empty otherwise.
+std::string beginning_of(const fs::path& path) {
+    std::string beginning;
+    if (!fs::is_regular_file(status_of(path))) return beginning;
+    const Descriptor file(::open(path.string().c_str(), read_flags | no_links));
+    if (file.get() < 0 || !read_some(file.get(), 4096, beginning)) beginning.clear();
+    return beginning;
+}
+
 }  // namespace
 
 std::string read_text_file(const fs::path& path) {
@@ -181,7 +190,8 @@ std::string read_text_file(const fs::path& path) {
     if (!read_some(file.get(), most_file_bytes + 1, content)) {
         throw LoadError({path.string()}, "cannot be read: " + last_reason());
     }
-    if (content.size() > most_file_bytes) refuse_size(path, "more than allowed");
+    if (content.size() > most_file_bytes)
+        refuse_size(path, "more than " + size_text(most_file_bytes));
     return content;
 }
 
@@ -208,18 +218,19 @@ void write_text_files(std::span<const TextFile> files) {
 }
 
 bool has_mark(const fs::path& path, std::string_view mark) {
-    if (!fs::is_regular_file(status_of(path))) return false;
-    const Descriptor file(::open(path.string().c_str(), read_flags | no_links));
-    std::string beginning;
-    return file.get() >= 0 && read_some(file.get(), 4096, beginning) &&
-           beginning.find(mark) != std::string::npos;
+    return beginning_of(path).find(mark) != std::string::npos;
+}
+
+bool begins_with(const fs::path& path, std::string_view text) {
+    return beginning_of(path).starts_with(text);
 }
 
 Existing check_output(const fs::path& path, std::string_view mark, bool overwrites) {
     std::error_code error;
     const fs::path folder = path.parent_path();
     if (!folder.empty() && !fs::is_directory(folder, error)) {
-        throw LoadError({path.string()}, "is in no folder that is there; expected one that is");
+        throw LoadError({path.string()},
+                        "is in a folder that does not exist; expected an existing one");
     }
     if (is_stream(path)) return Existing::Replace;
     const fs::file_status status = status_of(path);

@@ -24,7 +24,7 @@ enum class Existing : std::uint8_t { Refuse, Replace };
 void write_text_file(const std::filesystem::path& path, std::string_view text,
                      Existing existing = Existing::Refuse);
 
-// Several files, all of them or, where one cannot be written, none.
+// Several files, none of them where one cannot be written.
 struct TextFile {
     std::filesystem::path path;
     std::string text;
@@ -37,8 +37,10 @@ void write_text_files(std::span<const TextFile> files);
 // that the program knows what it wrote itself. Returns what to write with.
 Existing check_output(const std::filesystem::path& path, std::string_view mark, bool overwrites);
 
-// Whether `mark` stands in the first 4 KiB of a regular file that is no link.
+// Whether `mark` stands in the first 4 KiB of a regular file that is no link, or the file begins
+// with `text`.
 bool has_mark(const std::filesystem::path& path, std::string_view mark);
+bool begins_with(const std::filesystem::path& path, std::string_view text);
 
 // A file that was not there before, written piece by piece. All throw LoadError.
 class NewFile {

@@ -144,6 +144,7 @@ double update_heat(const SafetySettings& settings, SafetyState& state, double el
     const double lowest = std::min(settings.hot_newton, settings.clamp_newton);
     if (!state.is_hot && state.mean_square_newton2 >= hot) {
         state.is_hot = true;
+        state.glided = 0;
         state.hot_from_newton = std::clamp(state.sent_newton.norm(), lowest, settings.clamp_newton);
     }
     if (state.mean_square_newton2 < settings.cooled_share * hot) state.is_hot = false;

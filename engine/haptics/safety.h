@@ -11,11 +11,11 @@
 
 namespace palpa {
 
-// Times count from the event to the tick that sends zero.
 // A mean tick of more than twice the servo's over half a second is late, though no tick is.
 inline constexpr std::uint32_t slow_window_us = 500'000;
 inline constexpr std::size_t slow_window_ticks = 250;
 
+// Times count from the event to the tick that sends zero.
 struct SafetySettings {
     double clamp_newton = 3;  // on the norm of the force; lowered, it is reached within the slew
     // False: only clamp and non-finite, as in the paper's loop. Nothing else of this struct, nor
@@ -34,11 +34,11 @@ struct SafetySettings {
     // A reading that stands still while the force changes. If the device's own time stamp stands
     // still too, after having run, any change of the force counts. Else the position must have
     // stood still for `frozen_s`, and then for as long under forces that differ by more than
-    // `frozen_newton` from the mean before; four times as long under others makes up for that, so
-    // forces that alternate count too. Twice the friction of 0.26 N is lost on turning round,
-    // and the 1.48 N left move the stiffest thing that holds a handle, a stop of 20 N/mm with a
-    // firm hand, by 0.07 mm, more than an encoder step of 0.055 mm; a firm hand of 0.5 N/mm by 50
-    // steps. Infinity for both on a device without motors.
+    // `frozen_newton` from the mean before; time under smaller differences counts back a quarter,
+    // so that forces that alternate count too. Twice the friction of 0.26 N is lost on turning
+    // round, and the 1.48 N left move the stiffest thing that holds a handle, a stop of 20 N/mm
+    // with a firm hand, by 0.07 mm, more than an encoder step of 0.055 mm; a firm hand of 0.5 N/mm
+    // by 50 steps. Infinity for both on a device without motors.
     double frozen_s = 0.05;
     double frozen_newton = 2;
 

@@ -13,6 +13,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cstddef>
 #include <iterator>
 #include <map>
@@ -75,12 +76,18 @@ std::vector<fs::path> input_files(const SceneDescription& scene) {
     return files;
 }
 
-// What each file is called in the recording: "inputs/NAME", numbered where a name is taken.
+// What each file is called in the recording: "inputs/NAME", numbered where a name is taken, and of
+// letters that TOML and every file system take as they are.
 std::map<fs::path, std::string> input_names(const std::vector<fs::path>& files) {
     std::map<fs::path, std::string> names;
     std::set<std::string> taken;
     for (const fs::path& file : files) {
-        const std::string own = file.filename().string();
+        std::string own = file.filename().string();
+        for (char& c : own) {
+            constexpr std::string_view plain = "-_.";
+            const bool is_letter = std::isalnum(static_cast<unsigned char>(c)) != 0;
+            if (!is_letter && plain.find(c) == std::string_view::npos) c = '_';
+        }
         std::string name = own;
         for (int number = 2; !taken.insert(name).second; ++number) {
             name = fmt::format("{}-{}", number, own);
@@ -101,7 +108,7 @@ std::string format_session(const SceneDescription& scene) {
 }
 
 bool is_recording(const fs::path& folder) {
-    return has_mark(folder / "session.toml", session_mark);
+    return begins_with(folder / "session.toml", session_mark);
 }
 
 bool is_there(const fs::path& path) {
@@ -182,11 +189,24 @@ void check_record_folder(const fs::path& folder, bool overwrites) {
 
 namespace {
 
-// Before the first byte is written: what check_record_folder lets pass goes.
-void make_room(const fs::path& folder) {
+// Before the first byte is written: what check_record_folder lets pass goes, but for the session,
+// so that the folder remains a recording whatever happens. Throws before anything is gone where a
+// file of somebody's has one of the new names.
+void make_room(const fs::path& folder, const std::map<fs::path, std::string>& names) {
     std::error_code error;
     if (fs::is_empty(folder, error)) return;
-    for (const fs::path& file : list_recorded(folder)) {
+    const fs::path session = folder / "session.toml";
+    std::vector<fs::path> files = list_recorded(folder);
+    for (const auto& [input, name] : names) {
+        const fs::path file = folder / name;
+        if (is_there(file) && std::find(files.begin(), files.end(), file) == files.end()) {
+            throw LoadError({file.string()},
+                            "is no file of this recording, and is not replaced; expected a new "
+                            "folder");
+        }
+    }
+    std::erase(files, session);
+    for (const fs::path& file : files) {
         fs::remove(file, error);
         if (error) throw LoadError({file.string()}, "cannot be replaced: " + error.message());
     }
@@ -298,7 +318,8 @@ Recording::Recording(const fs::path& folder, const SceneDescription& scene, bool
     make_folder(folder);
     lock_.emplace(folder);
     check_record_folder(folder, overwrites);
-    make_room(folder);
+    const std::map<fs::path, std::string> names = input_names(files);
+    make_room(folder, names);
     // The trace first: where it cannot be written, nothing is.
     trace_.emplace(folder / "trace.csv");
     rows_ = trace_header() + "\n";
@@ -306,14 +327,14 @@ Recording::Recording(const fs::path& folder, const SceneDescription& scene, bool
     std::error_code error;
     fs::create_directory(folder / "inputs", error);
     if (error) throw LoadError({folder.string()}, "cannot be written: " + error.message());
-    const std::map<fs::path, std::string> names = input_names(files);
-    for (std::size_t i = 0; i < files.size(); ++i) {
-        write_text_file(folder / names.at(files[i]), contents[i]);
-    }
     write_text_file(folder / "session.toml",
                     fmt::format("{}# Recorded by Palpa {}, {}, on a processor of kind {}.\n",
                                 format_session(scene), version_name, commit_name,
-                                list_processor_kinds().front()));
+                                list_processor_kinds().front()),
+                    is_there(folder / "session.toml") ? Existing::Replace : Existing::Refuse);
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        write_text_file(folder / names.at(files[i]), contents[i]);
+    }
 }
 
 std::string trace_row(const ServoTick& tick) {

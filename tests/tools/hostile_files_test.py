@@ -86,13 +86,24 @@ class HostileFiles(unittest.TestCase):
         except OSError:
             return ""
 
+    @staticmethod
+    def work(program):
+        """Seconds that the program has computed so far."""
+        fields = Path(f"/proc/{program.pid}/stat").read_text().rpartition(")")[2].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    def wait_for_work(self, program, seconds):
+        while self.work(program) < seconds:
+            self.assertIsNone(program.poll(), "it ended by itself")
+            time.sleep(0.01)
+
     def test_a_signal_ends_a_long_relaxation(self):
         for number in (signal.SIGINT, signal.SIGTERM):
             begins = [f"--set=molecules.{name}.structure=system.crd"
                       for name in ("protease_a", "protease_b", "inhibitor")]
             program = self.start("relax", ROOT / "scenes" / "hiv" / "flexible.toml", *begins,
                                  "--set", "rest_kcal_per_mol=1e-6", "--set", "statics.pairs=double")
-            time.sleep(1)
+            self.wait_for_work(program, 2)  # loading takes a fraction of that
             self.ends_by(program, number)
 
     def test_a_signal_ends_a_long_step_and_the_recording_is_whole(self):
@@ -104,10 +115,8 @@ class HostileFiles(unittest.TestCase):
         while not (trace.exists() and trace.stat().st_size > 0):
             self.assertIsNone(program.poll(), "it ended by itself")
             time.sleep(0.01)
-        time.sleep(1)  # into a step
-        begin = time.monotonic()
+        self.wait_for_work(program, self.work(program) + 1)  # into a step
         self.ends_by(program, signal.SIGTERM)
-        self.assertLess(time.monotonic() - begin, 5)
         self.assertTrue((folder / "summary.json").exists())
 
     # ---- sizes, and what is no file

@@ -84,7 +84,7 @@ class Outputs(unittest.TestCase):
 
     def test_an_output_without_a_folder_is_told_before_the_work(self):
         self.assert_refused("relax", PEPTIDES, "-o", self.tmp / "no" / "x.crd",
-                            told="is in no folder that is there")
+                            told="is in a folder that does not exist")
 
     def test_a_picture_is_replaced_on_demand_only(self):
         image = self.tmp / "image.png"
@@ -135,6 +135,38 @@ class Outputs(unittest.TestCase):
         self.record("--overwrite")
         for path in mine:
             self.assertEqual(path.read_text(), "mine")
+
+    def test_a_file_of_ones_own_with_a_new_name_ends_it_before_anything_is_gone(self):
+        self.record()
+        other = self.tmp / "other"
+        shutil.copytree(WATER, other)
+        (other / "tip3p.str").rename(other / "mine.str")
+        scene = (other / "scene.toml").read_text().replace("tip3p.str", "mine.str")
+        (other / "scene.toml").write_text(scene)
+        (self.folder / "inputs" / "mine.str").write_text("mine")
+        before = self.files()
+        result = self.palpa("run", other, "--headless", "--seconds", "0.01", "--record",
+                            self.folder, "--overwrite", code=2)
+        self.assertIn("mine.str: is no file of this recording", result.stderr)
+        self.assertEqual(self.files(), before)
+
+    def test_inputs_with_names_that_toml_escapes_are_recorded_twice(self):
+        other = self.tmp / "other"
+        shutil.copytree(WATER, other)
+        (other / "tip3p.str").rename(other / 'a"b.str')
+        scene = (other / "scene.toml").read_text().replace('"tip3p.str"', """'a"b.str'""")
+        (other / "scene.toml").write_text(scene)
+        for extra in ([], ["--overwrite"]):
+            self.palpa("run", other, "--headless", "--seconds", "0.01", "--record", self.folder,
+                       *extra)
+        self.palpa("replay", self.folder, "--verify")
+
+    def test_notes_that_quote_a_recording_are_none(self):
+        self.folder.mkdir()
+        (self.folder / "session.toml").write_text('# replaces "# A recorded Palpa session"\n')
+        (self.folder / "trace.csv").write_text("mine")
+        self.assertIn("no recording", self.record("--overwrite", code=2).stderr)
+        self.assertEqual((self.folder / "trace.csv").read_text(), "mine")
 
     def test_links_in_a_recording_are_not_followed(self):
         outside = self.tmp / "outside"
