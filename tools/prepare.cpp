@@ -112,7 +112,7 @@ int prepare_command(const PrepareOptions& options) {
         in_hand.empty() ? in_hand
                         : format_scene_of(system, in_hand, options.structure.stem().string());
     write_prepared(system, options.folder,
-                   options.title.empty() ? origin : fmt::format("{}\n{}", origin, options.title),
+                   options.title.empty() ? origin : fmt::format("{}\n{}", options.title, origin),
                    scene, options.overwrites ? Existing::Replace : Existing::Refuse);
     if (options.json) {
         nlohmann::ordered_json json;

@@ -119,7 +119,7 @@ class Render(unittest.TestCase):
         self.assert_bad_input(self.render("-o", self.image, "--as", "liquorice"),
                               "did you mean 'licorice'?")
         self.assert_bad_input(self.render("-o", Path(self.folder.name) / "no" / "a.png"),
-                              "is in no folder")
+                              "is in a folder that does not exist")
         self.assert_bad_input(self.render("-o", self.image, VK_DRIVER_FILES="/nowhere",
                                           VK_ICD_FILENAMES="/nowhere"), "Vulkan")
 
