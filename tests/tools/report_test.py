@@ -53,7 +53,7 @@ class Report(unittest.TestCase):
         for expected, arguments, options in (
                 ("gnuplot-nox", ("-o", page), {"env": {**os.environ, "PATH": str(self.tmp)}}),
                 ("one axis", ("-o", page, "--scene", ROOT / "scenes" / "hiv"), {}),
-                ("no folder", ("-o", nowhere), {}),
+                ("a folder that does not exist", ("-o", nowhere), {}),
                 ("is a folder", ("-o", self.tmp), {}),
                 ("cannot be written", ("-o", "/proc/report.html"), {}),
                 ("typo.toml", ("-o", page, "--hiv", self.tmp / "typo.toml"), {}),
