@@ -160,7 +160,7 @@ TEST_CASE("the grip of a scene is the mouse's spring and damper", "[devices][mou
     CHECK(mouse_handle_of(hand_model(Grip::None)).stiffness_N_per_m == K);
 }
 
-TEST_CASE("a mouse that pulls for a minute is told of no warm motors", "[devices]") {
+TEST_CASE("a mouse that pulls for a minute has no warm motors", "[devices]") {
     MouseHandle mouse{MouseHandleSettings{}};
     SafetySettings settings;
     limit_to(mouse.spec(), settings);

@@ -59,8 +59,7 @@ TEST_CASE("the same ticks have no difference, whatever share of the rows is kept
     CHECK(check.surplus() == 0);
 }
 
-TEST_CASE("the first difference is told with its row, time, column and both values",
-          "[session][replay]") {
+TEST_CASE("the first difference has its row, time, column and both values", "[session][replay]") {
     const std::vector<ServoTick> recorded = some_ticks(6);
     std::vector<ServoTick> played = recorded;
     played[2].sent_newton.x() = 0.25;   // recorded as 0.2
@@ -80,7 +79,7 @@ TEST_CASE("the first difference is told with its row, time, column and both valu
     CHECK(check.largest_newton() == Approx(0.25));
 }
 
-TEST_CASE("a row with a column more or less is told as such", "[session][replay]") {
+TEST_CASE("a row with a column more or less is reported", "[session][replay]") {
     const std::vector<ServoTick> ticks = some_ticks(2);
     const auto columns = std::ranges::count(trace_header(), ',') + 1;
     std::string trace = trace_of(ticks, 1);

@@ -35,7 +35,7 @@ TEST_CASE("the extremes of a run are kept with their signs", "[session][statisti
     CHECK_FALSE(summary.ripple.has_value());
 }
 
-TEST_CASE("what was clamped, and what was wrong, is told as a share of all ticks",
+TEST_CASE("what was clamped, and what was wrong, is a share of all ticks",
           "[session][statistics]") {
     Statistics statistics(1e-3);
     for (int i = 0; i < 8; ++i) {
