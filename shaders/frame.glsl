@@ -6,6 +6,7 @@ layout(push_constant) uniform Frame {
     vec4 size;        // of the picture: width, height, their inverses
     uint spheres;     // how many of the shapes are spheres; the cones stand behind them
     int outline;      // its width in pixels
+    vec2 centre;      // where the camera's axis is seen, to the right and up, in halves of the picture
 } frame;
 
 // In view space. A sphere is a cone without axis and height.
@@ -28,13 +29,15 @@ float depth_of(float distance) {
 // The view-space ray of depth 1 through a place in the picture, in pixels from the upper left.
 vec3 ray_at(vec2 pixel) {
     vec2 plane = pixel * frame.size.zw * 2.0 - 1.0;
-    return vec3(plane.x / frame.projection.x, -plane.y / frame.projection.y, -1.0);
+    return vec3((plane.x - frame.centre.x) / frame.projection.x,
+                -(plane.y + frame.centre.y) / frame.projection.y, -1.0);
 }
 
 // Where a corner of an impostor is drawn. Its own depth is of no use: the fragment finds the real
 // one.
 vec4 clip_of(vec3 view) {
-    return vec4(frame.projection.x * view.x, -frame.projection.y * view.y, 0.0, -view.z);
+    return vec4(frame.projection.x * view.x - frame.centre.x * view.z,
+                -frame.projection.y * view.y + frame.centre.y * view.z, 0.0, -view.z);
 }
 
 // All corners here: an impostor of no area, and inside of the view. One vertex outside of it makes

@@ -19,7 +19,7 @@
 #include "tools/bench_servo.h"
 #include "tools/bench_statics.h"
 #include "tools/bench_tree.h"
-#include "tools/run.h"
+#include "tools/hands.h"
 #include "view/build_frame.h"
 #include "view/orbit_camera.h"
 

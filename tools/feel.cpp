@@ -10,7 +10,7 @@
 #include "simulation/probe.h"
 #include "simulation/simulation.h"
 #include "tools/bench_row.h"
-#include "tools/run.h"
+#include "tools/hands.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

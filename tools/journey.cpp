@@ -6,7 +6,7 @@
 #include "scene/read_scene.h"
 #include "session/run_headless.h"
 #include "simulation/simulation.h"
-#include "tools/run.h"
+#include "tools/hands.h"
 #include "tools/scenarios.h"
 
 #include <fmt/format.h>

@@ -9,7 +9,7 @@
 #include "session/run_headless.h"
 #include "simulation/probe.h"
 #include "simulation/simulation.h"
-#include "tools/run.h"
+#include "tools/hands.h"
 #include "tools/scenarios.h"
 
 #include <fmt/format.h>

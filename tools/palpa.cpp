@@ -6,6 +6,7 @@
 #include "platform/window.h"
 #include "scene/read_scene.h"
 #include "tools/bench.h"
+#include "tools/command_line.h"
 #include "tools/devices.h"
 #include "tools/energy.h"
 #include "tools/feel.h"
@@ -19,6 +20,7 @@
 #include "tools/report.h"
 #include "tools/run.h"
 #include "tools/scenarios.h"
+#include "tools/start.h"
 #include "tools/study.h"
 
 #include <fmt/format.h>
@@ -38,29 +40,25 @@ namespace {
 
 constexpr int bad_input = 2, own_fault = 3;
 
-// An option that is short for a scene key: "--mode 2" is "--set coupling.mode=2".
-void add_setting(CLI::App& command, const std::string& option, const std::string& key,
-                 const std::string& help, std::vector<std::string>& settings) {
-    command
-        .add_option_function<std::string>(
-            option,
-            [&settings, key](const std::string& value) { settings.push_back(key + "=" + value); },
-            help + " (" + key + ")")
-        ->trigger_on_parse();
-}
-
 void add_set_option(CLI::App& command, std::vector<std::string>& settings) {
     command
         .add_option_function<std::string>(
             "--set", [&settings](const std::string& value) { settings.push_back(value); },
-            "KEY=VALUE: any key of the scene file, in full or by its last part; scenes/README.md "
-            "lists them")
+            "any key of the scene file, in full or by its last part; 'palpa run --keys' lists "
+            "them")
+        ->type_name("KEY=VALUE")
         ->trigger_on_parse()
         ->take_last();
     command.add_flag_callback(
         std::string(palpa::allow_outside),
         [&settings] { settings.emplace_back(palpa::allow_outside); },
         "let the scene name files outside of its folder");
+}
+
+// A flag that switches something off.
+void add_negation(CLI::App& command, const std::string& flag, bool& value,
+                  const std::string& help) {
+    command.add_flag_callback(flag, [&value] { value = false; }, help);
 }
 
 // A number between two, which a NaN is not.
@@ -95,26 +93,28 @@ void add_seed_option(CLI::App& command, std::uint64_t& seed) {
 
 void add_size_option(CLI::App& command, const std::string& option, std::uint32_t& width,
                      std::uint32_t& height) {
-    command.add_option_function<std::string>(
-        option,
-        [option, &width, &height](const std::string& text) {
-            const std::size_t by = text.find('x');
-            const auto wide = palpa::find_integer(text.substr(0, by));
-            const auto high =
-                palpa::find_integer(by == std::string::npos ? "" : text.substr(by + 1));
-            if (!wide || !high || *wide < 1 || *high < 1 || *wide > 1'000'000 ||
-                *high > 1'000'000) {
-                throw CLI::ValidationError(option,
-                                           "'" + text + "' is no size; expected WIDTHxHEIGHT");
-            }
-            if (*wide * *high > palpa::most_pixels) {
-                throw CLI::ValidationError(
-                    option, fmt::format("'{}' has more than {} pixels", text, palpa::most_pixels));
-            }
-            width = static_cast<std::uint32_t>(*wide);
-            height = static_cast<std::uint32_t>(*high);
-        },
-        fmt::format("WIDTHxHEIGHT in pixels, {}x{} unless given", width, height));
+    command
+        .add_option_function<std::string>(
+            option,
+            [option, &width, &height](const std::string& text) {
+                const std::size_t by = text.find('x');
+                const auto wide = palpa::find_integer(text.substr(0, by));
+                const auto high =
+                    palpa::find_integer(by == std::string::npos ? "" : text.substr(by + 1));
+                if (!wide || !high || *wide < 1 || *high < 1 || *wide > 1'000'000 ||
+                    *high > 1'000'000) {
+                    throw CLI::ValidationError(option,
+                                               "'" + text + "' is no size; expected WIDTHxHEIGHT");
+                }
+                if (*wide * *high > palpa::most_pixels) {
+                    throw CLI::ValidationError(option, fmt::format("'{}' has more than {} pixels",
+                                                                   text, palpa::most_pixels));
+                }
+                width = static_cast<std::uint32_t>(*wide);
+                height = static_cast<std::uint32_t>(*high);
+            },
+            fmt::format("in pixels, {}x{} unless given", width, height))
+        ->type_name("WIDTHxHEIGHT");
 }
 
 // Of every command that writes files.
@@ -125,19 +125,69 @@ void add_overwrite_flag(CLI::App& command, bool& overwrites) {
 
 void add_toppar_option(CLI::App& command, std::vector<std::filesystem::path>& toppar) {
     command.add_option("--toppar", toppar, "CHARMM topology, parameter and stream files, in order")
+        ->type_name("FILE")
         ->required();
 }
 
-void add_run(CLI::App& program, palpa::RunOptions& options) {
-    CLI::App& run = *program.add_subcommand(
-        "run", "Feel a scene, in a window or headless, with one of the devices of 'palpa devices'");
-    run.add_option("scene", options.scene, "scene folder, scene file or recorded session.toml")
-        ->required();
-    run.add_flag("--headless", options.headless,
-                 "in lockstep on a virtual clock, without a window");
+void add_window_options(CLI::App& run, palpa::RunOptions& options) {
+    run.option_defaults()->group("In a window");
     run.add_flag("--play", options.play,
-                 "in a window: let the emulated hand play the scene's stroke, not the mouse");
+                 "the emulated hand plays the scene's stroke, not the mouse");
+    run.add_flag("--sound", options.sound,
+                 "play the felt force as a tone, the stronger the higher and louder");
+    add_size_option(run, "--size", options.width, options.height);
+    run.add_option("--screenshots", options.screenshots,
+                   "folder for screenshots, the present one "
+                   "unless given")
+        ->type_name("FOLDER");
+    CLI::Option* const shot =
+        run.add_option("--shot", options.last_shot, "a picture of the window, which then closes")
+            ->type_name("FILE.png");
+    run.add_option("--after", options.last_shot_s, "seconds until --shot, 5 unless given")
+        ->check(in_range(0.0, 1e5))
+        ->needs(shot);
+    run.add_flag("--validation", options.validation,
+                 "let the Vulkan validation layer watch the drawing");
+    run.add_option("--lose-device-at", options.lose_device_at)->group("");  // a test's
+}
+
+void add_headless_options(CLI::App& run, palpa::RunOptions& options) {
+    run.option_defaults()->group("Without a window");
+    run.add_flag("--headless", options.headless,
+                 "in lockstep on a virtual clock: the same command gives the same bytes");
+    CLI::Option* const record =
+        run.add_option("--record", options.record,
+                       "for trace.csv, summary.json, session.toml and frames")
+            ->type_name("FOLDER");
     add_overwrite_flag(run, options.overwrites);
+    run.add_option("--fps", options.frames_per_second,
+                   "frames/0000.png ... into the recording, this many a simulated second")
+        ->check(in_range(0.01, 1000.0))
+        ->needs(record);
+    add_size_option(run, "--frame-size", options.frame_width, options.frame_height);
+    run.add_flag("--json", options.json, "print the summary as JSON");
+}
+
+void add_run(CLI::App& program, palpa::RunOptions& options) {
+    CLI::App& run = *program.add_subcommand("run", "A scene in a window, or without one");
+    palpa::describe(run, "Feel",
+                    {"palpa run hiv", "palpa run scenes/water --headless --record recordings/water",
+                     "palpa run scenes/water --headless --mode 2 --period-ms 14 --friction 0",
+                     "palpa run scenes/hiv/flexible.toml --play"});
+    run.add_option("scene", options.scene,
+                   "scene folder or file, recorded session.toml, or the name of one of Palpa's own "
+                   "scenes")
+        ->required();
+    run.add_flag("--check", options.check_only,
+                 "only read the scene and say what is wrong with it");
+    run.add_flag_callback(
+        "--keys",
+        [] {
+            palpa::print_scene_keys();
+            throw CLI::Success();
+        },
+        "list the keys of scene files, and do nothing else");
+    run.option_defaults()->group("Hand and device");
     run.add_option_function<std::string>(
         "--device",
         [&options](const std::string& name) {
@@ -147,50 +197,25 @@ void add_run(CLI::App& program, palpa::RunOptions& options) {
             }
             options.device = name;
         },
-        "mouse unless given, headless emulated; list tells which there are");
+        "mouse unless given, without a window emulated; 'list' lists them");
     run.add_option("--second", options.second,
                    "another device, for a second hand that holds the other molecule");
-    run.add_flag("--sound", options.sound,
-                 "in a window: play the felt force as a tone, the stronger the higher and louder");
-    run.add_flag("--check", options.check_only,
-                 "only read the scene and say what is wrong with it");
-    CLI::Option* const record = run.add_option(
-        "--record", options.record, "folder for trace.csv, summary.json, session.toml, frames");
-    run.add_option("--fps", options.frames_per_second,
-                   "frames/0000.png ... into the recording, this many a simulated second")
-        ->check(in_range(0.01, 1000.0))
-        ->needs(record);
-    add_size_option(run, "--frame-size", options.frame_width, options.frame_height);
-    add_size_option(run, "--size", options.width, options.height);
-    run.add_option("--screenshots", options.screenshots, "folder for screenshots of the window");
-    CLI::Option* const shot = run.add_option(
-        "--shot", options.last_shot, "PNG file: a picture of the window, which then closes");
-    run.add_option("--after", options.last_shot_s, "seconds until --shot, 5 unless given")
-        ->check(in_range(0.0, 1e5))
-        ->needs(shot);
-    run.add_option("--lose-device-at", options.lose_device_at)->group("");  // a test's
-    run.add_flag("--validation", options.validation,
-                 "let the Vulkan validation layer watch the window's drawing");
-    run.add_flag("--json", options.json, "print the summary as JSON");
-    run.add_flag_callback(
-        "--keys",
-        [] {
-            palpa::print_scene_keys();
-            throw CLI::Success();
-        },
-        "list the keys of scene files, and do nothing else");
     std::vector<std::string>& settings = options.settings;
-    add_setting(run, "--mode", "coupling.mode", "1 to 5, as in the paper, or guarded", settings);
-    add_setting(run, "--period-ms", "run.period_ms", "declared period of the simulation", settings);
-    add_setting(run, "--engage", "coupling.engage",
-                "at-once, or ramp: guarded, the force comes after quiet ticks, in 2 s", settings);
-    add_setting(run, "--hand", "hand.grip", "none, light, slack, medium, firm or firm-grip",
-                settings);
-    add_setting(run, "--friction", "device.friction_N", "Coulomb friction of the device", settings);
-    add_setting(run, "--seconds", "run.seconds", "length of the run", settings);
-    add_setting(run, "--seed", "run.seed", "of everything random", settings);
-    add_setting(run, "--every", "run.every", "keep one row of this many in the trace", settings);
+    palpa::add_setting(run, "--hand", "none, light, slack, medium, firm or firm-grip", settings);
+    palpa::add_setting(run, "--friction", "Coulomb friction of the emulated device, N", settings);
+    run.option_defaults()->group("Coupling and simulation");
+    palpa::add_setting(run, "--mode", "guarded, or 1 to 5 as in the paper", settings);
+    palpa::add_setting(run, "--period-ms", "time between two steps of the simulation, ms",
+                       settings);
+    palpa::add_setting(
+        run, "--engage",
+        "at-once, or ramp: the force of guarded coupling comes after a pause, in 2 s", settings);
+    palpa::add_setting(run, "--seconds", "length of the run", settings);
+    palpa::add_setting(run, "--seed", "of everything random", settings);
+    palpa::add_setting(run, "--every", "keep one row of this many in the trace", settings);
     add_set_option(run, settings);
+    add_window_options(run, options);
+    add_headless_options(run, options);
 }
 
 void add_adaptive_options(CLI::App& bench, palpa::BenchOptions& options) {
@@ -233,6 +258,9 @@ void add_adaptive_options(CLI::App& bench, palpa::BenchOptions& options) {
 
 void add_bench(CLI::App& program, palpa::BenchOptions& options) {
     CLI::App& bench = *program.add_subcommand("bench", "Speed against error on this machine");
+    palpa::describe(bench, "Look and measure",
+                    {"palpa bench scenes/water scenes/hiv", "palpa bench --kernel",
+                     "palpa bench scenes/hiv/flexible.toml --adaptive --table"});
     bench.add_option("scenes", options.scenes, "scene folders or files");
     bench.add_option("--load", options.structures,
                      "structure files (.pdb, .cif, .crd, .psf): time the reading of each");
@@ -277,16 +305,19 @@ void add_bench(CLI::App& program, palpa::BenchOptions& options) {
 
 void add_render(CLI::App& program, palpa::RenderOptions& options) {
     CLI::App& render = *program.add_subcommand("render", "A picture of a scene; needs no display");
+    palpa::describe(render, "Look and measure", {"palpa render scenes/hiv -o tunnel.png"});
     render.add_option("scene", options.scene, "scene folder or file")->required();
     render.add_option("-o,--output", options.image, "PNG file to write")->required();
     add_overwrite_flag(render, options.overwrites);
     add_size_option(render, "--size", options.width, options.height);
     render.add_option("--time", options.time_s, "seconds that the hand plays before the picture")
         ->check(in_range(0.0, 1e5));
-    render.add_option(
-        "--as", options.representation,
-        "ball-and-stick, space-filling, licorice or in-hand: all but the molecule in hand "
-        "thin; unless given, what shows the scene best");
+    render
+        .add_option(
+            "--as", options.representation,
+            "ball-and-stick, space-filling, licorice or in-hand: all but the molecule in hand "
+            "thin; unless given, what shows the scene best")
+        ->type_name("NAME=NAME");
     render.add_option("--colour", options.colouring,
                       "chain: carbons in a colour of their chain; or element");
     render.add_option(
@@ -296,17 +327,22 @@ void add_render(CLI::App& program, palpa::RenderOptions& options) {
     render.add_option("--look-at", options.look_at, "a molecule of the scene to frame, not all");
     render.add_option("--samples", options.samples, "averaged for a pixel: 1, 4, 9 or 16")
         ->check(CLI::IsMember({1, 4, 9, 16}));
-    render.add_flag("!--no-arrow", options.arrow, "without the force on the molecule");
+    add_negation(render, "--no-arrow", options.arrow, "without the force on the molecule");
     add_set_option(render, options.settings);
 }
 
 void add_energy(CLI::App& program, palpa::EnergyOptions& options) {
     CLI::App& energy = *program.add_subcommand("energy", "Energies term by term, and forces");
+    palpa::describe(energy, "Look and measure",
+                    {"palpa energy system.psf --coordinates system.crd --toppar top_all36_prot.rtf "
+                     "par_all36m_prot.prm"});
     energy.add_option("system", options.system, "PSF, or a structure that has all its atoms")
         ->required();
-    energy.add_option("--coordinates", options.coordinates, "of a PSF: .crd, .pdb or .cif");
+    energy.add_option("--coordinates", options.coordinates, "of a PSF: .crd, .pdb or .cif")
+        ->type_name("FILE");
     add_toppar_option(energy, options.toppar);
-    energy.add_option("--method", options.method, "all-pairs, or cutoff (all-pairs unless given)");
+    energy.add_option("--method", options.method, "all-pairs, or cutoff (all-pairs unless given)")
+        ->type_name("NAME");
     energy
         .add_option("--coulomb-constant", options.nonbonded.coulomb_constant,
                     "kcal Å/mol/e^2, CHARMM's 332.0716 unless given")
@@ -322,8 +358,9 @@ void add_energy(CLI::App& program, palpa::EnergyOptions& options) {
                       "with cutoff: shift, switch, fshift or fswitch (fshift unless given)");
     energy.add_option("--van-der-waals", options.van_der_waals,
                       "with cutoff: switch or fswitch (switch unless given)");
-    energy.add_option("--forces", options.forces,
-                      "CSV file for the force on every atom, kcal/mol/Å");
+    energy
+        .add_option("--forces", options.forces, "CSV file for the force on every atom, kcal/mol/Å")
+        ->type_name("FILE");
     add_overwrite_flag(energy, options.overwrites);
     energy.add_flag("--json", options.json, "print JSON");
 }
@@ -332,45 +369,65 @@ void add_prepare(CLI::App& program, palpa::PrepareOptions& options) {
     palpa::PrepareSettings& settings = options.settings;
     CLI::App& prepare = *program.add_subcommand(
         "prepare", "Complete and type a structure: hydrogens, patches, topology, a report");
+    palpa::describe(
+        prepare, "Make scenes",
+        {"palpa prepare 1hsg.pdb --without MK1 -o my-protease --toppar top_all36_prot.rtf "
+         "par_all36m_prot.prm toppar_water_ions.str"});
     prepare.add_option("structure", options.structure, ".pdb, .ent, .cif or .crd")->required();
     add_toppar_option(prepare, options.toppar);
     prepare
         .add_option("-o,--output", options.folder,
                     "folder for system.psf, .pdb, .crd, .prm, report.txt and scene.toml")
         ->required();
-    prepare.add_option("--without", settings.without,
-                       "residue names (MK1), chains (chain:B) or residues (A:101) to leave out");
-    prepare.add_option("--as", options.as, "NAME=NAME: take a residue as another, CSO=CYS");
-    prepare.add_option("--protonation", options.protonation,
-                       "CHAIN:NUMBER=STATE: a residue (HSE) or a patch (ASPP)");
-    prepare.add_option("--first", options.first, "CHAIN=PATCH at its first residue, or NONE");
-    prepare.add_option("--last", options.last, "CHAIN=PATCH at its last residue, or NONE");
-    prepare.add_option("--disulphide", options.disulphides,
-                       "CHAIN:NUMBER-CHAIN:NUMBER: a bond beside those found");
-    prepare.add_flag("!--no-disulphides", settings.finds_disulphides, "look for none");
+    prepare
+        .add_option("--without", settings.without,
+                    "residue names (MK1), chains (chain:B) or residues (A:101) to leave out")
+        ->type_name("WHAT");
+    prepare.add_option("--as", options.as, "take a residue as another, CSO=CYS");
+    prepare.add_option("--protonation", options.protonation, "a residue (HSE) or a patch (ASPP)")
+        ->type_name("CHAIN:NUMBER=STATE");
+    prepare.add_option("--first", options.first, "at its first residue, or NONE")
+        ->type_name("CHAIN=PATCH");
+    prepare.add_option("--last", options.last, "at its last residue, or NONE")
+        ->type_name("CHAIN=PATCH");
+    prepare
+        .add_option("--disulphide", options.disulphides,
+                    "CHAIN:NUMBER-CHAIN:NUMBER: a bond beside those found")
+        ->type_name("PAIR");
+    add_negation(prepare, "--no-disulphides", settings.finds_disulphides, "look for none");
     prepare.add_flag("--keep-waters", settings.keeps_waters, "waters are left out otherwise");
-    prepare.add_flag("!--no-ions", settings.keeps_ions, "ions are kept otherwise");
+    add_negation(prepare, "--no-ions", settings.keeps_ions, "ions are kept otherwise");
     prepare.add_option("--model", settings.model, "the first unless given");
     prepare
         .add_option("--assembly", settings.assembly,
                     "build this biological assembly of the file, often 1, by its symmetry; "
                     "unless given, what the file holds is taken as it is")
         ->check(in_range(1, 1e6));
-    prepare.add_option("--altloc", options.alternates,
-                       "CHAIN:NUMBER=LETTER: the location to take, not the most occupied");
-    prepare.add_flag("!--no-flips", settings.flips, "amides and imidazoles stay as they are");
-    prepare.add_flag("!--no-relax", settings.relaxes, "atoms stay where they are or were built");
-    CLI::Option* const x_along = prepare.add_option(
-        "--x-along", options.x_along, "segment whose long axis becomes x, its middle the origin");
+    prepare
+        .add_option("--altloc", options.alternates,
+                    "CHAIN:NUMBER=LETTER: the location to take, not the most occupied")
+        ->type_name("CHAIN:NUMBER=LETTER");
+    add_negation(prepare, "--no-flips", settings.flips, "amides and imidazoles stay as they are");
+    add_negation(prepare, "--no-relax", settings.relaxes,
+                 "atoms stay where they are or were built");
+    CLI::Option* const x_along =
+        prepare
+            .add_option("--x-along", options.x_along,
+                        "segment whose long axis becomes x, its middle the origin")
+            ->type_name("SEGMENT");
     prepare
         .add_option("--y-towards", options.y_towards,
                     "CHAIN:NUMBER-CHAIN:NUMBER: y from one residue to another; :NUMBER is the mean "
                     "of all chains")
+        ->type_name("PAIR")
         ->needs(x_along);
-    prepare.add_option("--grab", options.grab,
-                       "segment that scene.toml gives to the hand, the smallest unless given; "
-                       "without a second segment there is no scene.toml");
-    prepare.add_option("--title", options.title, "what the files say of themselves");
+    prepare
+        .add_option("--grab", options.grab,
+                    "segment that scene.toml gives to the hand, the smallest unless given; "
+                    "without a second segment there is no scene.toml")
+        ->type_name("SEGMENT");
+    prepare.add_option("--title", options.title, "what the files say of themselves")
+        ->type_name("TEXT");
     add_overwrite_flag(prepare, options.overwrites);
     prepare.add_flag("--json", options.json, "print counts and warnings as JSON");
 }
@@ -378,6 +435,7 @@ void add_prepare(CLI::App& program, palpa::PrepareOptions& options) {
 void add_replay(CLI::App& program, palpa::ReplayOptions& options) {
     CLI::App& replay = *program.add_subcommand(
         "replay", "Plays a recorded session again; --verify demands the same to the last digit");
+    palpa::describe(replay, "Experiments", {"palpa replay recordings/water --verify"});
     replay.add_option("recording", options.recording, "folder of palpa run --record")->required();
     replay.add_flag("--verify", options.verify,
                     "hold every row of the trace against what is found now; exit code 1 where one "
@@ -388,6 +446,8 @@ void add_replay(CLI::App& program, palpa::ReplayOptions& options) {
 void add_journey(CLI::App& program, palpa::JourneyOptions& options) {
     CLI::App& journey = *program.add_subcommand(
         "journey", "A molecule taken out of its pocket and brought back, by hand, period and mode");
+    palpa::describe(journey, "Experiments",
+                    {"palpa journey scenes/hiv/flexible.toml --periods 14 --hands medium"});
     journey.add_option("scene", options.scene, "flexible scene")->required();
     CLI::Option* const periods =
         journey
@@ -423,11 +483,10 @@ void add_journey(CLI::App& program, palpa::JourneyOptions& options) {
 void add_feel(CLI::App& program, palpa::FeelOptions& options) {
     CLI::App& feel = *program.add_subcommand(
         "feel", "A scene's stroke for ranges of forces to be felt and tolerances: what holds?");
-    feel.footer(
-        "Examples:\n"
-        "  palpa feel scenes/water --ranges 20:3000,50:400 --tolerances 0.001,1\n"
-        "  palpa feel scenes/hiv/flexible.toml --ranges 500:20000 --tolerances 100,1000 --samples "
-        "10\n");
+    palpa::describe(feel, "Experiments",
+                    {"palpa feel scenes/water --ranges 20:3000,50:400 --tolerances 0.001,1",
+                     "palpa feel scenes/hiv/flexible.toml --ranges 500:20000 --tolerances 100,1000 "
+                     "--samples 10"});
     feel.add_option("scene", options.scene, "scene folder or file")->required();
     feel.add_option("--ranges", options.ranges,
                     "WEAKEST:STRONGEST in pN, 20:3000,50:10000,200:5000 unless given")
@@ -438,7 +497,7 @@ void add_feel(CLI::App& program, palpa::FeelOptions& options) {
     feel.add_option("--samples", options.samples,
                     "ticks of each stroke whose force is held against a reference, 20 unless given")
         ->check(in_range(1, 1e6));
-    add_setting(feel, "--seconds", "run.seconds", "length of the run", options.settings);
+    palpa::add_setting(feel, "--seconds", "length of the run", options.settings);
     feel.add_flag("--json", options.json, "print JSON");
     add_set_option(feel, options.settings);
 }
@@ -446,6 +505,9 @@ void add_feel(CLI::App& program, palpa::FeelOptions& options) {
 void add_devices(CLI::App& program, palpa::DevicesOptions& options) {
     CLI::App& devices = *program.add_subcommand(
         "devices", "What is plugged in, what works, what is wrong and how to mend it");
+    palpa::describe(
+        devices, "Feel", {"palpa devices", "palpa devices omni --force-test"},
+        "Exit code 0 if there is a device that can be used, emulated ones beside, else 1.");
     devices.add_option("device", options.name,
                        "as --device of palpa run takes it; all unless given");
     devices.add_flag("--force-test", options.tests_force, "push the handle a little, after asking");
@@ -454,13 +516,12 @@ void add_devices(CLI::App& program, palpa::DevicesOptions& options) {
         .add_flag("--latency", options.times_latency,
                   "time emulated devices instead, from their report to the force")
         ->excludes(json);
-    devices.footer(
-        "Exit code 0 if there is a device that can be used, emulated ones beside, else 1.");
 }
 
 void add_relax(CLI::App& program, palpa::RelaxOptions& options) {
     CLI::App& relax =
         *program.add_subcommand("relax", "Bring the flexible molecules of a scene to rest");
+    palpa::describe(relax, "Make scenes", {"palpa relax scenes/hiv/flexible.toml -o rest.crd"});
     relax.add_option("scene", options.scene, "scene folder or file")->required();
     relax.add_option("-o,--output", options.coordinates,
                      "CHARMM coordinates (.crd) to write: where they rest");
@@ -472,6 +533,7 @@ void add_relax(CLI::App& program, palpa::RelaxOptions& options) {
 void add_scenarios(CLI::App& program, palpa::ScenarioOptions& options) {
     CLI::App& scenarios = *program.add_subcommand(
         "scenarios", "Random hands and devices on a scene of one axis: does any vibrate?");
+    palpa::describe(scenarios, "Experiments", {"palpa scenarios scenes/water --count 100"});
     scenarios.add_option("scene", options.scene, "scene folder or file")->required();
     scenarios.add_option("--count", options.count, "10000 unless given")->check(in_range(1, 1e7));
     scenarios.add_option("--first", options.first, "number of the first, 0 unless given")
@@ -484,6 +546,7 @@ void add_scenarios(CLI::App& program, palpa::ScenarioOptions& options) {
 void add_report(CLI::App& program, palpa::ReportOptions& options) {
     CLI::App& report = *program.add_subcommand(
         "report", "The paper's figures, the acceptance bars and more, computed anew: one page");
+    palpa::describe(report, "Experiments", {"palpa report -o report.html"});
     report.add_option("-o,--output", options.output, "page to write, report.html unless given");
     add_overwrite_flag(report, options.overwrites);
     report.add_option("--scene", options.scene, "of one axis, scenes/water unless given");
@@ -501,6 +564,7 @@ void add_report(CLI::App& program, palpa::ReportOptions& options) {
 void add_loops(CLI::App& program, palpa::LoopOptions& options) {
     CLI::App& loops = *program.add_subcommand(
         "loops", "Random closed ways of hands in space: does the coupling give or take energy?");
+    palpa::describe(loops, "Experiments", {"palpa loops scenes/water/space.toml --count 100"});
     loops.add_option("scene", options.scene, "scene folder or file")->required();
     loops.add_option("--count", options.count, "1000 unless given")->check(in_range(1, 1e7));
     loops.add_option("--first", options.first, "number of the first, 0 unless given")
@@ -515,13 +579,11 @@ void add_study(CLI::App& program, palpa::ForcedChoiceOptions& choice, bool& is_c
     palpa::StudyOptions& options = choice.study;
     CLI::App& study = *program.add_subcommand(
         "study", "The paper's experiment: who finds the place without force in which mode?");
-    study.footer(
-        "Examples:\n"
-        "  palpa study scenes/water -o people\n"
-        "  palpa study scenes/water --operators 20\n"
-        "  palpa study scenes/water --operators 20 --hand firm --modes 2,4,guarded -o study\n"
-        "  tools/plot_study study\n"
-        "  palpa study scenes/water --operators 5 --forced-choice attracts-more --modes 2,4\n");
+    palpa::describe(
+        study, "Experiments",
+        {"palpa study scenes/water --operators 20", "palpa study scenes/water -o people",
+         "palpa study scenes/water --operators 20 --hand firm --modes 2,4,guarded -o study",
+         "palpa study scenes/water --operators 5 --forced-choice attracts-more --modes 2,4"});
     study.add_option("scene", options.scene, "scene folder or file of one axis")->required();
     options.operators = 0;
     CLI::Option* const operators =
@@ -568,18 +630,18 @@ void add_study(CLI::App& program, palpa::ForcedChoiceOptions& choice, bool& is_c
         .add_flag("--validation", options.validation,
                   "let the Vulkan validation layer watch the window's drawing")
         ->excludes(operators);
-    add_setting(study, "--period-ms", "run.period_ms",
-                "declared period of the simulation, 14 unless given", options.settings);
-    add_setting(study, "--hand", "hand.grip", "light, slack, medium, firm or firm-grip",
-                options.settings);
-    add_setting(study, "--friction", "device.friction_N", "Coulomb friction of the device",
-                options.settings);
+    palpa::add_setting(study, "--period-ms", "declared period of the simulation, 14 unless given",
+                       options.settings);
+    palpa::add_setting(study, "--hand", "light, slack, medium, firm or firm-grip",
+                       options.settings);
+    palpa::add_setting(study, "--friction", "Coulomb friction of the device", options.settings);
     add_set_option(study, options.settings);
 }
 
-int run_program(int argc, char** argv) {
+int run_program(const std::vector<std::string>& arguments) {
     CLI::App program("Palpa: feel molecules", "palpa");
-    program.require_subcommand(1);
+    program.formatter(palpa::build_help_formatter());
+    program.set_help_flag("-h,--help", "print this");
     program.set_version_flag("--version",
                              std::string(palpa::version_name) + " (" + palpa::commit_name + ")");
     palpa::RunOptions run;
@@ -593,38 +655,35 @@ int run_program(int argc, char** argv) {
     palpa::ReportOptions report;
     palpa::ForcedChoiceOptions choice;
     bool is_choice = false;
-    add_study(program, choice, is_choice);
-    add_scenarios(program, scenarios);
-    add_loops(program, loops);
-    add_report(program, report);
-    add_energy(program, energy);
+    palpa::FeelOptions feel;
+    palpa::DevicesOptions devices;
+    palpa::JourneyOptions journey;
+    palpa::ReplayOptions replay;
+    // In the order of the help.
+    add_run(program, run);
+    add_devices(program, devices);
     add_prepare(program, prepare);
     add_relax(program, relax);
-    add_run(program, run);
-    add_bench(program, bench);
     add_render(program, render);
-    palpa::FeelOptions feel;
-    add_feel(program, feel);
-    palpa::DevicesOptions devices;
-    add_devices(program, devices);
-    palpa::JourneyOptions journey;
-    add_journey(program, journey);
-    palpa::ReplayOptions replay;
+    add_energy(program, energy);
+    add_bench(program, bench);
+    add_report(program, report);
+    add_study(program, choice, is_choice);
     add_replay(program, replay);
-    const std::vector<CLI::App*> commands = program.get_subcommands({});
-    const bool known = std::any_of(commands.begin(), commands.end(), [&](const CLI::App* command) {
-        return argc > 1 && command->check_name(argv[1]);
-    });
-    if (argc > 1 && argv[1][0] != '-' && !known) {
-        fmt::print(stderr, "palpa: no command '{}'; see palpa --help\n", argv[1]);
-        return bad_input;
-    }
+    add_scenarios(program, scenarios);
+    add_loops(program, loops);
+    add_feel(program, feel);
+    add_journey(program, journey);
+    if (arguments.empty()) return palpa::start_command();
     try {
-        program.parse(argc, argv);
-    } catch (const CLI::Success& success) {  // --help, --version
+        program.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+    } catch (const CLI::CallForVersion&) {
+        fmt::print("{} ({})\n", palpa::version_name, palpa::commit_name);
+        return 0;
+    } catch (const CLI::Success& success) {  // --help
         return program.exit(success);
     } catch (const CLI::ParseError& error) {
-        fmt::print(stderr, "palpa: {}; see palpa --help\n", error.what());
+        fmt::print(stderr, "{}\n", palpa::explain(error, program, arguments[0]));
         return bad_input;
     }
     if (program.got_subcommand("devices")) return palpa::devices_command(devices);
@@ -647,8 +706,9 @@ int run_program(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    const std::vector<std::string> arguments = palpa::expand_help({argv + 1, argv + argc});
     try {
-        const int code = run_program(argc, argv);
+        const int code = run_program(arguments);
         if (std::fflush(stdout) == 0) return code;
         fmt::print(stderr, "palpa: the output cannot be written\n");
         return bad_input;
@@ -662,7 +722,7 @@ int main(int argc, char** argv) {
         fmt::print(stderr, "palpa: {}\n", error.what());
         return bad_input;
     } catch (const palpa::LoadError& error) {
-        fmt::print(stderr, "{}\n", error.what());
+        fmt::print(stderr, "{}\n", palpa::cite_as_typed(error.what(), arguments));
         for (const std::string& problem : error.further()) fmt::print(stderr, "{}\n", problem);
         return bad_input;
     } catch (const std::bad_alloc&) {

@@ -17,7 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 2> key_names{"device", "sound"};
+constexpr std::array<std::string_view, 4> key_names{"device", "sound", "scene", "text_scale"};
+constexpr double smallest_text = 0.5, largest_text = 4;
 
 TextPlace place_in(const std::string& file, const toml::source_region& source) {
     return {file, source.begin.line, source.begin.column};
@@ -52,6 +53,20 @@ Preferences parse_preferences(std::string_view text, const std::string& file) {
             if (preferences.sound) continue;
             throw LoadError(place, "sound is no truth value; expected true or false");
         }
+        if (key == "scene") {
+            preferences.scene = value.value<std::string>();
+            if (preferences.scene) continue;
+            throw LoadError(place, "scene is no text; expected the file or folder of a scene");
+        }
+        if (key == "text_scale") {
+            preferences.text_scale = value.value<double>();
+            if (preferences.text_scale && *preferences.text_scale >= smallest_text &&
+                *preferences.text_scale <= largest_text) {
+                continue;
+            }
+            throw LoadError(place, fmt::format("text_scale is no number from {} to {}",
+                                               smallest_text, largest_text));
+        }
         throw LoadError(
             place, fmt::format("unknown key '{}'; expected one of {}{}", key.str(),
                                fmt::join(key_names, ", "), near_name_hint(key.str(), key_names)));
@@ -63,6 +78,8 @@ std::string format_preferences(const Preferences& preferences) {
     toml::table table;
     if (preferences.device) table.insert("device", *preferences.device);
     if (preferences.sound) table.insert("sound", *preferences.sound);
+    if (preferences.scene) table.insert("scene", *preferences.scene);
+    if (preferences.text_scale) table.insert("text_scale", *preferences.text_scale);
     std::ostringstream text;
     text << "# What was chosen in Palpa's window.\n" << table << "\n";
     return text.str();

@@ -10,6 +10,8 @@ namespace palpa {
 struct Preferences {
     std::optional<std::string> device{};  // as --device takes it
     std::optional<bool> sound{};          // the felt force as a tone
+    std::optional<std::string> scene{};   // file or folder that was opened last, absolute
+    std::optional<double> text_scale{};   // of the window's text, over the display's own
 
     friend bool operator==(const Preferences&, const Preferences&) = default;
 };
@@ -30,6 +32,9 @@ public:
 
     const Preferences& now() const noexcept { return now_; }
     const std::string& problem() const noexcept { return problem_; }
+
+    // Whether there is a place for them.
+    bool can_keep() const noexcept { return file_ && problem_.empty(); }
 
     // Keeps them on disk. Throws LoadError that says why it cannot.
     void keep(const Preferences& preferences);

@@ -8,7 +8,7 @@
 #include "session/run_headless.h"
 #include "simulation/components.h"
 #include "tools/choice.h"
-#include "tools/run.h"
+#include "tools/hands.h"
 
 #include <fmt/format.h>
 #include <algorithm>

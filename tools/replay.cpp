@@ -8,6 +8,7 @@
 #include "session/replay.h"
 #include "session/run_headless.h"
 #include "simulation/simulation.h"
+#include "tools/hands.h"
 #include "tools/relax.h"
 #include "tools/run.h"
 

@@ -5,8 +5,8 @@
 #include "session/run_headless.h"
 #include "simulation/flexible.h"
 #include "tools/bench_stroke.h"
+#include "tools/hands.h"
 #include "tools/report_sections.h"
-#include "tools/run.h"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -9,7 +9,7 @@
 #include "session/run_headless.h"
 #include "simulation/probe.h"
 #include "simulation/step.h"
-#include "tools/run.h"
+#include "tools/hands.h"
 
 #include <algorithm>
 #include <array>

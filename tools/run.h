@@ -1,9 +1,6 @@
 // palpa run: a scene in a window, or headless under the emulated hand.
 #pragma once
-#include "devices/emulated_omni.h"
-#include "scene/description.h"
 #include "session/run_headless.h"
-#include "simulation/simulation.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -34,14 +31,6 @@ struct RunOptions {
     std::uint64_t lose_device_at = 0;
     bool validation = false;  // of all that Vulkan is told
 };
-
-// The emulated device and hand that a scene describes.
-EmulatedOmniSettings build_emulated_omni(const SceneDescription& scene,
-                                         const Simulation& simulation);
-
-// Puts a person's mouse in place of the script, and how far ahead of the handle it may be.
-void give_to_mouse(EmulatedOmniSettings& settings);
-double mouse_reach_m(const EmulatedOmniSettings& settings);
 
 // A line of progress where a person watches and standard output is not for a program.
 ProgressFunction find_progress(bool json);

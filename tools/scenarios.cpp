@@ -7,7 +7,7 @@
 #include "session/run_headless.h"
 #include "simulation/probe.h"
 #include "simulation/simulation.h"
-#include "tools/run.h"
+#include "tools/hands.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

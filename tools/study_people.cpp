@@ -8,7 +8,7 @@
 #include "session/study_course.h"
 #include "simulation/probe.h"
 #include "simulation/simulation.h"
-#include "tools/run.h"
+#include "tools/hands.h"
 #include "view/build_frame.h"
 
 #include <fmt/format.h>

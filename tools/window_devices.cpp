@@ -4,7 +4,7 @@
 #include "core/text.h"
 #include "devices/open_device.h"
 #include "devices/two_hands.h"
-#include "tools/run.h"
+#include "tools/hands.h"
 
 #include <fmt/format.h>
 #include <memory>
@@ -76,8 +76,10 @@ DeviceMenu WindowDevices::menu() {
     DeviceMenu menu;
     for (const DeviceMaker& maker : device_makers()) {
         if (!maker.file.empty()) continue;
-        menu.offers.push_back(
-            {std::string(maker.name), std::string(maker.summary), is_there(maker, request_)});
+        menu.offers.push_back({.name = std::string(maker.name),
+                               .summary = std::string(maker.summary),
+                               .is_there = is_there(maker, request_),
+                               .is_stand_in = maker.is_emulated && !maker.needs_window});
     }
     menu.current = current_;
     menu.wanted = wanted_;

@@ -12,6 +12,7 @@
 #include "session/run_headless.h"
 #include "sound/speaker.h"
 #include "ui/backend.h"
+#include "ui/question.h"
 #include "ui/study_panel.h"
 #include "view/build_frame.h"
 #include "view/orbit_camera.h"
@@ -44,19 +45,21 @@ constexpr double key_angstrom_per_s = 2, slow_key = 0.2;
 constexpr double longest_key_s = 0.1;  // that counts at once
 constexpr double notice_s = 4, first_notice_s = 15;
 constexpr std::chrono::seconds device_look{1};
+constexpr double text_step = 1.1;
 constexpr float surroundings = 1.6F;  // times the distance that fits the molecule in hand alone
 constexpr glm::vec3 background{0.86F, 0.89F, 0.93F};
 
 // All that is lost with a device, made and thrown away as one.
 struct Graphics {
-    Graphics(const Window& window, bool validation)
+    Graphics(const Window& window, bool validation, double text_scale)
         : device({.validation = validation,
                   .instance_extensions = window.vulkan_extensions(),
                   .create_surface =
                       [&window](VkInstance instance) { return window.create_surface(instance); }}),
           swapchain(device, window.size()),
           renderer(device),
-          ui(window, device, swapchain.overlay_pass(), swapchain.image_count()) {}
+          ui(window, device, swapchain.overlay_pass(), swapchain.image_count(),
+             static_cast<float>(text_scale) * window.content_scale()) {}
 
     GpuDevice device;
     Swapchain swapchain;
@@ -101,9 +104,11 @@ public:
           device_(&device),
           orders_(options.orders),
           mouse_reach_m_(options.mouse_reach_m),
+          text_scale_(options.text_scale.scale),
           window_("Palpa - " + scene.title, options.width, options.height),
           session_(scene, options.view, device, options.orders),
           overlay_(scene, options.view),
+          saved_(overlay_.settings()),
           statistics_(servo_tick_s) {
         std::error_code error;
         if (!std::filesystem::is_directory(options.screenshots, error)) {
@@ -112,7 +117,7 @@ public:
         }
         // Drawing, which may be done by threads of the driver, comes after feeling.
         (void)nice(5);
-        graphics_ = std::make_unique<Graphics>(window_, options.validation);
+        graphics_ = std::make_unique<Graphics>(window_, options.validation, text_scale_);
         if (options.sound.is_on) (void)switch_sound(true);
         if (!options.notice.empty()) {
             notice(notice_.empty() ? options.notice : options.notice + "\n" + notice_,
@@ -126,7 +131,8 @@ private:
     void frame();
     void look_at_all();
     void look_at_grabbed();
-    float free_aspect() const;
+    ScreenArea free_area() const;
+    glm::vec2 free_centre() const;
     bool has_mouse_hand() const { return orders_ && mouse_reach_m_ > 0; }
     bool can_choose_device() const { return devices_.open && !options_.study; }
     void look_for_devices();
@@ -147,6 +153,13 @@ private:
     void show_wish();
     void perform(Action action);
     void press_study_key();
+    void press_key(const KeyPress& press);
+    void give(const Answer& answer);
+    bool save_scene();
+    void ask_to_quit();
+    void ask_for_stand_in();
+    bool is_stand_in(const std::string& name) const;
+    void change_text_scale(double scale);
     void look_at_pixel(double x, double y);
     void draw();
     void save(const WindowShot& shot);
@@ -161,11 +174,14 @@ private:
     Device* device_;
     HandOrders* orders_;
     double mouse_reach_m_;
+    double text_scale_;  // over the display's own
     Clock::time_point next_look_ = Clock::now();
     Window window_;
     LiveSession session_;
     std::unique_ptr<Graphics> graphics_;
     Overlay overlay_;
+    LiveSettings saved_;  // as the scene's file has them, or the file saved last
+    std::optional<Question> question_;
     Statistics statistics_;
     std::optional<Speaker> speaker_;  // while sound is on
 
@@ -180,6 +196,7 @@ private:
     Clock::time_point last_input_ = Clock::now();
     VkExtent2D drawn_size_{};  // of the last picture
     bool holding_ = false;
+    bool drags_panel_ = false;                 // the drag that is under way, or was the last one
     Clock::time_point heeded_ = Clock::now();  // the device, for the last time
     RenderScale scale_;
     const Clock::time_point start_ = Clock::now();
@@ -201,7 +218,11 @@ WindowReport Sandbox::run() {
     int losses = 0;
     Clock::time_point next = Clock::now();
     note_interrupts();
-    while (!quitting_ && !window_.should_close() && noted_interrupt() == 0) {
+    while (!quitting_ && noted_interrupt() == 0) {
+        if (window_.should_close()) {
+            window_.keep_open();
+            ask_to_quit();
+        }
         try {
             if (losses > 0 || !graphics_) restart_graphics();
             frame();
@@ -216,8 +237,8 @@ WindowReport Sandbox::run() {
     }
     keep_validation_messages();
     if (!validation_messages_.empty()) throw GpuError("validation: " + validation_messages_[0]);
-    WindowReport report{statistics_.summary(), overlay_.settings(),        frame_ms_.size(), 0,
-                        scale_.value(),        overlay_.lesson().current()};
+    WindowReport report{statistics_.summary(), overlay_.settings(),           frame_ms_.size(), 0,
+                        scale_.value(),        overlay_.lesson().steps_done()};
     report.summary.device = device_->spec().name;
     report.summary.steps = frame_.readout.steps;
     warn_of_outcome(report.summary);
@@ -238,7 +259,6 @@ void Sandbox::frame() {
         has_frame_ = true;
         statistics_.add_step(frame_.readout.step_ms * 1e-3, true);
     }
-    if (has_frame_ && !std::exchange(framed_, has_frame_)) look_at_all();
     take_input();
     look_for_devices();
     play_force();
@@ -259,22 +279,33 @@ void Sandbox::frame() {
     if (frame_ms_.size() < most) frame_ms_.push_back(last_frame_ms_);
 }
 
-// Of what the overlays leave free in the middle.
-float Sandbox::free_aspect() const {
+ScreenArea Sandbox::free_area() const {
     const auto width = static_cast<float>(window_.size().width);
     const auto height = static_cast<float>(window_.size().height);
-    const float covered = options_.study ? 0 : overlay_.covered_pixels(width);
-    return (width - 2 * covered) / std::max(height, 1.0F);
+    return options_.study ? ScreenArea{0, 0, width, height} : overlay_.free_area(width, height);
 }
 
-void Sandbox::look_at_all() { frame_all(camera_, frame_.picture, free_aspect()); }
+glm::vec2 Sandbox::free_centre() const {
+    const auto width = static_cast<float>(std::max(window_.size().width, 1U));
+    const auto height = static_cast<float>(std::max(window_.size().height, 1U));
+    const ScreenArea area = free_area();
+    return {(area.left + area.right) / width - 1, 1 - (area.top + area.bottom) / height};
+}
+
+void Sandbox::look_at_all() {
+    const auto height = static_cast<float>(std::max(window_.size().height, 1U));
+    const ScreenArea area = free_area();
+    frame_all(camera_, frame_.picture, area.width() / height, area.height() / height);
+}
 
 void Sandbox::look_at_grabbed() {
     std::vector<SphereShape> grabbed;
     for (const SphereShape& sphere : frame_.picture.spheres) {
         if (sphere.pick < frame_.grabbed_atoms) grabbed.push_back(sphere);
     }
-    frame_shapes(camera_, grabbed, free_aspect());
+    const auto height = static_cast<float>(std::max(window_.size().height, 1U));
+    const ScreenArea area = free_area();
+    frame_shapes(camera_, grabbed, area.width() / height, area.height() / height);
     zoom(camera_, surroundings);
 }
 
@@ -293,23 +324,29 @@ void Sandbox::take_ticks() {
 void Sandbox::take_input() {
     const Input& input = window_.poll();
     must_rebuild_ = must_rebuild_ || input.resized;
+    if (input.rescaled) restart_graphics();
     heed_device(input);
     if (options_.pads) post_pad(input);
     if (!graphics_->ui.wants_keys()) {
-        for (const Key key : input.pressed) {
-            if (options_.study && key == Key::Enter) press_study_key();
-            if (const std::optional<Action> action = find_action(key, input.control)) {
-                perform(*action);
-            }
-        }
+        for (const KeyPress& press : input.pressed) press_key(press);
     }
-    const bool leads = has_mouse_hand() && !graphics_->ui.wants_keys();
+    const bool leads = has_mouse_hand() && !graphics_->ui.wants_keys() && !question_;
     const double seconds = 1e-3 * ms_since(std::exchange(last_input_, Clock::now()));
     if (leads) move_hand_by_keys(input, std::min(seconds, longest_key_s));
     holding_ = leads && input.is_held(Key::Space);
+    window_.capture_cursor(holding_);
+    // A drag belongs to what lies where it began, however fast the mouse goes.
+    for (const MousePress& press : input.clicked) {
+        drags_panel_ = graphics_->ui.covers(press.x, press.y);
+    }
+    const bool is_dragging =
+        std::find(input.down.begin(), input.down.end(), true) != input.down.end();
+    const bool is_on_panel = is_dragging || !input.clicked.empty()
+                                 ? drags_panel_
+                                 : graphics_->ui.covers(input.mouse_x, input.mouse_y);
     if (holding_) {
         move_hand(input);
-    } else if (!graphics_->ui.wants_mouse()) {
+    } else if (!is_on_panel && !question_) {
         move_camera(input);
         if (input.double_clicked) look_at_pixel(input.mouse_x, input.mouse_y);
     }
@@ -388,7 +425,62 @@ void Sandbox::show_wish() {
 // Of what a study leaves to a person: where to look, and the way out.
 bool is_of_picture(Action action) {
     return action == Action::Focus || action == Action::FrameAll || action == Action::Screenshot ||
-           action == Action::RestartGraphics || action == Action::Quit;
+           action == Action::RestartGraphics || action == Action::LargerText ||
+           action == Action::SmallerText || action == Action::UsualText || action == Action::Quit;
+}
+
+void Sandbox::press_key(const KeyPress& press) {
+    if (question_) {
+        if (const Answer* const answer = find_answer(*question_, press.key)) give(*answer);
+        return;
+    }
+    if (options_.study && press.key == Key::Enter) return press_study_key();
+    if (const std::optional<Action> action = find_action(press.key, press.control)) {
+        perform(*action);
+    }
+}
+
+void Sandbox::give(const Answer& answer) {
+    const std::function<void()> then = answer.then;  // the answer goes with its question
+    question_.reset();
+    if (then) then();
+}
+
+bool Sandbox::save_scene() {
+    if (!options_.save) return false;
+    try {
+        const std::string file = options_.save(overlay_.settings());
+        saved_ = overlay_.settings();
+        notice(fmt::format("saved {}", file), first_notice_s);
+        return true;
+    } catch (const LoadError& error) {
+        notice(error.what(), first_notice_s);
+        return false;
+    }
+}
+
+void Sandbox::ask_to_quit() {
+    if (options_.study || !options_.save || overlay_.settings() == saved_) {
+        quitting_ = true;
+        return;
+    }
+    question_ = {"The settings were changed and are not saved.",
+                 {{Key::S, "Save and quit (S)", [this] { quitting_ = save_scene(); }},
+                  {Key::Q, "Quit without saving (Q)", [this] { quitting_ = true; }},
+                  {Key::Escape, "Stay (Esc)"}}};
+}
+
+void Sandbox::change_text_scale(double scale) {
+    constexpr double smallest = 0.5, largest = 4;
+    text_scale_ = std::clamp(scale, smallest, largest);
+    restart_graphics();
+    notice(fmt::format("text: {:.0f} %", 100 * text_scale_));
+    if (!options_.text_scale.remember) return;
+    try {
+        options_.text_scale.remember(text_scale_);
+    } catch (const LoadError& error) {
+        notice(error.what(), first_notice_s);
+    }
 }
 
 void Sandbox::press_study_key() {
@@ -433,8 +525,20 @@ void Sandbox::perform(Action action) {
         case Action::RestartGraphics:
             restart_graphics();
             break;
+        case Action::Save:
+            (void)save_scene();
+            break;
+        case Action::LargerText:
+            change_text_scale(text_scale_ * text_step);
+            break;
+        case Action::SmallerText:
+            change_text_scale(text_scale_ / text_step);
+            break;
+        case Action::UsualText:
+            change_text_scale(1);
+            break;
         case Action::Quit:
-            quitting_ = true;
+            if (options_.study || !overlay_.close_something()) ask_to_quit();
             break;
         default:
             break;
@@ -479,7 +583,7 @@ bool Sandbox::change_device(const std::string& name) {
     mouse_reach_m_ = next.mouse_reach_m;
     hand_m_ = handle_m_ = Vec3::Zero();
     devices_.current = name;
-    notice(fmt::format("led by: {}", device_->spec().name));
+    notice(fmt::format("device: {}", device_->spec().name));
     return true;
 }
 
@@ -487,12 +591,35 @@ bool Sandbox::choose_device(const std::string& name) {
     refusal_.clear();
     if (name != devices_.current && !change_device(name)) return false;
     devices_.wanted.clear();
+    if (is_stand_in(name)) {
+        notice(fmt::format("{}, for this session; D goes back", device_->spec().name),
+               first_notice_s);
+        return true;
+    }
     try {
         devices_.remember(name);
     } catch (const LoadError& error) {
         notice(error.what(), first_notice_s);
     }
     return true;
+}
+
+bool Sandbox::is_stand_in(const std::string& name) const {
+    return std::any_of(
+        devices_.offers.begin(), devices_.offers.end(),
+        [&](const DeviceOffer& offer) { return offer.name == name && offer.is_stand_in; });
+}
+
+void Sandbox::ask_for_stand_in() {
+    const auto found = std::find_if(devices_.offers.begin(), devices_.offers.end(),
+                                    [](const DeviceOffer& offer) { return offer.is_stand_in; });
+    if (found == devices_.offers.end() || found->name == devices_.current) return;
+    question_ = {
+        "No other device was found ('palpa devices' says why). Take an emulated one for "
+        "this session: " +
+            found->summary + "?",
+        {{Key::Y, "Yes (Y)", [this, name = found->name] { (void)choose_device(name); }},
+         {Key::Escape, "No (Esc)"}}};
 }
 
 // What is there and cannot be used is said, and passed over.
@@ -508,13 +635,14 @@ void Sandbox::choose_next_device() {
     std::string refusals;
     for (std::size_t i = 1; i < offers.size(); ++i) {
         const DeviceOffer& next = offers[(from + i) % offers.size()];
-        if (!next.is_there) continue;
+        if (!next.is_there || next.is_stand_in) continue;
         if (choose_device(next.name)) {
             if (!refusals.empty()) notice(refusals + notice_, first_notice_s);
             return;
         }
         refusals += refusal_ + "\n";
     }
+    if (refusals.empty()) ask_for_stand_in();
 }
 
 // False where it stays off.
@@ -591,12 +719,16 @@ void Sandbox::draw() {
                        devices_.current, speaker_.has_value()},
                       commands, actions);
     }
+    const Answer* const answer = question_ ? draw_question(*question_) : nullptr;
     g.ui.end();
     for (const Command& command : commands) session_.send(command);
 
+    // The panels are laid out now, so that it is known what they leave free.
+    if (has_frame_ && !std::exchange(framed_, has_frame_)) look_at_all();
     shown_ = frame_.picture;
     show_wish();
     shown_.camera = frame_camera(camera_, shown_);
+    shown_.camera.centre = free_centre();
     shown_.background = background;
     const VkExtent2D size = picture_size();
     WindowShot shot;
@@ -612,6 +744,7 @@ void Sandbox::draw() {
         wants_shot_ = false;
         save(shot);
     }
+    if (answer) return give(*answer);
     for (const Action action : actions) perform(action);
     if (const std::optional<std::string> name = overlay_.take_device()) choose_device(*name);
 }
@@ -636,7 +769,7 @@ void Sandbox::restart_graphics() {
     keep_validation_messages();
     graphics_.reset();
     drawn_size_ = {};
-    graphics_ = std::make_unique<Graphics>(window_, options_.validation);
+    graphics_ = std::make_unique<Graphics>(window_, options_.validation, text_scale_);
 }
 
 void Sandbox::keep_validation_messages() {

@@ -42,6 +42,12 @@ struct SoundChoice {
     std::function<void(bool)> remember{};  // what the person switched it to; throws LoadError
 };
 
+// The size of the window's text, over what the display asks for.
+struct TextScaleChoice {
+    double scale = 1;                        // to begin with
+    std::function<void(double)> remember{};  // what the person chose; throws LoadError
+};
+
 struct WindowOptions {
     ViewSettings view{};
     std::uint32_t width = 1280, height = 800;
@@ -54,6 +60,9 @@ struct WindowOptions {
     PadLink* pads = nullptr;       // where game pads are posted
     DeviceMenu devices{};
     SoundChoice sound{};
+    TextScaleChoice text_scale{};
+    // Writes the scene with these settings and returns the file; throws LoadError. Empty: cannot.
+    std::function<std::string(const LiveSettings&)> save{};
     std::string notice{};  // to begin with
     double most_frames_per_s = 60;
     std::uint64_t lose_device_at = 0;  // frame at which the graphics device is given up, for tests

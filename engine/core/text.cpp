@@ -38,18 +38,21 @@ std::size_t letter_size(std::string_view text) noexcept {
 
 // Levenshtein distance, case ignored.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-    std::vector<std::size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
+    const std::size_t width = b.size() + 1;
+    std::vector<std::size_t> before(width), last(width), row(width);  // rows i - 1, i, i + 1
+    std::iota(last.begin(), last.end(), std::size_t{0});
+    const auto same = [&](std::size_t i, std::size_t j) { return upper(a[i]) == upper(b[j]); };
     for (std::size_t i = 0; i < a.size(); ++i) {
-        std::size_t diagonal = row[0];
         row[0] = i + 1;
         for (std::size_t j = 0; j < b.size(); ++j) {
-            const std::size_t replace = diagonal + (upper(a[i]) == upper(b[j]) ? 0 : 1);
-            diagonal = row[j + 1];
-            row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, replace});
+            row[j + 1] = std::min({row[j] + 1, last[j + 1] + 1, last[j] + (same(i, j) ? 0 : 1)});
+            const bool are_swapped = i > 0 && j > 0 && same(i, j - 1) && same(i - 1, j);
+            if (are_swapped) row[j + 1] = std::min(row[j + 1], before[j - 1] + 1);
         }
+        before.swap(last);
+        last.swap(row);
     }
-    return row.back();
+    return last.back();
 }
 
 // from_chars wants neither blanks nor a plus sign.

@@ -32,8 +32,9 @@ std::optional<std::int64_t> find_integer(std::string_view text);
 // The shortest digits that read back as the same number, with a point or exponent: no whole number.
 std::string format_real(double value);
 
-// The name of `names` that differs from `name` by the fewest single-letter edits, case ignored, if
-// that is one or at most a third of its length; empty otherwise. For "did you mean".
+// The name of `names` that differs from `name` by the fewest edits (a letter more, fewer or
+// another, two neighbours swapped; case ignored), if that is one or at most a third of its length;
+// empty otherwise. For "did you mean".
 std::string_view find_near_name(std::string_view name, std::span<const std::string_view> names);
 
 // "; did you mean 'near'?" or nothing.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <cmath>
+#include <cstdlib>
 #include <optional>
 
 #define GLFW_INCLUDE_NONE
@@ -31,6 +32,9 @@ constexpr std::array key_names = std::to_array<KeyName>({
     {GLFW_KEY_F5, Key::F5},
     {GLFW_KEY_F12, Key::F12},
     {GLFW_KEY_PERIOD, Key::Period},
+    {GLFW_KEY_EQUAL, Key::Plus},
+    {GLFW_KEY_MINUS, Key::Minus},
+    {GLFW_KEY_0, Key::Digit0},
     {GLFW_KEY_1, Key::Digit1},
     {GLFW_KEY_2, Key::Digit2},
     {GLFW_KEY_3, Key::Digit3},
@@ -43,8 +47,10 @@ constexpr std::array key_names = std::to_array<KeyName>({
     {GLFW_KEY_F, Key::F},
     {GLFW_KEY_H, Key::H},
     {GLFW_KEY_L, Key::L},
+    {GLFW_KEY_N, Key::N},
     {GLFW_KEY_O, Key::O},
     {GLFW_KEY_P, Key::P},
+    {GLFW_KEY_Q, Key::Q},
     {GLFW_KEY_R, Key::R},
     {GLFW_KEY_S, Key::S},
     {GLFW_KEY_V, Key::V},
@@ -58,6 +64,13 @@ std::optional<Key> find_key(int glfw, const char* printed) {
     if (printed && printed[0] >= 'a' && printed[0] <= 'z' && printed[1] == 0) {
         glfw = GLFW_KEY_A + (printed[0] - 'a');
     }
+    if ((printed && printed[0] == '+' && printed[1] == 0) || glfw == GLFW_KEY_KP_ADD) {
+        glfw = GLFW_KEY_EQUAL;
+    }
+    if ((printed && printed[0] == '-' && printed[1] == 0) || glfw == GLFW_KEY_KP_SUBTRACT) {
+        glfw = GLFW_KEY_MINUS;
+    }
+    if (glfw == GLFW_KEY_KP_ENTER) glfw = GLFW_KEY_ENTER;
     for (const KeyName& name : key_names) {
         if (name.glfw == glfw) return name.key;
     }
@@ -118,11 +131,12 @@ void Window::listen(GLFWwindow* window) {
     glfwSetKeyCallback(window, [](GLFWwindow* w, int code, int scancode, int action, int mods) {
         Input& input = window_of(w).input_;
         input.shift = (mods & GLFW_MOD_SHIFT) != 0;
-        input.control = (mods & GLFW_MOD_CONTROL) != 0;
         const std::optional<Key> key = find_key(code, glfwGetKeyName(code, scancode));
         if (!key) return;
         input.held[static_cast<std::size_t>(*key)] = action != GLFW_RELEASE;
-        if (action == GLFW_PRESS) input.pressed.push_back(*key);
+        if (action != GLFW_PRESS) return;
+        input.pressed.push_back(
+            {*key, (mods & GLFW_MOD_CONTROL) != 0, (mods & GLFW_MOD_SHIFT) != 0});
     });
     glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int mods) {
         Input& input = window_of(w).input_;
@@ -130,12 +144,20 @@ void Window::listen(GLFWwindow* window) {
         if (button > GLFW_MOUSE_BUTTON_MIDDLE) return;
         const auto index = static_cast<std::size_t>(button);  // left, right, middle, as ours
         input.down[index] = action == GLFW_PRESS;
-        if (action == GLFW_PRESS && button == GLFW_MOUSE_BUTTON_LEFT) press_left(window_of(w));
+        if (action != GLFW_PRESS) return;
+        double x = 0, y = 0;
+        glfwGetCursorPos(w, &x, &y);
+        window_of(w).scale_to_pixels(x, y);
+        input.clicked.push_back({static_cast<MouseButton>(index), x, y});
+        if (button == GLFW_MOUSE_BUTTON_LEFT) press_left(window_of(w));
     });
     glfwSetScrollCallback(
         window, [](GLFWwindow* w, double /*x*/, double y) { window_of(w).input_.wheel += y; });
     glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int /*width*/, int /*height*/) {
         window_of(w).input_.resized = true;
+    });
+    glfwSetWindowContentScaleCallback(window, [](GLFWwindow* w, float /*x*/, float /*y*/) {
+        window_of(w).input_.rescaled = true;
     });
     // A key that is let go elsewhere is never reported here.
     glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int focused) {
@@ -182,21 +204,26 @@ VkExtent2D Window::size() const {
     return {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
 }
 
-const Input& Window::poll() {
-    input_.pressed.clear();
-    input_.double_clicked = false;
-    input_.wheel = 0;
-    input_.resized = false;
-    glfwPollEvents();
-    input_.pad = find_pad();
-    input_.focused = glfwGetWindowAttrib(window_, GLFW_FOCUSED) == GLFW_TRUE;
+void Window::scale_to_pixels(double& x, double& y) const {
     int width = 0, height = 0;
     glfwGetWindowSize(window_, &width, &height);
     const VkExtent2D pixels = size();
-    double x = 0, y = 0;
-    glfwGetCursorPos(window_, &x, &y);
     if (width > 0) x *= static_cast<double>(pixels.width) / width;
     if (height > 0) y *= static_cast<double>(pixels.height) / height;
+}
+
+const Input& Window::poll() {
+    input_.pressed.clear();
+    input_.clicked.clear();
+    input_.double_clicked = false;
+    input_.wheel = 0;
+    input_.resized = input_.rescaled = false;
+    glfwPollEvents();
+    input_.pad = find_pad();
+    input_.focused = glfwGetWindowAttrib(window_, GLFW_FOCUSED) == GLFW_TRUE;
+    double x = 0, y = 0;
+    glfwGetCursorPos(window_, &x, &y);
+    scale_to_pixels(x, y);
     input_.mouse_dx = has_mouse_ ? x - input_.mouse_x : 0;
     input_.mouse_dy = has_mouse_ ? y - input_.mouse_y : 0;
     input_.mouse_x = x;
@@ -206,5 +233,28 @@ const Input& Window::poll() {
 }
 
 bool Window::should_close() const { return glfwWindowShouldClose(window_) == GLFW_TRUE; }
+
+void Window::keep_open() { glfwSetWindowShouldClose(window_, GLFW_FALSE); }
+
+float Window::content_scale() const {
+    float x = 1, y = 1;
+    glfwGetWindowContentScale(window_, &x, &y);
+    return y > 0 ? y : 1;
+}
+
+void Window::capture_cursor(bool is_captured) {
+    if (is_captured == is_captured_) return;
+    is_captured_ = is_captured;
+    glfwSetInputMode(window_, GLFW_CURSOR, is_captured ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
+    has_mouse_ = false;  // where it jumps to is no move of the hand
+}
+
+bool has_display() {
+#if defined(__linux__) || defined(__FreeBSD__)
+    return std::getenv("DISPLAY") || std::getenv("WAYLAND_DISPLAY");
+#else
+    return true;
+#endif
+}
 
 }  // namespace palpa

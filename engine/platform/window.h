@@ -38,6 +38,9 @@ enum class Key {
     F5,
     F12,
     Period,
+    Plus,
+    Minus,
+    Digit0,
     Digit1,
     Digit2,
     Digit3,
@@ -50,8 +53,10 @@ enum class Key {
     F,
     H,
     L,
+    N,
     O,
     P,
+    Q,
     R,
     S,
     V,
@@ -66,6 +71,18 @@ struct PadState {
     bool right_shoulder = false;
 };
 
+// A key as it was pressed, with the modifiers of that moment.
+struct KeyPress {
+    Key key;
+    bool control = false, shift = false;
+};
+
+// Where a button went down, in pixels of the picture.
+struct MousePress {
+    MouseButton button;
+    double x = 0, y = 0;
+};
+
 // What came in since the last poll. Mouse places in pixels of the picture, from the upper left.
 struct Input {
     double mouse_x = 0, mouse_y = 0;
@@ -74,15 +91,20 @@ struct Input {
     std::array<bool, 3> down{};   // by MouseButton, at this moment
     bool double_clicked = false;  // the left one, twice at one place
     std::array<bool, static_cast<std::size_t>(Key::Count)> held{};
-    std::vector<Key> pressed;  // since the last poll, in their order
-    bool shift = false, control = false;
-    bool resized = false;  // of the picture
-    bool focused = true;   // keys are meant for this window
+    std::vector<KeyPress> pressed;    // since the last poll, in their order
+    std::vector<MousePress> clicked;  // the same
+    bool shift = false;               // at this moment
+    bool resized = false;             // of the picture
+    bool rescaled = false;            // of the text, since the window went to another display
+    bool focused = true;              // keys are meant for this window
     std::optional<PadState> pad;
 
     bool is_held(Key key) const { return held[static_cast<std::size_t>(key)]; }
     bool is_down(MouseButton button) const { return down[static_cast<std::size_t>(button)]; }
 };
+
+// Whether there seems to be a display: what a window needs.
+bool has_display();
 
 // One at a time, on the main thread.
 class Window {
@@ -104,6 +126,14 @@ public:
     const Input& poll();
 
     bool should_close() const;
+    // The person wants to stay after all.
+    void keep_open();
+
+    // How many times larger than usual text and controls are wanted on this display.
+    float content_scale() const;
+
+    // While it is captured the cursor is not seen and nothing stops it; it comes back where it was.
+    void capture_cursor(bool is_captured);
 
     // For the overlay library's own listening.
     GLFWwindow* handle() const noexcept { return window_; }
@@ -111,10 +141,11 @@ public:
 private:
     static void listen(GLFWwindow* window);
     static void press_left(Window& window);
+    void scale_to_pixels(double& x, double& y) const;
 
     GLFWwindow* window_ = nullptr;
     Input input_;
-    bool has_mouse_ = false;
+    bool has_mouse_ = false, is_captured_ = false;
     double last_click_s_ = -1, last_click_x_ = 0, last_click_y_ = 0;
 };
 

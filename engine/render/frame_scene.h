@@ -1,6 +1,7 @@
 // What one picture shows, as plain shapes. Lengths in Å, colours in linear RGB from 0 to 1.
 #pragma once
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <vector>
@@ -27,6 +28,7 @@ struct FrameCamera {
     glm::vec3 eye{0, 0, 10}, target{0}, up{0, 1, 0};
     float vertical_angle = 0.6F;  // rad
     float near = 0.1F, far = 1000;
+    glm::vec2 centre{0};  // where the target is seen: to the right and up, in halves of the picture
 };
 
 struct FrameScene {

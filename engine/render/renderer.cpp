@@ -37,6 +37,7 @@ struct GpuFrame {
     glm::vec4 projection, size;
     std::uint32_t spheres;
     std::int32_t outline;
+    glm::vec2 centre;
 };
 static_assert(sizeof(GpuFrame) <= 128, "push constants");
 // What the shapes' pass leaves of a pixel.
@@ -54,7 +55,8 @@ GpuFrame build_frame_constants(const FrameScene& scene, VkExtent2D size) {
     return {{y_scale * height / width, y_scale, camera.near, camera.far},
             {width, height, 1 / width, 1 / height},
             static_cast<std::uint32_t>(scene.spheres.size()),
-            scene.outline};
+            scene.outline,
+            camera.centre};
 }
 
 GpuShape build_shape(const glm::mat4& view, const SphereShape& sphere) {
@@ -188,7 +190,8 @@ glm::vec3 project(const FrameCamera& camera, const glm::vec3& point, std::uint32
     const glm::vec3 view(view_matrix(camera) * glm::vec4(point, 1));
     const auto w = static_cast<float>(width), h = static_cast<float>(height);
     const float scale = 0.5F * h / std::tan(camera.vertical_angle / 2) / -view.z;
-    return {0.5F * w + scale * view.x, 0.5F * h - scale * view.y, -view.z};
+    return {0.5F * w * (1 + camera.centre.x) + scale * view.x,
+            0.5F * h * (1 - camera.centre.y) - scale * view.y, -view.z};
 }
 
 Renderer::Renderer(GpuDevice& device)

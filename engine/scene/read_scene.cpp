@@ -4,6 +4,7 @@
 #include "core/load_error.h"
 #include "core/text.h"
 #include "scene/fields.h"
+#include "scene/find_scene.h"
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
@@ -68,16 +69,6 @@ std::string kind_of(const toml::node& node) {
 
 // ---- which files a scene may name --------------------------------------------------------------
 
-// The scenes that come with the program: installed beside it, or in the source tree of a build.
-std::vector<fs::path> find_own_scenes() {
-    const fs::path program = find_program_folder();
-    if (program.empty()) return {};
-    std::vector<fs::path> folders{program.parent_path() / "share" / "palpa" / "scenes"};
-    const fs::path builds = program.parent_path().parent_path();  // build/PRESET/bin
-    if (builds.filename() == "build") folders.push_back(builds.parent_path() / "scenes");
-    return folders;
-}
-
 // Where links lead.
 fs::path real_path(const fs::path& path) {
     std::error_code error;
@@ -101,7 +92,9 @@ public:
         : file_(std::move(file)), folder_(file_.parent_path()), is_made_(root.contains("made_by")) {
         if (!allows_outside) {
             may_read_ = {real_path(folder_.empty() ? "." : folder_)};
-            for (const fs::path& folder : find_own_scenes()) may_read_.push_back(real_path(folder));
+            for (const fs::path& folder : own_scene_folders()) {
+                may_read_.push_back(real_path(folder));
+            }
         }
         levels_.push_back({&root, "", place_or_start(root), {}, false});
     }
@@ -758,17 +751,7 @@ SceneDescription parse_scene(std::string_view text, const fs::path& file,
 }
 
 SceneDescription read_scene(const fs::path& path, std::span<const std::string> settings) {
-    std::error_code error;
-    if (!fs::exists(path, error)) {
-        throw LoadError({path.string()}, "no such scene; expected a scene folder or a .toml file");
-    }
-    fs::path file = path;
-    if (fs::is_directory(path, error)) {
-        file = path / "scene.toml";
-        if (!fs::exists(file, error)) {
-            throw LoadError({path.string()}, "this folder holds no scene.toml, so it is no scene");
-        }
-    }
+    const fs::path file = find_scene_file(path);
     return parse_scene(read_text_file(file), file, settings);
 }
 

@@ -9,7 +9,8 @@
 
 namespace palpa {
 
-// Reads a scene folder (its scene.toml) or a scene file. `settings` are "key=value" as --set takes
+// Reads a scene folder (its scene.toml), a scene file, or one of our own scenes by name
+// (scene/find_scene.h). `settings` are "key=value" as --set takes
 // them, applied over the file: a key in full ("coupling.mode") or, where only one field ends in it,
 // its last part ("mode"); a value in TOML, or a bare word for text. Throws LoadError with
 // file:line:column, what was read and what would be right, for: a missing file, bad TOML, an

@@ -8,7 +8,8 @@
 
 namespace palpa {
 
-// Steps are done in their order; one that is done stays done.
+// Steps are done in their order. One that is done stays on screen until the person goes on, which
+// is not before there was time to read it.
 class Lesson {
 public:
     explicit Lesson(std::vector<LessonStepDescription> steps) : steps_(std::move(steps)) {}
@@ -20,16 +21,25 @@ public:
     // The step to be done now; the number of steps where all are done.
     std::size_t current() const noexcept { return current_; }
     bool is_done() const noexcept { return current_ == steps_.size(); }
+    // The present step was done, and may be left.
+    bool is_step_done() const noexcept { return step_done_; }
+    std::size_t steps_done() const noexcept { return current_ + (step_done_ ? 1 : 0); }
+    bool can_go_on() const noexcept { return step_done_ && shown_s_ > shortest_s; }
     // How much of the present step's time has passed, 0 to 1.
     double share() const noexcept;
 
+    // To the next step, where can_go_on(); returns whether it did.
+    bool go_on() noexcept;
     void skip() noexcept;
     void restart() noexcept;
+
+    static constexpr double shortest_s = 3;  // that a step is on screen
 
 private:
     std::vector<LessonStepDescription> steps_;
     std::size_t current_ = 0;
-    double held_s_ = 0;
+    bool step_done_ = false;
+    double held_s_ = 0, shown_s_ = 0;
 };
 
 }  // namespace palpa

@@ -282,8 +282,11 @@ std::string format_summary(const SceneDescription& scene, const Summary& summary
         json["ripple_N"] = json["ripple_Hz"] = nullptr;
     }
     json["net_work_J"] = summary.net_work_J;
-    json["largest_attraction_N"] = summary.largest_attraction_N;
-    json["largest_repulsion_N"] = summary.largest_repulsion_N;
+    json["largest_felt_N"] = summary.largest_felt_N;
+    if (summary.is_on_axis) {
+        json["largest_attraction_N"] = summary.largest_attraction_N;
+        json["largest_repulsion_N"] = summary.largest_repulsion_N;
+    }
     json["closest_angstrom"] = summary.closest_angstrom;
     json["last_angstrom"] = summary.last_angstrom;
     if (summary.activity) {

@@ -47,8 +47,13 @@ void Statistics::add(const ServoTick& tick) {
     running_.went_through = running_.went_through || beyond;
     running_.last_angstrom = beyond ? -distance : distance;
     running_.net_work_J = tick.hand_energy_J;
-    running_.largest_attraction_N = std::max(running_.largest_attraction_N, -tick.sent_newton.x());
-    running_.largest_repulsion_N = std::max(running_.largest_repulsion_N, tick.sent_newton.x());
+    running_.largest_felt_N = std::max(running_.largest_felt_N, tick.sent_newton.norm());
+    running_.is_on_axis = tick.touch.active_freedom <= 1;
+    if (running_.is_on_axis) {
+        const double apart = tick.sent_newton.x();
+        running_.largest_attraction_N = std::max(running_.largest_attraction_N, -apart);
+        running_.largest_repulsion_N = std::max(running_.largest_repulsion_N, apart);
+    }
     running_.stopped = tick.stopped;
     running_.is_safety_full = running_.is_safety_full && tick.is_safety_full;
     if (tick.clamped) ++clamped_ticks_;

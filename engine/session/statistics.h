@@ -33,12 +33,15 @@ struct Summary {
     double step_median_us = 0, step_p99_us = 0;  // wall time
     std::optional<Ripple> ripple;  // of the device force, along the axis where it is most, last 4 s
     double net_work_J = 0;         // done on the hand; + = generated
-    double largest_attraction_N = 0;  // felt, along -x
-    double largest_repulsion_N = 0;   // felt, along +x
-    double closest_angstrom = 0;      // smallest distance of the reference atoms
-    double last_angstrom = 0;         // negative on the other side
-    bool went_through = false;        // the molecule came out on the other side
-    double clamped_share = 0;         // of the time
+    double largest_felt_N = 0;     // in any direction
+    // Where the molecule in hand has one axis: what drew it to the other one, and what drove it
+    // away.
+    bool is_on_axis = true;
+    double largest_attraction_N = 0, largest_repulsion_N = 0;
+    double closest_angstrom = 0;  // smallest distance of the reference atoms
+    double last_angstrom = 0;     // negative on the other side
+    bool went_through = false;    // the molecule came out on the other side
+    double clamped_share = 0;     // of the time
     // Of the time in which something was wrong that held the force back, and the gravest of that.
     double safety_share = 0;
     SafetyStage gravest = SafetyStage::None;

@@ -1,8 +1,11 @@
 #include "ui/backend.h"
 
+#include "ui/layout.h"
+
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_vulkan.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 #include <filesystem>
 #include <system_error>
 
@@ -32,8 +35,8 @@ void add_font(float text_pixels) {
 
 }  // namespace
 
-void set_ui_style(float text_pixels) {
-    add_font(text_pixels);
+void set_ui_style(float text_scale) {
+    add_font(usual_text * text_scale);
     ImGui::StyleColorsLight();
     ImGuiStyle& style = ImGui::GetStyle();
     style.WindowRounding = 6;
@@ -41,6 +44,7 @@ void set_ui_style(float text_pixels) {
     style.WindowBorderSize = 0;
     style.WindowPadding = {10, 8};
     style.ItemSpacing = {8, 5};
+    style.ScaleAllSizes(text_scale);
     style.Colors[ImGuiCol_WindowBg] = {1, 1, 1, 0.86F};
     style.Colors[ImGuiCol_PopupBg] = {1, 1, 0.97F, 0.97F};
     style.Colors[ImGuiCol_TitleBg] =
@@ -49,7 +53,7 @@ void set_ui_style(float text_pixels) {
 }
 
 UiBackend::UiBackend(const Window& window, GpuDevice& device, VkRenderPass pass,
-                     std::uint32_t images)
+                     std::uint32_t images, float text_scale)
     : device_(device) {
     const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 4};
     VkDescriptorPoolCreateInfo pool{};
@@ -63,7 +67,7 @@ UiBackend::UiBackend(const Window& window, GpuDevice& device, VkRenderPass pass,
 
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr;
-    set_ui_style(15);
+    set_ui_style(text_scale);
     ImGui_ImplGlfw_InitForVulkan(window.handle(), true);
     ImGui_ImplVulkan_InitInfo info{};
     info.Instance = device.instance();
@@ -101,6 +105,18 @@ void UiBackend::draw(VkCommandBuffer commands) {
 }
 
 bool UiBackend::wants_mouse() const { return ImGui::GetIO().WantCaptureMouse; }
+
+bool UiBackend::covers(double x, double y) const {
+    const ImVec2 place{static_cast<float>(x), static_cast<float>(y)};
+    for (const ImGuiWindow* const window : ImGui::GetCurrentContext()->Windows) {
+        const bool takes_mouse = (window->Flags & ImGuiWindowFlags_NoMouseInputs) == 0;
+        if (window->WasActive && !window->Hidden && takes_mouse &&
+            window->OuterRectClipped.Contains(place)) {
+            return true;
+        }
+    }
+    return false;
+}
 
 bool UiBackend::wants_keys() const { return ImGui::GetIO().WantTextInput; }
 

@@ -4,6 +4,8 @@
 #include "session/commands.h"
 #include "session/lesson.h"
 #include "ui/history.h"
+#include "ui/layout.h"
+#include "ui/plot.h"
 #include "ui/shortcuts.h"
 
 #include <optional>
@@ -17,6 +19,7 @@ namespace palpa {
 struct DeviceOffer {
     std::string name, summary;  // as --device takes it; in a few words
     bool is_there = true;       // as far as can be seen
+    bool is_stand_in = false;   // for hardware: taken only when asked for, and never remembered
 };
 
 // What the window knows beside the readout.
@@ -53,8 +56,14 @@ public:
     // The hand feels a spring, at this moment, that it cannot keep calm at the present period.
     bool is_shaking(const Readout& readout) const;
 
-    // Pixels at the left and at the right that the overlays cover, of a window that wide.
-    float covered_pixels(float window_width) const noexcept;
+    // What no panel covers, of a window of that size in pixels: the picture's middle.
+    ScreenArea free_area(float width, float height) const;
+
+    // Closes an open list or the help; false where there is nothing to close.
+    bool close_something();
+
+    // Of the curves as they are drawn, between their axes, pixels.
+    float plot_height() const noexcept { return plot_height_; }
 
     const LiveSettings& settings() const noexcept { return settings_; }
     const Lesson& lesson() const noexcept { return lesson_; }
@@ -62,16 +71,24 @@ public:
 private:
     void draw_scene(const Readout& readout, const OverlayStatus& status,
                     std::vector<Command>& commands, std::vector<Action>& actions);
+    void draw_buttons(const Readout& readout, std::vector<Action>& actions);
+    void choose_mode(std::vector<Command>& commands);
     void draw_readings(const Readout& readout, const OverlayStatus& status,
                        std::vector<Action>& actions);
+    void draw_machine(const Readout& readout, const OverlayStatus& status);
     void choose_device(const OverlayStatus& status);
-    void draw_exactness(const Readout& readout);
+    void draw_comparison(const Readout& readout);
+    void draw_right_panel(std::vector<Command>& commands);
     void draw_gains(std::vector<Command>& commands);
     void draw_gain_sliders();
     void choose_laws();
     void choose_range();
-    void draw_history();
+    void draw_over_time();
+    void draw_over_separation();
+    void draw_traces(std::string_view x_label, PlotRange across);
+    void fill_from_history(std::vector<double>& values, double (*value)(const Reading&));
     void draw_lesson();
+    void draw_lesson_step(std::size_t count);
     void draw_warnings(const Readout& readout, const OverlayStatus& status);
     void draw_help();
 
@@ -89,9 +106,10 @@ private:
     LiveSettings settings_, before_edit_;
     std::vector<LiveSettings> undo_, redo_;
     ViewSettings view_;
+    bool has_flexible_;           // molecules
     double stiffness_limit_ = 0;  // N/m that this hand keeps calm at the present period
     // How long each warning stays.
-    double shaking_for_s_ = 0, clamped_for_s_ = 0, late_for_s_ = 0;
+    double shaking_for_s_ = 0, clamped_for_s_ = 0, late_for_s_ = 0, at_wall_for_s_ = 0;
 
     Lesson lesson_;
     History history_;
@@ -103,11 +121,18 @@ private:
     bool went_through_ = false;
     bool wants_pause_ = false;
     double force_gain_ = 0;
-    float gains_bottom_ = 0;  // pixels, where the next panel of that column may begin
+    float sliders_height_ = 0, plot_height_ = 0;  // pixels, as drawn last
+    float left_covered_ = 0, right_covered_ = 0;  // pixels, by the panels
 
     std::optional<std::string> device_;  // just chosen
     bool shows_overlays_ = true, shows_lesson_ = true, shows_help_ = false;
     std::vector<double> x_, y_, z_;  // of the plots, kept for their room
 };
+
+// Centimetres that the handle goes for one Å of the molecule.
+double cm_per_angstrom(double displacement_gain);
+
+// The stiffness that the hand feels at this moment (N/m), at most, in the paper's modes.
+double felt_stiffness(const CouplingLaws& laws, const TouchModel& touch);
 
 }  // namespace palpa

@@ -51,10 +51,13 @@ void draw_axes(ImDrawList& list, const Area& area, const Plot& plot) {
 
 void draw_legend(ImDrawList& list, const Area& area, const Plot& plot) {
     float right = area.high.x;
+    // Where there is no room beside the label, the curve is known by it.
+    const float label = area.low.x + ImGui::CalcTextSize(std::string(plot.y_label).c_str()).x;
     for (auto line = plot.lines.rbegin(); line != plot.lines.rend(); ++line) {
         if (line->name.empty()) continue;
         const std::string name(line->name);
         right -= ImGui::CalcTextSize(name.c_str()).x + 10;
+        if (right < label) return;
         list.AddText({right, area.low.y - ImGui::GetTextLineHeight() - 2}, line->colour,
                      name.c_str());
     }
@@ -83,16 +86,19 @@ std::vector<double> round_ticks(PlotRange range, int count) {
     return ticks;
 }
 
+float plot_label_height(bool has_x_label) {
+    const float line = ImGui::GetTextLineHeight();
+    return line + 4 + (has_x_label ? 2 * line + 3 : 4);
+}
+
 void draw_plot(const char* id, const Plot& plot, float height) {
     const float line = ImGui::GetTextLineHeight();
     const ImVec2 from = ImGui::GetCursorScreenPos();
     const float width = ImGui::GetContentRegionAvail().x;
     ImGui::InvisibleButton(id, {std::max(width, 80.0F), height});
-    const Area area{{from.x + 3.2F * line, from.y + line + 4},
-                    {from.x + std::max(width, 80.0F) - 8,
-                     from.y + height - (plot.x_label.empty() ? 4 : 2 * line + 3)},
-                    plot.x,
-                    plot.y};
+    const ImVec2 low{from.x + 3.2F * line, from.y + line + 4};
+    const float axes = height - plot_label_height(!plot.x_label.empty());
+    const Area area{low, {from.x + std::max(width, 80.0F) - 8, low.y + axes}, plot.x, plot.y};
     ImDrawList& list = *ImGui::GetWindowDrawList();
     draw_axes(list, area, plot);
     draw_legend(list, area, plot);

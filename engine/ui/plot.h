@@ -35,7 +35,10 @@ struct Plot {
     std::span<const PlotPoint> points{};
 };
 
-// Draws the plot at the cursor, `height` pixels high and as wide as the window.
+// What the labels of a plot take of its height, pixels.
+float plot_label_height(bool has_x_label);
+
+// Draws the plot at the cursor, `height` pixels high with its labels and as wide as the window.
 void draw_plot(const char* id, const Plot& plot, float height);
 
 }  // namespace palpa

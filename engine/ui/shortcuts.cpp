@@ -8,13 +8,14 @@ namespace {
 constexpr std::array list = std::to_array<Shortcut>({
     {Key::P, false, Action::PauseOrGo, "P", "pause, go on"},
     {Key::Period, false, Action::StepOnce, ".", "one single step"},
-    {Key::R, false, Action::Reset, "R", "back to the start"},
+    {Key::R, false, Action::Reset, "R", "molecules and view back to the start"},
     {Key::Digit1, false, Action::Mode1, "1", "variable force and displacement gain"},
     {Key::Digit2, false, Action::Mode2, "2", "variable force gain"},
     {Key::Digit3, false, Action::Mode3, "3", "variable displacement gain"},
     {Key::Digit4, false, Action::Mode4, "4", "constant gains"},
     {Key::Digit5, false, Action::Mode5, "5", "no force"},
     {Key::Digit6, false, Action::Guarded, "6", "guarded coupling"},
+    {Key::S, true, Action::Save, "Ctrl+S", "save the scene as set, to a new file"},
     {Key::Z, true, Action::Undo, "Ctrl+Z", "undo a change of the settings"},
     {Key::Y, true, Action::Redo, "Ctrl+Y", "do it again"},
     {Key::V, false, Action::NextRepresentation, "V", "another representation"},
@@ -24,14 +25,19 @@ constexpr std::array list = std::to_array<Shortcut>({
     {Key::A, false, Action::FrameAll, "A", "look at everything"},
     {Key::O, false, Action::ToggleOverlay, "O", "overlays on, off"},
     {Key::Tab, false, Action::ToggleOverlay, "Tab", "overlays on, off"},
+    {Key::Enter, false, Action::NextLessonStep, "Enter", "next step of the lesson"},
+    {Key::N, false, Action::NextLessonStep, "N", "next step of the lesson"},
     {Key::L, false, Action::ToggleLesson, "L", "lesson on, off"},
     {Key::H, false, Action::ToggleHelp, "H", "this list"},
     {Key::F1, false, Action::ToggleHelp, "F1", "this list"},
     {Key::D, false, Action::NextDevice, "D", "another device"},
     {Key::S, false, Action::ToggleSound, "S", "force as a tone on, off"},
+    {Key::Plus, true, Action::LargerText, "Ctrl++", "larger text"},
+    {Key::Minus, true, Action::SmallerText, "Ctrl+-", "smaller text"},
+    {Key::Digit0, true, Action::UsualText, "Ctrl+0", "text as large as usual"},
     {Key::F12, false, Action::Screenshot, "F12", "screenshot"},
     {Key::F5, false, Action::RestartGraphics, "F5", "set the graphics up again"},
-    {Key::Escape, false, Action::Quit, "Esc", "quit"},
+    {Key::Escape, false, Action::Quit, "Esc", "close a list or this help; quit"},
 });
 
 constexpr std::array gesture_list = std::to_array<Gesture>({
@@ -56,6 +62,23 @@ std::optional<Action> find_action(Key key, bool control) noexcept {
         if (shortcut.key == key && shortcut.control == control) return shortcut.action;
     }
     return std::nullopt;
+}
+
+std::vector<HelpLine> list_help() {
+    std::vector<HelpLine> lines;
+    for (const Gesture& gesture : gesture_list) {
+        lines.push_back({std::string(gesture.name), std::string(gesture.does)});
+    }
+    const Shortcut* before = nullptr;
+    for (const Shortcut& shortcut : list) {
+        if (before && before->action == shortcut.action) {
+            lines.back().keys += ", " + std::string(shortcut.name);
+        } else {
+            lines.push_back({std::string(shortcut.name), std::string(shortcut.does)});
+        }
+        before = &shortcut;
+    }
+    return lines;
 }
 
 }  // namespace palpa

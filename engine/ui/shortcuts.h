@@ -4,7 +4,9 @@
 
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace palpa {
 
@@ -27,9 +29,14 @@ enum class Action {
     ToggleOverlay,
     ToggleLesson,
     ToggleHelp,
+    NextLessonStep,
     NextDevice,
     ToggleSound,
     Screenshot,
+    Save,
+    LargerText,
+    SmallerText,
+    UsualText,
     RestartGraphics,
     Quit
 };
@@ -52,5 +59,11 @@ struct Gesture {
 std::span<const Gesture> gestures() noexcept;
 
 std::optional<Action> find_action(Key key, bool control) noexcept;
+
+// All of it, for the help: the keys of one action together.
+struct HelpLine {
+    std::string keys, does;
+};
+std::vector<HelpLine> list_help();
 
 }  // namespace palpa

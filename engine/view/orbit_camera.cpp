@@ -62,11 +62,12 @@ void carry(OrbitCamera& camera, const HandRate& rate, double dt_s) {
     orbit(camera, -turn.y(), turn.x());
 }
 
-void frame_all(OrbitCamera& camera, const FrameScene& frame, float aspect) {
-    frame_shapes(camera, balls_of(frame), aspect);
+void frame_all(OrbitCamera& camera, const FrameScene& frame, float aspect, float share) {
+    frame_shapes(camera, balls_of(frame), aspect, share);
 }
 
-void frame_shapes(OrbitCamera& camera, std::span<const SphereShape> shapes, float aspect) {
+void frame_shapes(OrbitCamera& camera, std::span<const SphereShape> shapes, float aspect,
+                  float share) {
     if (shapes.empty()) return;
     const glm::vec3 right = rightward(camera), up = upward(camera), back = backward(camera);
     const auto across = [&](const glm::vec3& p) {
@@ -85,8 +86,8 @@ void frame_shapes(OrbitCamera& camera, std::span<const SphereShape> shapes, floa
         const glm::vec3 off = across(shape.centre) - middle;
         const glm::vec3 reach = glm::abs(off) + shape.radius;
         const float before = off.z + shape.radius;
-        camera.distance = std::max(camera.distance,
-                                   before + margin * std::max(reach.y, reach.x / aspect) / slope);
+        camera.distance = std::max(
+            camera.distance, before + margin * std::max(reach.y / share, reach.x / aspect) / slope);
     }
 }
 

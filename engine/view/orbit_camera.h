@@ -36,10 +36,12 @@ void zoom(OrbitCamera& camera, float factor);
 // with the hand, but never over, and does not roll.
 inline constexpr double carried_m = 0.060;
 void carry(OrbitCamera& camera, const HandRate& rate, double dt_s);
-// All shapes, or these, fit a picture of that aspect with a margin, seen in the direction in which
-// the camera looks. Where there are none, nothing changes.
-void frame_all(OrbitCamera& camera, const FrameScene& frame, float aspect);
-void frame_shapes(OrbitCamera& camera, std::span<const SphereShape> shapes, float aspect);
+// All shapes, or these, fit with a margin into the room that the picture has for them, seen in the
+// direction in which the camera looks. `aspect` and `share`: the room's width and height over the
+// height of the picture. Where there are no shapes, nothing changes.
+void frame_all(OrbitCamera& camera, const FrameScene& frame, float aspect, float share = 1);
+void frame_shapes(OrbitCamera& camera, std::span<const SphereShape> shapes, float aspect,
+                  float share = 1);
 // Looks at one place, from near.
 void focus(OrbitCamera& camera, const glm::vec3& place, float distance);
 

@@ -77,9 +77,9 @@ class Session(unittest.TestCase):
             time.sleep(0.05)
         self.fail("waited in vain for " + what)
 
-    def start(self, display, *options):
+    def start(self, display, *options, scene=ROOT / "scenes" / "water"):
         self.program = subprocess.Popen(
-            [PROGRAM, "run", ROOT / "scenes" / "water", "--screenshots", self.folder, "--json",
+            [PROGRAM, "run", scene, "--screenshots", self.folder, "--json",
              "--validation", *map(str, options)],
             env={**os.environ, "DISPLAY": display.name, "XDG_CONFIG_HOME": str(self.folder)},
             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
@@ -104,8 +104,12 @@ class Session(unittest.TestCase):
         (engine/sound/tone.h)."""
         self.wait_until(lambda: max(self.last_sound(), default=0) > amplitude, "a tone")
 
-    def quit(self, display):
+    def quit(self, display, *, changed=False):
         display.do("key", "Escape")
+        if changed:  # asked whether to save
+            self.screenshot(display)
+            self.assertIsNone(self.program.poll(), "it did not ask")
+            display.do("key", "q")
         out, err = self.program.communicate(timeout=60)
         self.assertEqual(self.program.returncode, 0, err)
         return json.loads(out)
@@ -132,11 +136,11 @@ class Session(unittest.TestCase):
 
             # The first slider of the gains, A_f max, to its far right.
             # A screenshot between two events makes sure that a frame has seen the first.
-            display.do("mousemove", 1000, 323)
+            display.do("mousemove", 1000, 535)
             self.screenshot(display)
             display.do("mousedown", 1)
             self.screenshot(display)
-            display.do("mousemove", 1178, 323)
+            display.do("mousemove", 1180, 535)
             self.screenshot(display)
             display.do("mouseup", 1)
             self.screenshot(display)
@@ -147,7 +151,7 @@ class Session(unittest.TestCase):
             display.do("windowsize", "--sync", display.find_window()[0], 900, 600)
             self.wait_until(lambda: size_of_png(self.screenshot(display)) == (900, 600),
                             "the new size")
-            summary = self.quit(display)
+            summary = self.quit(display, changed=True)
 
         self.assertLess(summary["closest_angstrom"], 6.5)
         self.assertEqual(summary["warnings"], [])
@@ -203,19 +207,120 @@ class Session(unittest.TestCase):
 
     def test_a_device_that_was_chosen_is_remembered(self):
         chosen = self.folder / "palpa" / "preferences.toml"
+        os.environ["PALPA_STUB"] = "free"
+        try:
+            with Display() as display:
+                self.start(display)
+                display.do("key", "d")
+                self.wait_until(lambda: 'device = "omni"' in chosen.read_text().replace("'", '"'),
+                                "the choice on disk")
+                self.assertEqual(self.quit(display)["device"], "emulated PHANTOM Omni")
+
+                for file in self.folder.glob("*.png"):
+                    file.unlink()
+                self.start(display)
+                summary = self.quit(display)
+        finally:
+            del os.environ["PALPA_STUB"]
+        self.assertEqual(summary["device"], "emulated PHANTOM Omni")
+
+    def test_without_hardware_an_emulated_device_is_asked_for_and_forgotten(self):
+        chosen = self.folder / "palpa" / "preferences.toml"
         with Display() as display:
             self.start(display)
             display.do("key", "d")  # the Omni's library is there, but nothing on the bus
-            self.wait_until(chosen.exists, "the choice on disk")
+            self.screenshot(display)
+            display.do("key", "Escape")  # no
+            self.screenshot(display)
+            display.do("key", "d")
+            self.screenshot(display)
+            display.do("key", "y")
             self.screenshot(display)
             self.assertEqual(self.quit(display)["device"], "emulated Omni")
-            self.assertIn('device = "emulated"', chosen.read_text().replace("'", '"'))
+        self.assertNotIn("device", chosen.read_text())
 
-            for file in self.folder.glob("*.png"):
-                file.unlink()
+    def test_alone_it_opens_the_scene_of_last_time(self):
+        with Display() as display:
+            self.start(display, scene=ROOT / "scenes" / "water" / "space.toml")
+            self.quit(display)
+            self.program = subprocess.Popen(
+                [PROGRAM], cwd=self.folder, text=True, stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                env={**os.environ, "DISPLAY": display.name, "XDG_CONFIG_HOME": str(self.folder)})
+            self.wait_until(display.focus_window, "the window")
+            self.wait_until(lambda: self.try_screenshot(display), "a picture")
+            display.do("key", "Escape")
+            out, err = self.program.communicate(timeout=60)
+        self.assertEqual(self.program.returncode, 0, err)
+        self.assertIn("Two waters in space", out)
+
+    def try_screenshot(self, display):
+        display.do("key", "F12")
+        return list(self.folder.glob("palpa-*.png"))
+
+    def test_a_scene_is_saved_as_set_and_can_be_run(self):
+        scene = Path(shutil.copytree(ROOT / "scenes" / "water", self.folder / "mine"))
+        with Display() as display:
+            self.start(display, scene=scene)
+            display.do("key", "2")
+            display.do("key", "ctrl+s")
+            saved = scene / "scene-2.toml"
+            self.wait_until(saved.exists, "the saved scene")
+            display.do("key", "3")
+            # A quick undo: both keys between two pictures.
+            display.do("key", "ctrl+z")
+            self.screenshot(display)
+            self.quit(display)  # as saved again: nothing to ask
+        self.assertIn('mode = "2"', saved.read_text())
+        self.assertFalse((scene / "scene-3.toml").exists())
+        for options in ((saved, "--check"), (saved, "--headless", "--seconds", "0.1")):
+            result = subprocess.run([PROGRAM, "run", *options], capture_output=True, text=True)
+            self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("mode 2", result.stdout)
+
+    def test_escape_closes_what_is_open_before_it_quits(self):
+        with Display() as display:
             self.start(display)
-            summary = self.quit(display)
-        self.assertEqual(summary["device"], "emulated Omni")
+            display.do("mousemove", 150, 101, "click", 1)  # the list of modes
+            self.screenshot(display)
+            display.do("key", "Escape")
+            self.screenshot(display)
+            display.do("key", "h", "key", "Escape")  # the help
+            self.screenshot(display)
+            display.do("key", "4")
+            display.do("key", "Escape")  # asks
+            self.screenshot(display)
+            display.do("key", "Escape")  # stays
+            self.screenshot(display)
+            self.assertIsNone(self.program.poll())
+            self.quit(display, changed=True)
+
+    def test_a_drag_from_a_slider_does_not_turn_the_view(self):
+        """Pressed and moved away at once, before a picture could see the mouse on the panel."""
+        with Display() as display:
+            self.start(display, "--set", "stroke=hold")
+            display.do("key", "p")
+            before = self.middle_of(self.screenshot(display))
+            display.do("mousemove", 1000, 535, "mousedown", 1, "mousemove", 640, 330, "mousemove",
+                       500, 300)
+            self.screenshot(display)
+            display.do("mousemove", 620, 430, "mouseup", 1)
+            self.screenshot(display)
+            display.do("key", "ctrl+z")
+            after = self.middle_of(self.screenshot(display))
+            self.assertEqual(before, after)
+            # The same way from the picture turns it.
+            display.do("mousemove", 640, 330, "mousedown", 1, "mousemove", 500, 300)
+            self.screenshot(display)
+            display.do("mouseup", 1)
+            self.assertNotEqual(before, self.middle_of(self.screenshot(display)))
+            self.quit(display)
+
+    def middle_of(self, picture):
+        """Its pixels between the panels, below the notes and above the lesson."""
+        result = subprocess.run(["convert", picture, "-crop", "540x400+370+110", "rgb:-"],
+                                capture_output=True, check=True)
+        return result.stdout
 
     def test_a_device_that_is_gone_is_said_and_not_forgotten(self):
         chosen = self.folder / "palpa" / "preferences.toml"

@@ -133,6 +133,9 @@ TEST_CASE("a near name is one edit away, or a third of the letters", "[core][tex
     CHECK(find_near_name("mde", names) == "mode");
     CHECK(find_near_name("mide", names) == "mode");
     CHECK(find_near_name("me", names).empty());
+    CHECK(find_near_name("mdoe", names) == "mode");  // two neighbours swapped are one
+    CHECK(find_near_name("TO", names) == "OT");
+    CHECK(find_near_name("mdeo", names).empty());
     CHECK(find_near_name("OX", names) == "OT");
     CHECK(find_near_name("anything", {}).empty());
     // Nothing is near to no name, though "x" is one edit away.
@@ -150,7 +153,7 @@ TEST_CASE("of two near names the nearer one is told, of equals the first", "[cor
 TEST_CASE("the hint is ready to stand behind a message", "[core][text]") {
     const std::array names = std::to_array<std::string_view>({"mode"});
 
-    CHECK(near_name_hint("moed", names).empty());
+    CHECK(near_name_hint("moad", names).empty());
     CHECK(near_name_hint("mod", names) == "; did you mean 'mode'?");
 }
 

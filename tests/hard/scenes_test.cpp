@@ -14,7 +14,7 @@
 #include "tests/support/paths.h"
 #include "tests/support/replaced.h"
 #include "tests/support/temporary_folder.h"
-#include "tools/run.h"
+#include "tools/hands.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>

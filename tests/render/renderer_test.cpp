@@ -55,6 +55,32 @@ TEST_CASE("a sphere is seen at its centre, as near as its front", "[render][gpu]
     test::check_silent(device);
 }
 
+TEST_CASE("a picture's middle can be moved, and what is seen moves with it", "[render][gpu]") {
+    GpuDevice device(test::validated());
+    Renderer renderer(device);
+    FrameScene scene;
+    scene.camera.eye = {0, 0, 12};
+    scene.camera.centre = {0.5F, -0.25F};
+    scene.spheres = {{{0, 0, 0}, 0.5F, {1, 0, 0}, 7}};
+    scene.cones = {{{-1, 1, 0}, {-2, 1, 0}, 0.2F, 0.2F, {1, 1, 1}, {1, 1, 1}, 8}};
+
+    const Picture picture = renderer.draw(scene, width, height);
+
+    // Half of the half width to the right, a quarter of the half height down.
+    const auto pick_at = [&](double x, double y) {
+        return picture.picks[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)];
+    };
+    CHECK(pick_at(160 + 80, 120 + 30) == 7);
+    CHECK(pick_at(160, 120) == Picture::nothing_seen);
+    CHECK(picture.depth[150 * width + 240] == Approx(11.5).epsilon(0.001));
+    const double pixels_per_angstrom = 120 / std::tan(0.3) / 12;
+    CHECK(pick_at(240 - 1.5 * pixels_per_angstrom, 150 - pixels_per_angstrom) == 8);
+    const glm::vec3 there = project(scene.camera, {-1.5F, 1, 0}, width, height);
+    CHECK(there.x == Approx(240 - 1.5 * pixels_per_angstrom));
+    CHECK(there.y == Approx(150 - pixels_per_angstrom));
+    test::check_silent(device);
+}
+
 TEST_CASE("a sphere's outline is as large as perspective makes it", "[render][gpu]") {
     GpuDevice device(test::validated());
     Renderer renderer(device);

@@ -7,7 +7,7 @@
 #include "simulation/simulation.h"
 #include "simulation/step.h"
 #include "tests/support/paths.h"
-#include "tools/run.h"
+#include "tools/hands.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

@@ -32,10 +32,12 @@ Lesson play_water(const std::vector<std::string>& settings, Lesson lesson) {
         (void)step_simulation(simulation, hand, felt);
         return simulation.touch;
     };
-    run_lockstep(
-        {static_cast<std::uint64_t>(scene.seconds * servo_rate_hz), 1},
-        build_servo_settings(scene, simulation), device, simulation.touch.model, step,
-        [&](const ServoTick& tick) { lesson.update(read_tick(tick), scene.coupling.mode); });
+    run_lockstep({static_cast<std::uint64_t>(scene.seconds * servo_rate_hz), 1},
+                 build_servo_settings(scene, simulation), device, simulation.touch.model, step,
+                 [&](const ServoTick& tick) {
+                     lesson.update(read_tick(tick), scene.coupling.mode);
+                     lesson.go_on();
+                 });
     return lesson;
 }
 
@@ -47,7 +49,7 @@ TEST_CASE("a step is done when its value held for its time without a break", "[s
     Reading reading;
     reading.distance_angstrom = 2.5;
     for (int tick = 0; tick < 9; ++tick) lesson.update(reading, mode_2);
-    CHECK(lesson.current() == 0);
+    CHECK_FALSE(lesson.is_step_done());
     CHECK(lesson.share() == Approx(0.9));
 
     reading.distance_angstrom = 3.5;  // a break: the time starts again
@@ -55,32 +57,59 @@ TEST_CASE("a step is done when its value held for its time without a break", "[s
     CHECK(lesson.share() == 0);
     reading.distance_angstrom = 3.0;
     for (int tick = 0; tick < 10; ++tick) lesson.update(reading, mode_2);
-    CHECK(lesson.current() == 1);
+    CHECK(lesson.is_step_done());
+    CHECK(lesson.share() == 1);
+    reading.distance_angstrom = 9;  // what is done stays done
+    lesson.update(reading, mode_2);
+    CHECK(lesson.is_step_done());
+}
 
-    reading.molecular_nN = -0.29;
-    lesson.update(reading, mode_2);
-    CHECK_FALSE(lesson.is_done());
-    reading.molecular_nN = -0.3;
-    lesson.update(reading, mode_2);
+TEST_CASE("a step stays on screen for three seconds, and until the person goes on",
+          "[session][lesson]") {
+    Lesson lesson(
+        {step_of(LessonQuantity::Force, {}, -0.3), step_of(LessonQuantity::Force, {}, 9)});
+    Reading pulled;
+    pulled.molecular_nN = -0.3;
+    lesson.update(pulled, mode_2);
+    CHECK(lesson.is_step_done());
+    for (int tick = 1; tick < 2999; ++tick) lesson.update(pulled, mode_2);
+    CHECK_FALSE(lesson.go_on());
+    for (int tick = 0; tick < 3000; ++tick) lesson.update(pulled, mode_2);
+    CHECK(lesson.current() == 0);  // nobody went on
+    CHECK(lesson.steps_done() == 1);
+    CHECK(lesson.go_on());
+    CHECK(lesson.current() == 1);
+    CHECK_FALSE(lesson.is_step_done());
+    CHECK_FALSE(lesson.go_on());
+
+    // A step that is not done is left by skipping it alone.
+    for (int tick = 0; tick < 4000; ++tick) lesson.update({.molecular_nN = 10}, mode_2);
+    CHECK_FALSE(lesson.go_on());
+    lesson.skip();
     CHECK(lesson.is_done());
-    lesson.update(reading, mode_2);  // nothing left to do
+    lesson.update(pulled, mode_2);  // nothing left to do
     CHECK(lesson.current() == 2);
     lesson.restart();
     CHECK(lesson.current() == 0);
+    CHECK_FALSE(lesson.is_step_done());
 }
 
 TEST_CASE("a step can ask for what the hand feels, and for a mode as the keys count it",
           "[session][lesson]") {
-    Lesson lesson(
-        {step_of(LessonQuantity::FeltForce, 1.0, {}), step_of(LessonQuantity::Mode, 4.0, 4.0)});
+    Lesson felt({step_of(LessonQuantity::FeltForce, 1.0, {})});
     Reading reading;
+    reading.hand_N = 0.9;
+    felt.update(reading, mode_2);
+    CHECK_FALSE(felt.is_step_done());
     reading.hand_N = 1.5;
-    lesson.update(reading, mode_2);
-    REQUIRE(lesson.current() == 1);
-    lesson.update(reading, mode_2);
-    CHECK(lesson.current() == 1);
-    lesson.update(reading, CouplingMode::ConstantForceConstantDisplacement);
-    CHECK(lesson.is_done());
+    felt.update(reading, mode_2);
+    CHECK(felt.is_step_done());
+
+    Lesson mode({step_of(LessonQuantity::Mode, 4.0, 4.0)});
+    mode.update(reading, mode_2);
+    CHECK_FALSE(mode.is_step_done());
+    mode.update(reading, CouplingMode::ConstantForceConstantDisplacement);
+    CHECK(mode.is_step_done());
 }
 
 TEST_CASE("on one axis what drives apart is positive, in three dimensions a force is a norm",
@@ -113,7 +142,7 @@ TEST_CASE("the emulated operator does the water scene's first lesson",
     // The last task is a key.
     Lesson second = first;
     second.update({}, CouplingMode::ConstantForceConstantDisplacement);
-    CHECK(second.is_done());
+    CHECK(second.is_step_done());
 
     // A hand that does nothing learns nothing.
     CHECK(play_water({"stroke=path", "path=[[0, 0]]", "seconds=2"}, lesson).current() == 0);

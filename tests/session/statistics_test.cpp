@@ -28,11 +28,27 @@ TEST_CASE("the extremes of a run are kept with their signs", "[session][statisti
 
     CHECK(summary.largest_attraction_N == 0.9);
     CHECK(summary.largest_repulsion_N == 2.1);
+    CHECK(summary.largest_felt_N == 2.1);
     CHECK(summary.closest_angstrom == 0.4);
     CHECK(summary.last_angstrom == -6);
     CHECK(summary.went_through);
     CHECK(summary.ticks == 5);
     CHECK_FALSE(summary.ripple.has_value());
+}
+
+TEST_CASE("in space a felt force is a norm, which neither attracts nor repels",
+          "[session][statistics]") {
+    Statistics statistics(1e-3);
+    ServoTick tick = tick_of(1.2, 3);
+    tick.sent_newton = {1.2, -0.5, 0};
+    tick.touch.active_freedom = 6;
+    statistics.add(tick);
+
+    const Summary summary = statistics.summary();
+
+    CHECK(summary.largest_felt_N == Approx(1.3));
+    CHECK_FALSE(summary.is_on_axis);
+    CHECK(summary.largest_repulsion_N == 0);
 }
 
 TEST_CASE("what was clamped, and what was wrong, is a share of all ticks",

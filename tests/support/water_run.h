@@ -5,7 +5,7 @@
 #include "session/run_headless.h"
 #include "simulation/simulation.h"
 #include "tests/support/water_scene.h"
-#include "tools/run.h"
+#include "tools/hands.h"
 
 #include <string>
 #include <vector>

@@ -64,6 +64,71 @@ class Cli(unittest.TestCase):
 
     # ---- help and usage
 
+    def test_help_is_a_page_in_plain_words(self):
+        page = self.palpa("--help").stdout
+        commands = re.findall(r"^  ([a-z]+)  +[A-Z]", page, re.M)
+        self.assertGreater(len(commands), 10)
+        for command in commands:
+            with self.subTest(command=command):
+                result = self.palpa("help", command)
+                self.assertEqual(result.returncode, 0, result.stderr)
+                self.assertEqual(result.stdout, self.palpa(command, "--help").stdout)
+                self.assertIn(f"\n  palpa {command}", result.stdout)  # an example
+                self.assertIn(f"  palpa {command} ", page + " ")
+                # Nothing of the library's: flags with defaults, types, upper-case notes.
+                self.assertNotRegex(result.stdout, r"\{|TEXT\b|FLOAT|UINT|REQUIRED|Needs:|Excludes:")
+                self.assertLessEqual(max(map(len, result.stdout.split("\nExample")[0].splitlines())), 100)
+        self.assertIn("Exit codes", page)
+        self.assertEqual(self.palpa("help").stdout, page)
+
+    def test_what_is_misspelt_gets_the_near_name(self):
+        for arguments, hint in ((["rnu", WATER], "did you mean 'run'"),
+                                (["hlep"], "did you mean 'help'"),
+                                (["run", WATER, "--hedless"], "did you mean '--headless'"),
+                                (["run", WATER, "--frction=0"], "did you mean '--friction'"),
+                                (["run", "hvi"], "did you mean 'hiv'"),
+                                (["run", "scenes/wter"], "did you mean 'water'"),
+                                (["run", "hiv/flexable.toml"], "did you mean 'hiv/flexible'")):
+            with self.subTest(arguments=arguments):
+                self.assert_bad_input(self.palpa(*arguments), hint)
+
+    def test_alone_it_lists_the_scenes(self):
+        clean = {key: value for key, value in os.environ.items()
+                 if key not in ("DISPLAY", "WAYLAND_DISPLAY")}
+        result = subprocess.run([PROGRAM], capture_output=True, text=True, env=clean, cwd=self.tmp)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        for scene in ("water", "water/space", "hiv", "hiv/flexible"):
+            self.assertRegex(result.stdout, rf"(?m)^  {scene} ")
+        self.assertIn("palpa run water", result.stdout)
+
+    def test_own_scenes_go_by_name(self):
+        self.assertIn("Two waters in space", self.palpa("run", "water/space", "--headless",
+                                                       "--seconds", "0.1").stdout)
+        # What is there under that name comes first.
+        shutil.copytree(WATER, self.tmp / "water")
+        file = self.tmp / "water" / "scene.toml"
+        file.write_text(file.read_text().replace("Two waters", "My waters"))
+        self.assertIn("My waters", self.palpa("run", "water", "--headless", "--seconds",
+                                              "0.1").stdout)
+
+    def test_what_is_no_scene_leads_to_one(self):
+        (self.tmp / "1abc.pdb").write_text("END\n")
+        self.assert_bad_input(self.palpa("run", "1abc.pdb"), "is a structure, not a scene",
+                              "palpa prepare 1abc.pdb -o 1abc --toppar")
+        self.assert_bad_input(self.palpa("run", "."), "no scene.toml", "palpa prepare ./1abc.pdb")
+        shutil.copytree(WATER, self.tmp / "mine")
+        self.assert_bad_input(self.palpa("run", "."), "scenes below it: ./mine/scene.toml")
+        (self.tmp / "other").mkdir()
+        self.assert_bad_input(self.palpa("run", "other"), "scenes near it: ", "mine/scene.toml")
+
+    def test_an_error_cites_what_was_typed(self):
+        for arguments in (["--mode", "7"], ["--mode=7"]):
+            self.assert_bad_input(self.palpa("run", WATER, *arguments), "--mode 7: ")
+        self.assert_bad_input(self.palpa("run", WATER, "--set", "coupling.mode=7"),
+                              "--set coupling.mode=7: ")
+        result = self.palpa("run", WATER, "--headless", "--device", "mouse")
+        self.assertNotIn("--headless", result.stderr)
+
     def test_every_command_has_help(self):
         for arguments in (["--help"], ["run", "--help"], ["bench", "--help"], ["--version"],
                           ["run", "--keys"]):
@@ -73,10 +138,15 @@ class Cli(unittest.TestCase):
                 self.assertTrue(result.stdout.strip())
 
     def test_wrong_usage_is_bad_input(self):
-        for arguments in ([], ["fly"], ["run"], ["run", WATER, "--speed", "3"], ["bench"],
-                          ["bench", "--json"]):
+        for arguments, said in ((["fly"], "palpa: no command 'fly'"),
+                                (["run"], "palpa run: scene is required; 'palpa' alone lists"),
+                                (["run", WATER, "--speed", "3"], "palpa run: no option '--speed'"),
+                                (["run", WATER, WATER], "is one argument too many"),
+                                (["--speed"], "palpa: no option '--speed' without a command"),
+                                (["bench"], "palpa bench: a scene"), (["bench", "--json"], "a scene"),
+                                (["help", "fly"], "palpa: no command 'fly'")):
             with self.subTest(arguments=arguments):
-                self.assert_bad_input(self.palpa(*arguments), "palpa: ")
+                self.assert_bad_input(self.palpa(*arguments), said)
 
     def test_a_seed_is_a_whole_number_that_fits(self):
         for command in ("loops", "journey", "study", "scenarios", "report", "run"):
@@ -262,7 +332,7 @@ class Cli(unittest.TestCase):
                 self.assert_bad_input(self.palpa("run", WATER, "--set", setting), "--set", expected)
 
     def test_sound_without_a_window(self):
-        self.assert_bad_input(self.palpa("run", WATER, "--headless", "--sound"), "--sound", "is of a window")
+        self.assert_bad_input(self.palpa("run", WATER, "--headless", "--sound"), "--sound", "needs the window")
 
     def test_no_message_names_a_place_in_our_sources(self):
         result = self.palpa("run", "nowhere")

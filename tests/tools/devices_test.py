@@ -56,7 +56,7 @@ class Devices(unittest.TestCase):
         # and the same way of the first hand brings the molecules less near.
         self.assertGreater(both["closest_angstrom"], alone["closest_angstrom"] + 0.02)
         self.assertLess(both["ripple_N"], 0.02)
-        for name, reason in (("mouse", "led by the window"), ("omni", "without --headless")):
+        for name, reason in (("mouse", "led by the window"), ("omni", "needs the window")):
             result = run("--second", name)
             self.assertEqual(result.returncode, 2)
             self.assertIn(reason, result.stderr)

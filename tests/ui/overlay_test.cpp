@@ -5,6 +5,7 @@
 #include "tests/support/water_scene.h"
 
 #include <imgui.h>
+#include <imgui_internal.h>
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <limits>
@@ -73,7 +74,7 @@ TEST_CASE("a dragged slider changes a gain at once, and one undo takes the whole
     const LiveSettings before = screen.overlay.settings();
     ImVec2 slider{};
     // The sliders stand in the right column; find the first that answers.
-    for (float y = 200; y < 500 && screen.commands.empty(); y += 6) {
+    for (float y = 300; y < 700 && screen.commands.empty(); y += 6) {
         slider = {1000, y};
         screen.drag(slider, {1130, y});
     }
@@ -92,6 +93,82 @@ TEST_CASE("a dragged slider changes a gain at once, and one undo takes the whole
     screen.overlay.perform(Action::Undo, screen.commands);
     screen.overlay.perform(Action::Undo, screen.commands);  // nothing is left
     CHECK(screen.overlay.settings() == before);
+}
+
+TEST_CASE("nothing is cut off, and the picture's middle is covered by no panel", "[ui][overlay]") {
+    const auto size =
+        GENERATE(ImVec2(900, 600), ImVec2(1280, 720), ImVec2(1366, 768), ImVec2(1920, 1080));
+    const auto action = GENERATE(Action::Guarded, Action::Mode1, Action::ToggleHelp);
+    INFO(size.x << " x " << size.y << ", action " << static_cast<int>(action));
+    Screen screen;
+    ImGui::GetIO().DisplaySize = size;
+    screen.overlay.perform(action, screen.commands);
+    for (int i = 0; i < 4; ++i) screen.frame();
+
+    const ScreenArea free = screen.overlay.free_area(size.x, size.y);
+    CHECK(free.width() > 0.3F * size.x);
+    CHECK(free.height() > 0.5F * size.y);
+    for (const ImGuiWindow* const window : ImGui::GetCurrentContext()->Windows) {
+        if (!window->WasActive || window->IsFallbackWindow) continue;
+        INFO(window->Name);
+        const ImRect area = window->Rect();
+        CHECK(area.Min.x >= 0);
+        CHECK(area.Min.y >= 0);
+        CHECK(area.Max.x <= size.x);
+        CHECK(area.Max.y <= size.y);
+        CHECK(window->ContentSize.x <= window->InnerRect.GetWidth() + 0.5F);
+        CHECK(
+            (window->ScrollbarY || window->ContentSize.y <= window->InnerRect.GetHeight() + 0.5F));
+        const bool is_above =
+            action == Action::ToggleHelp && window->Name == std::string("Keys and mouse");
+        if (is_above || (window->Flags & ImGuiWindowFlags_ChildWindow) != 0) continue;
+        constexpr float rounding = 1;  // places are whole pixels
+        const bool covers =
+            area.Min.x < free.right - rounding && area.Max.x > free.left + rounding &&
+            area.Min.y < free.bottom - rounding && area.Max.y > free.top + rounding;
+        CHECK_FALSE(covers);
+    }
+}
+
+TEST_CASE("both gain curves are 120 pixels high where a screen is 720", "[ui][overlay]") {
+    const auto size = GENERATE(ImVec2(1280, 720), ImVec2(1366, 768));
+    Screen screen;
+    ImGui::GetIO().DisplaySize = size;
+    for (int i = 0; i < 4; ++i) screen.frame();
+    CHECK(screen.overlay.plot_height() >= 120);
+}
+
+TEST_CASE("Esc closes an open list, then the help, and then nothing", "[ui][overlay]") {
+    Screen screen;
+    screen.overlay.perform(Action::ToggleHelp, screen.commands);
+    screen.frame();
+    CHECK(screen.overlay.close_something());
+    CHECK_FALSE(screen.overlay.close_something());
+
+    screen.frame();
+    // The drop-down of the modes, below the buttons of the left column.
+    for (float y = 40; y < 300; y += 6) {
+        screen.drag({150, y}, {150, y});
+        if (ImGui::GetCurrentContext()->OpenPopupStack.Size > 0) break;
+    }
+    REQUIRE(ImGui::GetCurrentContext()->OpenPopupStack.Size == 1);
+    CHECK(screen.overlay.close_something());
+    screen.frame();
+    CHECK(ImGui::GetCurrentContext()->OpenPopupStack.Size == 0);
+    CHECK_FALSE(screen.overlay.close_something());
+}
+
+TEST_CASE("at the wall the overlay says how to get off it", "[ui][overlay]") {
+    Screen screen;
+    const int usual = (screen.frame(), screen.frame(), screen.vertices());
+    ServoTick tick;
+    tick.touch = screen.readout.touch;
+    tick.kept_m = {4e-3, 0, 0};
+    tick.reading.time_s = 1;
+    screen.overlay.add_tick(tick);
+    screen.frame();
+    screen.frame();
+    CHECK(screen.vertices() > usual + 200);  // a line of some hundred letters, four corners each
 }
 
 TEST_CASE("keys switch modes, pause, step and reset", "[ui][overlay]") {

@@ -2,6 +2,7 @@
 
 #include "render/renderer.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -38,6 +39,32 @@ TEST_CASE("without azimuth and elevation the camera looks along -z, y up", "[vie
     CHECK(glm::distance(built.eye, {1, 2, 23}) < 1e-5);
     CHECK(seen_at(camera, {1, 3, 3}).y < 90);  // rows run down
     CHECK(seen_at(camera, {2, 2, 3}).x > 160);
+}
+
+TEST_CASE("what is framed fits the room between panels, about the middle of that room",
+          "[view][camera]") {
+    // A room in the right half of the picture, without its upper third.
+    OrbitCamera camera;
+    const FrameScene box = long_box();
+    frame_all(camera, box, 0.5F * aspect, 2 / 3.0F);
+    FrameCamera built = frame_camera(camera, box);
+    built.centre = {0.5F, -1 / 3.0F};
+    float left = view_width, right = 0, top = view_height, bottom = 0;
+    for (const SphereShape& sphere : box.spheres) {
+        for (const glm::vec3& off :
+             {glm::vec3{1.5F, 0, 0}, {-1.5F, 0, 0}, {0, 1.5F, 0}, {0, -1.5F, 0}}) {
+            const glm::vec3 seen = project(built, sphere.centre + off, view_width, view_height);
+            left = std::min(left, seen.x);
+            right = std::max(right, seen.x);
+            top = std::min(top, seen.y);
+            bottom = std::max(bottom, seen.y);
+        }
+    }
+    CHECK(left > 160);
+    CHECK(right < 320);
+    CHECK(top > 60);
+    CHECK(bottom < 180);
+    CHECK(right - left > 0.75 * 160);  // and fills it
 }
 
 TEST_CASE("orbiting takes the camera to its right and up, around a target that stays in the middle",

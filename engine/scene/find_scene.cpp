@@ -1,0 +1,162 @@
+#include "scene/find_scene.h"
+
+#include "core/files.h"
+#include "core/load_error.h"
+#include "core/text.h"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <string_view>
+#include <system_error>
+
+namespace palpa {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t most_entries = 1000;  // of a folder that are looked at
+constexpr std::size_t most_named = 8;       // in a message
+constexpr const char* usual_name = "scene.toml";
+
+std::vector<fs::path> list_folder(const fs::path& folder) {
+    std::vector<fs::path> paths;
+    std::error_code error;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+         entry.increment(error)) {
+        paths.push_back(entry->path());
+        if (paths.size() == most_entries) break;
+    }
+    std::sort(paths.begin(), paths.end());
+    return paths;
+}
+
+bool is_structure(const fs::path& path) {
+    constexpr std::array<std::string_view, 6> endings{".pdb",   ".ent", ".cif",
+                                                      ".mmcif", ".crd", ".psf"};
+    std::string ending = path.extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(), [](char letter) {
+        return letter >= 'A' && letter <= 'Z' ? letter + 32 : letter;
+    });
+    return std::find(endings.begin(), endings.end(), ending) != endings.end();
+}
+
+void add_scenes_of(const fs::path& folder, const std::string& prefix,
+                   std::vector<SceneEntry>& scenes) {
+    for (const fs::path& path : list_folder(folder)) {
+        if (path.extension() != ".toml") continue;
+        try {
+            const toml::table table = toml::parse(read_text_file(path), path.string());
+            if (!table.contains("grab")) continue;
+            const bool is_usual = path.filename() == usual_name;
+            const std::string name = is_usual ? prefix : prefix + "/" + path.stem().string();
+            scenes.push_back(
+                {name, path, table["title"].value_or(std::string()), table.contains("made_by")});
+        } catch (const toml::parse_error&) {
+            continue;
+        } catch (const LoadError&) {
+            continue;
+        }
+    }
+}
+
+std::string join_some(const std::vector<std::string>& names) {
+    const std::size_t count = std::min(names.size(), most_named);
+    return fmt::format("{}{}",
+                       fmt::join(names.begin(), names.begin() + static_cast<long>(count), ", "),
+                       names.size() > count ? ", ..." : "");
+}
+
+std::string prepare_hint(const fs::path& structure) {
+    return fmt::format("'palpa prepare {} -o {} --toppar ...' makes a scene of it",
+                       structure.string(), structure.stem().string());
+}
+
+// What a folder without a scene of the usual name holds instead.
+std::string describe_contents(const fs::path& folder) {
+    std::vector<std::string> scenes, structures;
+    for (const SceneEntry& scene : list_scenes(folder)) scenes.push_back(scene.file.string());
+    for (const fs::path& path : list_folder(folder)) {
+        if (is_structure(path)) structures.push_back(path.string());
+    }
+    if (!scenes.empty()) return fmt::format("; scenes below it: {}", join_some(scenes));
+    if (!structures.empty()) {
+        return fmt::format("; it holds the structure {}: {}",
+                           fs::path(structures[0]).filename().string(),
+                           prepare_hint(structures[0]));
+    }
+    scenes.clear();
+    std::error_code error;
+    const fs::path parent = fs::absolute(folder, error).lexically_normal().parent_path();
+    for (const SceneEntry& scene : list_scenes(parent)) scenes.push_back(scene.file.string());
+    return scenes.empty() ? std::string() : fmt::format("; scenes near it: {}", join_some(scenes));
+}
+
+std::string describe_own_scenes(const std::string& named) {
+    std::vector<std::string> names;
+    for (const fs::path& folder : own_scene_folders()) {
+        for (const SceneEntry& scene : list_scenes(folder)) names.push_back(scene.name);
+    }
+    if (names.empty()) return {};
+    const std::vector<std::string_view> views(names.begin(), names.end());
+    std::string wanted = named.starts_with("scenes/") ? named.substr(7) : named;
+    if (wanted.ends_with(".toml")) wanted.resize(wanted.size() - 5);
+    while (wanted.ends_with('/')) wanted.pop_back();
+    const std::string hint = near_name_hint(wanted, views);
+    return hint.empty() ? fmt::format("; Palpa's own scenes: {}", join_some(names)) : hint;
+}
+
+}  // namespace
+
+std::vector<fs::path> own_scene_folders() {
+    const fs::path program = find_program_folder();
+    if (program.empty()) return {};
+    std::vector<fs::path> folders{program.parent_path() / "share" / "palpa" / "scenes"};
+    const fs::path builds = program.parent_path().parent_path();  // build/PRESET/bin
+    if (builds.filename() == "build") folders.push_back(builds.parent_path() / "scenes");
+    std::erase_if(folders, [](const fs::path& folder) {
+        std::error_code error;
+        return !fs::is_directory(folder, error);
+    });
+    return folders;
+}
+
+std::vector<SceneEntry> list_scenes(const fs::path& folder) {
+    std::vector<SceneEntry> scenes;
+    for (const fs::path& path : list_folder(folder)) {
+        std::error_code error;
+        if (fs::is_directory(path, error)) add_scenes_of(path, path.filename().string(), scenes);
+    }
+    add_scenes_of(folder, ".", scenes);
+    std::sort(scenes.begin(), scenes.end(),
+              [](const SceneEntry& a, const SceneEntry& b) { return a.name < b.name; });
+    return scenes;
+}
+
+fs::path find_scene_file(const fs::path& named) {
+    std::error_code error;
+    if (fs::is_directory(named, error)) {
+        const fs::path file = named / usual_name;
+        if (fs::exists(file, error)) return file;
+        throw LoadError({named.string()}, "this folder holds no scene.toml, so it is no scene" +
+                                              describe_contents(named));
+    }
+    if (fs::exists(named, error)) {
+        if (!is_structure(named)) return named;
+        throw LoadError({named.string()}, "is a structure, not a scene; " + prepare_hint(named));
+    }
+    for (const fs::path& folder : own_scene_folders()) {
+        const std::string name = named.lexically_normal().string();
+        for (const SceneEntry& scene : list_scenes(folder)) {
+            if (scene.name == name) return scene.file;
+        }
+    }
+    throw LoadError({named.string()},
+                    "no such scene; expected a scene folder, a .toml file or the "
+                    "name of a scene" +
+                        describe_own_scenes(named.string()));
+}
+
+}  // namespace palpa

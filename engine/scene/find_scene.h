@@ -1,0 +1,29 @@
+// Scenes as people name them: a folder, a file, or one that comes with the program.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace palpa {
+
+struct SceneEntry {
+    std::string name;  // relative to the folder of the list: "hiv", "hiv/flexible"
+    std::filesystem::path file;
+    std::string title;     // as the file says; may be empty
+    bool is_made = false;  // by a command that the file names; its molecules may not be there yet
+};
+
+// Where the scenes are that come with the program: installed beside it, or in the source tree of a
+// build. Those that exist.
+std::vector<std::filesystem::path> own_scene_folders();
+
+// The scene files in a folder and in the folders directly below, by name. What cannot be read is
+// left out.
+std::vector<SceneEntry> list_scenes(const std::filesystem::path& folder);
+
+// The scene file that is meant by a folder, a file or the name of one of our own scenes. Throws
+// LoadError where there is none, with what is near: other scenes, or the command that makes a scene
+// of a structure.
+std::filesystem::path find_scene_file(const std::filesystem::path& named);
+
+}  // namespace palpa

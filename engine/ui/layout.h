@@ -1,0 +1,37 @@
+// Where panels go and how large they are, in a window of any size and with text of any size.
+#pragma once
+#include <imgui.h>
+#include <algorithm>
+
+namespace palpa {
+
+// A rectangle of the window, pixels from the upper left.
+struct ScreenArea {
+    float left = 0, top = 0, right = 0, bottom = 0;
+
+    float width() const noexcept { return right - left; }
+    float height() const noexcept { return bottom - top; }
+};
+
+inline constexpr float usual_text = 15;  // pixels of a line of text at the usual size
+
+// What a length at the usual size of the text is at the present one.
+inline float scaled(float pixels) { return pixels * ImGui::GetFontSize() / usual_text; }
+
+inline float panel_edge() { return scaled(10); }  // around the panels
+
+// Width of the panels at either side of a window that wide.
+inline float panel_column(float window_width) {
+    return std::min(std::clamp(0.3F * window_width, scaled(240), scaled(350)), 0.4F * window_width);
+}
+
+inline constexpr ImGuiWindowFlags fixed_panel =
+    ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoSavedSettings;
+
+// The explanation of the item before, while the mouse rests on it.
+void tip(const char* text);
+
+// On the line of the item before where a button with this text has room there.
+void same_line_if_it_fits(const char* text);
+
+}  // namespace palpa

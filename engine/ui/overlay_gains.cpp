@@ -1,0 +1,279 @@
+// The panel at the right: the laws of the coupling, and what happened.
+#include "haptics/gains.h"
+#include "session/run_headless.h"
+#include "ui/layout.h"
+#include "ui/overlay.h"
+#include "ui/plot.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <string_view>
+#include <vector>
+
+namespace palpa {
+namespace {
+
+constexpr ImU32 molecule_colour = IM_COL32(190, 40, 40, 255);
+constexpr ImU32 hand_colour = IM_COL32(20, 90, 190, 255);
+constexpr ImU32 gain_colour = IM_COL32(20, 130, 70, 255);
+constexpr ImU32 now_colour = IM_COL32(250, 170, 0, 255);
+
+constexpr float least_plot = 120;  // pixels between the axes, at the usual size of text
+
+}  // namespace
+
+void Overlay::draw_right_panel(std::vector<Command>& commands) {
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    const float column = panel_column(screen.x), edge = panel_edge();
+    ImGui::SetNextWindowPos({screen.x - column - edge, edge});
+    ImGui::SetNextWindowSize({column, screen.y - 2 * edge});
+    const bool is_open = ImGui::Begin("Coupling", nullptr, fixed_panel);
+    right_covered_ = is_open ? column + edge : 0;
+    if (is_open && ImGui::BeginTabBar("right")) {
+        if (ImGui::BeginTabItem("gains")) {
+            draw_gains(commands);
+            ImGui::EndTabItem();
+        }
+        if (ImGui::BeginTabItem("over time")) {
+            draw_over_time();
+            ImGui::EndTabItem();
+        }
+        if (ImGui::BeginTabItem("over separation")) {
+            draw_over_separation();
+            ImGui::EndTabItem();
+        }
+        ImGui::EndTabBar();
+    }
+    ImGui::End();
+}
+
+void Overlay::draw_gains(std::vector<Command>& commands) {
+    // The curves have what the sliders leave.
+    const float left = ImGui::GetContentRegionAvail().y - sliders_height_;
+    const float labels = plot_label_height(true);
+    plot_height_ = std::clamp(0.5F * left - ImGui::GetStyle().ItemSpacing.y - labels,
+                              scaled(least_plot), scaled(2 * least_plot));
+    const float height = plot_height_ + labels;
+    const CouplingLaws laws = build_coupling_laws(settings_.coupling);
+    const double now_nN = last_.molecular_nN;
+    const PlotRange forces{std::min(-1.0, 1.1 * now_nN), std::max(3.0, 1.1 * now_nN)};
+    constexpr int count = 241;
+    x_.resize(count);
+    y_.resize(count);
+    z_.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        x_[i] = forces.low + (forces.high - forces.low) * static_cast<double>(i) / (count - 1);
+        y_[i] = hand_force(laws.force, x_[i] * 1e-9);
+        z_[i] = cm_per_angstrom(displacement_gain(laws.displacement, x_[i] * 1e-9));
+    }
+    const std::array force_lines{PlotLine{x_, y_, hand_colour, "F_h"}};
+    const std::array force_points{
+        PlotPoint{now_nN, hand_force(laws.force, now_nN * 1e-9), now_colour}};
+    draw_plot("force gain",
+              {"F_m (nN)", "force on the hand (N)", forces, {-3.2, 3.2}, force_lines, force_points},
+              height);
+    tip("Eq. 2: F_h = a1 atan(d1 F) + a2 [atan(d2 (F - F_0)) + atan(d2 (F + F_0))]; the point is "
+        "where you are. Steep for weak forces, flat for strong ones, never cut off.");
+    const std::array gain_lines{PlotLine{x_, z_, gain_colour, "A_d"}};
+    const std::array gain_points{PlotPoint{
+        now_nN,
+        cm_per_angstrom(is_guarded() ? last_.displacement_gain
+                                     : displacement_gain(laws.displacement, now_nN * 1e-9)),
+        now_colour}};
+    PlotRange gains = range_around(z_, 1);
+    gains.low = 0;
+    if (is_guarded())
+        gains.high = std::max(gains.high, 1.1 * cm_per_angstrom(last_.displacement_gain));
+    draw_plot("displacement gain",
+              {"F_m (nN)", "handle per molecule (cm/Å)", forces, gains, gain_lines, gain_points},
+              height);
+    tip("Eq. 3: A_d = A_dmin + b [atan((|F| - F_off) g) - atan(-F_off g)]: far from everything the "
+        "molecule goes far for a little travel of the handle, in contact it goes slowly.");
+    const LiveSettings before = settings_;
+    const float top = ImGui::GetCursorPosY();
+    draw_gain_sliders();
+    sliders_height_ = ImGui::GetCursorPosY() - top;
+    if (!(settings_ == before)) change_settings(settings_, commands);
+}
+
+void Overlay::slide(const char* label, double& value, double low, double high, const char* format,
+                    bool logarithmic, const char* explanation) {
+    ImGui::SetNextItemWidth(-scaled(75));
+    const LiveSettings before = settings_;
+    ImGui::SliderScalar(
+        label, ImGuiDataType_Double, &value, &low, &high, format,
+        ImGuiSliderFlags_AlwaysClamp | (logarithmic ? ImGuiSliderFlags_Logarithmic : 0));
+    remember_edit(before);
+    tip(explanation);
+}
+
+void Overlay::remember_edit(const LiveSettings& before) {
+    if (ImGui::IsItemActivated()) before_edit_ = before;
+    if (!ImGui::IsItemDeactivatedAfterEdit()) return;
+    undo_.push_back(before_edit_);
+    redo_.clear();
+}
+
+void Overlay::draw_gain_sliders() {
+    CouplingDescription& c = settings_.coupling;
+    if (is_guarded()) choose_laws();
+    const bool has_range = is_guarded() && c.feel_pN.has_value();
+    const bool is_perceptual = is_guarded() && c.force_law == ForceLawChoice::Perceptual;
+    const bool variable_force =
+        is_guarded()
+            ? c.force_law == ForceLawChoice::Printed || c.force_law == ForceLawChoice::Calibrated
+            : c.mode == CouplingMode::VariableForceVariableDisplacement ||
+                  c.mode == CouplingMode::VariableForceConstantDisplacement;
+    const bool variable_displacement =
+        is_guarded() ? c.displacement_law != DisplacementLawChoice::Constant
+                     : c.mode == CouplingMode::VariableForceVariableDisplacement ||
+                           c.mode == CouplingMode::ConstantForceVariableDisplacement;
+    if (has_range) {
+        // Its sliders stand below.
+    } else if (is_perceptual) {
+        slide("F_lo", c.F_lo_pN, 1, 1000, "%.0f pN", true,
+              "molecular force that is felt as 0.3 N, pN; the law is linear below");
+        slide("F_hi", c.F_hi_nN, 0.1, 100, "%.2f nN", true,
+              "molecular force that is felt as 3 N, nN; between, equally many noticeable steps a "
+              "decade");
+        c.F_hi_nN = std::max(c.F_hi_nN, 2.1e-3 * c.F_lo_pN);
+    } else if (variable_force) {
+        slide("A_f max", c.A_f_max, 0.1e9, 50e9, "%.3g", true,
+              "A_fmax of eq. 2: gain of weak forces, N on the hand per N on the molecule");
+        slide("A_f min", c.A_f_min, 0.01e9, 5e9, "%.3g", true,
+              "A_fmin of eq. 2: gain of strong forces, N/N");
+        slide("F_h1", c.F_h1_N, 0.1, 2.9, "%.2f N", false,
+              "F_h1 of eq. 2, N: where the weak forces' part of the curve tends to");
+        slide("F_h2", c.F_h2_N, 0.2, 3.3, "%.2f N", false,
+              "F_h2 of eq. 2, N: where the strongest forces tend to; above F_h1");
+        slide("F_0", c.F_0_nN, 0.0, 10, "%.2f nN", false,
+              "F_0 of eq. 2, nN: between weak and strong forces");
+        c.F_h2_N = std::max(c.F_h2_N, 1.05 * c.F_h1_N);
+        c.A_f_max = std::max(c.A_f_max, c.A_f_min);
+    } else if (c.mode != CouplingMode::NoForce) {
+        slide("A_f", c.A_f, 0.01e9, 50e9, "%.3g", true, "constant force gain F_h/F_m, N/N");
+    }
+    if (variable_displacement) {
+        slide("A_d max", c.A_d_max, 0.01e9, 10e9, "%.3g", true,
+              "A_dmax of eq. 3: handle metres per molecule metre in contact");
+        slide("A_d min", c.A_d_min, 0.0005e9, 1e9, "%.3g", true,
+              "A_dmin of eq. 3: handle metres per molecule metre far away");
+        slide("F_off", c.F_off_pN, 1, 500, "%.0f pN", true,
+              "F_off of eq. 3, pN: molecular force where near begins");
+        c.A_d_max = std::max(c.A_d_max, c.A_d_min);
+    } else {
+        slide("A_d", c.A_d, 0.005e9, 10e9, "%.3g", true,
+              "constant displacement gain, handle metres per molecule metre; 0.25e9 is 2.5 cm/Å");
+    }
+    if (is_guarded()) choose_range();
+}
+
+void Overlay::choose_laws() {
+    CouplingDescription& c = settings_.coupling;
+    const std::string laws = fmt::format(
+        "laws: {}, {}, {}###laws", force_law_names[static_cast<std::size_t>(c.force_law)],
+        displacement_law_names[static_cast<std::size_t>(c.displacement_law)],
+        workspace_names[static_cast<std::size_t>(c.workspace)]);
+    if (!ImGui::TreeNode(laws.c_str())) return;
+    const auto choose = [&](const char* label, const auto& names, auto& choice, const char* text) {
+        const LiveSettings before = settings_;
+        int i = static_cast<int>(choice);
+        std::vector<const char*> items;
+        for (const std::string_view name : names) items.push_back(name.data());
+        ImGui::SetNextItemWidth(-scaled(75));
+        if (ImGui::Combo(label, &i, items.data(), static_cast<int>(items.size()))) {
+            undo_.push_back(before);
+            redo_.clear();
+            choice = static_cast<std::remove_reference_t<decltype(choice)>>(i);
+        }
+        tip(text);
+    };
+    choose("force", force_law_names, c.force_law,
+           "force law: eq. 2 as printed, or calibrated to its slopes, a constant gain, or equal "
+           "noticeable steps for each decade");
+    choose("travel", displacement_law_names, c.displacement_law,
+           "displacement law: eq. 3 that sees stiff places too, as printed, or a constant gain");
+    choose("raised", gain_shape_names, c.gain_shape,
+           "where A_d is raised for the cap: in all directions, or, a tensor, in those that are "
+           "stiff, so that sliding along a wall goes faster");
+    choose("reach", workspace_names, c.workspace,
+           "how far places are reached: the clutch alone; outside a bubble the molecule goes on by "
+           "itself; or the handle drifts back to its centre while it moves");
+    ImGui::TreePop();
+}
+
+void Overlay::choose_range() {
+    constexpr double lowest_pN = 1, highest_pN = 1e5, least_ratio = 1.1, least_clamp_newton = 3;
+    CouplingDescription& c = settings_.coupling;
+    const LiveSettings before = settings_;
+    bool has_range = c.feel_pN.has_value();
+    if (c.clamp_N >= least_clamp_newton && ImGui::Checkbox("feel a range", &has_range)) {
+        undo_.push_back(before);
+        redo_.clear();
+        c.feel_pN.reset();
+        if (has_range) c.feel_pN = {c.F_lo_pN, 1e3 * c.F_hi_nN};
+    }
+    tip("what must be felt, in place of a force law: the weakest force as 0.3 N, the strongest as "
+        "2.7 N");
+    if (c.feel_pN) {
+        auto& [weakest, strongest] = *c.feel_pN;
+        slide("weakest", weakest, lowest_pN, highest_pN, "%.0f pN", true,
+              "molecular force that is felt as 0.3 N or more");
+        slide("strongest", strongest, lowest_pN, highest_pN, "%.0f pN", true,
+              "molecular force that is felt as 2.7 N");
+        strongest = std::max(strongest, least_ratio * weakest);
+    }
+    if (c.feel_within_pN) {
+        slide("within", *c.feel_within_pN, lowest_pN, highest_pN, "%.0f pN", true,
+              "how far forces may be from what all joints would give; active joints follow");
+    }
+}
+
+// Three plots, one below the other, over what `x_` holds.
+void Overlay::draw_traces(std::string_view x_label, PlotRange across) {
+    const float labels = plot_label_height(true) + 2 * plot_label_height(false);
+    const float gaps = 3 * ImGui::GetStyle().ItemSpacing.y;
+    plot_height_ =
+        std::max((ImGui::GetContentRegionAvail().y - labels - gaps) / 3, scaled(least_plot));
+    const auto draw = [&](const char* id, std::string_view label, std::string_view y_label,
+                          double least, ImU32 colour, double (*value)(const Reading&)) {
+        fill_from_history(y_, value);
+        const std::array lines{PlotLine{x_, y_, colour, {}}};
+        std::array points{PlotPoint{}};
+        if (!x_.empty()) points[0] = {x_.back(), y_.back(), now_colour};
+        draw_plot(id,
+                  {label, y_label, across, range_around(y_, least), lines,
+                   x_.empty() ? std::span<const PlotPoint>() : points},
+                  plot_height_ + plot_label_height(!label.empty()));
+    };
+    draw("F_m", "", "force on the molecule, F_m (nN)", 0.2, molecule_colour,
+         [](const Reading& r) { return r.molecular_nN; });
+    tip("nN; on one axis + repels and - attracts");
+    draw("F_h", "", "force on the hand, F_h (N)", 0.5, hand_colour,
+         [](const Reading& r) { return r.hand_N; });
+    tip("N, as sent to the device");
+    draw("A_d", x_label, "displacement gain, A_d (cm/Å)", 0.2, gain_colour,
+         [](const Reading& r) { return cm_per_angstrom(r.displacement_gain); });
+    tip("A_d = dx_handle/dx_molecule; 1 cm/Å is 1e8");
+}
+
+void Overlay::draw_over_time() {
+    fill_from_history(x_, [](const Reading& r) { return r.time_s; });
+    const double now = x_.empty() ? 0 : x_.back();
+    draw_traces("time (s)", {now - History::seconds, now + 0.02 * History::seconds});
+}
+
+void Overlay::draw_over_separation() {
+    fill_from_history(x_, [](const Reading& r) { return r.distance_angstrom; });
+    draw_traces("separation (Å)", range_around(x_, 1));
+}
+
+void Overlay::fill_from_history(std::vector<double>& values, double (*value)(const Reading&)) {
+    values.clear();
+    for (const Reading& sample : history_.samples()) values.push_back(value(sample));
+}
+
+}  // namespace palpa

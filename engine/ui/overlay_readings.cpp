@@ -1,0 +1,264 @@
+// The panel at the left: what the scene is, the run, and what is measured.
+#include "haptics/gains.h"
+#include "haptics/hand.h"
+#include "simulation/simulation.h"
+#include "ui/layout.h"
+#include "ui/overlay.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <string>
+
+namespace palpa {
+namespace {
+
+constexpr std::array<const char*, 6> mode_texts{"1  variable force, variable displacement",
+                                                "2  variable force, constant displacement",
+                                                "3  constant force, variable displacement",
+                                                "4  constant force, constant displacement",
+                                                "5  no force",
+                                                "6  guarded"};
+
+// One line of the readings: a name, a value, and what it is when the mouse rests on it.
+void reading(const char* name, const std::string& value, const char* explanation) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(name);
+    tip(explanation);
+    ImGui::TableNextColumn();
+    ImGui::TextWrapped("%s", value.c_str());
+    tip(explanation);
+}
+
+bool begin_readings(const char* id) {
+    if (!ImGui::BeginTable(id, 2)) return false;
+    ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthFixed, scaled(115));
+    ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch);
+    return true;
+}
+
+// On one axis a force's sign says what it does.
+const char* doing(bool on_axis, double force) {
+    if (!on_axis || force == 0) return "";
+    return force > 0 ? ", repels" : ", attracts";
+}
+
+void switch_sound(const OverlayStatus& status, std::vector<Action>& actions) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted("sound");
+    tip("S. The force on the hand as a tone: higher and louder is stronger, nothing is silence. "
+        "The choice is remembered.");
+    ImGui::TableNextColumn();
+    bool sounds = status.sounds;
+    if (ImGui::Checkbox("force as a tone", &sounds)) actions.push_back(Action::ToggleSound);
+}
+
+void button(const char* text, const char* explanation, Action action,
+            std::vector<Action>& actions) {
+    if (ImGui::Button(text)) actions.push_back(action);
+    tip(explanation);
+}
+
+}  // namespace
+
+void Overlay::draw_scene(const Readout& readout, const OverlayStatus& status,
+                         std::vector<Command>& commands, std::vector<Action>& actions) {
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    const float column = panel_column(screen.x), edge = panel_edge();
+    ImGui::SetNextWindowPos({edge, edge});
+    ImGui::SetNextWindowSizeConstraints({column, 0}, {column, screen.y - 2 * edge});
+    ImGui::SetNextWindowSize({column, 0});
+    const bool is_open =
+        ImGui::Begin(fmt::format("{}###scene", scene_.title).c_str(), nullptr, fixed_panel);
+    left_covered_ = is_open ? column + edge : 0;
+    if (is_open) {
+        if (!scene_.about.empty() && ImGui::CollapsingHeader("About")) {
+            ImGui::TextWrapped("%s", scene_.about.c_str());
+        }
+        draw_buttons(readout, actions);
+        choose_mode(commands);
+        draw_readings(readout, status, actions);
+        if (ImGui::CollapsingHeader("Machine")) draw_machine(readout, status);
+    }
+    ImGui::End();
+}
+
+void Overlay::draw_buttons(const Readout& readout, std::vector<Action>& actions) {
+    button(readout.paused ? "Go on" : "Pause",
+           "P. While paused nothing moves, and the hand feels nothing.", Action::PauseOrGo,
+           actions);
+    same_line_if_it_fits("Step");
+    button("Step", "Full stop key. One step of the simulation, then pause.", Action::StepOnce,
+           actions);
+    same_line_if_it_fits("Reset");
+    button("Reset", "R. Molecules and view go back to their start; the settings stay.",
+           Action::Reset, actions);
+    same_line_if_it_fits("Save");
+    button("Save", "Ctrl+S. Writes the scene with these settings to a file of its own.",
+           Action::Save, actions);
+    same_line_if_it_fits("Picture");
+    button("Picture", "F12. A screenshot.", Action::Screenshot, actions);
+    same_line_if_it_fits("Keys");
+    button("Keys", "H. All keys.", Action::ToggleHelp, actions);
+}
+
+void Overlay::choose_mode(std::vector<Command>& commands) {
+    ImGui::SetNextItemWidth(-1);
+    const auto mode = static_cast<std::size_t>(settings_.coupling.mode);
+    if (ImGui::BeginCombo("##mode", mode_texts[mode])) {
+        for (std::size_t i = 0; i < mode_texts.size(); ++i) {
+            if (ImGui::Selectable(mode_texts[i], i == mode)) {
+                set_mode(static_cast<CouplingMode>(i), commands);
+            }
+        }
+        ImGui::EndCombo();
+    }
+    tip("The paper's five modes, keys 1 to 5, and guarded coupling, 6: there the servo moves the "
+        "molecule itself, in the field around it, a thousand times a second. The force gain is "
+        "F_h/F_m, the displacement gain A_d = dx_handle/dx_molecule.");
+    int period = static_cast<int>(std::lround(settings_.period_ms));
+    const LiveSettings before = settings_;
+    ImGui::SetNextItemWidth(-scaled(70));
+    if (ImGui::SliderInt("period", &period, 1, 100, "%d ms", ImGuiSliderFlags_Logarithmic)) {
+        LiveSettings settings = settings_;
+        settings.period_ms = std::clamp(period, 1, 1000);
+        change_settings(settings, commands);
+    }
+    remember_edit(before);
+    tip("T_s, ms: how often the simulation answers the hand. In the paper's modes the hand feels a "
+        "force that is one period old, and held for one: the longer, the more it vibrates.");
+}
+
+void Overlay::draw_readings(const Readout& readout, const OverlayStatus& status,
+                            std::vector<Action>& actions) {
+    if (!begin_readings("readings")) return;
+    const CouplingLaws laws = build_coupling_laws(settings_.coupling);
+    const TouchModel& touch = readout.touch;
+    const bool on_axis = touch.active_freedom == 1;
+    reading("separation", fmt::format("{:.3f} Å", last_.distance_angstrom),
+            "Distance of the reference atoms, Å");
+    reading("force, molecule",
+            fmt::format("{:.4g} nN{}", std::abs(last_.molecular_nN),
+                        doing(on_axis, last_.molecular_nN)),
+            "|F_m|, nN, on the molecule in hand");
+    reading("force, hand",
+            fmt::format("{:.3f} N{}", std::abs(last_.hand_N), doing(on_axis, last_.hand_N)),
+            "F_h = f(F_m), N, as sent to the device; eq. 2 of the paper in modes 1 and 2");
+    if (has_flexible_) {
+        reading("pocket", "not relaxed",
+                "The pocket follows the hand by a few steps, and is not at rest meanwhile: the "
+                "force can be several times that of a relaxed pocket. Measured in "
+                "scenes/hiv/README.md.");
+    }
+    if (!on_axis) {
+        reading("torque", fmt::format("{:.3g} nN Å", 1e19 * touch.torque_newton_metre.norm()),
+                "On the molecule in hand about its centre of mass. No motor plays it, so a "
+                "molecule that is turned between the way in and the way out can give the hand "
+                "energy.");
+    }
+    const double felt = is_guarded() ? felt_N_per_m_ : felt_stiffness(laws, touch);
+    reading("stiffness felt", fmt::format("{:.4g} of {:.4g} N/m", felt, stiffness_limit_),
+            "K = (dF_h/dF_m) k / A_d, N/m. Guarded: of the cap, half of what the device keeps "
+            "calm; A_d is raised until it holds. Else of the largest K that the hand keeps calm: "
+            "about B/(1.5 T_s), found from the eigenvalues of hand, device, period and delay.");
+    reading("displ. gain", fmt::format("{:.2f} cm/Å", cm_per_angstrom(last_.displacement_gain)),
+            "A_d = dx_handle/dx_molecule, centimetres of the handle for an Å of the molecule; 1 "
+            "cm/Å is 1e8. Eq. 3 of the paper in modes 1 and 3");
+    reading("force gain", fmt::format("{:.3g}", force_gain_), "A_f = F_h/F_m, N/N");
+    reading("work on hand", fmt::format("{:+.2f} mJ", 1e3 * hand_energy_J_),
+            "Energy given to the hand so far, mJ: over a way there and back it should not be above "
+            "0.");
+    if (is_guarded()) {
+        reading("held back", fmt::format("{:.1f} mm", 1e3 * kept_m_),
+                "Handle travel that the molecule did not follow, since an atom would be pushed too "
+                "hard (coupling.stop_nN); it is felt, and has to be given back.");
+    }
+    draw_comparison(readout);
+    reading(has_flexible_ ? "energy of all" : "energy",
+            fmt::format("{:.3f} kcal/mol", touch.potential_kcal_per_mol),
+            has_flexible_ ? "Of all molecules, bonded terms too, kcal/mol"
+                          : "Of the molecule in hand with all others: Lennard-Jones and Coulomb, "
+                            "kcal/mol");
+    if (status.devices.empty()) {
+        reading("device", status.device_name, "what the force is sent to, 1000 times a second");
+    } else {
+        choose_device(status);
+    }
+    switch_sound(status, actions);
+    ImGui::EndTable();
+}
+
+void Overlay::draw_machine(const Readout& readout, const OverlayStatus& status) {
+    if (!begin_readings("machine")) return;
+    const int freedom = readout.touch.active_freedom;
+    reading("moving", fmt::format("{} degree{} of freedom", freedom, freedom == 1 ? "" : "s"),
+            "Degrees of freedom that a step may move");
+    reading("hand", std::string(hand_names[scene_.hand.grip]),
+            "The grip on the emulated handle; hand.grip of the scene");
+    reading("step", fmt::format("{:.3f} ms of {} ms", readout.step_ms, settings_.period_ms),
+            "Wall time of the last simulation step, and the declared period");
+    reading("drawing", fmt::format("{:.1f} ms, scale {:.2f}", status.frame_ms, status.render_scale),
+            "Time of a frame. Where the machine cannot hold 30 Hz, effects are left out first, "
+            "then the picture is drawn smaller.");
+    const double ticks = 1e3 * last_.time_s;
+    reading("servo",
+            fmt::format("{:.2f} % of ticks missed{}",
+                        ticks > 0 ? 100 * static_cast<double>(status.servo.overruns) / ticks : 0.0,
+                        !status.servo.real_time ? ", ordinary priority"
+                        : !status.servo.locked  ? ", memory not locked"
+                                                : ""),
+            "A force is sent every millisecond. Where the system was late, a tick was missed, and "
+            "the device kept the force before. Without real-time priority or locked memory that "
+            "happens more often: allow rtprio 50 and memlock for yourself in "
+            "/etc/security/limits.conf.");
+    ImGui::EndTable();
+    ImGui::TextDisabled("%s", status.gpu_name.c_str());
+}
+
+void Overlay::choose_device(const OverlayStatus& status) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted("device");
+    tip("What the force is sent to, 1000 times a second. D takes the next one that is there. The "
+        "choice is remembered; a device that was unplugged is taken again when it is back.");
+    ImGui::TableNextColumn();
+    ImGui::SetNextItemWidth(-1);
+    if (!ImGui::BeginCombo("##device", status.device.c_str())) return;
+    for (const DeviceOffer& offer : status.devices) {
+        const std::string text =
+            fmt::format("{}{}", offer.name, offer.is_there ? "" : " (not seen)");
+        if (ImGui::Selectable(text.c_str(), offer.name == status.device)) device_ = offer.name;
+        tip(offer.summary.c_str());
+    }
+    ImGui::EndCombo();
+}
+
+// With all joints, on a copy; how far the pocket is from rest is another matter.
+void Overlay::draw_comparison(const Readout& readout) {
+    const CouplingDescription& c = settings_.coupling;
+    if (const auto range = c.feel_pN; range && is_guarded()) {
+        reading("to be felt",
+                fmt::format("{:.4g} to {:.4g} pN, A_d x {:.2f}", (*range)[0], (*range)[1], raised_),
+                "Molecular forces that are felt as 0.3 N or more and 2.7 N or less, and how much "
+                "A_d is raised at this moment so that the stiffness felt stays under its cap: by "
+                "so much less the molecule goes.");
+    }
+    if (const auto within_pN = c.feel_within_pN; within_pN && readout.effort.steps > 0) {
+        const std::string difference =
+            readout.error_pN ? fmt::format("{:.3g} pN", *readout.error_pN) : std::string("?");
+        reading("all joints",
+                fmt::format("differ by {}, {} of them move", difference, readout.effort.active),
+                fmt::format("How far nine of ten forces are, at most, from what all joints would "
+                            "give in the same steps, as found on a copy now and then; {:.4g} pN "
+                            "are asked for. It does not say how far the pocket is from rest.",
+                            *within_pN)
+                    .c_str());
+    }
+}
+
+}  // namespace palpa
