@@ -21,6 +21,7 @@
 #include "tools/relax.h"
 #include "tools/render.h"
 #include "tools/window_devices.h"
+#include "view/first_view.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -205,7 +206,7 @@ void print_summary(const SceneDescription& scene, const Summary& s) {
 }
 
 // A frame that cannot be drawn or written is the last one; the run goes on.
-void write_frame(std::unique_ptr<FrameWriter>& writer, const Simulation& simulation) {
+void write_frame(std::unique_ptr<FrameWriter>& writer, Simulation& simulation) {
     if (!writer) return;
     try {
         writer->write(simulation);
@@ -278,7 +279,7 @@ int run_in_window(const SceneDescription& scene, const Simulation& simulation,
         devices.open_first(options.play ? std::optional<std::string>("emulated") : options.device);
     if (!devices.notice().empty()) fmt::print(stderr, "warning: {}\n", devices.notice());
     const WindowReport report = run_window(scene, *first.device,
-                                           {.view = default_view(simulation),
+                                           {.view = first_settings(scene.view, simulation),
                                             .width = options.width,
                                             .height = options.height,
                                             .screenshots = options.screenshots,
@@ -382,7 +383,7 @@ int run_command(const RunOptions& options) {
     if (options.record && options.frames_per_second > 0) {
         try {  // its complaints about the size come before a recording is begun
             writer = std::make_unique<FrameWriter>(*options.record / "frames", options.frame_width,
-                                                   options.frame_height);
+                                                   options.frame_height, scene.view);
         } catch (const GpuError& error) {
             warnings.push_back(fmt::format("no frames are drawn: {}", error.what()));
         }

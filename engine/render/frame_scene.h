@@ -27,14 +27,18 @@ struct FrameCamera {
     glm::vec3 eye{0, 0, 10}, target{0}, up{0, 1, 0};
     float vertical_angle = 0.6F;  // rad
     float near = 0.1F, far = 1000;
+    // What is farther away than `fog_from` fades into the background, slowly at first: by a factor
+    // of e where it is `fog_length` farther, never wholly. 0: nothing does.
+    float fog_from = 0, fog_length = 0;
 };
 
 struct FrameScene {
-    std::vector<SphereShape> spheres;
-    std::vector<ConeShape> cones;
-    FrameCamera camera;
+    std::vector<SphereShape> spheres{};
+    std::vector<ConeShape> cones{};
+    FrameCamera camera{};
     glm::vec3 background{1};
-    int outline = 1;  // its width in pixels
+    int outline = 1;        // its width in pixels
+    bool occlusion = true;  // crevices are darker; without, a picture costs less
 };
 
 }  // namespace palpa

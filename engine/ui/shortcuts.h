@@ -24,6 +24,7 @@ enum class Action {
     NextColouring,
     Focus,
     FrameAll,
+    FirstView,
     ToggleOverlay,
     ToggleLesson,
     ToggleHelp,

@@ -92,6 +92,8 @@ if __name__ == "__main__":
     if sys.argv[1:] == ["--remake"]:
         for made_scene in CAMERAS:
             for made_look in LOOKS:
-                draw(made_scene, made_look, PICTURES / f"{made_scene}-{made_look}.png")
+                picture = PICTURES / f"{made_scene}-{made_look}.png"
+                picture.unlink(missing_ok=True)
+                draw(made_scene, made_look, picture)
     else:
         unittest.main()

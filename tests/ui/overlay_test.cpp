@@ -17,7 +17,7 @@ namespace {
 
 // An overlay of the water scene on a screen that is not there.
 struct Screen {
-    explicit Screen(const SceneDescription& scene = test::water_scene()) : overlay(scene, {}) {
+    explicit Screen(const SceneDescription& scene = test::water_scene()) : overlay(scene) {
         ImGui::CreateContext();
         ImGuiIO& io = ImGui::GetIO();
         io.IniFilename = nullptr;
