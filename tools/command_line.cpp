@@ -81,7 +81,9 @@ std::string value_name(const CLI::Option& option) {
 std::string describe_option(const CLI::Option& option) {
     std::vector<std::string> notes;
     const std::string type = option.get_type_name();
-    if (const std::size_t colon = type.find(':'); colon != std::string::npos) {
+    // The library's own lists of what is allowed are said in the description.
+    const std::size_t colon = type.find(':');
+    if (colon != std::string::npos && type[colon + 1] != '{') {
         notes.push_back(type.substr(colon + 1));
     }
     for (const CLI::Option* const other : option.get_needs()) {
@@ -244,24 +246,27 @@ std::string cite_as_typed(const std::string& message, const std::vector<std::str
     return message;
 }
 
+std::optional<std::string> explain_command(const CLI::App& program, const std::string& command) {
+    const std::vector<const CLI::App*> commands = program.get_subcommands({});
+    std::vector<std::string> names{"help"};
+    for (const CLI::App* const known : commands) names.push_back(known->get_name());
+    if (command.starts_with("-") || std::find(names.begin(), names.end(), command) != names.end()) {
+        return std::nullopt;
+    }
+    return fmt::format("palpa: no command '{}'{}; see palpa --help", printable(command),
+                       hint_of(command, names));
+}
+
 std::string explain(const CLI::ParseError& error, const CLI::App& program,
                     const std::string& command) {
-    const std::vector<const CLI::App*> commands = program.get_subcommands({});
-    const auto found = std::find_if(commands.begin(), commands.end(), [&](const CLI::App* known) {
-        return known->get_name() == command;
-    });
-    if (found == commands.end()) {
-        if (command.starts_with("-")) {
-            return fmt::format("palpa: no option '{}' without a command; see palpa --help",
-                               printable(command));
-        }
-        std::vector<std::string> names{"help"};
-        for (const CLI::App* const known : commands) names.push_back(known->get_name());
-        return fmt::format("palpa: no command '{}'{}; see palpa --help", printable(command),
-                           hint_of(command, names));
+    if (command.starts_with("-")) {
+        return fmt::format("palpa: no option '{}' without a command; see palpa --help",
+                           printable(command));
     }
     std::string what = error.what();
-    if (dynamic_cast<const CLI::ExtrasError*>(&error)) what = explain_extras(program, **found);
+    if (dynamic_cast<const CLI::ExtrasError*>(&error)) {
+        what = explain_extras(program, *program.get_subcommand(command));
+    }
     if (what == "scene is required") what += "; 'palpa' alone lists those that there are";
     return fmt::format("palpa {}: {}; see palpa help {}", command, what, command);
 }

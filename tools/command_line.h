@@ -2,6 +2,7 @@
 #pragma once
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,9 @@ void add_setting(CLI::App& command, const std::string& option, const std::string
 
 // A message about such a setting, citing the option where that is what was typed.
 std::string cite_as_typed(const std::string& message, const std::vector<std::string>& arguments);
+
+// One line about what is no command, with the nearest name; nothing where it is one, or an option.
+std::optional<std::string> explain_command(const CLI::App& program, const std::string& command);
 
 // One line about arguments that a command cannot take, with the nearest name.
 std::string explain(const CLI::ParseError& error, const CLI::App& program,

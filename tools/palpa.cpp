@@ -313,18 +313,22 @@ void add_render(CLI::App& program, palpa::RenderOptions& options) {
     render.add_option("--time", options.time_s, "seconds that the hand plays before the picture")
         ->check(in_range(0.0, 1e5));
     render
-        .add_option(
-            "--as", options.representation,
-            "ball-and-stick, space-filling, licorice or in-hand: all but the molecule in hand "
-            "thin; unless given, what shows the scene best")
-        ->type_name("NAME=NAME");
-    render.add_option("--colour", options.colouring,
+        .add_option("--as,--representation", options.representation,
+                    "ball-and-stick, space-filling, licorice or in-hand: all but the molecule in "
+                    "hand thin; this and what follows: unless given, as the scene's [view] says")
+        ->type_name("NAME");
+    render.add_option("--colour,--colouring", options.colouring,
                       "chain: carbons in a colour of their chain; or element");
-    render.add_option(
-        "--camera", options.camera,
-        "AZIMUTH,ELEVATION[,ZOOM]: degrees around what is framed and above it, and how "
-        "many times nearer; 0,0 unless given");
+    render
+        .add_option("--camera", options.camera,
+                    "degrees around what is framed and above it, and how many times nearer")
+        ->type_name("AZIMUTH,ELEVATION[,ZOOM]");
     render.add_option("--look-at", options.look_at, "a molecule of the scene to frame, not all");
+    render.add_flag_callback(
+        "--clip", [&options] { options.clips = true; },
+        "leave out what stands in front of the molecule in hand");
+    render.add_flag_callback(
+        "--no-clip", [&options] { options.clips = false; }, "show it, whatever the scene says");
     render.add_option("--samples", options.samples, "averaged for a pixel: 1, 4, 9 or 16")
         ->check(CLI::IsMember({1, 4, 9, 16}));
     add_negation(render, "--no-arrow", options.arrow, "without the force on the molecule");
@@ -675,6 +679,10 @@ int run_program(const std::vector<std::string>& arguments) {
     add_feel(program, feel);
     add_journey(program, journey);
     if (arguments.empty()) return palpa::start_command();
+    if (const auto unknown = palpa::explain_command(program, arguments[0])) {
+        fmt::print(stderr, "{}\n", *unknown);
+        return bad_input;
+    }
     try {
         program.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
     } catch (const CLI::CallForVersion&) {

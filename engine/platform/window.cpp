@@ -145,11 +145,15 @@ void Window::listen(GLFWwindow* window) {
         const auto index = static_cast<std::size_t>(button);  // left, right, middle, as ours
         input.down[index] = action == GLFW_PRESS;
         if (action != GLFW_PRESS) return;
-        double x = 0, y = 0;
-        glfwGetCursorPos(w, &x, &y);
+        // Where the cursor was then: by now it may be elsewhere.
+        double x = window_of(w).cursor_x_, y = window_of(w).cursor_y_;
         window_of(w).scale_to_pixels(x, y);
         input.clicked.push_back({static_cast<MouseButton>(index), x, y});
         if (button == GLFW_MOUSE_BUTTON_LEFT) press_left(window_of(w));
+    });
+    glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) {
+        window_of(w).cursor_x_ = x;
+        window_of(w).cursor_y_ = y;
     });
     glfwSetScrollCallback(
         window, [](GLFWwindow* w, double /*x*/, double y) { window_of(w).input_.wheel += y; });
@@ -168,8 +172,7 @@ void Window::listen(GLFWwindow* window) {
 }
 
 void Window::press_left(Window& window) {
-    double x = 0, y = 0;
-    glfwGetCursorPos(window.window_, &x, &y);
+    const double x = window.cursor_x_, y = window.cursor_y_;
     const double now = glfwGetTime();
     const double moved = std::hypot(x - window.last_click_x_, y - window.last_click_y_);
     window.input_.double_clicked =

@@ -146,6 +146,7 @@ private:
     GLFWwindow* window_ = nullptr;
     Input input_;
     bool has_mouse_ = false, is_captured_ = false;
+    double cursor_x_ = 0, cursor_y_ = 0;  // of the last event, in the window's own units
     double last_click_s_ = -1, last_click_x_ = 0, last_click_y_ = 0;
 };
 

@@ -21,7 +21,8 @@ constexpr ImU32 hand_colour = IM_COL32(20, 90, 190, 255);
 constexpr ImU32 gain_colour = IM_COL32(20, 130, 70, 255);
 constexpr ImU32 now_colour = IM_COL32(250, 170, 0, 255);
 
-constexpr float least_plot = 120;  // pixels between the axes, at the usual size of text
+// Pixels between the axes, at the usual size of text.
+constexpr float least_plot = 70, largest_plot = 240;
 
 }  // namespace
 
@@ -55,7 +56,7 @@ void Overlay::draw_gains(std::vector<Command>& commands) {
     const float left = ImGui::GetContentRegionAvail().y - sliders_height_;
     const float labels = plot_label_height(true);
     plot_height_ = std::clamp(0.5F * left - ImGui::GetStyle().ItemSpacing.y - labels,
-                              scaled(least_plot), scaled(2 * least_plot));
+                              scaled(least_plot), scaled(largest_plot));
     const float height = plot_height_ + labels;
     const CouplingLaws laws = build_coupling_laws(settings_.coupling);
     const double now_nN = last_.molecular_nN;

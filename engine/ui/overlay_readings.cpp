@@ -41,9 +41,10 @@ bool begin_readings(const char* id) {
     return true;
 }
 
-// On one axis a force's sign says what it does.
+// On one axis a force's sign says what it does; at rest only rounding is left of it.
 const char* doing(bool on_axis, double force) {
-    if (!on_axis || force == 0) return "";
+    constexpr double rounding = 1e-6;
+    if (!on_axis || std::abs(force) < rounding) return "";
     return force > 0 ? ", repels" : ", attracts";
 }
 
@@ -143,7 +144,7 @@ void Overlay::draw_readings(const Readout& readout, const OverlayStatus& status,
     reading("separation", fmt::format("{:.3f} Å", last_.distance_angstrom),
             "Distance of the reference atoms, Å");
     reading("force, molecule",
-            fmt::format("{:.4g} nN{}", std::abs(last_.molecular_nN),
+            fmt::format("{:.4f} nN{}", std::abs(last_.molecular_nN),
                         doing(on_axis, last_.molecular_nN)),
             "|F_m|, nN, on the molecule in hand");
     reading("force, hand",

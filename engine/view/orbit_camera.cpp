@@ -62,12 +62,11 @@ void carry(OrbitCamera& camera, const HandRate& rate, double dt_s) {
     orbit(camera, -turn.y(), turn.x());
 }
 
-void frame_all(OrbitCamera& camera, const FrameScene& frame, float aspect, float share) {
-    frame_shapes(camera, balls_of(frame), aspect, share);
+void frame_all(OrbitCamera& camera, const FrameScene& frame, const Room& room) {
+    frame_shapes(camera, balls_of(frame), room);
 }
 
-void frame_shapes(OrbitCamera& camera, std::span<const SphereShape> shapes, float aspect,
-                  float share) {
+void frame_shapes(OrbitCamera& camera, std::span<const SphereShape> shapes, const Room& room) {
     if (shapes.empty()) return;
     const glm::vec3 right = rightward(camera), up = upward(camera), back = backward(camera);
     const auto across = [&](const glm::vec3& p) {
@@ -87,7 +86,8 @@ void frame_shapes(OrbitCamera& camera, std::span<const SphereShape> shapes, floa
         const glm::vec3 reach = glm::abs(off) + shape.radius;
         const float before = off.z + shape.radius;
         camera.distance = std::max(
-            camera.distance, before + margin * std::max(reach.y / share, reach.x / aspect) / slope);
+            camera.distance,
+            before + margin * std::max(reach.y / room.height, reach.x / room.width) / slope);
     }
 }
 
@@ -110,6 +110,9 @@ FrameCamera frame_camera(const OrbitCamera& camera, const FrameScene& frame) {
     }
     made.far = std::max(1.02F * farthest, 1.0F);
     made.near = std::max(0.98F * nearest, 1e-3F * made.far);
+    constexpr float shortest_fog = 30;  // Å, so that a small molecule has next to none
+    made.fog_from = camera.distance;
+    made.fog_length = std::max(farthest - camera.distance, shortest_fog);
     return made;
 }
 

@@ -36,16 +36,23 @@ void zoom(OrbitCamera& camera, float factor);
 // with the hand, but never over, and does not roll.
 inline constexpr double carried_m = 0.060;
 void carry(OrbitCamera& camera, const HandRate& rate, double dt_s);
-// All shapes, or these, fit with a margin into the room that the picture has for them, seen in the
-// direction in which the camera looks. `aspect` and `share`: the room's width and height over the
-// height of the picture. Where there are no shapes, nothing changes.
-void frame_all(OrbitCamera& camera, const FrameScene& frame, float aspect, float share = 1);
-void frame_shapes(OrbitCamera& camera, std::span<const SphereShape> shapes, float aspect,
-                  float share = 1);
+// The part of a picture that is there for shapes, over the picture's height: all of a picture of
+// that aspect, or less where panels cover the rest.
+struct Room {
+    float width, height = 1;
+
+    Room(float aspect) : width(aspect) {}  // NOLINT(google-explicit-constructor)
+    Room(float width_share, float height_share) : width(width_share), height(height_share) {}
+};
+
+// All shapes, or these, fit into the room with a margin, seen in the direction in which the camera
+// looks. Where there are none, nothing changes.
+void frame_all(OrbitCamera& camera, const FrameScene& frame, const Room& room);
+void frame_shapes(OrbitCamera& camera, std::span<const SphereShape> shapes, const Room& room);
 // Looks at one place, from near.
 void focus(OrbitCamera& camera, const glm::vec3& place, float distance);
 
-// With clip planes in front of and behind all shapes.
+// With clip planes in front of and behind all shapes, and fog behind the target.
 FrameCamera frame_camera(const OrbitCamera& camera, const FrameScene& frame);
 
 }  // namespace palpa

@@ -12,6 +12,8 @@ import unittest
 from array import array
 from pathlib import Path
 
+from read_png import read_png
+
 PROGRAM = os.environ["PALPA_PROGRAM"]
 ROOT = Path(os.environ["PALPA_ROOT"])
 
@@ -43,6 +45,11 @@ class Display:
     def do(self, *words):
         subprocess.run(["xdotool", *map(str, words)], check=True,
                        env={**os.environ, "DISPLAY": self.name}, stdout=subprocess.DEVNULL)
+
+    def cursor(self):
+        words = subprocess.run(["xdotool", "getmouselocation"], capture_output=True, text=True,
+                               env={**os.environ, "DISPLAY": self.name}).stdout.split()
+        return tuple(int(word.split(":")[1]) for word in words[:2])
 
     def find_window(self):
         return subprocess.run(["xdotool", "search", "--onlyvisible", "--name", "^Palpa - "],
@@ -136,11 +143,11 @@ class Session(unittest.TestCase):
 
             # The first slider of the gains, A_f max, to its far right.
             # A screenshot between two events makes sure that a frame has seen the first.
-            display.do("mousemove", 1000, 535)
+            display.do("mousemove", 1000, 557)
             self.screenshot(display)
             display.do("mousedown", 1)
             self.screenshot(display)
-            display.do("mousemove", 1180, 535)
+            display.do("mousemove", 1180, 557)
             self.screenshot(display)
             display.do("mouseup", 1)
             self.screenshot(display)
@@ -211,8 +218,13 @@ class Session(unittest.TestCase):
         try:
             with Display() as display:
                 self.start(display)
-                display.do("key", "d")
-                self.wait_until(lambda: 'device = "omni"' in chosen.read_text().replace("'", '"'),
+                # From the list: nothing is on the bus, so that D passes the Omni over.
+                display.do("mousemove", 240, 326, "click", 1)
+                self.screenshot(display)
+                display.do("mousemove", 180, 391)
+                self.screenshot(display)
+                display.do("click", 1)
+                self.wait_until(lambda: "device = 'omni'" in chosen.read_text(),
                                 "the choice on disk")
                 self.assertEqual(self.quit(display)["device"], "emulated PHANTOM Omni")
 
@@ -278,6 +290,31 @@ class Session(unittest.TestCase):
             self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn("mode 2", result.stdout)
 
+    def test_space_keeps_the_cursor_and_gives_it_back(self):
+        with Display() as display:
+            self.start(display)
+            display.do("mousemove", 640, 330, "keydown", "space")
+            self.screenshot(display)
+            for _ in range(60):
+                display.do("mousemove_relative", "--", -20, 0)
+            time.sleep(0.3)
+            display.do("keyup", "space")
+            self.screenshot(display)
+            self.assertEqual(display.cursor(), (640, 330))
+            summary = self.quit(display)
+        self.assertLess(summary["closest_angstrom"], 6.5)
+
+    def test_text_grows_by_keys_and_stays_so(self):
+        chosen = self.folder / "palpa" / "preferences.toml"
+        with Display() as display:
+            self.start(display)
+            display.do("key", "ctrl+equal")
+            self.wait_until(lambda: "text_scale = 1.1" in chosen.read_text(), "the choice on disk")
+            self.screenshot(display)
+            display.do("key", "ctrl+0")
+            self.wait_until(lambda: "text_scale = 1.0" in chosen.read_text(), "the choice on disk")
+            self.quit(display)
+
     def test_escape_closes_what_is_open_before_it_quits(self):
         with Display() as display:
             self.start(display)
@@ -298,29 +335,34 @@ class Session(unittest.TestCase):
     def test_a_drag_from_a_slider_does_not_turn_the_view(self):
         """Pressed and moved away at once, before a picture could see the mouse on the panel."""
         with Display() as display:
-            self.start(display, "--set", "stroke=hold")
+            self.start(display, "--size", "900x600", "--set", "stroke=hold", "--set", "grip=none")
             display.do("key", "p")
-            before = self.middle_of(self.screenshot(display))
-            display.do("mousemove", 1000, 535, "mousedown", 1, "mousemove", 640, 330, "mousemove",
-                       500, 300)
             self.screenshot(display)
-            display.do("mousemove", 620, 430, "mouseup", 1)
+            before = self.middle_of(self.screenshot(display))
+            display.do("mousemove", 700, 410, "mousedown", 1, "mousemove", 450, 250, "mousemove",
+                       400, 200)
+            self.screenshot(display)
+            display.do("mousemove", 500, 300, "mouseup", 1)
             self.screenshot(display)
             display.do("key", "ctrl+z")
-            after = self.middle_of(self.screenshot(display))
-            self.assertEqual(before, after)
+            self.assertLess(self.share_that_differs(before, display), 0.02)
             # The same way from the picture turns it.
-            display.do("mousemove", 640, 330, "mousedown", 1, "mousemove", 500, 300)
+            display.do("mousemove", 450, 250, "mousedown", 1, "mousemove", 400, 200)
             self.screenshot(display)
             display.do("mouseup", 1)
-            self.assertNotEqual(before, self.middle_of(self.screenshot(display)))
+            self.assertGreater(self.share_that_differs(before, display), 0.04)
             self.quit(display)
 
     def middle_of(self, picture):
         """Its pixels between the panels, below the notes and above the lesson."""
-        result = subprocess.run(["convert", picture, "-crop", "540x400+370+110", "rgb:-"],
-                                capture_output=True, check=True)
-        return result.stdout
+        (width, height), pixels = read_png(picture)
+        self.assertEqual((width, height), (900, 600))
+        return b"".join(pixels[4 * (width * y + 300):4 * (width * y + 600)] for y in range(100, 370))
+
+    def share_that_differs(self, before, display):
+        """Of the bytes now, by more than a picture that was drawn smaller meanwhile."""
+        after = self.middle_of(self.screenshot(display))
+        return sum(abs(a - b) > 60 for a, b in zip(before, after)) / len(before)
 
     def test_a_device_that_is_gone_is_said_and_not_forgotten(self):
         chosen = self.folder / "palpa" / "preferences.toml"
@@ -342,7 +384,10 @@ class Session(unittest.TestCase):
                 self.assertEqual(json.loads(out)["device"], "mouse and keys")
                 self.assertEqual(len(err.strip().splitlines()), 1, err)
                 self.assertIn(told, err)
-                self.assertEqual(chosen.read_text(), text)
+                if told.startswith("omni"):
+                    self.assertIn("device = 'omni'\n", chosen.read_text())
+                else:  # whoever wrote it can mend it
+                    self.assertEqual(chosen.read_text(), text)
 
     def test_the_force_is_heard_until_it_is_paused(self):
         with Display() as display:
@@ -360,7 +405,7 @@ class Session(unittest.TestCase):
         played = array("f", self.sound.read_bytes())
         self.assertLessEqual(max(map(abs, played)), 0.25)
         self.assertEqual(played[-1], 0)
-        self.assertFalse((self.folder / "palpa" / "preferences.toml").exists())  # for one run
+        self.assertNotIn("sound", (self.folder / "palpa" / "preferences.toml").read_text())
 
     def test_sound_is_off_until_it_is_chosen_and_then_remembered(self):
         chosen = self.folder / "palpa" / "preferences.toml"
@@ -426,7 +471,7 @@ class Session(unittest.TestCase):
             self.start(display)
             summary = self.quit(display)
         self.assertEqual(summary["device"], "mouse and keys")
-        self.assertEqual(chosen.read_text(), "device = 'gamepad'\n")
+        self.assertIn("device = 'gamepad'\n", chosen.read_text())
 
     def test_no_display_is_one_line(self):
         clean = {key: value for key, value in os.environ.items()

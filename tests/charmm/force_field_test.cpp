@@ -433,7 +433,7 @@ TEST_CASE("a misspelt line or section has a hint", "[charmm][force_field]") {
                StartsWith("a.str:5: ") && Contains("did you mean 'NBFIX'?"));
     CHECK_THAT(error_of("RESI A 0.0\nATM A T 0.0\n"),
                StartsWith("a.str:2: ") && Contains("did you mean 'ATOM'?"));
-    CHECK_THAT(error_of("ANGELS\nA B C 1.0 90.0\n"), Contains("did you mean 'ANGLE'?"));
+    CHECK_THAT(error_of("ANGELS\nA B C 1.0 90.0\n"), Contains("did you mean 'ANGLES'?"));
 }
 
 TEST_CASE("a file that ends inside a residue or a section is told as cut",

@@ -42,7 +42,7 @@ class Relax(unittest.TestCase):
         result = self.palpa("relax", "--help")
         self.assertEqual(result.returncode, 0)
         self.assertIn("--output", result.stdout)
-        self.assert_bad_input(self.palpa("relax"), "palpa: ")
+        self.assert_bad_input(self.palpa("relax"), "palpa relax: ")
 
     def test_molecules_come_to_rest_and_it_says_how(self):
         text = self.relax().stdout

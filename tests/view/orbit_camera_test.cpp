@@ -46,7 +46,7 @@ TEST_CASE("what is framed fits the room between panels, about the middle of that
     // A room in the right half of the picture, without its upper third.
     OrbitCamera camera;
     const FrameScene box = long_box();
-    frame_all(camera, box, 0.5F * aspect, 2 / 3.0F);
+    frame_all(camera, box, {0.5F * aspect, 2 / 3.0F});
     FrameCamera built = frame_camera(camera, box);
     built.centre = {0.5F, -1 / 3.0F};
     float left = view_width, right = 0, top = view_height, bottom = 0;
