@@ -158,10 +158,9 @@ ScreenArea Overlay::free_area(float width, float height) const {
     }
     // The notes above and the lesson below change their size; the picture does not follow that, but
     // leaves room for what is usual.
-    const bool is_narrow = area.width() < scaled(480);
-    area.top = scaled(is_narrow ? 80 : 48);
+    area.top = scaled(area.width() < scaled(620) ? 68 : 48);
     if (shows_lesson_ && !lesson_.steps().empty()) {
-        area.bottom = height - scaled(is_narrow ? 215 : 185);
+        area.bottom = height - scaled(area.width() < scaled(480) ? 215 : 185);
     }
     // In a window so small that nothing is left, the picture has all of it.
     if (area.width() < 0.2F * width) area.left = 0, area.right = width;
@@ -289,6 +288,7 @@ void Overlay::draw_help() {
     ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5F, 0.5F});
     ImGui::SetNextWindowSizeConstraints({0, 0}, {screen.x - 2 * edge, screen.y - 2 * edge});
     ImGui::SetNextWindowFocus();
+    ImGui::SetNextWindowBgAlpha(1);
     ImGui::Begin("Keys and mouse", &shows_help_, fixed_panel | ImGuiWindowFlags_AlwaysAutoResize);
     const std::vector<HelpLine> lines = list_help();
     const std::size_t half = (lines.size() + 1) / 2;

@@ -17,6 +17,9 @@ const Answer* draw_question(const Question& question) {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5F, 0.5F});
     ImGui::SetNextWindowFocus();
+    ImGui::SetNextWindowBgAlpha(1);
+    // What lies behind is out of reach until it is answered.
+    ImGui::GetBackgroundDrawList()->AddRectFilled({0, 0}, screen, IM_COL32(0, 0, 0, 90));
     ImGui::Begin("##question", nullptr,
                  fixed_panel | ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_AlwaysAutoResize);
     ImGui::PushTextWrapPos(scaled(420));

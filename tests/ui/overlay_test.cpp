@@ -3,6 +3,7 @@
 
 #include "simulation/step.h"
 #include "tests/support/water_scene.h"
+#include "ui/backend.h"
 
 #include <imgui.h>
 #include <imgui_internal.h>
@@ -24,6 +25,7 @@ struct Screen {
         io.IniFilename = nullptr;
         io.DisplaySize = {1280, 800};
         io.DeltaTime = 1 / 60.0F;
+        set_ui_style(1);
         unsigned char* pixels = nullptr;
         int width = 0, height = 0;
         io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
@@ -127,6 +129,14 @@ TEST_CASE("nothing is cut off, and the picture's middle is covered by no panel",
                             area.Max.x > free.left + rounding &&
                             area.Min.y < free.bottom - rounding && area.Max.y > free.top + rounding;
         CHECK_FALSE(covers);
+    }
+    for (int i = 0; i < ImGui::GetCurrentContext()->Tables.GetMapSize(); ++i) {
+        const ImGuiTable* const table = ImGui::GetCurrentContext()->Tables.TryGetMapData(i);
+        if (!table) continue;
+        for (int column = 0; column < table->ColumnsCount; ++column) {
+            const ImGuiTableColumn& cells = table->Columns[column];
+            CHECK(cells.ContentMaxXUnfrozen <= cells.ClipRect.Max.x + 1);
+        }
     }
 }
 
