@@ -20,6 +20,7 @@
 #include "tools/bench_statics.h"
 #include "tools/bench_tree.h"
 #include "tools/hands.h"
+#include "tools/progress.h"
 #include "view/build_frame.h"
 #include "view/orbit_camera.h"
 
@@ -175,6 +176,8 @@ int bench_command(const BenchOptions& options) {
         const std::filesystem::path folder = std::filesystem::absolute(scene.file).parent_path();
         const std::string name = folder.filename().string();
         fmt::print(stderr, "timing {}\n", name);
+        ProgressLine progress;
+        const StageFunction on_stage = progress.stages();
         if (options.kernel) {
             bench_kernels(name, scene, rows);
             continue;
@@ -184,7 +187,7 @@ int bench_command(const BenchOptions& options) {
             continue;
         }
         if (options.render) {
-            bench_render(name, load_simulation(scene), rows);
+            bench_render(name, load_simulation(scene, on_stage), rows);
             continue;
         }
         if (options.statics) {
@@ -199,14 +202,14 @@ int bench_command(const BenchOptions& options) {
             continue;
         }
         if (options.tree) {
-            bench_tree(name, load_simulation(scene).atoms, rows);
+            bench_tree(name, load_simulation(scene, on_stage).atoms, rows);
             continue;
         }
         rows.push_back(bench_read(name, [&] {
             load_simulation(read_scene(path, options.settings));
             return std::string();
         }));
-        rows.push_back(bench_step(name, load_simulation(scene)));
+        rows.push_back(bench_step(name, load_simulation(scene, on_stage)));
         rows.push_back(bench_lockstep(name, scene));
     }
     if (options.tree) bench_polymers(rows);

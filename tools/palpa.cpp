@@ -427,9 +427,10 @@ void add_prepare(CLI::App& program, palpa::PrepareOptions& options) {
         ->needs(x_along);
     prepare
         .add_option("--grab", options.grab,
-                    "segment that scene.toml gives to the hand, the smallest unless given; "
-                    "without a second segment there is no scene.toml")
-        ->type_name("SEGMENT");
+                    "what the hand holds in the scene: a SEGMENT, or SEGMENT:RESIDUE on a spring; "
+                    "unless given, a small molecule or an exposed residue")
+        ->type_name("WHAT");
+    add_negation(prepare, "--no-scene", options.makes_scene, "no scene is made; takes less time");
     prepare.add_option("--title", options.title, "what the files say of themselves")
         ->type_name("TEXT");
     add_overwrite_flag(prepare, options.overwrites);

@@ -6,10 +6,10 @@
 #include "core/text.h"
 #include "formats/structure.h"
 #include "prepare/prepare.h"
+#include "tools/progress.h"
+#include "tools/tune_scene.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <system_error>
@@ -83,13 +83,62 @@ PrepareSettings build_settings(const PrepareOptions& options) {
     return settings;
 }
 
+// Whether the folder can be made.
+void check_missing_folder(const std::filesystem::path& folder) {
+    std::error_code error;
+    std::filesystem::path missing = folder;
+    while (!missing.parent_path().empty() && !std::filesystem::exists(missing.parent_path(), error))
+        missing = missing.parent_path();
+    const std::filesystem::path parent = missing.parent_path();
+    if (!parent.empty() && !std::filesystem::is_directory(parent, error)) {
+        throw LoadError({folder.string()},
+                        fmt::format("cannot be made: {} is no folder", parent.string()));
+    }
+    (void)check_output(missing, prepared_mark, false);
+}
+
+// Before the work: whether its results can be written.
 void check_outputs(const PrepareOptions& options) {
     std::error_code error;
-    if (!std::filesystem::exists(options.folder, error)) return;
-    for (const char* const name :
-         {"system.psf", "system.pdb", "system.crd", "system.prm", "report.txt", "scene.toml"}) {
+    if (!std::filesystem::exists(options.folder, error)) {
+        check_missing_folder(options.folder);
+        return;
+    }
+    for (const char* const name : {"system.psf", "system.pdb", "system.crd", "system.prm",
+                                   "report.txt", "scene.toml", "relaxed.crd", "scene.psf"}) {
         (void)check_output(options.folder / name, prepared_mark, options.overwrites);
     }
+}
+
+// A structure of which no scene can be made is prepared all the same.
+TunedScene find_scene(const PrepareOptions& options, const std::string& title,
+                      const StageFunction& on_stage, PreparedSystem& system) {
+    if (!options.makes_scene) return {};
+    try {
+        return tune_scene(system, options.grab, !options.x_along.empty(),
+                          options.structure.stem().string(), title, on_stage);
+    } catch (const LoadError& error) {
+        if (!options.grab.empty()) throw;
+        system.report.warn(fmt::format("no scene is written: {}", error.what()));
+        return {};
+    }
+}
+
+void print_json(const PreparedSystem& system, const TunedScene& scene) {
+    nlohmann::ordered_json json;
+    json["atoms"] = system.structure.names.size();
+    json["bonds"] = system.connectivity.bonds.size();
+    json["angles"] = system.connectivity.angles.size();
+    json["dihedrals"] = system.connectivity.dihedrals.size();
+    json["impropers"] = system.connectivity.impropers.size();
+    json["cmaps"] = system.connectivity.cmaps.size();
+    json["warnings"] = system.report.warnings();
+    if (!scene.files.empty()) {
+        json["scene"] = {{"in_hand", scene.in_hand},
+                         {"felt_N", scene.felt_newton},
+                         {"moved_angstrom", scene.moved_angstrom}};
+    }
+    fmt::print("{}\n", json.dump(2));
 }
 
 }  // namespace
@@ -97,39 +146,33 @@ void check_outputs(const PrepareOptions& options) {
 int prepare_command(const PrepareOptions& options) {
     const PrepareSettings settings = build_settings(options);
     check_outputs(options);
+    ProgressLine progress(!options.json);
+    const StageFunction on_stage = progress.stages();
+    tell(on_stage, "reading the force field");
     const ForceField force_field = read_force_field(options.toppar);
+    tell(on_stage, "reading the structure");
     const Structure structure = read_structure(options.structure);
-    const bool shows_progress = !options.json && isatty(fileno(stderr)) != 0;
-    const auto progress = [&](std::string_view stage, double share) {
-        if (shows_progress) fmt::print(stderr, "\r{:<40}{:3.0f} %", stage, 100 * share);
-    };
-    const PreparedSystem system = prepare_system(force_field, structure, settings, progress);
-    if (shows_progress) fmt::print(stderr, "\r{:46}\r", "");
+    PreparedSystem system = prepare_system(force_field, structure, settings, on_stage);
     const std::string origin = fmt::format("Prepared from {} by palpa prepare; see report.txt.",
                                            options.structure.filename().string());
-    const std::string in_hand = options.grab.empty() ? find_smallest_segment(system) : options.grab;
-    const std::string scene =
-        in_hand.empty() ? in_hand
-                        : format_scene_of(system, in_hand, options.structure.stem().string());
-    write_prepared(system, options.folder,
-                   options.title.empty() ? origin : fmt::format("{}\n{}", options.title, origin),
-                   scene, options.overwrites ? Existing::Replace : Existing::Refuse);
+    const std::string title =
+        options.title.empty() ? origin : fmt::format("{}\n{}", options.title, origin);
+    const TunedScene scene = find_scene(options, title, on_stage, system);
+    tell(on_stage, "writing");
+    write_prepared(system, options.folder, title, scene.files,
+                   options.overwrites ? Existing::Replace : Existing::Refuse);
+    progress.wipe();
     if (options.json) {
-        nlohmann::ordered_json json;
-        json["atoms"] = system.structure.names.size();
-        json["bonds"] = system.connectivity.bonds.size();
-        json["angles"] = system.connectivity.angles.size();
-        json["dihedrals"] = system.connectivity.dihedrals.size();
-        json["impropers"] = system.connectivity.impropers.size();
-        json["cmaps"] = system.connectivity.cmaps.size();
-        json["warnings"] = system.report.warnings();
-        fmt::print("{}\n", json.dump(2));
+        print_json(system, scene);
         return 0;
     }
-    fmt::print("{}written: {}\n", system.report.to_text(), options.folder.string());
-    if (!scene.empty()) {
-        fmt::print("feel it: palpa run {}   ({} is in the hand; --grab takes another)\n",
-                   options.folder.string(), in_hand);
+    const std::string folder = options.folder.string();
+    fmt::print("{}written: {}\n", system.report.to_text(), folder);
+    if (!scene.files.empty()) {
+        fmt::print(
+            "in the hand: {}\nfeel it in a window:   palpa run {}   (hold Space and move "
+            "the mouse)\nplay it without one:   palpa run {} --headless\n",
+            scene.in_hand, folder, folder);
     }
     return 0;
 }

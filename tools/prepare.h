@@ -15,7 +15,8 @@ struct PrepareOptions {
     PrepareSettings settings;
     // As written: "CSO=CYS", "A:25=ASPP", "A:53=B", "A=NTER", "A:3-A:40".
     std::vector<std::string> as, protonation, alternates, first, last, disulphides;
-    std::string grab;                // segment for the hand of scene.toml; the smallest if empty
+    std::string grab;  // for the hand of scene.toml, see prepare/hand_choice.h
+    bool makes_scene = true;
     std::string title;               // what the files say of themselves; a line of our own if empty
     std::string x_along, y_towards;  // "3TL", "A:25-A:50"
     bool overwrites = false;

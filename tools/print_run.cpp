@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 #include <Eigen/Eigenvalues>
+#include <cmath>
 #include <cstddef>
 #include <numbers>
 #include <optional>
@@ -64,7 +65,8 @@ void print_gains(const SceneDescription& scene, const Simulation& simulation, do
 
 }  // namespace
 
-void print_line(const SceneDescription& scene, const Simulation& simulation) {
+void print_line(const SceneDescription& scene, const Simulation& simulation,
+                ProgressLine& progress) {
     constexpr double nN = units::newton_per_kcal_per_mol_angstrom * 1e9;
     if (simulation.flexible) {
         print_flexible(simulation, *simulation.flexible);
@@ -100,15 +102,19 @@ void print_line(const SceneDescription& scene, const Simulation& simulation) {
     }
     // A spring is pulled at; its molecule is not moved against others.
     const bool on_spring = !scene.grab.atom.empty();
-    if (const std::optional<double> wall =
-            on_spring ? std::nullopt
-                      : repulsion_distance(
-                            simulation, scene.hand.peak_nN / nN,
-                            moves_in_space(simulation) ? grabbed_distance(simulation) : 30)) {
+    tell(progress.stages(), "looking for where it repels");
+    const std::optional<double> wall =
+        on_spring
+            ? std::nullopt
+            : repulsion_distance(simulation, scene.hand.peak_nN / nN,
+                                 moves_in_space(simulation) ? grabbed_distance(simulation) : 30);
+    progress.wipe();
+    if (wall) {
         fmt::print("  repulsion   {} nN at {:.3f} Å, felt as {:.3f} N\n", scene.hand.peak_nN, *wall,
                    hand_force(simulation.laws.force, scene.hand.peak_nN * 1e-9));
     }
-    const FeltStiffness stiffest = stiffest_place(scene, simulation);
+    const FeltStiffness stiffest = stiffest_place(scene, simulation, progress.stages());
+    progress.wipe();
     const double calm =
         calm_stiffness(scene, hand_model(static_cast<Grip>(scene.hand.grip)), simulation.period_s);
     fmt::print("  stiffest    {:.3g} N/m felt at {:.3f} Å, this hand keeps {:.3g} N/m calm\n",
@@ -175,11 +181,14 @@ void print_summary(const SceneDescription& scene, const Summary& s) {
                s.last_angstrom);
     if (s.journey) {
         const Journey& j = *s.journey;
-        fmt::print(
-            "  journey     centre of mass up to {:.2f} Å from its start, heavy atoms {:.2f} Å "
-            "from all others there;\n              {:.2f} Å at the closest; at the end {:.2f} Å "
-            "rms from where they started\n",
-            j.farthest, j.clearance, j.closest, j.last_rmsd);
+        fmt::print("  journey     centre of mass up to {:.2f} Å from its start", j.farthest);
+        if (std::isfinite(j.closest)) {
+            fmt::print(
+                ", heavy atoms {:.2f} Å from all others there;\n              {:.2f} Å at the "
+                "closest",
+                j.clearance, j.closest);
+        }
+        fmt::print("; at the end {:.2f} Å rms from where they started\n", j.last_rmsd);
     }
     if (s.activity) {
         const Activity& a = *s.activity;

@@ -3,11 +3,14 @@
 #include "scene/description.h"
 #include "session/statistics.h"
 #include "simulation/simulation.h"
+#include "tools/progress.h"
 
 namespace palpa {
 
 // What the molecule will meet on its line, found by looking along it; what moves by itself.
-void print_line(const SceneDescription& scene, const Simulation& simulation);
+// Shows on `progress` where it looks, which takes minutes in a large rigid scene.
+void print_line(const SceneDescription& scene, const Simulation& simulation,
+                ProgressLine& progress);
 
 void print_summary(const SceneDescription& scene, const Summary& summary);
 

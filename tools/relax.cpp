@@ -6,9 +6,9 @@
 #include "molecule/coincident_atoms.h"
 #include "scene/read_scene.h"
 #include "simulation/simulation.h"
+#include "tools/progress.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 #include <array>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -52,29 +52,15 @@ constexpr std::string_view coordinates_mark = "* Written by palpa relax.\n";
 
 }  // namespace
 
-RelaxProgressFunction show_relaxing() {
-    if (isatty(STDERR_FILENO) == 0) return {};
-    return [](const RelaxProgress& progress) {
-        constexpr std::size_t between = 20;
-        if (progress.step % between == 0) {
-            // Back to the left, so that what comes next is written over it.
-            fmt::print(stderr, "relaxing: step {}, {:.3f} kcal/mol, rms force {:.3g}   \r",
-                       progress.step, progress.energy, progress.rms_force);
-            std::fflush(stderr);
-        }
-        return true;
-    };
-}
-
 int relax_command(const RelaxOptions& options) {
     const SceneDescription scene = read_scene(options.scene, options.settings);
     const Existing existing =
         options.coordinates
             ? check_output(*options.coordinates, coordinates_mark, options.overwrites)
             : Existing::Refuse;
-    const RelaxProgressFunction progress = show_relaxing();
-    const Simulation simulation = load_simulation(scene, progress);
-    if (progress) fmt::print(stderr, "{:70}\r", "");
+    ProgressLine progress;
+    const Simulation simulation = load_simulation(scene, progress.stages());
+    progress.wipe();
     if (!simulation.flexible) {
         throw LoadError({scene.file.string()},
                         "nothing moves by itself here; expected a molecule with shape = "

@@ -1,7 +1,5 @@
 // palpa relax: brings the flexible molecules of a scene to rest and writes where they are then.
 #pragma once
-#include "simulation/flexible.h"
-
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -19,8 +17,5 @@ struct RelaxOptions {
 
 // Throws LoadError on bad input. Returns the exit code: 1 where the molecules did not come to rest.
 int relax_command(const RelaxOptions& options);
-
-// Shows, where a person watches, how far a way to rest has got.
-RelaxProgressFunction show_relaxing();
 
 }  // namespace palpa

@@ -9,6 +9,7 @@
 #include "simulation/components.h"
 #include "tools/choice.h"
 #include "tools/hands.h"
+#include "tools/progress.h"
 #include "view/clip.h"
 #include "view/first_view.h"
 
@@ -82,15 +83,19 @@ int render_command(const RenderOptions& options) {
                         fmt::format("{} pixels in all; expected {} at most", pixels, most_pixels));
     }
     if (!options.camera.empty()) (void)read_camera(options.camera);  // before anything is loaded
-    Simulation simulation = load_simulation(scene);
+    ProgressLine progress;
+    const StageFunction on_stage = progress.stages();
+    Simulation simulation = load_simulation(scene, on_stage);
     apply_options(options, simulation, scene.view);
     ViewSettings view = first_settings(scene.view, simulation);
     view.force_arrow = options.arrow;
     if (options.time_s > 0) {
         scene.seconds = options.time_s;
         EmulatedOmni device(build_emulated_omni(scene, simulation));
-        run_headless(scene, simulation, device, {}, nullptr, {});
+        run_headless(scene, simulation, device, {}, nullptr,
+                     [&](double share) { tell(on_stage, "playing the stroke", share); });
     }
+    tell(on_stage, "drawing");
     FrameScene frame = build_frame(simulation, view);
     const float aspect = aspect_of(options.width, options.height);
     const OrbitCamera camera =
@@ -105,6 +110,7 @@ int render_command(const RenderOptions& options) {
         renderer.draw(frame, side * options.width, side * options.height, PictureContent::Colours);
     const Picture picture = side == 1 ? drawn : average_down(drawn, side);
     write_png(options.image, picture, existing);
+    progress.wipe();
     fmt::print("{}: {}x{} on {}\n", options.image.string(), picture.width, picture.height,
                gpu.name());
     return 0;

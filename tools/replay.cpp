@@ -9,7 +9,7 @@
 #include "session/run_headless.h"
 #include "simulation/simulation.h"
 #include "tools/hands.h"
-#include "tools/relax.h"
+#include "tools/progress.h"
 #include "tools/run.h"
 
 #include <fmt/format.h>
@@ -131,7 +131,9 @@ int replay_command(const ReplayOptions& options) {
     const double session_s = scene.seconds;
     scene.seconds = std::min(session_s, static_cast<double>(ticks) * servo_tick_s);
     const RecordedTime time{scene.seconds, session_s};
-    Simulation simulation = load_simulation(scene, show_relaxing());
+    ProgressLine progress;
+    Simulation simulation = load_simulation(scene, progress.stages());
+    progress.wipe();
     EmulatedOmni device(build_emulated_omni(scene, simulation));
     (void)run_headless(scene, simulation, device, {}, nullptr, find_progress(options.json), {},
                        [&](const ServoTick& tick) { check.add(tick); });

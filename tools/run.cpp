@@ -15,7 +15,7 @@
 #include "tools/hands.h"
 #include "tools/open_window.h"
 #include "tools/print_run.h"
-#include "tools/relax.h"
+#include "tools/progress.h"
 #include "tools/render.h"
 
 #include <fmt/format.h>
@@ -96,12 +96,12 @@ void check_options(const RunOptions& options) {
 }
 
 int print_check(const SceneDescription& scene, const Simulation& simulation,
-                const std::vector<std::string>& warnings) {
+                const std::vector<std::string>& warnings, ProgressLine& progress) {
     fmt::print("{}: {}\n", printable(scene.file.string()),
                warnings.empty() ? "nothing wrong found"
                                 : fmt::format("can be run, with {} warning{}", warnings.size(),
                                               warnings.size() == 1 ? "" : "s"));
-    print_line(scene, simulation);
+    print_line(scene, simulation, progress);
     for (const std::string& warning : warnings) {
         fmt::print("  warning: {}\n", printable(warning));
     }
@@ -114,11 +114,15 @@ int run_command(const RunOptions& options) {
     const SceneDescription as_read = read_scene(options.scene, options.settings);
     check_options(options);
     SceneDescription scene = as_read;
-    Simulation simulation = load_simulation(scene, show_relaxing());
+    ProgressLine progress;
+    Simulation simulation = load_simulation(scene, progress.stages());
+    tell(progress.stages(), "planning the hand's way");
     const EmulatedOmniSettings settings = build_emulated_omni(scene, simulation);
     if (options.second) hold_with_both_hands(scene);
-    std::vector<std::string> warnings = list_warnings(scene, simulation, settings.script);
-    if (options.check_only) return print_check(scene, simulation, warnings);
+    std::vector<std::string> warnings =
+        list_warnings(scene, simulation, settings.script, progress.stages());
+    progress.wipe();
+    if (options.check_only) return print_check(scene, simulation, warnings, progress);
     if (!options.headless) {
         return exit_code_after(open_window(scene, as_read, simulation, settings, options));
     }

@@ -28,7 +28,7 @@ constexpr std::array section_names =
 
 bool is_wildcard(const std::string& type) { return type == "X"; }
 
-// Of bonds and angles; impropers of CHARMM's own files have some below 0.
+// Of bonds and angles; impropers and Urey-Bradley terms of CHARMM's own files have some below 0.
 void check_stiffness(const Statements& statements, double k) {
     if (k < 0) {
         statements.fail(fmt::format("a force constant of {}; expected 0 or more", k));
@@ -138,7 +138,7 @@ void ParameterReader::read_angle() {
         angle.urey_bradley_k = statements_.real(5, "force constant of Urey-Bradley");
         angle.urey_bradley_s0 = statements_.real(6, "distance of Urey-Bradley");
     }
-    check_stiffness(statements_, std::min(angle.k, angle.urey_bradley_k));
+    check_stiffness(statements_, angle.k);
     add_once(statements_, into_.angles, types, angle, "angle",
              [](const AngleParameter& a, const AngleParameter& b) {
                  return a.k == b.k && a.value == b.value && a.urey_bradley_k == b.urey_bradley_k &&

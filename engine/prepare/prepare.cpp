@@ -197,7 +197,7 @@ void warn_of_clash(PreparedSystem& system, const std::optional<Contact>& closest
 }
 
 void relax_system(PreparedSystem& system, std::span<const std::uint8_t> is_built,
-                  const PrepareProgress& progress) {
+                  const StageFunction& progress) {
     const std::size_t count = system.structure.names.size();
     std::vector<std::uint8_t> is_hydrogen(count, 0);
     for (std::size_t i = 0; i < count; ++i) {
@@ -205,7 +205,7 @@ void relax_system(PreparedSystem& system, std::span<const std::uint8_t> is_built
     }
     const ClashReport relaxed =
         relax(system.topology, is_built, is_hydrogen, system.structure.positions,
-              [&](double share) { progress("relaxing clashes", share); });
+              [&](double share) { tell(progress, "relaxing clashes", share); });
     constexpr std::string_view heading = "Relaxation";
     system.report.add(
         heading,
@@ -240,10 +240,10 @@ void create_folder(const std::filesystem::path& folder) {
 }  // namespace
 
 PreparedSystem prepare_system(const ForceField& force_field, const Structure& structure,
-                              const PrepareSettings& settings, const PrepareProgress& progress) {
+                              const PrepareSettings& settings, const StageFunction& progress) {
     PreparedSystem result;
     Report& report = result.report;
-    progress("choosing and naming atoms", 0);
+    tell(progress, "choosing and naming atoms");
     const Structure chosen = choose_atoms(structure, settings, report);
     check_size(chosen);
     const NamedResidues named = name_residues(force_field, chosen, settings, report);
@@ -270,11 +270,11 @@ PreparedSystem prepare_system(const ForceField& force_field, const Structure& st
     check_coordinates(result.structure, result.topology, is_added, report);
     report_charge(result);
 
-    progress("building missing atoms", 0);
+    tell(progress, "building missing atoms");
     const std::vector<AtomCoordinate> coordinates =
         find_internal_coordinates(force_field, result.structure, system.settings);
     build_missing(result, coordinates);
-    progress("orienting hydrogens", 0);
+    tell(progress, "orienting hydrogens");
     orient(result, system.completed.added, settings);
     if (settings.relaxes) {
         relax_system(result, is_added, progress);
@@ -286,14 +286,14 @@ PreparedSystem prepare_system(const ForceField& force_field, const Structure& st
 }
 
 void write_prepared(const PreparedSystem& system, const std::filesystem::path& folder,
-                    std::string_view title, std::string_view scene, Existing existing) {
+                    std::string_view title, std::span<const TextFile> scene, Existing existing) {
     std::vector<TextFile> files{
         {folder / "system.psf", format_psf(system.connectivity, title)},
         {folder / "system.pdb", format_pdb(with_short_chains(system.structure), title)},
         {folder / "system.crd", format_crd(system.structure, title)},
         {folder / "system.prm", format_parameters(system.parameters, title)},
         {folder / "report.txt", fmt::format("{}\n\n{}", title, system.report.to_text())}};
-    if (!scene.empty()) files.push_back({folder / "scene.toml", std::string(scene)});
+    for (const TextFile& file : scene) files.push_back({folder / file.path, file.text});
     for (TextFile& file : files) file.existing = existing;
     create_folder(folder);
     write_text_files(files);

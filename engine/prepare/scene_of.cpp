@@ -1,108 +1,127 @@
-#include "core/load_error.h"
-#include "prepare/prepare.h"
+#include "prepare/scene_of.h"
+
 #include "prepare/residues.h"
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <iterator>
 #include <limits>
-#include <map>
-#include <utility>
-#include <vector>
 
 namespace palpa {
 namespace {
 
-// Atoms of each segment, in the order of the first of them.
-std::vector<std::pair<std::string, std::vector<std::size_t>>> find_segments(
-    const Structure& structure) {
-    std::vector<std::pair<std::string, std::vector<std::size_t>>> segments;
-    std::map<std::string, std::size_t> index_of;
-    for (std::size_t i = 0; i < structure.names.size(); ++i) {
-        const std::string& name = structure.names[i].segment;
-        const auto [index, is_new] = index_of.try_emplace(name, segments.size());
-        if (is_new) segments.push_back({name, {}});
-        segments[index->second].second.push_back(i);
-    }
-    return segments;
+// As scene files name an atom.
+std::string atom_text(const Structure& structure, std::uint32_t atom) {
+    return fmt::format("{} {}", structure.names[atom].number, structure.names[atom].atom);
 }
 
-// The heavy atom nearest to a place, as scene files name it.
-std::string nearest_atom(const Structure& structure, const std::vector<std::size_t>& atoms,
-                         const Vec3& place) {
-    std::size_t nearest = atoms.front();
-    double least = std::numeric_limits<double>::infinity();
-    for (const std::size_t atom : atoms) {
+// The heavy atom that is nearest to a place, or farthest from it.
+std::uint32_t find_atom_by(const Structure& structure, std::span<const std::uint32_t> atoms,
+                           const Vec3& place, bool farthest) {
+    std::uint32_t found = atoms.front();
+    double best = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t atom : atoms) {
         const double distance = (structure.positions[atom] - place).norm();
-        if (element_of(structure, atom) == "H" || !(distance < least)) continue;
-        least = distance;
-        nearest = atom;
+        const double rank = farthest ? -distance : distance;
+        if (element_of(structure, atom) == "H" || rank >= best) continue;
+        best = rank;
+        found = atom;
     }
-    return fmt::format("{} {}", structure.names[nearest].number, structure.names[nearest].atom);
+    return found;
+}
+
+// Whose body is the molecule's base: in its middle, but what is on a spring must be able to move.
+std::uint32_t find_reference(const Structure& structure, const SystemSegment& segment,
+                             const HandChoice& hand) {
+    const std::uint32_t middle =
+        find_atom_by(structure, segment.atoms, middle_of(structure, segment.atoms), false);
+    if (segment.name != hand.segment || hand.atom.empty()) return middle;
+    constexpr double apart = 8;  // Å
+    const Vec3 held = middle_of(structure, hand.held);
+    if ((structure.positions[middle] - held).norm() > apart) return middle;
+    return find_atom_by(structure, segment.atoms, held, true);
+}
+
+// Distances are measured from a molecule that stays: the largest that the hand does not move.
+std::string find_origin(std::span<const SystemSegment> segments, const HandChoice& hand) {
+    if (!hand.atom.empty()) return hand.segment;
+    const SystemSegment* largest = nullptr;
+    for (const SystemSegment& segment : segments) {
+        if (segment.name == hand.segment) continue;
+        if (!largest || segment.atoms.size() > largest->atoms.size()) largest = &segment;
+    }
+    return largest ? largest->name : hand.segment;
+}
+
+std::string format_path(const Vec3& way) {
+    constexpr double out = 4;  // Å
+    constexpr std::array<std::array<double, 2>, 4> path{{{0.5, 0}, {3, out}, {4, out}, {6.5, 0}}};
+    std::string text;
+    for (const auto& [time_s, distance] : path) {
+        const Vec3 place = distance * way;
+        fmt::format_to(std::back_inserter(text), "{}[{}, {:.3f}, {:.3f}, {:.3f}]",
+                       text.empty() ? "" : ", ", time_s, place.x(), place.y(), place.z());
+    }
+    return text;
+}
+
+std::string format_statics(std::size_t atoms, const SceneTuning& tuning) {
+    std::string text = "\n[statics]\nrest_kcal_per_mol = 0.5\n";
+    if (tuning.relax_steps) text += fmt::format("relax_steps = {}\n", *tuning.relax_steps);
+    if (atoms <= most_atoms_all_pairs) {
+        text += "steps = 2\n";
+    } else {
+        text += "cutoff_angstrom = 12.0\n";
+    }
+    if (atoms > most_atoms_all_active) text += "active = 100\nweights = \"single\"\n";
+    return text;
+}
+
+std::string format_note(const std::string& note) {
+    return note.empty() ? "" : fmt::format("# {}\n", note);
+}
+
+std::string format_coupling(const SceneTuning& tuning) {
+    const std::string text = "\n[coupling]\n" + format_note(tuning.coupling_note);
+    if (!tuning.feel_pN) {
+        return text +
+               "force_law = \"constant\"\ndisplacement_law = \"constant\"\nA_f = 0.1e9\n"
+               "A_d = 0.05e9\n";
+    }
+    const auto [weakest, strongest] = *tuning.feel_pN;
+    return text + fmt::format("feel_pN = [{}, {}]\n", weakest, strongest);
 }
 
 }  // namespace
 
-std::string find_smallest_segment(const PreparedSystem& system) {
-    const auto segments = find_segments(system.structure);
-    if (segments.size() < 2) return {};
-    constexpr std::size_t ion = 3;  // atoms at most
-    const auto rank = [&](const auto& entry) {
-        return std::pair(entry.second.size() <= ion, entry.second.size());
-    };
-    return std::min_element(segments.begin(), segments.end(),
-                            [&](const auto& a, const auto& b) { return rank(a) < rank(b); })
-        ->first;
-}
-
-std::string format_scene_of(const PreparedSystem& system, const std::string& segment,
-                            std::string_view title) {
-    const Structure& structure = system.structure;
-    const auto segments = find_segments(structure);
-    const auto grabbed = std::find_if(segments.begin(), segments.end(),
-                                      [&](const auto& entry) { return entry.first == segment; });
-    if (grabbed == segments.end() || segments.size() < 2) {
-        std::vector<std::string> names;
-        for (const auto& entry : segments) names.push_back(entry.first);
-        throw LoadError({structure.file},
-                        fmt::format("--grab {}: expected one of several segments (here: {})",
-                                    segment, fmt::join(names, ", ")));
+std::string format_scene(const Structure& structure, std::span<const SystemSegment> segments,
+                         const HandChoice& hand, const Vec3& way, const SceneText& text,
+                         const SceneTuning& tuning) {
+    std::string scene = fmt::format(
+        "# Written by palpa prepare. Every key: palpa run --keys.\ntitle = {:?}\nabout = {:?}\n"
+        "made_by = {:?}\n\n[force_field]\nfiles = [\"system.prm\"]\n",
+        text.title, text.about, text.made_by);
+    for (const SystemSegment& segment : segments) {
+        fmt::format_to(std::back_inserter(scene),
+                       "\n[molecules.{:?}]\nstructure = {:?}\ntopology = {:?}\nsegment = {:?}\n"
+                       "reference_atom = {:?}\n",
+                       segment.name, text.structure, text.topology, segment.name,
+                       atom_text(structure, find_reference(structure, segment, hand)));
+        if (segment.kind == SegmentKind::Molecule) scene += "shape = \"flexible\"\n";
+        if (segment.name == hand.segment && hand.atom.empty()) {
+            scene += "motion = \"translate-and-turn\"\n";
+        }
     }
-    Vec3 middle = Vec3::Zero();
-    for (const std::size_t atom : grabbed->second) middle += structure.positions[atom];
-    middle /= static_cast<double>(grabbed->second.size());
-
-    const auto largest =
-        std::max_element(segments.begin(), segments.end(), [&](const auto& a, const auto& b) {
-            const auto size = [&](const auto& s) {
-                return s.first == segment ? 0 : s.second.size();
-            };
-            return size(a) < size(b);
-        });
-    // A step sums all pairs, about 7 ns each; the drawing needs time too.
-    const auto in_hand = static_cast<double>(grabbed->second.size());
-    const double pairs = in_hand * (static_cast<double>(structure.names.size()) - in_hand);
-    const double period_ms = std::clamp(std::ceil(1.7 * 7e-6 * pairs), 1.0, 1000.0);
-
-    std::string text = fmt::format(
-        "# Written by palpa prepare. Every key: palpa run --keys.\ntitle = {:?}\n\n[force_field]\n"
-        "files = [\"system.prm\"]\n",
-        title);
-    for (const auto& [name, atoms] : segments) {
-        fmt::format_to(std::back_inserter(text),
-                       "\n[molecules.{:?}]\nstructure = \"system.crd\"\ntopology = \"system.psf\"\n"
-                       "segment = {:?}\nreference_atom = {:?}\n",
-                       name, name, nearest_atom(structure, atoms, middle));
-        if (name == segment) text += "motion = \"translate\"\n";
-    }
-    fmt::format_to(
-        std::back_inserter(text),
-        "\n[grab]\nmolecule = {:?}\nmeasured_from = {:?}\n\n[hand]\nstroke = \"hold\"\n\n"
-        "[coupling]\nmode = \"4\"\nA_f = 0.38e9\nA_d = 2.2e9\n\n[run]\nperiod_ms = {}\n",
-        segment, largest->first, period_ms);
-    return text;
+    scene += format_statics(structure.names.size(), tuning);
+    scene += fmt::format("\n[grab]\nmolecule = {:?}\nmeasured_from = {:?}\n", hand.segment,
+                         find_origin(segments, hand));
+    if (!hand.atom.empty()) scene += fmt::format("atom = {:?}\n", hand.atom);
+    scene += fmt::format("\n[hand]\nstroke = \"lead\"\npath = [{}]\n", format_path(way));
+    scene += format_coupling(tuning);
+    scene += fmt::format("\n[run]\n{}period_ms = {}\nseconds = 10\n",
+                         format_note(tuning.period_note), tuning.period_ms);
+    return scene;
 }
 
 }  // namespace palpa

@@ -103,7 +103,8 @@ double gain_where(const ServoSettings& servo, const Simulation& simulation,
                       Vec3(line.force * units::newton_per_kcal_per_mol_angstrom, 0, 0), stiffness);
 }
 
-FeltStiffness stiffest_place(const SceneDescription& scene, const Simulation& simulation) {
+FeltStiffness stiffest_place(const SceneDescription& scene, const Simulation& simulation,
+                             const StageFunction& on_stage) {
     const Grab& grab = *simulation.world.find<Grab>(simulation.hand);
     const Guide& guide = *simulation.world.find<Guide>(grab.molecule);
     const ServoSettings servo = build_servo_settings(scene, simulation);
@@ -136,7 +137,9 @@ FeltStiffness stiffest_place(const SceneDescription& scene, const Simulation& si
     }
     // In space from the start both ways; outward all gets soft soon.
     const double start = grabbed_distance(simulation);
-    for (double in = 0; in < 60 && look_at(start - in);) in += 0.05;
+    for (double in = 0; in < 60 && look_at(start - in); in += 0.05) {
+        if (on_stage) on_stage(fmt::format("looking for the stiffest place: {:.1f} Å in", in), {});
+    }
     for (double out = 0.05; out < 2 && look_at(start + out);) out += 0.05;
     return stiffest;
 }
@@ -199,9 +202,9 @@ void warn_of_resolution(const SceneDescription& scene, const Simulation& simulat
 }  // namespace
 
 std::vector<std::string> list_warnings(const SceneDescription& scene, const Simulation& simulation,
-                                       const HandScript& script) {
+                                       const HandScript& script, const StageFunction& on_stage) {
     std::vector<std::string> warnings;
-    const FeltStiffness stiffest = stiffest_place(scene, simulation);
+    const FeltStiffness stiffest = stiffest_place(scene, simulation, on_stage);
     const std::optional<HandModel> hand = hand_model(static_cast<Grip>(scene.hand.grip));
     const double limit = calm_stiffness(scene, hand, simulation.period_s);
     if (stiffest.newton_per_metre > limit) {

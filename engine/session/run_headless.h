@@ -1,5 +1,6 @@
 // A whole scene without a window: loaded, felt by a device in lockstep, summed up, recorded.
 #pragma once
+#include "core/stage.h"
 #include "haptics/device.h"
 #include "haptics/hand.h"
 #include "haptics/servo.h"
@@ -60,7 +61,9 @@ struct FeltStiffness {
     double newton_per_metre = 0;
     double angstrom = 0;
 };
-FeltStiffness stiffest_place(const SceneDescription& scene, const Simulation& simulation);
+// `on_stage` hears how far the look has got, which takes minutes where a large molecule is rigid.
+FeltStiffness stiffest_place(const SceneDescription& scene, const Simulation& simulation,
+                             const StageFunction& on_stage = {});
 
 // The stiffest spring (N/m) that this hand on the scene's device keeps calm at that period and the
 // scene's servo delay (haptics/plant.h); guarded, at the servo's own period and with its damping.
@@ -72,7 +75,8 @@ double calm_stiffness(const SceneDescription& scene, const std::optional<HandMod
 // damping, or gains that play rounding errors; atoms on each other, molecules that are not at rest,
 // a stroke longer than the run.
 std::vector<std::string> list_warnings(const SceneDescription& scene, const Simulation& simulation,
-                                       const HandScript& script);
+                                       const HandScript& script,
+                                       const StageFunction& on_stage = {});
 
 // Adds to the summary's warnings what went wrong in it.
 void warn_of_outcome(Summary& summary);

@@ -30,7 +30,7 @@ Exactness::Exactness(double tolerance_pN, const Effort& scene, std::size_t coord
       effort_{std::min(scene.active, coordinates), scene.steps} {}
 
 void Exactness::add_step(const Effort& used) noexcept {
-    // Passes and what the hand moves are there without any joint (scenes/hiv/README.md).
+    // Passes and what the hand moves are there without any joint (scenes/hiv/results.md).
     constexpr double least = 0.07;
     const double share = static_cast<double>(used.active) / static_cast<double>(coordinates_);
     const double work =

@@ -4,6 +4,7 @@
 #include "charmm/force_field.h"
 #include "charmm/generate.h"
 #include "core/load_error.h"
+#include "core/stage.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "formats/psf.h"
@@ -122,9 +123,23 @@ Connectivity build_scene_connectivity(const std::vector<const MoleculeDescriptio
     return all;
 }
 
+// Every so many steps, what relaxing has come to; nothing where nobody waits.
+RelaxProgressFunction tell_relaxing(const StageFunction& on_stage) {
+    if (!on_stage) return {};
+    return [&on_stage](const RelaxProgress& progress) {
+        constexpr std::size_t between = 20;
+        if (progress.step % between == 0) {
+            on_stage(fmt::format("relaxing: step {}, {:.3f} kcal/mol, rms force {:.3g}",
+                                 progress.step, progress.energy, progress.rms_force),
+                     {});
+        }
+        return true;
+    };
+}
+
 void load_flexible(const SceneDescription& scene, const ForceField& force_field, Files& files,
                    const std::vector<const MoleculeDescription*>& molecules,
-                   const std::vector<Entity>& entities, const RelaxProgressFunction& on_relax,
+                   const std::vector<Entity>& entities, const StageFunction& on_stage,
                    Simulation& simulation) {
     for (const MoleculeDescription* const a : molecules) {
         for (const MoleculeDescription* const b : molecules) {
@@ -135,15 +150,17 @@ void load_flexible(const SceneDescription& scene, const ForceField& force_field,
                                         a->name, b->name, b->segment));
         }
     }
+    tell(on_stage, "finding bonded terms");
     const Connectivity connectivity = build_scene_connectivity(molecules, force_field, files);
+    const Topology topology = build_topology(connectivity, force_field);
     std::vector<FlexiblePart> parts;
     for (std::size_t i = 0; i < molecules.size(); ++i) {
         const Molecule& molecule = *simulation.world.find<Molecule>(entities[i]);
         parts.push_back({molecules[i], molecule.atoms, molecule.reference_atom});
     }
-    simulation.flexible =
-        build_flexible(scene, connectivity, build_topology(connectivity, force_field),
-                       simulation.atoms.positions, parts, on_relax);
+    tell(on_stage, "building joints and lists of neighbours");
+    simulation.flexible = build_flexible(scene, connectivity, topology, simulation.atoms.positions,
+                                         parts, tell_relaxing(on_stage));
     simulation.atoms.positions = simulation.flexible->state.positions;
 }
 
@@ -346,18 +363,21 @@ void set_coupling(const CouplingDescription& coupling, Simulation& simulation) {
     simulation.touch.model.start = start;
 }
 
-Simulation load_simulation(const SceneDescription& scene, const RelaxProgressFunction& on_relax) {
+Simulation load_simulation(const SceneDescription& scene, const StageFunction& on_stage) {
     check_laws(scene);
     Simulation simulation(build_coupling_laws(scene.coupling));
     simulation.coulomb_constant = scene.force_field.coulomb_constant;
     simulation.period_s = scene.period_ms * 1e-3;
 
+    tell(on_stage, "reading the force field");
     const ForceField force_field = read_force_field(scene.force_field.files);
     Files files;
     Grab grab;
     const std::vector<const MoleculeDescription*> molecules = grabbed_first(scene);
     std::vector<Entity> entities;
     for (const MoleculeDescription* const molecule : molecules) {
+        tell(on_stage, "reading and typing atoms",
+             static_cast<double>(entities.size()) / static_cast<double>(molecules.size()));
         const Entity entity = add_molecule(*molecule, force_field, files, simulation);
         if (molecule->name == scene.grab.molecule) grab.molecule = entity;
         if (molecule->name == scene.grab.measured_from) grab.measured_from = entity;
@@ -374,8 +394,9 @@ Simulation load_simulation(const SceneDescription& scene, const RelaxProgressFun
     simulation.world.set(grab.molecule, guide);
     simulation.replaced_pairs = build_replaced_pairs(force_field, simulation.atoms.type_names);
     if (scene.has_statics()) {
-        load_flexible(scene, force_field, files, molecules, entities, on_relax, simulation);
+        load_flexible(scene, force_field, files, molecules, entities, on_stage, simulation);
     }
+    tell(on_stage, "bringing the molecule in the hand to its start");
     start_grabbed(scene, simulation);
     check_distance(scene, simulation);
     set_coupling(scene.coupling, simulation);

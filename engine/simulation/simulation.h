@@ -1,6 +1,7 @@
 // The state of a running scene, and how it is made.
 #pragma once
 #include "charmm/topology.h"
+#include "core/stage.h"
 #include "ecs/entity.h"
 #include "ecs/world.h"
 #include "field/pair_field.h"
@@ -65,10 +66,9 @@ void set_coupling(const CouplingDescription& coupling, Simulation& simulation);
 
 // Reads everything the scene names, relaxes a grabbed molecule that moves in space as a rigid body,
 // until less than 20 pN pull at it, or everything that moves by itself as the scene's [statics]
-// say, and puts the grabbed molecule at its start. Throws LoadError with the place of what is
-// wrong.
-Simulation load_simulation(const SceneDescription& scene,
-                           const RelaxProgressFunction& on_relax = {});
+// say, and puts the grabbed molecule at its start. `on_stage` hears what takes long. Throws
+// LoadError with the place of what is wrong.
+Simulation load_simulation(const SceneDescription& scene, const StageFunction& on_stage = {});
 
 // What a scene's molecules are, in the order of the atom table that load_simulation makes, and
 // where its files have them.

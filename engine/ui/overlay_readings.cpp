@@ -154,7 +154,7 @@ void Overlay::draw_readings(const Readout& readout, const OverlayStatus& status,
         reading("pocket", "not relaxed",
                 "The pocket follows the hand by a few steps, and is not at rest meanwhile: the "
                 "force can be several times that of a relaxed pocket. Measured in "
-                "scenes/hiv/README.md.");
+                "scenes/hiv/results.md.");
     }
     if (!on_axis) {
         reading("torque", fmt::format("{:.3g} nN Å", 1e19 * touch.torque_newton_metre.norm()),

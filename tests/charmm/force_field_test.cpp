@@ -128,6 +128,13 @@ void check_is_tip3p(const ForceField& force_field) {
 
 }  // namespace
 
+TEST_CASE("a Urey-Bradley term may push, as in CHARMM's nucleic acids", "[charmm]") {
+    const ForceField force_field =
+        test::force_field_of("read para\nANGLES\nP ON2 P 15.0 140.0 -40.0 2.80\nEND\n", "na.str");
+    REQUIRE(force_field.angles.size() == 1);
+    CHECK(force_field.angles.begin()->second.urey_bradley_k == -40);
+}
+
 TEST_CASE("a stream file of TIP3P is read, topology and parameters in one",
           "[charmm][force_field]") {
     const ForceField force_field = parsed(tip3p);
@@ -366,7 +373,7 @@ TEST_CASE("a value that does not parse is told with its line", "[charmm][force_f
         {"BONDS\nHT OT 450.0\n", "2", "no r0 here; expected: type1 type2 k r0"},
         {"BONDS\nHT\n", "2", "no type2 here"},
         {"BONDS\nHT OT -450.0 1.0\n", "2", "a force constant of -450; expected 0 or more"},
-        {"ANGLES\nHT OT HT 1.0 90.0 -2.0 1.0\n", "2", "a force constant of -2"},
+        {"ANGLES\nHT OT HT -2.0 90.0 1.0 1.0\n", "2", "a force constant of -2"},
         {"BONDS\nHT OT 450.0 long\n", "2", "'LONG' is not a number"},
         {"ANGLES\nHT OT HT 55.0\n", "2", "no angle here"},
         {"ANGLES\nHT OT\n", "2", "no type3 here; expected: type1 type2 type3 k angle [k_UB S0]"},

@@ -52,14 +52,14 @@ class CompareTl3(unittest.TestCase):
                 self.assertEqual(alone[name][:3], [alone_draft, alone_ours, differ])
                 self.assertEqual(draft, ours)
 
-    def test_the_readme_has_what_the_scene_s_check_prints(self):
+    def test_the_results_have_what_the_scene_s_check_prints(self):
         result = subprocess.run([os.environ["PALPA_PROGRAM"], "run", "--check", SCENE],
                                 capture_output=True, text=True)
         self.assertEqual(result.returncode, 0, result.stderr)
 
         relaxed = next(line for line in result.stdout.splitlines() if "relaxed" in line)
         self.assertIn("-152.113 to -155.906 kcal/mol", relaxed)
-        self.assertIn(relaxed, (SCENE / "README.md").read_text())
+        self.assertIn(relaxed, (SCENE / "results.md").read_text())
 
 
 if __name__ == "__main__":

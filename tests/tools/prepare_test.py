@@ -75,7 +75,7 @@ class Prepare(unittest.TestCase):
 
     def prepare(self, structure, toppar, *options):
         result = self.palpa("prepare", structure, "--toppar", *toppar, "-o", self.folder / "out",
-                            "--overwrite", *options)
+                            "--overwrite", "--no-scene", *options)
         self.assertEqual(result.returncode, 0, result.stderr)
         return self.folder / "out"
 
@@ -224,22 +224,6 @@ class Prepare(unittest.TestCase):
         atoms, _ = read_psf(folder / "system.psf")
         self.assertEqual(sum(atom[2] == "3TL" for atom in atoms), 130)
         self.check_clean(folder)
-
-    def test_what_is_prepared_can_be_felt(self):
-        folder = self.prepare(self.data / "hiv" / "derived" / "5w5w_tl3_complex.pdb",
-                              [*self.toppar(), *self.tl3()])
-        result = self.palpa("run", "--headless", "--seconds", 0.1, "--json", folder)
-        self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertEqual(json.loads(result.stdout)["warnings"], [])
-        scene = (folder / "scene.toml").read_text()
-        self.assertIn('molecule = "3TL"', scene)
-        (folder / "scene.toml").write_text(scene.replace("system.crd", "system.pdb"))
-        result = self.palpa("run", "--check", folder)
-        self.assertEqual(result.returncode, 0, result.stderr)
-        result = self.palpa("prepare", self.data / "structures" / "alanine_dipeptide.pdb",
-                            "--toppar", *self.toppar()[:2], "-o", self.folder / "alone")
-        self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertFalse((self.folder / "alone" / "scene.toml").exists())
 
     def test_what_cannot_be_prepared_is_told_in_one_line(self):
         hiv = self.data / "hiv"

@@ -1,0 +1,41 @@
+// The scene file of a prepared system.
+#pragma once
+#include "math/vec.h"
+#include "molecule/atoms.h"
+#include "prepare/hand_choice.h"
+#include "prepare/system_segments.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace palpa {
+
+// What is known of a scene once it was played.
+struct SceneTuning {
+    // The range of forces on the molecule that is felt, pN; unset: constant gains, for a first try.
+    std::optional<std::array<double, 2>> feel_pN = {};
+    double period_ms = 10;
+    std::optional<std::int64_t> relax_steps = {};  // on loading
+    std::string coupling_note, period_note;        // comments, a line each
+};
+
+struct SceneText {
+    std::string title, about, made_by;
+    std::string structure = "relaxed.crd", topology = "system.psf";  // file names
+};
+
+// Atoms beyond which forces end at 12 Å, and beyond which few degrees of freedom are active.
+inline constexpr std::size_t most_atoms_all_pairs = 4'000, most_atoms_all_active = 20'000;
+
+// Guarded coupling, every molecule flexible, ions and waters fixed; the hand leads what it holds by
+// 4 Å along `way`, and back. On a spring the molecule's base is away from what is held.
+std::string format_scene(const Structure& structure, std::span<const SystemSegment> segments,
+                         const HandChoice& hand, const Vec3& way, const SceneText& text,
+                         const SceneTuning& tuning);
+
+}  // namespace palpa

@@ -1,0 +1,106 @@
+#include "prepare/hand_choice.h"
+
+#include "tests/prepare/small_system.h"
+#include "tests/support/load_error_of.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+using namespace palpa;
+using Catch::Contains;
+using test::load_error_of;
+using test::StructureWriter;
+
+namespace {
+
+// Every segment one piece.
+std::vector<SystemSegment> segments_of(const Structure& structure) {
+    Connectivity connectivity;
+    for (std::uint32_t i = 1; i < structure.names.size(); ++i) {
+        if (structure.names[i].segment == structure.names[i - 1].segment)
+            connectivity.bonds.push_back({i - 1, i});
+    }
+    return find_segments(structure, connectivity);
+}
+
+// A chain of four atoms a residue, 4 Å from one to the next.
+StructureWriter& add_chain(StructureWriter& writer, const std::string& name, int residues) {
+    for (int i = 0; i < residues; ++i) writer.backbone("ALA", name, i + 1, 4.0 * i);
+    return writer;
+}
+
+}  // namespace
+
+TEST_CASE("a small molecule beside a larger one is held whole", "[prepare][hand]") {
+    StructureWriter writer;
+    add_chain(writer, "A", 5);
+    for (int i = 0; i < 4; ++i) {
+        writer.atom("LIG", "L", 1, "C" + std::to_string(i), {9.0 + i, 5, 0}, "C");
+    }
+    writer.atom("SOD", "I", 1, "SOD", {30, 0, 0}, "NA");
+    const HandChoice hand = choose_hand(writer.structure(), segments_of(writer.structure()), "");
+    CHECK(hand.segment == "L");
+    CHECK(hand.atom.empty());
+    CHECK(hand.held == std::vector<std::uint32_t>{20, 21, 22, 23});
+}
+
+TEST_CASE("of chains alone the most exposed residue is held", "[prepare][hand]") {
+    // 80 residues in a row of 4 Å: at both ends they have half as many neighbours, and another
+    // chain lies beside the first residue.
+    StructureWriter writer;
+    add_chain(writer, "A", 80);
+    for (int i = 0; i < 76; ++i) writer.backbone("ALA", "B", i + 1, 4.0 * i - 8);
+    Structure structure = writer.structure();
+    for (std::size_t i = 320; i < structure.names.size(); ++i) structure.positions[i].y() += 5;
+
+    HandChoice hand = choose_hand(structure, segments_of(structure), "");
+    CHECK(hand.segment == "A");
+    CHECK(hand.atom == "80");
+    CHECK(hand.held == std::vector<std::uint32_t>{316, 317, 318, 319});
+    CHECK_THAT(hand.words, Contains("ALA 80 of A"));
+
+    hand = choose_hand(structure, segments_of(structure), "B:7");
+    CHECK(hand.segment == "B");
+    CHECK(hand.atom == "7");
+    hand = choose_hand(structure, segments_of(structure), "B");
+    CHECK(hand.atom.empty());
+    CHECK(hand.held.size() == 304);
+    CHECK_THAT(load_error_of([&] { choose_hand(structure, segments_of(structure), "B:77"); }),
+               Contains("--grab B:77") && Contains("A, B"));
+}
+
+TEST_CASE("a single residue is held by an atom, and its whole molecule by nothing",
+          "[prepare][hand]") {
+    StructureWriter writer;
+    writer.backbone("ALA", "A", 1, 0);
+    const std::vector<SystemSegment> segments = segments_of(writer.structure());
+    CHECK_THAT(choose_hand(writer.structure(), segments, "").atom, Contains("1 "));
+    CHECK_THAT(load_error_of([&] { choose_hand(writer.structure(), segments, "A"); }),
+               Contains("--grab A"));
+    StructureWriter ion;
+    ion.atom("SOD", "I", 1, "SOD", {0, 0, 0}, "NA");
+    CHECK_THAT(
+        load_error_of([&] { choose_hand(ion.structure(), segments_of(ion.structure()), ""); }),
+        Contains("no molecule to hold"));
+}
+
+TEST_CASE("the way out of a cup is its opening", "[prepare][hand]") {
+    const Vec3 opening = Vec3(1, -2, 2) / 3;
+    StructureWriter writer;
+    writer.atom("LIG", "L", 1, "C", {0, 0, 0}, "C");
+    int walls = 0;
+    for (int i = 0; i < 500; ++i) {  // evenly on a sphere of 7 Å, but for a hole of 45 degrees
+        const double z = 1 - (2 * i + 1.0) / 500, across = std::sqrt(1 - z * z), turn = 2.4 * i;
+        const Vec3 place(across * std::cos(turn), across * std::sin(turn), z);
+        if (place.dot(opening) > std::numbers::sqrt2 / 2) continue;
+        writer.atom("WAL", "W", ++walls, "C", 7 * place, "C");
+    }
+    const std::vector<std::uint32_t> held{0};
+    // Within the hole and clear of its edge: 45 degrees less what 3 Å of 7 are, and the grid's
+    // step.
+    CHECK(find_way_out(writer.structure(), held).dot(opening) >
+          std::cos(25 * std::numbers::pi / 180));
+}

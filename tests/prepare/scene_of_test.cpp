@@ -1,0 +1,94 @@
+#include "prepare/scene_of.h"
+
+#include "tests/prepare/small_system.h"
+
+#include <catch2/catch.hpp>
+#include <string>
+#include <vector>
+
+using namespace palpa;
+using Catch::Contains;
+using test::StructureWriter;
+
+namespace {
+
+// A chain of ten residues along x, a ligand beside its third, a water and an ion.
+struct Complex {
+    Structure structure;
+    std::vector<SystemSegment> segments;
+
+    Complex() {
+        StructureWriter writer;
+        for (int i = 0; i < 10; ++i) writer.backbone("ALA", "A", i + 1, 4.0 * i);
+        for (int i = 0; i < 4; ++i) {
+            writer.atom("LIG", "L", 1, "C" + std::to_string(i), {10.0 + i, 5, 0}, "C");
+        }
+        writer.atom("TIP3", "W", 1, "OH2", {0, 9, 0}, "O");
+        writer.atom("SOD", "I", 1, "SOD", {0, 15, 0}, "NA");
+        structure = writer.structure();
+        Connectivity connectivity;
+        for (std::uint32_t i = 1; i < 44; ++i) {
+            if (i != 40) connectivity.bonds.push_back({i - 1, i});
+        }
+        segments = find_segments(structure, connectivity);
+    }
+
+    std::string scene(const std::string& grab, const SceneTuning& tuning,
+                      const Vec3& way = Vec3::UnitX()) const {
+        return format_scene(structure, segments, choose_hand(structure, segments, grab), way,
+                            {"t", "a", "m"}, tuning);
+    }
+};
+
+// Of a table, up to the next one.
+std::string section(const std::string& scene, const std::string& name) {
+    const std::size_t from = scene.find("[" + name + "]");
+    REQUIRE(from != std::string::npos);
+    return scene.substr(from, scene.find("\n\n", from) - from);
+}
+
+}  // namespace
+
+TEST_CASE("a prepared scene moves molecules and holds waters and ions", "[prepare][scene]") {
+    const std::string scene = Complex().scene("", {});
+    CHECK_THAT(section(scene, "molecules.\"A\""),
+               Contains("shape = \"flexible\"") && !Contains("motion"));
+    CHECK_THAT(section(scene, "molecules.\"L\""),
+               Contains("shape = \"flexible\"\nmotion = \"translate-and-turn\""));
+    CHECK_THAT(section(scene, "molecules.\"W\""), !Contains("shape"));
+    CHECK_THAT(section(scene, "molecules.\"I\""), !Contains("shape"));
+    CHECK_THAT(section(scene, "grab"),
+               Contains("molecule = \"L\"\nmeasured_from = \"A\"") && !Contains("atom"));
+    CHECK_THAT(scene, !Contains("mode ="));  // guarded, which is the default
+}
+
+TEST_CASE("what is on a spring is away from the base of its molecule", "[prepare][scene]") {
+    const Complex complex;
+    // The middle is between residues 5 and 6, 16 Å from the first; of the sixth it is a neighbour,
+    // and the farthest heavy atom is then at the chain's other end.
+    std::string scene = complex.scene("A:1", {});
+    CHECK_THAT(section(scene, "grab"), Contains("measured_from = \"A\"\natom = \"1\""));
+    CHECK_THAT(section(scene, "molecules.\"A\""),
+               Contains("reference_atom = \"5 ") || Contains("reference_atom = \"6 "));
+    CHECK_THAT(section(complex.scene("A:6", {}), "molecules.\"A\""),
+               Contains("reference_atom = \"1 "));
+}
+
+TEST_CASE("the hand leads along the way, and what was measured is in the file",
+          "[prepare][scene]") {
+    const Complex complex;
+    const std::string first = complex.scene("", {}, {0, 0.6, 0.8});
+    CHECK_THAT(section(first, "hand"),
+               Contains("[0.5, 0.000, 0.000, 0.000], [3, 0.000, 2.400, 3.200]"));
+    CHECK_THAT(section(first, "coupling"), Contains("force_law = \"constant\""));
+    SceneTuning tuning;
+    tuning.feel_pN = {{120, 3600}};
+    tuning.period_ms = 7;
+    tuning.relax_steps = 0;
+    tuning.period_note = "measured";
+    const std::string tuned = complex.scene("", tuning);
+    CHECK_THAT(section(tuned, "coupling"),
+               Contains("feel_pN = [120, 3600]") && !Contains("force_law"));
+    CHECK_THAT(section(tuned, "run"), Contains("# measured\nperiod_ms = 7\n"));
+    CHECK_THAT(section(tuned, "statics"), Contains("relax_steps = 0"));
+}
