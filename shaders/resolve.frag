@@ -22,7 +22,7 @@ float openness(ivec2 pixel, vec3 place, vec3 normal) {
     float turn = fract(52.9829189 * fract(dot(vec2(pixel), vec2(0.06711056, 0.00583715))));
     vec2 x = pixels * vec2(cos(0.785398 * turn), sin(0.785398 * turn)), y = vec2(-x.y, x.x);
     float shut = 0.0;
-    for (int tap = 0; tap < 8; ++tap) {
+    for (int tap = 0; tap < frame.taps; ++tap) {
         ivec2 there = clamp(pixel + ivec2(spiral[tap].x * x + spiral[tap].y * y), ivec2(0), last);
         vec3 to = ray_at(vec2(there) + 0.5) * distance_at(there) - place;
         float d2 = max(dot(to, to), 1e-8), inverse = inversesqrt(d2);
@@ -57,5 +57,8 @@ void main() {
     float lit = max(dot(normal, light), 0.0);
     float shine = pow(max(dot(reflect(-light, normal), normalize(-ray)), 0.0), 32.0);
     vec3 shaded = paint * (0.35 + 0.65 * lit) * openness(pixel, place, normal) + 0.15 * shine * lit;
-    colour = vec4(mix(shaded, vec3(0.02), outline), 1.0);
+    const float thickest_fog = 0.8;
+    float into_fog = max(distance - frame.fog_from, 0.0) * frame.fog.w;
+    float fog = min(1.0 - exp(-into_fog * into_fog), thickest_fog);
+    colour = vec4(mix(mix(shaded, vec3(0.02), outline), frame.fog.rgb, fog), 1.0);
 }

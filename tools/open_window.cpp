@@ -10,6 +10,7 @@
 #include "tools/print_run.h"
 #include "tools/save_scene.h"
 #include "tools/window_devices.h"
+#include "view/first_view.h"
 
 #include <fmt/format.h>
 #include <cstdio>
@@ -103,7 +104,7 @@ int open_window(const SceneDescription& scene, const SceneDescription& as_read,
         return saver.save(set).string();
     };
     const WindowReport report = run_window(scene, *first.device,
-                                           {.view = default_view(simulation),
+                                           {.view = first_settings(scene.view, simulation),
                                             .width = options.width,
                                             .height = options.height,
                                             .screenshots = options.screenshots,

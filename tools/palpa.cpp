@@ -314,17 +314,21 @@ void add_render(CLI::App& program, palpa::RenderOptions& options) {
         ->check(in_range(0.0, 1e5));
     render
         .add_option(
-            "--as", options.representation,
-            "ball-and-stick, space-filling, licorice or in-hand: all but the molecule in hand "
-            "thin; unless given, what shows the scene best")
+            "--as,--representation", options.representation,
+            "ball-and-stick, space-filling, licorice, in-hand: all but the molecule in hand thin, "
+            "or pocket: of these what is near to it, and backbones; this and what follows: unless "
+            "given, as the scene's [view] says")
         ->type_name("NAME=NAME");
-    render.add_option("--colour", options.colouring,
+    render.add_option("--colour,--colouring", options.colouring,
                       "chain: carbons in a colour of their chain; or element");
     render.add_option(
         "--camera", options.camera,
         "AZIMUTH,ELEVATION[,ZOOM]: degrees around what is framed and above it, and how "
-        "many times nearer; 0,0 unless given");
+        "many times nearer");
     render.add_option("--look-at", options.look_at, "a molecule of the scene to frame, not all");
+    render.add_flag_function(
+        "--clip,!--no-clip", [&options](std::int64_t count) { options.clips = count > 0; },
+        "leave out what stands in front of the molecule in hand");
     render.add_option("--samples", options.samples, "averaged for a pixel: 1, 4, 9 or 16")
         ->check(CLI::IsMember({1, 4, 9, 16}));
     add_negation(render, "--no-arrow", options.arrow, "without the force on the molecule");

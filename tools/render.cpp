@@ -9,31 +9,45 @@
 #include "simulation/components.h"
 #include "tools/choice.h"
 #include "tools/hands.h"
+#include "view/clip.h"
+#include "view/first_view.h"
 
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
-#include <optional>
-#include <span>
 #include <system_error>
 
 namespace palpa {
 namespace {
 
-// The molecule's atoms among the spheres.
-std::span<const SphereShape> shapes_of(Simulation& simulation, const FrameScene& frame,
-                                       const std::string& name) {
-    std::vector<std::string_view> names;
-    std::vector<AtomRange> ranges;
-    simulation.world.each<Molecule>([&](Entity, const Molecule& molecule) {
-        names.emplace_back(molecule.name);
-        ranges.push_back(molecule.atoms);
-    });
-    const AtomRange& atoms = ranges[choice_called("--look-at", name, names)];
-    return std::span(frame.spheres).subspan(atoms.first, atoms.count);
+// What the options say over the scene's [view].
+void apply_options(const RenderOptions& options, Simulation& simulation, ViewDescription& view) {
+    if (!options.representation.empty()) {
+        view.representation = static_cast<Representation>(
+            choice_called("--as", options.representation, representation_names));
+    }
+    if (!options.colouring.empty()) {
+        view.colouring =
+            static_cast<Colouring>(choice_called("--colour", options.colouring, colouring_names));
+    }
+    if (!options.look_at.empty()) {
+        std::vector<std::string_view> names;
+        simulation.world.each<Molecule>(
+            [&](Entity, const Molecule& molecule) { names.emplace_back(molecule.name); });
+        view.look_at = names[choice_called("--look-at", options.look_at, names)];
+    }
+    if (!options.camera.empty()) view.camera = read_camera(options.camera);
+    view.clip = options.clips.value_or(view.clip);
+}
+
+// Seen by that camera.
+void finish_frame(const ViewDescription& view, const Simulation& simulation,
+                  const OrbitCamera& camera, FrameScene& frame) {
+    const auto grabbed = static_cast<std::uint32_t>(grabbed_points(simulation).positions.size());
+    if (view.clip) clip_in_front(grabbed, camera, frame);
+    frame.camera = frame_camera(camera, frame);
 }
 
 float aspect_of(std::uint32_t width, std::uint32_t height) {
@@ -42,7 +56,7 @@ float aspect_of(std::uint32_t width, std::uint32_t height) {
 
 }  // namespace
 
-CameraChoice read_camera(std::string_view text) {
+std::array<double, 3> read_camera(std::string_view text) {
     std::vector<double> numbers;
     for (std::size_t begin = 0; begin <= text.size();) {
         const std::size_t end = std::min(text.find(',', begin), text.size());
@@ -56,9 +70,7 @@ CameraChoice read_camera(std::string_view text) {
                         "expected AZIMUTH,ELEVATION[,ZOOM]: degrees, the second from -90 to 90, "
                         "and a factor from 0.01 to 100");
     }
-    constexpr double radian = std::numbers::pi / 180;
-    return {static_cast<float>(numbers[0] * radian), static_cast<float>(numbers[1] * radian),
-            static_cast<float>(numbers[2])};
+    return {numbers[0], numbers[1], numbers[2]};
 }
 
 int render_command(const RenderOptions& options) {
@@ -69,17 +81,11 @@ int render_command(const RenderOptions& options) {
         throw LoadError({"--samples"},
                         fmt::format("{} pixels in all; expected {} at most", pixels, most_pixels));
     }
-    const CameraChoice choice = read_camera(options.camera);
-    const auto colouring =
-        static_cast<Colouring>(choice_called("--colour", options.colouring, colouring_names));
-    std::optional<Representation> representation;
-    if (!options.representation.empty()) {
-        representation = static_cast<Representation>(
-            choice_called("--as", options.representation, representation_names));
-    }
+    if (!options.camera.empty()) (void)read_camera(options.camera);  // before anything is loaded
     Simulation simulation = load_simulation(scene);
-    const ViewSettings view{representation.value_or(default_view(simulation).representation),
-                            colouring, options.arrow};
+    apply_options(options, simulation, scene.view);
+    ViewSettings view = first_settings(scene.view, simulation);
+    view.force_arrow = options.arrow;
     if (options.time_s > 0) {
         scene.seconds = options.time_s;
         EmulatedOmni device(build_emulated_omni(scene, simulation));
@@ -87,15 +93,9 @@ int render_command(const RenderOptions& options) {
     }
     FrameScene frame = build_frame(simulation, view);
     const float aspect = aspect_of(options.width, options.height);
-    OrbitCamera camera;
-    orbit(camera, choice.azimuth, choice.elevation);
-    if (options.look_at.empty()) {
-        frame_all(camera, frame, aspect);
-    } else {
-        frame_shapes(camera, shapes_of(simulation, frame, options.look_at), aspect);
-    }
-    zoom(camera, 1 / choice.zoom);
-    frame.camera = frame_camera(camera, frame);
+    const OrbitCamera camera =
+        first_camera(scene.view, frame, framed_atoms(scene.view, simulation), aspect);
+    finish_frame(scene.view, simulation, camera, frame);
 
     GpuDevice gpu{GpuOptions{}};
     Renderer renderer(gpu);
@@ -111,18 +111,26 @@ int render_command(const RenderOptions& options) {
 }
 
 FrameWriter::FrameWriter(const std::filesystem::path& folder, std::uint32_t width,
-                         std::uint32_t height)
-    : folder_(folder), width_(width), height_(height), gpu_(GpuOptions{}), renderer_(gpu_) {
+                         std::uint32_t height, const ViewDescription& view)
+    : folder_(folder),
+      width_(width),
+      height_(height),
+      view_(view),
+      gpu_(GpuOptions{}),
+      renderer_(gpu_) {
     renderer_.check_size({width, height});
 }
 
-void FrameWriter::write(const Simulation& simulation) {
+void FrameWriter::write(Simulation& simulation) {
     std::error_code error;
     std::filesystem::create_directories(folder_, error);
     if (error) throw LoadError({folder_.string()}, "cannot be made: " + error.message());
-    FrameScene frame = build_frame(simulation, default_view(simulation));
-    if (written_ == 0) frame_all(camera_, frame, aspect_of(width_, height_));
-    frame.camera = frame_camera(camera_, frame);
+    FrameScene frame = build_frame(simulation, first_settings(view_, simulation));
+    if (written_ == 0) {
+        camera_ =
+            first_camera(view_, frame, framed_atoms(view_, simulation), aspect_of(width_, height_));
+    }
+    finish_frame(view_, simulation, camera_, frame);
     write_png(folder_ / fmt::format("{:04}.png", written_++),
               renderer_.draw(frame, width_, height_, PictureContent::Colours));
 }

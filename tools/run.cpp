@@ -39,7 +39,7 @@ void show_progress(double share) {
 }
 
 // A frame that cannot be drawn or written is the last one; the run goes on.
-void write_frame(std::unique_ptr<FrameWriter>& writer, const Simulation& simulation) {
+void write_frame(std::unique_ptr<FrameWriter>& writer, Simulation& simulation) {
     if (!writer) return;
     try {
         writer->write(simulation);
@@ -126,7 +126,7 @@ int run_command(const RunOptions& options) {
     if (options.record && options.frames_per_second > 0) {
         try {  // its complaints about the size come before a recording is begun
             writer = std::make_unique<FrameWriter>(*options.record / "frames", options.frame_width,
-                                                   options.frame_height);
+                                                   options.frame_height, scene.view);
         } catch (const GpuError& error) {
             warnings.push_back(fmt::format("no frames are drawn: {}", error.what()));
         }

@@ -9,7 +9,7 @@
 #include "simulation/probe.h"
 #include "simulation/simulation.h"
 #include "tools/hands.h"
-#include "view/build_frame.h"
+#include "view/first_view.h"
 
 #include <fmt/format.h>
 #include <filesystem>
@@ -113,8 +113,8 @@ int study_in_window(const StudyOptions& options) {
     omni.orders = &orders;
     give_to_mouse(omni);
     EmulatedOmni device(omni);
-    ViewSettings view = default_view(simulation);
-    view.force_arrow = false;  // it would show what is to be felt
+    ViewSettings view = first_settings(scene.view, simulation);
+    view.force_arrow = view.hydrogen_bonds = false;  // they would show what is to be felt
     WindowOptions window;
     window.view = view;
     window.orders = &orders;

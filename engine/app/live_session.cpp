@@ -4,6 +4,7 @@
 #include "session/run_headless.h"
 #include "simulation/probe.h"
 #include "simulation/step.h"
+#include "view/first_view.h"
 
 #include <pthread.h>
 #include <sched.h>
@@ -66,7 +67,8 @@ LiveSession::LiveSession(const SceneDescription& scene, const ViewSettings& view
       scene_(scene),
       device_(&device),
       orders_(orders),
-      state_{load_simulation(limited_by_period(scene)), view, {}, {}, false, {}, {}} {
+      state_{load_simulation(limited_by_period(scene)), view, {}, {}, false, {}, {}},
+      framed_(framed_atoms(scene.view, state_.simulation)) {
     check_period(device.spec(), scene.period_ms * 1e-3);
     order_.granted_ticks = ticks_of(scene.period_ms);
     exchange_.touch.post(state_.simulation.touch);
@@ -320,8 +322,9 @@ void LiveSession::post_frame_if_wanted(const State& state) {
     if (!frame_wanted_.exchange(false)) return;
     const auto grabbed =
         static_cast<std::uint32_t>(grabbed_points(state.simulation).positions.size());
-    LiveFrame frame{build_frame(state.simulation, state.simulation.touch.model, state.view),
-                    grabbed, grabbed_place(state.simulation), state.readout};
+    LiveFrame frame{{}, grabbed, grabbed_place(state.simulation), framed_, {}, state.readout};
+    frame.picture =
+        build_frame(state.simulation, state.simulation.touch.model, state.view, &frame.labels);
     frame.readout.touch = state.simulation.touch.model;
     if (const auto& flexible = state.simulation.flexible; flexible && flexible->adaptive) {
         if (const auto& exactness = flexible->adaptive->exactness) {

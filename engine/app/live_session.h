@@ -32,6 +32,8 @@ struct LiveFrame {
     FrameScene picture;                    // its camera is the window's business
     std::uint32_t grabbed_atoms = 0;       // what is picked below this is in hand
     Vec3 grabbed_angstrom = Vec3::Zero();  // the reference atom in hand, in the world
+    AtomRange framed;                      // what the first view frames; none: everything
+    std::vector<ViewLabel> labels;         // of the picture
     Readout readout;
 };
 
@@ -129,6 +131,7 @@ private:
     std::atomic<bool> stopping_{false}, servo_stopping_{false};
 
     State state_;
+    AtomRange framed_;
     ServoState servo_state_;  // the servo's, while it runs
     std::thread simulation_thread_, servo_thread_;
 };

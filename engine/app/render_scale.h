@@ -1,28 +1,38 @@
-// How large the picture may be drawn so that a slow machine still shows 30 of them a second. Where
-// a smaller one takes as long, for other reasons than its pixels, it stays large.
+// What of the picture is drawn so that a slow machine still shows 30 of them a second. Effects go
+// first, then pixels, down to half of them either way. Where that does not help, for the time goes
+// elsewhere, nothing is given up.
 #pragma once
 
 namespace palpa {
 
 class RenderScale {
 public:
-    static constexpr double smallest = 0.25, largest = 1;
+    static constexpr double smallest = 0.5, largest = 1;
     static constexpr double slow_ms = 31, quick_ms = 26;
 
     // One frame took that long to draw, at the present scale.
     void add_frame(double ms) noexcept;
 
     // Of width and height, against the window's.
-    double value() const noexcept { return value_; }
+    double value() const noexcept { return now_.scale; }
+    // Ambient occlusion and the like.
+    bool has_effects() const noexcept { return now_.effects; }
 
 private:
-    void change(double value) noexcept;
+    struct Level {
+        double scale = largest;
+        bool effects = true;
 
-    double value_ = largest;
-    double mean_ms_ = 0;                              // of about the last ten frames
-    int frames_ = 0;                                  // since the scale changed
-    double last_value_ = largest, last_mean_ms_ = 0;  // before it changed
-    int patience_ = 0;  // frames until a smaller picture is tried again after it was in vain
+        friend bool operator==(const Level&, const Level&) = default;
+    };
+    void change(const Level& level) noexcept;
+
+    Level now_, last_;    // last: before it changed
+    double mean_ms_ = 0;  // of about the last ten frames
+    double last_mean_ms_ = 0;
+    double effects_cost_ = 1;  // a frame's time with them against that without
+    int frames_ = 0;           // since the level changed
+    int patience_ = 0;         // frames until less is tried again after it was in vain
 };
 
 }  // namespace palpa

@@ -14,7 +14,10 @@
 #include "ui/backend.h"
 #include "ui/question.h"
 #include "ui/study_panel.h"
+#include "ui/view_labels.h"
 #include "view/build_frame.h"
+#include "view/clip.h"
+#include "view/first_view.h"
 #include "view/orbit_camera.h"
 
 #include <fmt/format.h>
@@ -107,9 +110,12 @@ public:
           text_scale_(options.text_scale.scale),
           window_("Palpa - " + scene.title, options.width, options.height),
           session_(scene, options.view, device, options.orders),
-          overlay_(scene, options.view),
+          overlay_(scene),
           saved_(overlay_.settings()),
-          statistics_(servo_tick_s) {
+          statistics_(servo_tick_s),
+          first_(scene.view),
+          view_(options.view),
+          clips_(scene.view.clip) {
         std::error_code error;
         if (!std::filesystem::is_directory(options.screenshots, error)) {
             throw LoadError({options.screenshots.string()},
@@ -129,8 +135,13 @@ public:
 
 private:
     void frame();
+    void show_first_view();
     void look_at_all();
     void look_at_grabbed();
+    void look_at_grabbed_or_all();
+    void show_as(const ViewSettings& view);
+    void choose_next_representation();
+    void choose_next_colouring();
     ScreenArea free_area() const;
     glm::vec2 free_centre() const;
     bool has_mouse_hand() const { return orders_ && mouse_reach_m_ > 0; }
@@ -161,6 +172,7 @@ private:
     bool is_stand_in(const std::string& name) const;
     void change_text_scale(double scale);
     void look_at_pixel(double x, double y);
+    void build_shown();
     void draw();
     void save(const WindowShot& shot);
     void restart_graphics();
@@ -186,8 +198,13 @@ private:
     std::optional<Speaker> speaker_;  // while sound is on
 
     LiveFrame frame_;
-    bool has_frame_ = false, framed_ = false;
+    bool has_frame_ = false;
+    const ViewDescription first_;
+    FrameScene first_picture_;  // empty until there is one
     OrbitCamera camera_;
+    ViewSettings view_;
+    bool clips_;  // what hides the molecule in hand is left out
+    bool looks_at_grabbed_ = false;
     Vec3 hand_m_ = Vec3::Zero();    // where the mouse wants the handle
     Vec3 handle_m_ = Vec3::Zero();  // where it is
     double displacement_gain_ = 0;  // A_d at this moment
@@ -292,21 +309,65 @@ glm::vec2 Sandbox::free_centre() const {
     return {(area.left + area.right) / width - 1, 1 - (area.top + area.bottom) / height};
 }
 
+// As it was when the window opened, wherever the molecules are now.
+void Sandbox::show_first_view() {
+    const auto height = static_cast<float>(std::max(window_.size().height, 1U));
+    const ScreenArea area = free_area();
+    camera_ = first_camera(first_, first_picture_, frame_.framed, area.width() / height,
+                           area.height() / height);
+    clips_ = first_.clip;
+    looks_at_grabbed_ = false;
+    show_as(options_.view);
+}
+
 void Sandbox::look_at_all() {
     const auto height = static_cast<float>(std::max(window_.size().height, 1U));
     const ScreenArea area = free_area();
     frame_all(camera_, frame_.picture, area.width() / height, area.height() / height);
+    clips_ = looks_at_grabbed_ = false;
 }
 
 void Sandbox::look_at_grabbed() {
-    std::vector<SphereShape> grabbed;
-    for (const SphereShape& sphere : frame_.picture.spheres) {
-        if (sphere.pick < frame_.grabbed_atoms) grabbed.push_back(sphere);
-    }
     const auto height = static_cast<float>(std::max(window_.size().height, 1U));
     const ScreenArea area = free_area();
-    frame_shapes(camera_, grabbed, area.width() / height, area.height() / height);
+    frame_shapes(camera_, shapes_of(frame_.picture, {0, frame_.grabbed_atoms}),
+                 area.width() / height, area.height() / height);
     zoom(camera_, surroundings);
+    clips_ = looks_at_grabbed_ = true;
+}
+
+void Sandbox::look_at_grabbed_or_all() {
+    if (looks_at_grabbed_) {
+        look_at_all();
+        notice("everything is shown");
+    } else {
+        look_at_grabbed();
+        notice("what stands in front of the molecule in hand is left out; F shows everything");
+    }
+}
+
+void Sandbox::show_as(const ViewSettings& view) {
+    if (view_ == view) return;
+    view_ = view;
+    session_.send(view_);
+}
+
+void Sandbox::choose_next_representation() {
+    ViewSettings view = view_;
+    const std::size_t next =
+        (static_cast<std::size_t>(view.representation) + 1) % representation_names.size();
+    view.representation = static_cast<Representation>(next);
+    show_as(view);
+    notice(fmt::format("shown as {}", representation_names[next]));
+}
+
+void Sandbox::choose_next_colouring() {
+    ViewSettings view = view_;
+    const std::size_t next =
+        (static_cast<std::size_t>(view.colouring) + 1) % colouring_names.size();
+    view.colouring = static_cast<Colouring>(next);
+    show_as(view);
+    notice(fmt::format("coloured by {}", colouring_names[next]));
 }
 
 void Sandbox::take_ticks() {
@@ -418,15 +479,16 @@ void Sandbox::pull(const glm::vec3& way) {
 // A study shows nothing of it.
 void Sandbox::show_wish() {
     if (!has_mouse_hand() || options_.study) return;
-    add_wish(frame_.grabbed_angstrom,
-             frame_.grabbed_angstrom + thread_angstrom_per_m * (hand_m_ - handle_m_), shown_);
+    const Vec3 wish = frame_.grabbed_angstrom + thread_angstrom_per_m * (hand_m_ - handle_m_);
+    add_wish(as_float(frame_.grabbed_angstrom), as_float(wish), backward(camera_), shown_);
 }
 
 // Of what a study leaves to a person: where to look, and the way out.
 bool is_of_picture(Action action) {
-    return action == Action::Focus || action == Action::FrameAll || action == Action::Screenshot ||
-           action == Action::RestartGraphics || action == Action::LargerText ||
-           action == Action::SmallerText || action == Action::UsualText || action == Action::Quit;
+    return action == Action::Focus || action == Action::FrameAll || action == Action::FirstView ||
+           action == Action::Screenshot || action == Action::RestartGraphics ||
+           action == Action::LargerText || action == Action::SmallerText ||
+           action == Action::UsualText || action == Action::Quit;
 }
 
 void Sandbox::press_key(const KeyPress& press) {
@@ -500,6 +562,7 @@ void Sandbox::press_study_key() {
 
 void Sandbox::perform(Action action) {
     if (options_.study && !is_of_picture(action)) return;
+    if (action == Action::Reset) show_first_view();
     if (action == Action::Reset && has_mouse_hand()) session_.move_hand(hand_m_ = handle_m_);
     std::vector<Command> commands;
     if (overlay_.perform(action, commands)) {
@@ -507,11 +570,20 @@ void Sandbox::perform(Action action) {
         return;
     }
     switch (action) {
+        case Action::NextRepresentation:
+            choose_next_representation();
+            break;
+        case Action::NextColouring:
+            choose_next_colouring();
+            break;
         case Action::Focus:
-            look_at_grabbed();
+            look_at_grabbed_or_all();
             break;
         case Action::FrameAll:
             look_at_all();
+            break;
+        case Action::FirstView:
+            show_first_view();
             break;
         case Action::NextDevice:
             choose_next_device();
@@ -701,6 +773,20 @@ VkExtent2D Sandbox::picture_size() const {
     return {scaled(size.width), scaled(size.height)};
 }
 
+void Sandbox::build_shown() {
+    if (has_frame_ && first_picture_.spheres.empty()) {
+        first_picture_ = frame_.picture;
+        show_first_view();
+    }
+    shown_ = frame_.picture;
+    if (clips_) clip_in_front(frame_.grabbed_atoms, camera_, shown_);
+    show_wish();
+    shown_.camera = frame_camera(camera_, shown_);
+    shown_.camera.centre = free_centre();
+    shown_.background = background;
+    shown_.occlusion = scale_.has_effects();
+}
+
 void Sandbox::draw() {
     Graphics& g = *graphics_;
     if (std::exchange(must_rebuild_, false)) g.swapchain.rebuild(window_.size());
@@ -720,16 +806,12 @@ void Sandbox::draw() {
                       commands, actions);
     }
     const Answer* const answer = question_ ? draw_question(*question_) : nullptr;
+    // The panels are laid out now, so that it is known what they leave free.
+    build_shown();
+    if (!options_.study) draw_view_labels(frame_.labels, shown_.camera);
     g.ui.end();
     for (const Command& command : commands) session_.send(command);
 
-    // The panels are laid out now, so that it is known what they leave free.
-    if (has_frame_ && !std::exchange(framed_, has_frame_)) look_at_all();
-    shown_ = frame_.picture;
-    show_wish();
-    shown_.camera = frame_camera(camera_, shown_);
-    shown_.camera.centre = free_centre();
-    shown_.background = background;
     const VkExtent2D size = picture_size();
     WindowShot shot;
     const bool shows = g.swapchain.present(

@@ -29,14 +29,18 @@ struct FrameCamera {
     float vertical_angle = 0.6F;  // rad
     float near = 0.1F, far = 1000;
     glm::vec2 centre{0};  // where the target is seen: to the right and up, in halves of the picture
+    // What is farther away than `fog_from` fades into the background, slowly at first: by a factor
+    // of e where it is `fog_length` farther, never wholly. 0: nothing does.
+    float fog_from = 0, fog_length = 0;
 };
 
 struct FrameScene {
-    std::vector<SphereShape> spheres;
-    std::vector<ConeShape> cones;
-    FrameCamera camera;
+    std::vector<SphereShape> spheres{};
+    std::vector<ConeShape> cones{};
+    FrameCamera camera{};
     glm::vec3 background{1};
-    int outline = 1;  // its width in pixels
+    int outline = 1;        // its width in pixels
+    bool occlusion = true;  // crevices are darker; without, a picture costs less
 };
 
 }  // namespace palpa

@@ -34,12 +34,14 @@ struct GpuShape {
     glm::vec4 start, axis, paint_a, paint_b;
 };
 struct GpuFrame {
-    glm::vec4 projection, size;
+    glm::vec4 projection, size, fog;
     std::uint32_t spheres;
-    std::int32_t outline;
+    std::int32_t outline, taps;
+    float fog_from;
     glm::vec2 centre;
 };
 static_assert(sizeof(GpuFrame) <= 128, "push constants");
+constexpr std::int32_t occlusion_taps = 8;  // all of the shader's
 // What the shapes' pass leaves of a pixel.
 struct Seen {
     std::uint32_t id;  // of a shape from 1, 0 where nothing is
@@ -54,8 +56,11 @@ GpuFrame build_frame_constants(const FrameScene& scene, VkExtent2D size) {
     const float y_scale = 1 / std::tan(camera.vertical_angle / 2);
     return {{y_scale * height / width, y_scale, camera.near, camera.far},
             {width, height, 1 / width, 1 / height},
+            {scene.background, camera.fog_length > 0 ? 1 / camera.fog_length : 0},
             static_cast<std::uint32_t>(scene.spheres.size()),
             scene.outline,
+            scene.occlusion ? occlusion_taps : 0,
+            camera.fog_from,
             camera.centre};
 }
 

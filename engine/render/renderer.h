@@ -14,7 +14,7 @@ namespace palpa {
 
 // Two passes. The first finds for every pixel which shape is nearest and how far; the second shades
 // each pixel that shows one: light from the camera's upper left, ambient occlusion from eight taps
-// of the distances around, a dark outline where distance breaks off.
+// of the distances around, a dark outline where distance breaks off, fog in the distance.
 class Renderer {
 public:
     // Throws GpuError.

@@ -77,6 +77,17 @@ enum class LessonQuantity { Distance, Force, FeltForce, Mode };
 inline constexpr std::array<std::string_view, 4> lesson_quantity_names{
     "distance_angstrom", "force_nN", "felt_N", "mode"};
 
+// In hand: the grabbed molecule as balls and sticks, all others as thin sticks without hydrogens.
+// Pocket: of the others the backbone, and thin sticks of those residues that are near to it.
+enum class Representation { BallAndStick, SpaceFilling, Licorice, InHand, Pocket };
+inline constexpr std::array<std::string_view, 5> representation_names{
+    "ball-and-stick", "space-filling", "licorice", "in-hand", "pocket"};
+
+// By chain: carbons in a colour of their chain, everything else as by element. Carbons of the
+// grabbed molecule have a colour of their own either way.
+enum class Colouring { Element, Chain };
+inline constexpr std::array<std::string_view, 2> colouring_names{"element", "chain"};
+
 struct ForceFieldDescription {
     std::vector<std::filesystem::path> files;
     double coulomb_constant = units::charmm_coulomb_constant;  // kcal Å/mol/e^2
@@ -189,6 +200,15 @@ struct LessonStepDescription {
     double for_s = 0;  // without a break
 };
 
+// How the scene is seen at first, in a window and by `palpa render`.
+struct ViewDescription {
+    std::optional<Representation> representation;  // unset: what shows the scene best
+    Colouring colouring = Colouring::Chain;
+    std::array<double, 3> camera{0, 0, 1};  // azimuth and elevation in degrees, zoom
+    std::string look_at;                    // a molecule; empty: all of them
+    bool clip = false;                      // nothing in front of the grabbed molecule
+};
+
 struct SceneDescription {
     std::filesystem::path file;
     std::string title, about;
@@ -201,6 +221,7 @@ struct SceneDescription {
     HandDescription hand;
     DeviceDescription device;
     CouplingDescription coupling;
+    ViewDescription view;
     std::vector<LessonStepDescription> lesson;  // in the order of the file
     double period_ms = 1;
     double seconds = 10;

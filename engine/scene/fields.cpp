@@ -452,6 +452,37 @@ void visit_lesson(FieldVisitor& v, std::vector<LessonStepDescription>& steps) {
 }
 
 // Gathers the notes; the values visited are the defaults.
+void visit_view(FieldVisitor& v, ViewDescription& view) {
+    v.enter_table({.key = "view", .meaning = "how the scene is seen at first"});
+    std::optional<std::size_t> representation;
+    if (view.representation) representation = static_cast<std::size_t>(*view.representation);
+    v.optional_choice(
+        {.key = "representation",
+         .meaning = "how molecules are drawn; in-hand: all but the molecule in hand as thin sticks "
+                    "without hydrogens; pocket: of these only residues within 4.5 Å of it, and "
+                    "backbones as tubes; unset: pocket where others would hide it, else "
+                    "ball-and-stick"},
+        representation_names, representation);
+    if (representation) view.representation = static_cast<Representation>(*representation);
+    choose(v,
+           {.key = "colouring",
+            .meaning = "carbons in a colour of their chain, or all atoms by element"},
+           colouring_names, view.colouring);
+    v.triple(
+        {.key = "camera",
+         .meaning = "[azimuth, elevation, zoom]: degrees around what is looked at and above it, "
+                    "-90 to 90, and how many times nearer than where all of that is seen, 0.01 "
+                    "to 100; a device's right is the picture's right where the azimuth is 0",
+         .lowest = -360,
+         .highest = 360},
+        view.camera);
+    v.text({.key = "look_at", .meaning = "name of a molecule that the picture frames; unset: all"},
+           view.look_at);
+    v.flag({.key = "clip", .meaning = "leave out what stands in front of the molecule in hand"},
+           view.clip);
+    v.leave_table();
+}
+
 class Lister final : public FieldVisitor {
 public:
     std::vector<FieldNote> notes;
@@ -495,6 +526,10 @@ public:
         add(field, fmt::format("\"{}\"", fmt::join(names, "\", \"")),
             fmt::format("\"{}\"", names[value]));
     }
+    void optional_choice(const Field& field, std::span<const std::string_view> names,
+                         std::optional<std::size_t>& /*value*/) override {
+        add(field, fmt::format("\"{}\"", fmt::join(names, "\", \"")), "unset");
+    }
     void file(const Field& field, std::filesystem::path& /*value*/) override {
         add(field, "file name", "unset");
     }
@@ -536,6 +571,7 @@ void visit_scene(FieldVisitor& v, SceneDescription& scene) {
     visit_hand(v, scene.hand);
     visit_device(v, scene.device);
     visit_coupling(v, scene.coupling);
+    visit_view(v, scene.view);
     visit_lesson(v, scene.lesson);
     v.enter_table({.key = "run", .meaning = "a headless run"});
     v.real({.key = "period_ms",

@@ -45,6 +45,8 @@ public:
     virtual void texts(const Field& field, std::vector<std::string>& value) = 0;
     virtual void choice(const Field& field, std::span<const std::string_view> names,
                         std::size_t& value) = 0;
+    virtual void optional_choice(const Field& field, std::span<const std::string_view> names,
+                                 std::optional<std::size_t>& value) = 0;
     virtual void file(const Field& field, std::filesystem::path& value) = 0;
     virtual void files(const Field& field, std::vector<std::filesystem::path>& value) = 0;
     virtual void path(const Field& field, std::vector<PathPoint>& value) = 0;

@@ -278,6 +278,13 @@ public:
         value = static_cast<std::size_t>(found - names.begin());
     }
 
+    void optional_choice(const Field& field, std::span<const std::string_view> names,
+                         std::optional<std::size_t>& value) override {
+        std::size_t read = names.size();
+        choice(field, names, read);
+        if (read < names.size()) value = read;
+    }
+
     void file(const Field& field, fs::path& value) override {
         const toml::node* const node = find_value(field);
         if (node) read_file_name(field, *node, value);
@@ -541,6 +548,17 @@ void check_grab(const SceneDescription& scene, Reader& reader) {
         find_named(scene, reader, "joints.around", scene.joints.around);
 }
 
+void check_view(const ViewDescription& view, const SceneDescription& scene, Reader& reader) {
+    find_named(scene, reader, "view.look_at", view.look_at);
+    const auto [azimuth, elevation, zoom] = view.camera;
+    if (std::abs(elevation) <= 90 && zoom >= 0.01 && zoom <= 100) return;
+    reader.problem(
+        reader.place_of_key("view.camera"),
+        fmt::format("'view.camera' is [{}, {}, {}]; expected [azimuth, elevation, zoom]: "
+                    "degrees, the second from -90 to 90, and a factor from 0.01 to 100",
+                    azimuth, elevation, zoom));
+}
+
 void check_ranges(const SceneDescription& scene, Reader& reader) {
     const auto check = [&](bool right, const std::string& key, const std::string& what) {
         if (!right) reader.problem(reader.place_of_key(key), what);
@@ -746,6 +764,7 @@ SceneDescription parse_scene(std::string_view text, const fs::path& file,
     visit_scene(reader, scene);
     check_grab(scene, reader);
     check_ranges(scene, reader);
+    check_view(scene.view, scene, reader);
     scene.places = reader.finish();
     return scene;
 }

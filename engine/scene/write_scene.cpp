@@ -79,6 +79,10 @@ public:
                 std::size_t& value) override {
         add(field, in_quotes(names[value]));
     }
+    void optional_choice(const Field& field, std::span<const std::string_view> names,
+                         std::optional<std::size_t>& value) override {
+        if (value) add(field, in_quotes(names[*value]));
+    }
     void file(const Field& field, std::filesystem::path& value) override {
         if (!value.empty()) add(field, in_quotes(file_name_(value)));
     }

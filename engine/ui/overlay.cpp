@@ -31,11 +31,10 @@ double felt_stiffness(const CouplingLaws& laws, const TouchModel& touch) {
            displacement_gain(laws.displacement, touch.force_newton.norm());
 }
 
-Overlay::Overlay(const SceneDescription& scene, const ViewSettings& view)
+Overlay::Overlay(const SceneDescription& scene)
     : scene_(scene),
       settings_{scene.coupling, scene.period_ms},
       before_edit_(settings_),
-      view_(view),
       has_flexible_(std::any_of(
           scene.molecules.begin(), scene.molecules.end(),
           [](const MoleculeDescription& molecule) { return molecule.shape == Shape::Flexible; })),
@@ -127,16 +126,6 @@ bool Overlay::perform(Action action, std::vector<Command>& commands) {
             return true;
         case Action::Redo:
             go_back(redo_, undo_);
-            return true;
-        case Action::NextRepresentation:
-            view_.representation = static_cast<Representation>(
-                (static_cast<std::size_t>(view_.representation) + 1) % representation_names.size());
-            commands.emplace_back(view_);
-            return true;
-        case Action::NextColouring:
-            view_.colouring = static_cast<Colouring>(
-                (static_cast<std::size_t>(view_.colouring) + 1) % colouring_names.size());
-            commands.emplace_back(view_);
             return true;
         case Action::ToggleOverlay:
             shows_overlays_ = !shows_overlays_;

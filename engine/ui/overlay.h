@@ -38,7 +38,7 @@ struct OverlayStatus {
 
 class Overlay {
 public:
-    Overlay(const SceneDescription& scene, const ViewSettings& view);
+    explicit Overlay(const SceneDescription& scene);
 
     void add_tick(const ServoTick& tick);
 
@@ -105,7 +105,6 @@ private:
     SceneDescription scene_;
     LiveSettings settings_, before_edit_;
     std::vector<LiveSettings> undo_, redo_;
-    ViewSettings view_;
     bool has_flexible_;           // molecules
     double stiffness_limit_ = 0;  // N/m that this hand keeps calm at the present period
     // How long each warning stays.

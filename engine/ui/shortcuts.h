@@ -26,6 +26,7 @@ enum class Action {
     NextColouring,
     Focus,
     FrameAll,
+    FirstView,
     ToggleOverlay,
     ToggleLesson,
     ToggleHelp,

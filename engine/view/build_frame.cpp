@@ -1,60 +1,30 @@
 #include "view/build_frame.h"
 
-#include "core/units.h"
 #include "simulation/components.h"
+#include "simulation/probe.h"
 #include "simulation/touch.h"
+#include "view/elements.h"
+#include "view/hydrogen_bonds.h"
+#include "view/palette.h"
+#include "view/pocket.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace palpa {
 namespace {
 
-// Van der Waals radii: A. Bondi, J. Phys. Chem. 68, 441 (1964). Colours: oxygen red, nitrogen blue,
-// sulphur yellow as chemists are used to.
-struct ElementLook {
-    std::string_view element;
-    float radius;  // Å
-    glm::vec3 colour;
-};
-
-constexpr std::array looks = std::to_array<ElementLook>({
-    {"H", 1.20F, {0.87F, 0.87F, 0.87F}},
-    {"C", 1.70F, {0.32F, 0.34F, 0.37F}},
-    {"N", 1.55F, {0.13F, 0.25F, 0.80F}},
-    {"O", 1.52F, {0.78F, 0.06F, 0.06F}},
-    {"P", 1.80F, {0.85F, 0.40F, 0.05F}},
-    {"S", 1.80F, {0.85F, 0.70F, 0.08F}},
-});
-constexpr ElementLook other{"", 1.70F, {0.70F, 0.20F, 0.60F}};
-
 constexpr float ball_share = 0.28F, stick_radius = 0.14F, licorice_radius = 0.28F;
-constexpr float thin_radius = 0.09F;
-
-// Of carbons: the grabbed molecule's, and the chains' in turn. Green is no element's, and stands
-// out against all of the others.
-constexpr glm::vec3 grabbed_carbon{0.08F, 0.50F, 0.12F};
-constexpr std::array chain_carbons = std::to_array<glm::vec3>(
-    {{0.22F, 0.46F, 0.55F}, {0.58F, 0.44F, 0.24F}, {0.46F, 0.30F, 0.50F}, {0.36F, 0.42F, 0.24F}});
+constexpr float thin_radius = 0.11F;
 
 const ElementLook& look_of(std::string_view element) {
-    const auto found = std::find_if(looks.begin(), looks.end(), [&](const ElementLook& look) {
-        return look.element == element;
-    });
-    return found == looks.end() ? other : *found;
-}
-
-// As the force field names it, or by the atom's first letter.
-std::string_view element_of(const AtomTable& atoms, std::size_t i) {
-    if (!atoms.element[i].empty()) return atoms.element[i];
-    const std::string_view name = atoms.names[i].atom;
-    const std::size_t letter = name.find_first_not_of("0123456789");
-    return letter == std::string_view::npos ? name : name.substr(letter, 1);
+    const auto found = std::ranges::find(element_looks, element, &ElementLook::element);
+    return found == element_looks.end() ? other_element : *found;
 }
 
 // One colour an atom.
@@ -82,6 +52,7 @@ struct Thickness {
     float atom = 0, stick = 0;
 };
 
+// Of others only hydrogens of hydrogen bonds are drawn where they are thin.
 Thickness thickness_of(Representation representation, std::string_view element, bool in_hand) {
     const float size = look_of(element).radius;
     switch (representation) {
@@ -90,6 +61,7 @@ Thickness thickness_of(Representation representation, std::string_view element, 
         case Representation::Licorice:
             return {licorice_radius, licorice_radius};
         case Representation::InHand:
+        case Representation::Pocket:
             if (in_hand) break;
             return element == "H" ? Thickness{} : Thickness{thin_radius, thin_radius};
         case Representation::BallAndStick:
@@ -98,13 +70,25 @@ Thickness thickness_of(Representation representation, std::string_view element, 
     return {ball_share * size, stick_radius};
 }
 
+// `bonded`: the hydrogens of these are drawn, whatever the representation leaves out.
 void add_shapes(const Simulation& simulation, std::span<const glm::vec3> colours,
-                Representation representation, FrameScene& frame) {
+                Representation representation, std::span<const HydrogenBond> bonded,
+                FrameScene& frame) {
     const AtomTable& atoms = simulation.atoms;
     const std::size_t grabbed = grabbed_points(simulation).positions.size();
+    std::vector<bool> stands;  // for itself; empty: every atom
+    if (representation == Representation::Pocket) {
+        const std::vector<Residue> residues = find_residues(simulation);
+        stands = find_pocket(simulation, residues);
+        add_backbones(atoms, residues, colours, frame);
+    }
+    std::vector<bool> takes_part(atoms.size(), false);
+    for (const HydrogenBond& bond : bonded) takes_part[bond.hydrogen] = true;
     std::vector<float> sticks;
     for (std::size_t i = 0; i < atoms.size(); ++i) {
-        const auto [atom, stick] = thickness_of(representation, element_of(atoms, i), i < grabbed);
+        auto [atom, stick] = thickness_of(representation, element_of(atoms, i), i < grabbed);
+        if (atom == 0 && takes_part[i]) atom = stick = thin_radius;
+        if (i >= grabbed && !stands.empty() && !stands[i]) atom = stick = 0;
         sticks.push_back(stick);
         if (atom == 0) continue;
         frame.spheres.push_back(
@@ -118,42 +102,35 @@ void add_shapes(const Simulation& simulation, std::span<const glm::vec3> colours
     }
 }
 
-void add_force_arrow(const Simulation& simulation, const TouchModel& touch, FrameScene& frame) {
+void add_signs(const Simulation& simulation, const TouchModel& touch, FrameScene& frame,
+               std::vector<ViewLabel>& labels) {
     const Grab& grab = *simulation.world.find<Grab>(simulation.hand);
-    const Molecule& grabbed = *simulation.world.find<Molecule>(grab.molecule);
-    const Vec3 force_nN = touch.force_newton * 1e9;
-    const double length = std::min(5 * force_nN.norm(), 3.0);  // Å
-    if (!(length > 0.05)) return;
-    const Vec3 from = simulation.atoms.positions[grabbed.reference_atom];
-    const Vec3 along = force_nN.normalized();
-    const Vec3 neck = from + std::max(length - 0.5, 0.5 * length) * along;
-    const glm::vec3 colour{0.95F, 0.45F, 0.02F};
-    frame.cones.push_back(
-        {as_float(from), as_float(neck), 0.09F, 0.09F, colour, colour, arrow_pick});
-    frame.cones.push_back({as_float(neck), as_float(from + length * along), 0.24F, 0.005F, colour,
-                           colour, arrow_pick});
+    const AtomRange& atoms = simulation.world.find<Molecule>(grab.molecule)->atoms;
+    const HeldMolecule held{atoms.first + atoms.count, as_float(grabbed_place(simulation)),
+                            as_float(centre_of_mass(simulation.atoms, atoms))};
+    constexpr double nN = 1e9, nN_angstrom = 1e19;
+    add_force(as_float(nN * touch.force_newton), held, frame, labels);
+    if (!moves_in_space(simulation)) return;
+    add_torque(as_float(nN_angstrom * touch.torque_newton_metre), held, frame, labels);
 }
 
 }  // namespace
-
-void add_wish(const Vec3& place, const Vec3& wish, FrameScene& frame) {
-    if (!((wish - place).norm() > 0.1)) return;
-    const glm::vec3 colour{0.45F, 0.60F, 0.80F};
-    frame.spheres.push_back({as_float(wish), 0.14F, colour, wish_pick});
-    frame.cones.push_back(
-        {as_float(place), as_float(wish), 0.03F, 0.03F, colour, colour, wish_pick});
-}
 
 glm::vec3 as_float(const Vec3& v) {
     return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
 }
 
 FrameScene build_frame(const Simulation& simulation, const TouchModel& touch,
-                       const ViewSettings& settings) {
+                       const ViewSettings& settings, std::vector<ViewLabel>* labels) {
     FrameScene frame;
+    std::vector<ViewLabel> words;
     const std::vector<glm::vec3> colours = build_colours(simulation, settings.colouring);
-    add_shapes(simulation, colours, settings.representation, frame);
-    if (settings.force_arrow) add_force_arrow(simulation, touch, frame);
+    std::vector<HydrogenBond> bonds;
+    if (settings.hydrogen_bonds) bonds = find_hydrogen_bonds(simulation);
+    add_shapes(simulation, colours, settings.representation, bonds, frame);
+    add_hydrogen_bonds(simulation.atoms, bonds, frame, words);
+    if (settings.force_arrow) add_signs(simulation, touch, frame, words);
+    if (labels) *labels = std::move(words);
     return frame;
 }
 
@@ -161,10 +138,14 @@ FrameScene build_frame(const Simulation& simulation, const ViewSettings& setting
     return build_frame(simulation, build_touch(simulation, {}).model, settings);
 }
 
-ViewSettings default_view(const Simulation& simulation) {
-    constexpr std::size_t many = 300;
-    const bool hides = environment_points(simulation).positions.size() > many;
-    return {.representation = hides ? Representation::InHand : Representation::BallAndStick};
+std::vector<SphereShape> shapes_of(const FrameScene& frame, const AtomRange& atoms) {
+    std::vector<SphereShape> shapes;
+    for (const SphereShape& sphere : frame.spheres) {
+        if (sphere.pick >= atoms.first && sphere.pick - atoms.first < atoms.count) {
+            shapes.push_back(sphere);
+        }
+    }
+    return shapes;
 }
 
 }  // namespace palpa

@@ -110,6 +110,9 @@ FrameCamera frame_camera(const OrbitCamera& camera, const FrameScene& frame) {
     }
     made.far = std::max(1.02F * farthest, 1.0F);
     made.near = std::max(0.98F * nearest, 1e-3F * made.far);
+    constexpr float shortest_fog = 30;  // Å, so that a small molecule has next to none
+    made.fog_from = camera.distance;
+    made.fog_length = std::max(farthest - camera.distance, shortest_fog);
     return made;
 }
 

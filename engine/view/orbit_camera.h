@@ -45,7 +45,7 @@ void frame_shapes(OrbitCamera& camera, std::span<const SphereShape> shapes, floa
 // Looks at one place, from near.
 void focus(OrbitCamera& camera, const glm::vec3& place, float distance);
 
-// With clip planes in front of and behind all shapes.
+// With clip planes in front of and behind all shapes, and fog behind the target.
 FrameCamera frame_camera(const OrbitCamera& camera, const FrameScene& frame);
 
 }  // namespace palpa

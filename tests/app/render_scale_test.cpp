@@ -6,45 +6,75 @@ using palpa::RenderScale;
 
 namespace {
 
-// A machine whose frames cost a fixed part and one per pixel, after that many of them.
-double settled(double fixed_ms, double full_ms) {
-    RenderScale scale;
-    for (int frame = 0; frame < 2000; ++frame) {
-        scale.add_frame(fixed_ms + full_ms * scale.value() * scale.value());
+// What a frame costs: a part that is fixed, one per pixel, and one per pixel with effects.
+struct Machine {
+    double fixed_ms, pixels_ms, effects_ms;
+
+    double frame_ms(const RenderScale& scale) const {
+        const double pixels = scale.value() * scale.value();
+        return fixed_ms + pixels * (pixels_ms + (scale.has_effects() ? effects_ms : 0));
     }
-    return fixed_ms + full_ms * scale.value() * scale.value();
-}
+    void run(RenderScale& scale, int frames) const {
+        for (int frame = 0; frame < frames; ++frame) scale.add_frame(frame_ms(scale));
+    }
+};
 
 }  // namespace
 
-TEST_CASE("a quick machine draws at full size", "[app]") {
+TEST_CASE("a quick machine draws at full size with all effects", "[app]") {
     RenderScale scale;
-    for (int frame = 0; frame < 100; ++frame) scale.add_frame(5);
+    Machine{1, 3, 1}.run(scale, 100);
     CHECK(scale.value() == 1);
+    CHECK(scale.has_effects());
 }
 
-TEST_CASE("a slow machine draws smaller, until it shows thirty frames a second", "[app]") {
-    const double full_ms = GENERATE(40.0, 80.0, 200.0);
-    const double fixed_ms = GENERATE(0.0, 10.0);
-    const double frame_ms = settled(fixed_ms, full_ms);
-    CHECK(frame_ms < 1000.0 / 30);
-    CHECK(frame_ms > 20);  // not smaller than need be
-}
-
-TEST_CASE("where the pixels are not what takes long, they are not given up", "[app]") {
+TEST_CASE("where that is enough, a slow machine leaves out the effects and no pixels", "[app]") {
+    const Machine machine{2, 22, 20};
     RenderScale scale;
-    for (int frame = 0; frame < 400; ++frame) scale.add_frame(45 + 2 * scale.value());
-    CHECK(scale.value() > 0.9);
+    for (int frame = 0; frame < 2000; ++frame) {
+        scale.add_frame(machine.frame_ms(scale));
+        REQUIRE(scale.value() == 1);
+    }
+    CHECK_FALSE(scale.has_effects());
 }
 
-TEST_CASE("a hopeless machine still shows something, a stutter changes nothing", "[app]") {
-    RenderScale hopeless;
-    for (int frame = 0; frame < 1000; ++frame) {
-        hopeless.add_frame(5000 * hopeless.value() * hopeless.value());
+TEST_CASE("a slower machine draws fewer pixels too, until it shows thirty frames a second",
+          "[app]") {
+    const Machine machine{GENERATE(0.0, 10.0), GENERATE(35.0, 60.0, 75.0), GENERATE(1.0, 40.0)};
+    RenderScale scale;
+    machine.run(scale, 2000);
+    CHECK(machine.frame_ms(scale) < 1000.0 / 30);
+    CHECK(machine.frame_ms(scale) > 20);  // not less than need be
+    CHECK_FALSE(scale.has_effects());
+}
+
+TEST_CASE("what a machine left out comes back when it is quick again", "[app]") {
+    RenderScale scale;
+    Machine{5, 60, 30}.run(scale, 1000);
+    REQUIRE(scale.value() < 1);
+    Machine{1, 4, 2}.run(scale, 1000);
+    CHECK(scale.value() == 1);
+    CHECK(scale.has_effects());
+}
+
+TEST_CASE("where the pixels are not what takes long, nothing is given up", "[app]") {
+    const Machine machine{45, 1, 1};
+    RenderScale scale;
+    int full = 0;
+    for (int frame = 0; frame < 2000; ++frame) {
+        scale.add_frame(machine.frame_ms(scale));
+        full += scale.value() == 1 && scale.has_effects() ? 1 : 0;
     }
-    CHECK(hopeless.value() == RenderScale::smallest);
+    CHECK(full > 1800);  // now and then less is tried
+}
+
+TEST_CASE("half of the pixels either way are always drawn, a stutter changes nothing", "[app]") {
+    RenderScale hopeless;
+    Machine{0, 5000, 100}.run(hopeless, 1000);
+    CHECK(hopeless.value() == 0.5);
 
     RenderScale steady;
     for (int frame = 0; frame < 200; ++frame) steady.add_frame(frame % 40 == 20 ? 60 : 8);
     CHECK(steady.value() == 1);
+    CHECK(steady.has_effects());
 }

@@ -67,6 +67,10 @@ public:
                 std::size_t& value) override {
         PALPA_EXPECT(value < names.size());
     }
+    void optional_choice(const Field& field, std::span<const std::string_view> names,
+                         std::optional<std::size_t>& value) override {
+        if (value) choice(field, names, *value);
+    }
     void file(const Field& field, std::filesystem::path& value) override {
         PALPA_EXPECT(!field.required || !value.empty());
     }

@@ -653,6 +653,58 @@ TEST_CASE("flags and lists of texts are told apart from other values", "[scene][
                StartsWith(at(18, row.column)) && Contains(row.what));
 }
 
+TEST_CASE("[view] says how a scene is seen at first; without it the program chooses",
+          "[scene][read]") {
+    const ViewDescription unset = parse_scene(base, file).view;
+    CHECK_FALSE(unset.representation);
+    CHECK(unset.colouring == Colouring::Chain);
+    CHECK(unset.camera == std::array<double, 3>{0, 0, 1});
+    CHECK(unset.look_at.empty());
+    CHECK_FALSE(unset.clip);
+
+    const ViewDescription view = parse_scene(base + R"(
+[view]
+representation = "space-filling"
+colouring = "element"
+camera = [-40, 12.5, 2]
+look_at = "moved"
+clip = true
+)",
+                                             file)
+                                     .view;
+    CHECK(view.representation == Representation::SpaceFilling);
+    CHECK(view.colouring == Colouring::Element);
+    CHECK(view.camera == std::array<double, 3>{-40, 12.5, 2});
+    CHECK(view.look_at == "moved");
+    CHECK(view.clip);
+    CHECK(with({"view.representation=in-hand"}).view.representation == Representation::InHand);
+}
+
+TEST_CASE("what [view] cannot mean is refused where it stands", "[scene][errors]") {
+    struct Row {
+        const char* line;
+        int column;
+        const char* what;
+    };
+    const auto row = GENERATE(values<Row>({
+        {"representation = \"liquorice\"", 18, "did you mean 'licorice'?"},
+        {"representation = true", 18, "expected one of ball-and-stick, space-filling"},
+        {"colouring = \"chan\"", 13, "did you mean 'chain'?"},
+        {"camera = [0, 10]", 10, "expected three numbers from -360 to 360"},
+        {"camera = [0, 91, 1]", 10,
+         "'view.camera' is [0, 91, 1]; expected [azimuth, elevation, zoom]: degrees, the second "
+         "from -90 to 90, and a factor from 0.01 to 100"},
+        {"camera = [0, 0, 0]", 10, "a factor from 0.01 to 100"},
+        {"look_at = \"fixt\"", 11, "'view.look_at' is \"fixt\", which is no molecule"},
+        {"clip = 1", 8, "expected true or false"},
+        {"zoom = 2", 1, "zoom"},
+    }));
+    INFO(row.line);
+
+    CHECK_THAT(error_of(base + "[view]\n" + row.line + "\n"),
+               StartsWith(at(18, row.column)) && Contains(row.what));
+}
+
 TEST_CASE("a flag and a list can be set over a scene", "[scene][settings]") {
     CHECK(with({"joints.methyl=true"}).joints.methyl);
     CHECK(with({"joints.rigid=[\"A 1 C N\"]"}).joints.rigid == std::vector<std::string>{"A 1 C N"});

@@ -70,6 +70,7 @@ TEST_CASE("odd values survive being written and read, to the last bit", "[scene]
     scene.coupling.A_f_min = 1 + std::numeric_limits<double>::epsilon();
     scene.coupling.gamma_per_N = 1e18;
     scene.coupling.feel_within_pN = 1.0 / 3;
+    scene.view = {Representation::InHand, Colouring::Element, {-0.1, 1.0 / 3, 0.7}, "x", true};
     scene.period_ms = 10000;
     scene.seed = 1'000'000'000'000'000;
     scene.lesson = {{"zuerst", "two\nlines \"quoted\"", "do", LessonQuantity::Force, -0.25, {}, 0},
@@ -101,6 +102,11 @@ TEST_CASE("odd values survive being written and read, to the last bit", "[scene]
     CHECK(back.coupling.A_f_min == scene.coupling.A_f_min);
     CHECK(back.coupling.feel_within_pN == 1.0 / 3);
     CHECK_FALSE(back.coupling.feel_pN);
+    CHECK(back.view.representation == Representation::InHand);
+    CHECK(back.view.colouring == Colouring::Element);
+    CHECK(back.view.camera == scene.view.camera);
+    CHECK(back.view.look_at == "x");
+    CHECK(back.view.clip);
     CHECK(back.seed == scene.seed);
     REQUIRE(back.lesson.size() == 2);
     CHECK(back.lesson[0].name == "zuerst");
@@ -121,6 +127,7 @@ TEST_CASE("every field is written, under its full key", "[scene][write]") {
     scene.statics.budget_us = 1000;
     scene.coupling.feel_pN = {0.1 + 0.2, 3000};
     scene.coupling.feel_within_pN = 50;
+    scene.view.representation = Representation::Licorice;
     for (MoleculeDescription& molecule : scene.molecules) molecule.topology = folder / "dimer.psf";
 
     const std::string text = formatted(scene);

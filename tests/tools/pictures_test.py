@@ -17,7 +17,7 @@ PROGRAM = os.environ["PALPA_PROGRAM"]
 ROOT = Path(os.environ["PALPA_ROOT"])
 PICTURES = ROOT / "tests" / "data" / "pictures"
 CAMERAS = {"water": "30,15", "hiv": "90,15"}
-LOOKS = ("ball-and-stick", "space-filling", "licorice", "in-hand")
+LOOKS = ("ball-and-stick", "space-filling", "licorice", "in-hand", "pocket")
 
 NOTABLE = 24        # levels of 255 by which a channel must be off for a pixel to count as different
 MOST_DIFFERENT = 0.02
@@ -92,6 +92,8 @@ if __name__ == "__main__":
     if sys.argv[1:] == ["--remake"]:
         for made_scene in CAMERAS:
             for made_look in LOOKS:
-                draw(made_scene, made_look, PICTURES / f"{made_scene}-{made_look}.png")
+                picture = PICTURES / f"{made_scene}-{made_look}.png"
+                picture.unlink(missing_ok=True)
+                draw(made_scene, made_look, picture)
     else:
         unittest.main()

@@ -18,7 +18,7 @@ namespace {
 
 // An overlay of the water scene on a screen that is not there.
 struct Screen {
-    explicit Screen(const SceneDescription& scene = test::water_scene()) : overlay(scene, {}) {
+    explicit Screen(const SceneDescription& scene = test::water_scene()) : overlay(scene) {
         ImGui::CreateContext();
         ImGuiIO& io = ImGui::GetIO();
         io.IniFilename = nullptr;
@@ -123,9 +123,9 @@ TEST_CASE("nothing is cut off, and the picture's middle is covered by no panel",
             action == Action::ToggleHelp && window->Name == std::string("Keys and mouse");
         if (is_above || (window->Flags & ImGuiWindowFlags_ChildWindow) != 0) continue;
         constexpr float rounding = 1;  // places are whole pixels
-        const bool covers =
-            area.Min.x < free.right - rounding && area.Max.x > free.left + rounding &&
-            area.Min.y < free.bottom - rounding && area.Max.y > free.top + rounding;
+        const bool covers = area.Min.x < free.right - rounding &&
+                            area.Max.x > free.left + rounding &&
+                            area.Min.y < free.bottom - rounding && area.Max.y > free.top + rounding;
         CHECK_FALSE(covers);
     }
 }

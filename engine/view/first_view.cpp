@@ -1,0 +1,43 @@
+#include "view/first_view.h"
+
+#include "simulation/components.h"
+
+#include <cstddef>
+#include <numbers>
+#include <vector>
+
+namespace palpa {
+
+ViewSettings first_settings(const ViewDescription& view, const Simulation& simulation) {
+    constexpr std::size_t many = 300;
+    const bool hides = environment_points(simulation).positions.size() > many;
+    return {.representation = view.representation.value_or(hides ? Representation::Pocket
+                                                                 : Representation::BallAndStick),
+            .colouring = view.colouring};
+}
+
+AtomRange framed_atoms(const ViewDescription& view, Simulation& simulation) {
+    AtomRange framed;
+    simulation.world.each<Molecule>([&](Entity, const Molecule& molecule) {
+        if (molecule.name == view.look_at) framed = molecule.atoms;
+    });
+    return framed;
+}
+
+OrbitCamera first_camera(const ViewDescription& view, const FrameScene& frame,
+                         const AtomRange& framed, float aspect, float share) {
+    constexpr double radian = std::numbers::pi / 180;
+    const auto [azimuth_deg, elevation_deg, nearer] = view.camera;
+    OrbitCamera camera;
+    orbit(camera, static_cast<float>(azimuth_deg * radian),
+          static_cast<float>(elevation_deg * radian));
+    if (framed.count == 0) {
+        frame_all(camera, frame, aspect, share);
+    } else {
+        frame_shapes(camera, shapes_of(frame, framed), aspect, share);
+    }
+    zoom(camera, static_cast<float>(1 / nearer));
+    return camera;
+}
+
+}  // namespace palpa

@@ -1,0 +1,23 @@
+// How a scene is seen at first: what its [view] says, and what shows it best where that says
+// nothing.
+#pragma once
+#include "molecule/atoms.h"
+#include "scene/description.h"
+#include "simulation/simulation.h"
+#include "view/build_frame.h"
+#include "view/orbit_camera.h"
+
+namespace palpa {
+
+// Unless the scene says, balls and sticks, but `pocket` where others would hide the molecule.
+ViewSettings first_settings(const ViewDescription& view, const Simulation& simulation);
+
+// The atoms that the picture is to frame: a molecule's, or none where it is to frame everything.
+AtomRange framed_atoms(const ViewDescription& view, Simulation& simulation);
+
+// Sees those atoms of a frame, or everything, as the scene says; `aspect` and `share` as of
+// frame_all.
+OrbitCamera first_camera(const ViewDescription& view, const FrameScene& frame,
+                         const AtomRange& framed, float aspect, float share = 1);
+
+}  // namespace palpa

@@ -1,0 +1,87 @@
+#include "view/hydrogen_bonds.h"
+
+#include "view/elements.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string_view>
+#include <tuple>
+
+namespace palpa {
+namespace {
+
+constexpr double longest = 2.5;          // Å
+constexpr double cosine_of_bend = -0.5;  // of 120°, the least angle at the hydrogen
+constexpr std::uint32_t no_donor = std::numeric_limits<std::uint32_t>::max();
+constexpr std::size_t bonds_without_pair = 4;  // of a nitrogen: nothing left to accept with
+
+bool is_polar(std::string_view element) {
+    return element == "N" || element == "O" || element == "S";
+}
+
+// What an atom has to do with hydrogen bonds.
+struct Role {
+    std::uint32_t donor = no_donor;  // of a hydrogen that can be given
+    bool accepts = false;
+};
+
+std::vector<Role> find_roles(const AtomTable& atoms) {
+    std::vector<Role> roles(atoms.size());
+    std::vector<std::size_t> bonds(atoms.size(), 0);
+    for (const auto& [a, b] : atoms.bonds) {
+        ++bonds[a];
+        ++bonds[b];
+        if (element_of(atoms, a) == "H" && is_polar(element_of(atoms, b))) roles[a].donor = b;
+        if (element_of(atoms, b) == "H" && is_polar(element_of(atoms, a))) roles[b].donor = a;
+    }
+    for (std::size_t i = 0; i < atoms.size(); ++i) {
+        const std::string_view element = element_of(atoms, i);
+        roles[i].accepts = is_polar(element) && !(element == "N" && bonds[i] >= bonds_without_pair);
+    }
+    return roles;
+}
+
+}  // namespace
+
+std::vector<HydrogenBond> find_hydrogen_bonds(const Simulation& simulation) {
+    const AtomTable& atoms = simulation.atoms;
+    const std::vector<Role> roles = find_roles(atoms);
+    const std::size_t grabbed = grabbed_points(simulation).positions.size();
+    const auto takes_part = [&](std::size_t i) {
+        return roles[i].accepts || roles[i].donor != no_donor;
+    };
+    // Those around, along x: only a slice of them can be near enough.
+    std::vector<std::uint32_t> around;
+    for (std::size_t i = grabbed; i < atoms.size(); ++i) {
+        if (takes_part(i)) around.push_back(static_cast<std::uint32_t>(i));
+    }
+    const auto x_of = [&](std::uint32_t i) { return atoms.positions[i].x(); };
+    std::ranges::sort(around, {}, x_of);
+
+    std::vector<HydrogenBond> found;
+    const auto try_bond = [&](std::uint32_t hydrogen, std::uint32_t acceptor) {
+        if (roles[hydrogen].donor == no_donor || !roles[acceptor].accepts) return;
+        const Vec3 to_acceptor = atoms.positions[acceptor] - atoms.positions[hydrogen];
+        const Vec3 to_donor = atoms.positions[roles[hydrogen].donor] - atoms.positions[hydrogen];
+        const double length = to_acceptor.norm();
+        if (!(length < longest)) return;
+        if (to_acceptor.dot(to_donor) > cosine_of_bend * length * to_donor.norm()) return;
+        found.push_back({hydrogen, acceptor, length});
+    };
+    for (std::uint32_t i = 0; i < grabbed; ++i) {
+        if (!takes_part(i)) continue;
+        auto other = std::ranges::lower_bound(around, x_of(i) - longest, {}, x_of);
+        for (; other != around.end() && x_of(*other) < x_of(i) + longest; ++other) {
+            try_bond(i, *other);
+            try_bond(*other, i);
+        }
+    }
+    std::ranges::sort(found, {}, [](const HydrogenBond& bond) {
+        return std::tuple(bond.length, bond.hydrogen, bond.acceptor);
+    });
+    return found;
+}
+
+}  // namespace palpa

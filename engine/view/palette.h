@@ -1,0 +1,40 @@
+// Colours that tell what something is. Any two that can be seen side by side are at least 15 apart
+// by CIEDE2000, also to people who lack one kind of cone; tests/view/palette_test.cpp holds them to
+// that.
+#pragma once
+#include <array>
+#include <glm/vec3.hpp>
+#include <string_view>
+
+namespace palpa {
+
+// Van der Waals radii: A. Bondi, J. Phys. Chem. 68, 441 (1964). Oxygen is red, nitrogen blue and
+// sulphur yellow, as chemists are used to.
+struct ElementLook {
+    std::string_view element;
+    float radius;      // Å
+    glm::vec3 colour;  // linear RGB, as all of these
+};
+inline constexpr std::array element_looks = std::to_array<ElementLook>({
+    {"H", 1.20F, {0.938F, 0.953F, 0.948F}},
+    {"C", 1.70F, {0.223F, 0.219F, 0.209F}},
+    {"N", 1.55F, {0.003F, 0.082F, 0.955F}},
+    {"O", 1.52F, {0.624F, 0.003F, 0.004F}},
+    {"P", 1.80F, {0.483F, 0.431F, 0.427F}},
+    {"S", 1.80F, {0.955F, 0.840F, 0.041F}},
+});
+inline constexpr ElementLook other_element{"", 1.70F, {0.104F, 0.009F, 0.009F}};
+
+// Of carbons: the grabbed molecule's, and the chains' in turn.
+inline constexpr glm::vec3 grabbed_carbon{0.095F, 0.681F, 0.238F};
+inline constexpr std::array chain_carbons = std::to_array<glm::vec3>({{0.474F, 0.616F, 0.830F},
+                                                                      {0.317F, 0.235F, 0.136F},
+                                                                      {0.302F, 0.274F, 0.578F},
+                                                                      {0.100F, 0.125F, 0.083F}});
+
+// What is no atom: force and torque, where the hand wants the molecule, hydrogen bonds.
+inline constexpr glm::vec3 force_colour{0.849F, 0.232F, 0.002F};
+inline constexpr glm::vec3 wish_colour{0.162F, 0.002F, 0.256F};
+inline constexpr glm::vec3 hydrogen_bond_colour{0.035F, 0.123F, 0.147F};
+
+}  // namespace palpa

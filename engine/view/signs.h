@@ -1,0 +1,61 @@
+// Shapes that are no atoms: the force and the torque on the molecule in hand, where the hand wants
+// it, and its hydrogen bonds; and the words beside them.
+#pragma once
+#include "molecule/atoms.h"
+#include "render/frame_scene.h"
+#include "view/hydrogen_bonds.h"
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace palpa {
+
+// What these shapes are picked as. Atoms, and bonds by their first atom, are picked by their index.
+inline constexpr std::uint32_t arrow_pick = UINT32_MAX - 1, wish_pick = UINT32_MAX - 2,
+                               torque_pick = UINT32_MAX - 3, hydrogen_bond_pick = UINT32_MAX - 4,
+                               first_sign_pick = hydrogen_bond_pick;
+
+// A few words beside a place of the picture; a tick's may be left out where there is no room.
+struct ViewLabel {
+    glm::vec3 place{0};
+    std::string text;
+    bool is_tick = false;
+};
+
+// The arrow of a force is longer by a decade's length for every decade above this.
+inline constexpr double least_shown_nN = 1e-3, most_shown_nN = 1e3;
+// The arc of a torque is 60° longer for every decade above this, up to 330°.
+inline constexpr double least_shown_nN_angstrom = 1e-3;
+
+// What is in the hand and pulled at: its atoms are the spheres picked below `grabbed_atoms`.
+struct HeldMolecule {
+    std::uint32_t grabbed_atoms = 0;
+    glm::vec3 place{0};   // Å, where the hand has it
+    glm::vec3 centre{0};  // Å, of its mass
+};
+
+// An arrow along the force. It stands on the line through the hand's place, outside of the atoms:
+// ahead of the molecule if there is room, else it comes from behind, its head at the molecule. A
+// ring for each decade: 0.01, 0.1, 1, 10 nN.
+void add_force(const glm::vec3& force_nN, const HeldMolecule& held, FrameScene& frame,
+               std::vector<ViewLabel>& labels);
+
+// An arc with a head about the axis of the torque, right-handed, where that axis leaves the
+// molecule on the side to which it points.
+void add_torque(const glm::vec3& torque_nN_angstrom, const HeldMolecule& held, FrameScene& frame,
+                std::vector<ViewLabel>& labels);
+
+// Dashes from the hydrogen to the acceptor, where the atoms as drawn leave room. The lengths of up
+// to four are written beside them, of more only the shortest's.
+void add_hydrogen_bonds(const AtomTable& atoms, std::span<const HydrogenBond> bonds,
+                        FrameScene& frame, std::vector<ViewLabel>& labels);
+
+// Where the hand wants what it has at `place`: a dashed thread to a ring that faces the eye, whose
+// length tells of the force. Nothing where they are closer than 0.1 Å.
+void add_wish(const glm::vec3& place, const glm::vec3& wish, const glm::vec3& towards_eye,
+              FrameScene& frame);
+
+}  // namespace palpa

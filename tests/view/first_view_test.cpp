@@ -1,0 +1,50 @@
+#include "view/first_view.h"
+
+#include "render/renderer.h"
+#include "tests/support/water_scene.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+using namespace palpa;
+
+TEST_CASE("a scene without [view] is shown whole, few atoms as balls and sticks",
+          "[view][first-view]") {
+    Simulation simulation = load_simulation(test::water_scene());
+
+    const ViewSettings settings = first_settings({}, simulation);
+
+    CHECK(settings.representation == Representation::BallAndStick);
+    CHECK(settings.colouring == Colouring::Chain);
+    CHECK(framed_atoms({}, simulation).count == 0);
+    const FrameScene frame = build_frame(simulation, settings);
+    OrbitCamera all;
+    frame_all(all, frame, 1.5F);
+    const OrbitCamera camera = first_camera({}, frame, {}, 1.5F);
+    CHECK(camera.target == all.target);
+    CHECK(camera.distance == all.distance);
+    CHECK((camera.azimuth == 0 && camera.elevation == 0));
+}
+
+TEST_CASE("a scene's [view] says how it is shown at first", "[view][first-view]") {
+    const SceneDescription scene =
+        test::water_scene({"view.representation=licorice", "view.colouring=element",
+                           "view.camera=[90, 30, 2]", "view.look_at=fixed"});
+    Simulation simulation = load_simulation(scene);
+
+    const ViewSettings settings = first_settings(scene.view, simulation);
+    const AtomRange framed = framed_atoms(scene.view, simulation);
+    const FrameScene frame = build_frame(simulation, settings);
+    const OrbitCamera camera = first_camera(scene.view, frame, framed, 1.5F);
+
+    CHECK(settings.representation == Representation::Licorice);
+    CHECK(settings.colouring == Colouring::Element);
+    CHECK((framed.first == 3 && framed.count == 3));  // what is in the hand comes first
+    OrbitCamera at_fixed;
+    orbit(at_fixed, std::acos(0.0F), std::acos(-1.0F) / 6);
+    frame_shapes(at_fixed, shapes_of(frame, framed), 1.5F);
+    CHECK(glm::distance(camera.target, at_fixed.target) < 1e-4);
+    CHECK(camera.distance == Approx(at_fixed.distance / 2));
+    CHECK(glm::distance(backward(camera), backward(at_fixed)) < 1e-5);
+}
