@@ -11,6 +11,9 @@ import tempfile
 import unittest
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from read_png import read_png
+
 PROGRAM = os.environ["PALPA_PROGRAM"]
 ROOT = Path(os.environ["PALPA_ROOT"])
 sys.path.append(str(ROOT / "tests" / "support"))
@@ -18,7 +21,7 @@ from read_png import read_png  # noqa: E402
 
 PICTURES = ROOT / "tests" / "data" / "pictures"
 CAMERAS = {"water": "30,15", "hiv": "90,15"}
-LOOKS = ("ball-and-stick", "space-filling", "licorice", "in-hand")
+LOOKS = ("ball-and-stick", "space-filling", "licorice", "in-hand", "pocket")
 
 NOTABLE = 24        # levels of 255 by which a channel must be off for a pixel to count as different
 MOST_DIFFERENT = 0.02
