@@ -314,8 +314,9 @@ void add_render(CLI::App& program, palpa::RenderOptions& options) {
         ->check(in_range(0.0, 1e5));
     render
         .add_option("--as,--representation", options.representation,
-                    "ball-and-stick, space-filling, licorice or in-hand: all but the molecule in "
-                    "hand thin; this and what follows: unless given, as the scene's [view] says")
+                    "ball-and-stick, space-filling, licorice, in-hand: all but the molecule in "
+                    "hand thin, or pocket: of these what is near to it, and backbones; this and "
+                    "what follows: unless given, as the scene's [view] says")
         ->type_name("NAME");
     render.add_option("--colour,--colouring", options.colouring,
                       "chain: carbons in a colour of their chain; or element");

@@ -78,9 +78,10 @@ inline constexpr std::array<std::string_view, 4> lesson_quantity_names{
     "distance_angstrom", "force_nN", "felt_N", "mode"};
 
 // In hand: the grabbed molecule as balls and sticks, all others as thin sticks without hydrogens.
-enum class Representation { BallAndStick, SpaceFilling, Licorice, InHand };
-inline constexpr std::array<std::string_view, 4> representation_names{
-    "ball-and-stick", "space-filling", "licorice", "in-hand"};
+// Pocket: of the others the backbone, and thin sticks of those residues that are near to it.
+enum class Representation { BallAndStick, SpaceFilling, Licorice, InHand, Pocket };
+inline constexpr std::array<std::string_view, 5> representation_names{
+    "ball-and-stick", "space-filling", "licorice", "in-hand", "pocket"};
 
 // By chain: carbons in a colour of their chain, everything else as by element. Carbons of the
 // grabbed molecule have a colour of their own either way.

@@ -459,7 +459,8 @@ void visit_view(FieldVisitor& v, ViewDescription& view) {
     v.optional_choice(
         {.key = "representation",
          .meaning = "how molecules are drawn; in-hand: all but the molecule in hand as thin sticks "
-                    "without hydrogens; unset: in-hand where others would hide it, else "
+                    "without hydrogens; pocket: of these only residues within 4.5 Å of it, and "
+                    "backbones as tubes; unset: pocket where others would hide it, else "
                     "ball-and-stick"},
         representation_names, representation);
     if (representation) view.representation = static_cast<Representation>(*representation);

@@ -11,8 +11,8 @@
 namespace palpa {
 namespace {
 
-constexpr ImU32 ink = IM_COL32(25, 30, 40, 255), halo = IM_COL32(255, 255, 255, 200);
-constexpr float right_of = 8, below = 4;  // pixels from the place
+constexpr ImU32 ink = IM_COL32(25, 30, 40, 255), halo = IM_COL32(255, 255, 255, 140);
+constexpr float below = 12;  // pixels from the place to the text
 
 struct TextBox {
     ImVec2 low, high;
@@ -23,8 +23,8 @@ bool overlap(const TextBox& a, const TextBox& b) {
 }
 
 void draw_text(ImDrawList& list, const ImVec2& at, const char* text) {
-    for (const ImVec2& off : {ImVec2(-1, 0), ImVec2(1, 0), ImVec2(0, -1), ImVec2(0, 1)}) {
-        list.AddText({at.x + off.x, at.y + off.y}, halo, text);
+    for (const float x : {-1.5F, 0.0F, 1.5F}) {
+        for (const float y : {-1.5F, 0.0F, 1.5F}) list.AddText({at.x + x, at.y + y}, halo, text);
     }
     list.AddText(at, ink, text);
 }
@@ -41,7 +41,7 @@ void draw_view_labels(std::span<const ViewLabel> labels, const FrameCamera& came
                     static_cast<std::uint32_t>(std::max(screen.y, 1.0F)));
         if (!(seen.z > camera.near)) return;
         const ImVec2 size = ImGui::CalcTextSize(label.text.c_str());
-        const ImVec2 at{std::round(seen.x + right_of), std::round(seen.y + below)};
+        const ImVec2 at{std::round(seen.x - size.x / 2), std::round(seen.y + below)};
         const TextBox box{at, {at.x + size.x, at.y + size.y}};
         const auto covers = [&](const TextBox& other) { return overlap(box, other); };
         if (label.is_tick && std::ranges::any_of(taken, covers)) return;

@@ -6,6 +6,7 @@
 #include "view/elements.h"
 #include "view/hydrogen_bonds.h"
 #include "view/palette.h"
+#include "view/pocket.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -19,7 +20,7 @@ namespace palpa {
 namespace {
 
 constexpr float ball_share = 0.28F, stick_radius = 0.14F, licorice_radius = 0.28F;
-constexpr float thin_radius = 0.09F;
+constexpr float thin_radius = 0.11F;
 
 const ElementLook& look_of(std::string_view element) {
     const auto found = std::ranges::find(element_looks, element, &ElementLook::element);
@@ -51,6 +52,7 @@ struct Thickness {
     float atom = 0, stick = 0;
 };
 
+// Of others only hydrogens of hydrogen bonds are drawn where they are thin.
 Thickness thickness_of(Representation representation, std::string_view element, bool in_hand) {
     const float size = look_of(element).radius;
     switch (representation) {
@@ -59,6 +61,7 @@ Thickness thickness_of(Representation representation, std::string_view element, 
         case Representation::Licorice:
             return {licorice_radius, licorice_radius};
         case Representation::InHand:
+        case Representation::Pocket:
             if (in_hand) break;
             return element == "H" ? Thickness{} : Thickness{thin_radius, thin_radius};
         case Representation::BallAndStick:
@@ -73,12 +76,19 @@ void add_shapes(const Simulation& simulation, std::span<const glm::vec3> colours
                 FrameScene& frame) {
     const AtomTable& atoms = simulation.atoms;
     const std::size_t grabbed = grabbed_points(simulation).positions.size();
+    std::vector<bool> stands;  // for itself; empty: every atom
+    if (representation == Representation::Pocket) {
+        const std::vector<Residue> residues = find_residues(simulation);
+        stands = find_pocket(simulation, residues);
+        add_backbones(atoms, residues, colours, frame);
+    }
     std::vector<bool> takes_part(atoms.size(), false);
     for (const HydrogenBond& bond : bonded) takes_part[bond.hydrogen] = true;
     std::vector<float> sticks;
     for (std::size_t i = 0; i < atoms.size(); ++i) {
         auto [atom, stick] = thickness_of(representation, element_of(atoms, i), i < grabbed);
         if (atom == 0 && takes_part[i]) atom = stick = thin_radius;
+        if (i >= grabbed && !stands.empty() && !stands[i]) atom = stick = 0;
         sticks.push_back(stick);
         if (atom == 0) continue;
         frame.spheres.push_back(

@@ -7,8 +7,9 @@
 #include <cmath>
 #include <cstddef>
 #include <glm/geometric.hpp>
-#include <limits>
 #include <optional>
+#include <set>
+#include <tuple>
 #include <vector>
 
 namespace palpa {
@@ -102,6 +103,35 @@ private:
     std::vector<float> farthest_;  // by rows of cells; 0 where it covers nothing
 };
 
+// Places of a frame, told apart to the bit: a bond ends where its atom is.
+class Places {
+public:
+    void add(const glm::vec3& place) { places_.insert(key(place)); }
+    bool has(const glm::vec3& place) const { return places_.contains(key(place)); }
+
+private:
+    using Key = std::tuple<float, float, float>;
+    static Key key(const glm::vec3& p) { return {p.x, p.y, p.z}; }
+    std::set<Key> places_;
+};
+
+// Atoms to which the dashes of a hydrogen bond lead.
+Places find_bonded(const FrameScene& frame) {
+    constexpr float gap = 0.2F;  // Å, at most from an atom to its dash
+    std::vector<glm::vec3> ends;
+    for (const ConeShape& cone : frame.cones) {
+        if (cone.pick == hydrogen_bond_pick) ends.insert(ends.end(), {cone.a, cone.b});
+    }
+    Places bonded;
+    for (const SphereShape& sphere : frame.spheres) {
+        const auto is_at = [&](const glm::vec3& end) {
+            return glm::distance(end, sphere.centre) < sphere.radius + gap;
+        };
+        if (std::ranges::any_of(ends, is_at)) bonded.add(sphere.centre);
+    }
+    return bonded;
+}
+
 }  // namespace
 
 void clip_in_front(std::uint32_t grabbed_atoms, const OrbitCamera& camera, FrameScene& frame) {
@@ -109,12 +139,26 @@ void clip_in_front(std::uint32_t grabbed_atoms, const OrbitCamera& camera, Frame
     const auto is_of_others = [&](std::uint32_t pick) {
         return pick >= grabbed_atoms && pick < first_sign_pick;
     };
-    std::erase_if(frame.spheres, [&](const SphereShape& sphere) {
-        return is_of_others(sphere.pick) && silhouette.is_hiding(sphere.centre);
-    });
+    const Places bonded = find_bonded(frame);
+    const auto is_in_view = [&](const glm::vec3& a, const glm::vec3& b) {
+        return (!silhouette.is_hiding(a) && !silhouette.is_hiding(b)) || bonded.has(a) ||
+               bonded.has(b);
+    };
+    Places ends, kept;  // of bonds, and of those that are left
+    for (const ConeShape& cone : frame.cones) {
+        if (!is_of_others(cone.pick)) continue;
+        for (const glm::vec3& end : {cone.a, cone.b}) {
+            ends.add(end);
+            if (is_in_view(cone.a, cone.b)) kept.add(end);
+        }
+    }
     std::erase_if(frame.cones, [&](const ConeShape& cone) {
-        return is_of_others(cone.pick) &&
-               (silhouette.is_hiding(cone.a) || silhouette.is_hiding(cone.b));
+        return is_of_others(cone.pick) && !is_in_view(cone.a, cone.b);
+    });
+    std::erase_if(frame.spheres, [&](const SphereShape& sphere) {
+        if (!is_of_others(sphere.pick)) return false;
+        return ends.has(sphere.centre) ? !kept.has(sphere.centre)
+                                       : silhouette.is_hiding(sphere.centre);
     });
 }
 

@@ -11,7 +11,7 @@ namespace palpa {
 ViewSettings first_settings(const ViewDescription& view, const Simulation& simulation) {
     constexpr std::size_t many = 300;
     const bool hides = environment_points(simulation).positions.size() > many;
-    return {.representation = view.representation.value_or(hides ? Representation::InHand
+    return {.representation = view.representation.value_or(hides ? Representation::Pocket
                                                                  : Representation::BallAndStick),
             .colouring = view.colouring};
 }

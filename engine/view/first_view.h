@@ -9,7 +9,7 @@
 
 namespace palpa {
 
-// Unless the scene says, balls and sticks, but `in-hand` where others would hide the molecule.
+// Unless the scene says, balls and sticks, but `pocket` where others would hide the molecule.
 ViewSettings first_settings(const ViewDescription& view, const Simulation& simulation);
 
 // The atoms that the picture is to frame: a molecule's, or none where it is to frame everything.

@@ -173,7 +173,7 @@ void add_torque(const glm::vec3& torque_nN_angstrom, const HeldMolecule& held, F
     const float decade = decade_of(held, frame);
     const float radius = 0.8F * decade, thin = 0.07F * decade;
     const glm::vec3 axis = torque_nN_angstrom / static_cast<float>(size);
-    const float out = way_out({held.centre, axis, thin}, held, frame);
+    const float out = way_out({held.centre, axis, radius + thin}, held, frame);
     const glm::vec3 foot = held.centre + out * axis;
     const glm::vec3 middle = foot + 0.5F * decade * axis;
     add_stick(foot, middle + 0.35F * decade * axis, 0.5F * thin, force_colour, torque_pick, frame);
@@ -200,7 +200,7 @@ void add_torque(const glm::vec3& torque_nN_angstrom, const HeldMolecule& held, F
 
 void add_hydrogen_bonds(const AtomTable& atoms, std::span<const HydrogenBond> bonds,
                         FrameScene& frame, std::vector<ViewLabel>& labels) {
-    constexpr float dash = 0.16F, radius = 0.045F, least = 0.2F;  // Å
+    constexpr float dash = 0.16F, radius = 0.06F, least = 0.2F;  // Å
     constexpr std::size_t most_labels = 4;
     if (bonds.empty()) return;
     std::vector<float> radius_of(atoms.size(), 0);
@@ -228,8 +228,8 @@ void add_hydrogen_bonds(const AtomTable& atoms, std::span<const HydrogenBond> bo
 void add_wish(const glm::vec3& place, const glm::vec3& wish, const glm::vec3& towards_eye,
               FrameScene& frame) {
     constexpr float shown_from = 0.1F, dash = 0.22F, thread = 0.035F;  // Å
-    constexpr float ring = 0.30F, thick = 0.05F;
-    constexpr int pieces = 28;
+    constexpr float ring = 0.50F, thick = 0.05F;
+    constexpr int pieces = 36;
     const float length = glm::distance(place, wish);
     if (!(length > shown_from)) return;
     add_dashes(place, place + std::max(1 - ring / length, 0.5F) * (wish - place), dash, thread,

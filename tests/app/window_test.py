@@ -64,6 +64,11 @@ class Display:
                                         stderr=subprocess.DEVNULL).returncode == 0
 
 
+def difference(one, two):
+    """In levels of 255, on average over pixels and channels."""
+    return sum(abs(a - b) for a, b in zip(one, two)) / len(one)
+
+
 class Session(unittest.TestCase):
     def setUp(self):
         self.folder = Path(tempfile.mkdtemp())
@@ -352,6 +357,31 @@ class Session(unittest.TestCase):
             display.do("mouseup", 1)
             self.assertGreater(self.share_that_differs(before, display), 0.04)
             self.quit(display)
+
+    def test_home_and_reset_bring_the_first_view_back(self):
+        with Display() as display:
+            self.start(display, "--size", "480x320", "--set", "stroke=hold")
+            display.do("key", "o", "key", "l", "key", "Home")  # no panels: all of it is seen
+            first = self.lower_part_of(self.screenshot(display))
+            for change in (["v"], ["f"], ["v", "v", "f", "a"]):
+                for back in ("Home", "r"):
+                    with self.subTest(change=change, back=back):
+                        for key in change:
+                            display.do("key", key)
+                        self.wait_for_view(display, lambda view: difference(view, first) > 4)
+                        display.do("key", back)
+                        # How long a frame takes decides of its effects, so that it is the same only
+                        # nearly.
+                        self.wait_for_view(display, lambda view: difference(view, first) < 1)
+            self.quit(display)
+
+    def wait_for_view(self, display, is_so):
+        self.wait_until(lambda: is_so(self.lower_part_of(self.screenshot(display))), "a view")
+
+    def lower_part_of(self, picture):
+        """The pixels below its notes, as the program's PNG files have them: 8-bit RGBA."""
+        (width, height), pixels = read_png(picture)
+        return pixels[4 * width * (height * 2 // 5):]
 
     def middle_of(self, picture):
         """Its pixels between the panels, below the notes and above the lesson."""

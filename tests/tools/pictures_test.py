@@ -18,7 +18,7 @@ from read_png import read_png  # noqa: E402
 
 PICTURES = ROOT / "tests" / "data" / "pictures"
 CAMERAS = {"water": "30,15", "hiv": "90,15"}
-LOOKS = ("ball-and-stick", "space-filling", "licorice", "in-hand")
+LOOKS = ("ball-and-stick", "space-filling", "licorice", "in-hand", "pocket")
 
 NOTABLE = 24        # levels of 255 by which a channel must be off for a pixel to count as different
 MOST_DIFFERENT = 0.02

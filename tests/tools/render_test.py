@@ -36,7 +36,7 @@ class Render(unittest.TestCase):
         self.assertFalse(self.image.exists())
 
     def test_a_picture_needs_no_display(self):
-        for look in ("ball-and-stick", "space-filling", "licorice", "in-hand"):
+        for look in ("ball-and-stick", "space-filling", "licorice", "in-hand", "pocket"):
             with self.subTest(look=look):
                 result = self.render("-o", self.image, "--size", "64x48", "--as", look)
                 self.assertEqual(result.returncode, 0, result.stderr)
@@ -75,6 +75,33 @@ class Render(unittest.TestCase):
         self.assert_bad_input(self.render("-o", self.image, "--colour", "chan"),
                               "did you mean 'chain'?")
         self.assert_bad_input(self.render("-o", self.image, "--samples", "5"), "--samples")
+
+    def draw(self, *arguments):
+        result = self.render("-o", self.image, "--size", "160x90", *arguments)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return self.image.read_bytes()
+
+    def test_the_scene_says_how_it_is_seen_and_options_say_it_again(self):
+        plain = self.draw()
+        for key, value, *option in (("representation", "licorice", "--representation", "licorice"),
+                                    ("representation", "space-filling", "--as", "space-filling"),
+                                    ("colouring", "element", "--colouring", "element"),
+                                    ("camera", "[-50, 30, 1.5]", "--camera=-50,30,1.5"),
+                                    ("look_at", "fixed", "--look-at", "fixed")):
+            with self.subTest(key=key):
+                said = self.draw("--set", f"view.{key}={value}")
+                self.assertEqual(said, self.draw(*option))
+                # Two waters have no carbon, so their colours are those of the elements either way.
+                self.assertEqual(said == plain, key == "colouring")
+                self.assertEqual(said, self.draw("--set", f"view.{key}={value}", *option))
+
+    def test_clip_leaves_out_what_is_in_front(self):
+        # From the left the fixed water stands before the moved one.
+        view = ("--camera=-90,0", "--as", "space-filling", "--set", "hand.start_angstrom=3")
+        whole, clipped = self.draw(*view), self.draw(*view, "--clip")
+        self.assertNotEqual(whole, clipped)
+        self.assertEqual(clipped, self.draw(*view, "--set", "view.clip=true"))
+        self.assertEqual(whole, self.draw(*view, "--set", "view.clip=true", "--no-clip"))
 
     def run_recorded(self, *arguments, **environment):
         clean = {key: value for key, value in os.environ.items()

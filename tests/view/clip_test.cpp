@@ -50,6 +50,38 @@ TEST_CASE("what stands in front of the molecule in hand is left out, nothing els
     CHECK(frame.cones[1].pick == arrow_pick);
 }
 
+TEST_CASE("the partner of a hydrogen bond stays with its bonds, an atom without bonds goes",
+          "[view][clip]") {
+    const OrbitCamera camera{.distance = 20};
+    const glm::vec3 partner(0, 0, 3), next(0, 1, 4), beyond(0, 1, 5.5F);
+    FrameScene frame;
+    frame.spheres = {{{0, 0, 0}, 0.5F, glm::vec3(1), in_hand}};
+    for (const glm::vec3& place : {partner, next, beyond}) {
+        frame.spheres.push_back({place, 0.1F, glm::vec3(1), other});
+    }
+    const auto add = [&](const glm::vec3& a, const glm::vec3& b, std::uint32_t pick) {
+        frame.cones.push_back({a, b, 0.1F, 0.1F, glm::vec3(1), glm::vec3(1), pick});
+    };
+    add(partner, next, other);
+    add(next, beyond, other);
+
+    SECTION("bonded") {
+        add({0, 0, 0.6F}, {0, 0, 2.8F}, hydrogen_bond_pick);
+        clip_in_front(1, camera, frame);
+        CHECK(has(frame, partner));
+        CHECK(has(frame, next));
+        CHECK_FALSE(has(frame, beyond));
+        CHECK(frame.cones.size() == 2);
+    }
+    SECTION("beside, with a bond to what is hidden") {
+        frame.spheres[3].centre = {5, 0, 5.5F};
+        frame.cones[1].b = {5, 0, 5.5F};
+        clip_in_front(1, camera, frame);
+        CHECK(frame.spheres.size() == 1);
+        CHECK(frame.cones.empty());
+    }
+}
+
 TEST_CASE("clipped, the inhibitor is seen whole in its pocket from any side", "[view][clip][gpu]") {
     GpuDevice device(test::validated());
     Renderer renderer(device);
@@ -57,7 +89,7 @@ TEST_CASE("clipped, the inhibitor is seen whole in its pocket from any side", "[
         load_simulation(read_scene(test::in_project("scenes/hiv"), std::vector<std::string>()));
     const auto grabbed = static_cast<std::uint32_t>(grabbed_points(simulation).positions.size());
     const auto representation =
-        GENERATE(Representation::InHand, Representation::SpaceFilling, Representation::Licorice);
+        GENERATE(Representation::InHand, Representation::SpaceFilling, Representation::Pocket);
     const float azimuth = GENERATE(0.0F, 1.5F, 3.0F, 4.5F), elevation = GENERATE(-0.9F, 0.0F, 0.9F);
     FrameScene frame = build_frame(simulation, {.representation = representation});
     const FrameScene alone = [&] {

@@ -1,0 +1,127 @@
+#include "view/pocket.h"
+
+#include "view/build_frame.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <glm/geometric.hpp>
+
+namespace palpa {
+namespace {
+
+constexpr double near_by = 4.5;       // Å
+constexpr float longest_step = 4.5F;  // Å, from one CA to the next
+constexpr float tube_radius = 0.30F;  // Å
+constexpr int pieces_a_residue = 6;
+
+// Which atoms of others are near to the grabbed molecule.
+std::vector<bool> find_near(const Simulation& simulation) {
+    const std::vector<Vec3>& places = simulation.atoms.positions;
+    const std::size_t grabbed = grabbed_points(simulation).positions.size();
+    std::vector<std::size_t> in_hand(grabbed);
+    for (std::size_t i = 0; i < grabbed; ++i) in_hand[i] = i;
+    const auto x_of = [&](std::size_t i) { return places[i].x(); };
+    std::ranges::sort(in_hand, {}, x_of);
+    std::vector<bool> near(places.size(), false);
+    for (std::size_t i = grabbed; i < places.size(); ++i) {
+        auto other = std::ranges::lower_bound(in_hand, x_of(i) - near_by, {}, x_of);
+        for (; other != in_hand.end() && x_of(*other) < x_of(i) + near_by; ++other) {
+            if ((places[*other] - places[i]).squaredNorm() < near_by * near_by) {
+                near[i] = true;
+                break;
+            }
+        }
+    }
+    return near;
+}
+
+void add_tube(std::span<const std::size_t> alphas, std::span<const Vec3> places,
+              std::span<const glm::vec3> colours, FrameScene& frame) {
+    // The ends stand three times, so that the curve begins and ends there.
+    const auto count = static_cast<std::ptrdiff_t>(alphas.size());
+    const auto atom_at = [&](std::ptrdiff_t i) {
+        return alphas[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(i, 0, count - 1))];
+    };
+    const auto control = [&](std::ptrdiff_t i) { return as_float(places[atom_at(i)]); };
+    const auto curve = [&](std::ptrdiff_t i, float t) {
+        const float u = 1 - t;
+        return (u * u * u * control(i - 1) + (3 * t * t * t - 6 * t * t + 4) * control(i) +
+                (3 * u * u * u - 6 * u * u + 4) * control(i + 1) + t * t * t * control(i + 2)) /
+               6.0F;
+    };
+    for (std::ptrdiff_t i = -1; i < count; ++i) {
+        for (int piece = 0; piece < pieces_a_residue; ++piece) {
+            const auto at = [&](int k) {
+                return curve(i, static_cast<float>(k) / pieces_a_residue);
+            };
+            const std::size_t atom = atom_at(piece < pieces_a_residue / 2 ? i : i + 1);
+            const auto pick = static_cast<std::uint32_t>(atom);
+            const glm::vec3 a = at(piece), b = at(piece + 1);
+            frame.cones.push_back(
+                {a, b, tube_radius, tube_radius, colours[atom], colours[atom], pick});
+            frame.spheres.push_back({b, tube_radius, colours[atom], pick});
+        }
+    }
+    frame.spheres.push_back(
+        {curve(-1, 0), tube_radius, colours[atom_at(0)], static_cast<std::uint32_t>(atom_at(0))});
+}
+
+}  // namespace
+
+std::vector<Residue> find_residues(const Simulation& simulation) {
+    const AtomTable& atoms = simulation.atoms;
+    std::vector<Residue> residues;
+    for (std::size_t i = grabbed_points(simulation).positions.size(); i < atoms.size();) {
+        Residue residue{i, i + 1, 0};
+        while (residue.end < atoms.size() &&
+               is_same_residue(atoms.names[residue.end], atoms.names[i])) {
+            ++residue.end;
+        }
+        residue.alpha = residue.end;
+        for (std::size_t k = i; k < residue.end; ++k) {
+            const bool is_calcium = residue.end - i == 1;
+            if (atoms.names[k].atom == "CA" && !is_calcium) residue.alpha = k;
+        }
+        residues.push_back(residue);
+        i = residue.end;
+    }
+    return residues;
+}
+
+std::vector<bool> find_pocket(const Simulation& simulation, std::span<const Residue> residues) {
+    const std::vector<bool> near = find_near(simulation);
+    std::vector<bool> shown(simulation.atoms.size(), false);
+    for (const Residue& residue : residues) {
+        const auto begin = near.begin();
+        const bool stands = residue.alpha == residue.end ||
+                            std::any_of(begin + static_cast<std::ptrdiff_t>(residue.first),
+                                        begin + static_cast<std::ptrdiff_t>(residue.end),
+                                        [](bool is_near) { return is_near; });
+        for (std::size_t i = residue.first; i < residue.end; ++i) shown[i] = stands;
+    }
+    return shown;
+}
+
+void add_backbones(const AtomTable& atoms, std::span<const Residue> residues,
+                   std::span<const glm::vec3> colours, FrameScene& frame) {
+    std::vector<std::size_t> alphas;
+    const auto finish = [&] {
+        if (alphas.size() > 1) add_tube(alphas, atoms.positions, colours, frame);
+        alphas.clear();
+    };
+    for (const Residue& residue : residues) {
+        if (residue.alpha == residue.end) continue;
+        if (!alphas.empty()) {
+            const std::size_t last = alphas.back();
+            const bool follows =
+                atoms.names[last].segment == atoms.names[residue.alpha].segment &&
+                (atoms.positions[last] - atoms.positions[residue.alpha]).norm() < longest_step;
+            if (!follows) finish();
+        }
+        alphas.push_back(residue.alpha);
+    }
+    finish();
+}
+
+}  // namespace palpa
