@@ -63,6 +63,7 @@ class PrepareScene(unittest.TestCase):
         self.assertEqual([w for w in summary["warnings"] if "run.seconds" not in w], [])
         self.assertEqual(summary["steps_not_finite"], 0)
         self.assertLessEqual(summary["period_ms"], at_most_ms)
+        self.assertGreaterEqual(summary["period_ms"], 5)  # drawing takes the cores as long
 
     def check_range_is_of_these_forces(self):
         """The range that is felt has the forces that the trace has, not any that would do."""
