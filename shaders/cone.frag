@@ -23,6 +23,6 @@ void main() {
         if (m <= 0.0 || (A * t - 2.0 * b) * t + form.w > 0.0) discard;
     }
     if (t < frame.projection.z) discard;
-    gl_FragDepth = depth_of(t);
+    gl_FragDepth = depth_on_top(depth_of(t), id > frame.last_cone_below);
     seen = uvec2(id, floatBitsToUint(t));
 }

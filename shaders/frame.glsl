@@ -10,6 +10,8 @@ layout(push_constant) uniform Frame {
     int taps;         // of ambient occlusion, 8 or none
     float fog_from;   // distance from the camera
     vec2 centre;      // where the camera's axis is seen, to the right and up, in halves of the picture
+    uint last_sphere_below;  // numbers, from 1: what comes after them, of its kind, is on top
+    uint last_cone_below;
 } frame;
 
 // In view space. A sphere is a cone without axis and height.
@@ -28,6 +30,9 @@ float depth_of(float distance) {
     float near = frame.projection.z, far = frame.projection.w;
     return far * (distance - near) / (distance * (far - near));
 }
+
+// The same for what is on top: in front of everything else, among itself in order.
+float depth_on_top(float depth, bool is_on_top) { return is_on_top ? 1e-3 * depth : depth; }
 
 // The view-space ray of depth 1 through a place in the picture, in pixels from the upper left.
 vec3 ray_at(vec2 pixel) {

@@ -13,6 +13,6 @@ void main() {
     float root = b * b - A * sphere.w;
     float t = (b - sqrt(max(root, 0.0))) / A;  // and t is the depth: the ray's is 1
     if (root < 0.0 || t < frame.projection.z) discard;
-    gl_FragDepth = depth_of(t);
+    gl_FragDepth = depth_on_top(depth_of(t), id > frame.last_sphere_below);
     seen = uvec2(id, floatBitsToUint(t));
 }

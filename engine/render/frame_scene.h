@@ -8,12 +8,14 @@
 
 namespace palpa {
 
-// `pick` names what a shape stands for; whoever asks which thing is at a pixel gets it back.
+// `pick` names what a shape stands for; whoever asks which thing is at a pixel gets it back. What
+// is on top is hidden by nothing that is not.
 struct SphereShape {
     glm::vec3 centre{0};
     float radius = 1;
     glm::vec3 colour{1};
     std::uint32_t pick = 0;
+    bool is_on_top = false;
 };
 
 // A cylinder, or a cone where the radii differ; coloured in two halves. Flat at `a`, open at `b`.
@@ -22,6 +24,7 @@ struct ConeShape {
     float radius_a = 1, radius_b = 1;
     glm::vec3 colour_a{1}, colour_b{1};
     std::uint32_t pick = 0;
+    bool is_on_top = false;
 };
 
 struct FrameCamera {

@@ -39,6 +39,7 @@ struct GpuFrame {
     std::int32_t outline, taps;
     float fog_from;
     glm::vec2 centre;
+    std::uint32_t last_sphere_below, last_cone_below;
 };
 static_assert(sizeof(GpuFrame) <= 128, "push constants");
 constexpr std::int32_t occlusion_taps = 8;  // all of the shader's
@@ -50,7 +51,22 @@ struct Seen {
 constexpr float nowhere =
     1e9F;  // the distance of nothing, for shaders: a number that they can reckon with
 
+// Shapes are numbered from 1, those on top last of their kind.
+struct ShapeNumbers {
+    std::uint32_t last_sphere_below, last_cone_below;
+};
+
+ShapeNumbers number_shapes(const FrameScene& scene) {
+    const auto below = [](const auto& shapes) {
+        return static_cast<std::uint32_t>(
+            std::ranges::count_if(shapes, [](const auto& shape) { return !shape.is_on_top; }));
+    };
+    const auto spheres = static_cast<std::uint32_t>(scene.spheres.size());
+    return {below(scene.spheres), spheres + below(scene.cones)};
+}
+
 GpuFrame build_frame_constants(const FrameScene& scene, VkExtent2D size) {
+    const ShapeNumbers ids = number_shapes(scene);
     const FrameCamera& camera = scene.camera;
     const auto width = static_cast<float>(size.width), height = static_cast<float>(size.height);
     const float y_scale = 1 / std::tan(camera.vertical_angle / 2);
@@ -61,7 +77,9 @@ GpuFrame build_frame_constants(const FrameScene& scene, VkExtent2D size) {
             scene.outline,
             scene.occlusion ? occlusion_taps : 0,
             camera.fog_from,
-            camera.centre};
+            camera.centre,
+            ids.last_sphere_below,
+            ids.last_cone_below};
 }
 
 GpuShape build_shape(const glm::mat4& view, const SphereShape& sphere) {
@@ -413,8 +431,16 @@ bool Renderer::upload_shapes(VkCommandBuffer commands, const FrameScene& scene) 
         place += sizeof(built);
         picks_.push_back(shape.pick);
     };
-    for (const SphereShape& sphere : scene.spheres) add(sphere);
-    for (const ConeShape& cone : scene.cones) add(cone);
+    for (const bool is_on_top : {false, true}) {
+        for (const SphereShape& sphere : scene.spheres) {
+            if (sphere.is_on_top == is_on_top) add(sphere);
+        }
+    }
+    for (const bool is_on_top : {false, true}) {
+        for (const ConeShape& cone : scene.cones) {
+            if (cone.is_on_top == is_on_top) add(cone);
+        }
+    }
     shapes_.record(commands, count * sizeof(GpuShape));
     return moved;
 }

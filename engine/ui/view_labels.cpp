@@ -14,6 +14,8 @@ namespace {
 constexpr ImU32 ink = IM_COL32(25, 30, 40, 255), halo = IM_COL32(255, 255, 255, 140);
 constexpr float below = 12;  // pixels from the place to the text
 
+constexpr int most_lines_down = 5;
+
 struct TextBox {
     ImVec2 low, high;
 };
@@ -41,11 +43,15 @@ void draw_view_labels(std::span<const ViewLabel> labels, const FrameCamera& came
                     static_cast<std::uint32_t>(std::max(screen.y, 1.0F)));
         if (!(seen.z > camera.near)) return;
         const ImVec2 size = ImGui::CalcTextSize(label.text.c_str());
-        const ImVec2 at{std::round(seen.x - size.x / 2), std::round(seen.y + below)};
-        const TextBox box{at, {at.x + size.x, at.y + size.y}};
-        const auto covers = [&](const TextBox& other) { return overlap(box, other); };
-        if (label.is_tick && std::ranges::any_of(taken, covers)) return;
-        taken.push_back(box);
+        ImVec2 at{std::round(seen.x - size.x / 2), std::round(seen.y + below)};
+        const auto is_taken = [&] {
+            const TextBox box{at, {at.x + size.x, at.y + size.y}};
+            return std::ranges::any_of(taken,
+                                       [&](const TextBox& other) { return overlap(box, other); });
+        };
+        if (label.is_tick && is_taken()) return;
+        for (int line = 0; line < most_lines_down && is_taken(); ++line) at.y += size.y;
+        taken.push_back({at, {at.x + size.x, at.y + size.y}});
         draw_text(list, at, label.text.c_str());
     };
     for (const ViewLabel& label : labels) {

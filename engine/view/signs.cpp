@@ -81,14 +81,18 @@ float decade_of(const HeldMolecule& held, const FrameScene& frame) {
     return std::clamp(share * radius, least, most);
 }
 
+// All but hydrogen bonds, which belong to the atoms.
+bool is_on_top(std::uint32_t pick) { return pick != hydrogen_bond_pick; }
+
 void add_stick(const glm::vec3& a, const glm::vec3& b, float radius, const glm::vec3& colour,
                std::uint32_t pick, FrameScene& frame) {
-    frame.cones.push_back({a, b, radius, radius, colour, colour, pick});
+    frame.cones.push_back({a, b, radius, radius, colour, colour, pick, is_on_top(pick)});
 }
 
 void add_head(const glm::vec3& from, const glm::vec3& tip, float radius, const glm::vec3& colour,
               std::uint32_t pick, FrameScene& frame) {
-    frame.cones.push_back({from, tip, radius, 0.02F * radius, colour, colour, pick});
+    frame.cones.push_back(
+        {from, tip, radius, 0.02F * radius, colour, colour, pick, is_on_top(pick)});
 }
 
 // Flat, and closed on both sides: a cone is so only at its first end.
@@ -189,7 +193,7 @@ void add_torque(const glm::vec3& torque_nN_angstrom, const HeldMolecule& held, F
         const float step = (sweep - head) / static_cast<float>(pieces);
         const float from = step * static_cast<float>(i);
         add_stick(on_arc(from), on_arc(from + step), thin, force_colour, torque_pick, frame);
-        frame.spheres.push_back({on_arc(from + step), thin, force_colour, torque_pick});
+        frame.spheres.push_back({on_arc(from + step), thin, force_colour, torque_pick, true});
     }
     const glm::vec3 neck = on_arc(sweep - head);
     const glm::vec3 tangent = glm::normalize(on_arc(sweep) - neck);
@@ -241,7 +245,7 @@ void add_wish(const glm::vec3& place, const glm::vec3& wish, const glm::vec3& to
     };
     for (int i = 0; i < pieces; ++i) {
         add_stick(on_ring(i), on_ring(i + 1), thick, wish_colour, wish_pick, frame);
-        frame.spheres.push_back({on_ring(i), thick, wish_colour, wish_pick});
+        frame.spheres.push_back({on_ring(i), thick, wish_colour, wish_pick, true});
     }
 }
 

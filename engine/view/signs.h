@@ -1,5 +1,6 @@
 // Shapes that are no atoms: the force and the torque on the molecule in hand, where the hand wants
-// it, and its hydrogen bonds; and the words beside them.
+// it, and its hydrogen bonds; and the words beside them. All but the bonds are drawn on top of
+// atoms.
 #pragma once
 #include "molecule/atoms.h"
 #include "render/frame_scene.h"

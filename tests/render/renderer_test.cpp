@@ -180,6 +180,30 @@ TEST_CASE("a crease is darker than an open surface, an outline darker than both"
     test::check_silent(device);
 }
 
+TEST_CASE("what is on top is hidden by nothing else, and in order among itself", "[render][gpu]") {
+    GpuDevice device(test::validated());
+    Renderer renderer(device);
+    FrameScene scene;
+    const glm::vec3 grey(0.5F);
+    const bool is_on_top = GENERATE(false, true);
+    scene.spheres = {{{0, 0, -3}, 0.5F, grey, 1, is_on_top},
+                     {{0, 0, -5}, 1, grey, 2, is_on_top},
+                     {{0, 0, 0}, 2, grey, 3}};
+    scene.cones = {{{-1, 1.2F, -3}, {1, 1.2F, -3}, 0.2F, 0.2F, grey, grey, 4, is_on_top},
+                   {{-1, 1.2F, 2}, {1, 1.2F, 2}, 0.2F, 0.2F, grey, grey, 5}};
+    scene.camera.far = 40;
+
+    const Picture picture = renderer.draw(scene, width, height);
+
+    const std::size_t middle = pixel_of(scene.camera, {0, 0, 0});
+    CHECK(picture.picks[middle] == (is_on_top ? 1 : 3));
+    CHECK(picture.depth[middle] == Approx(is_on_top ? 12.5 : 8).margin(0.02));
+    const std::size_t stick = pixel_of(scene.camera, {0, 1.2F, -3});
+    CHECK(picture.picks[stick] == (is_on_top ? 4 : 3));
+    CHECK(picture.picks[pixel_of(scene.camera, {0, 1.2F, 2})] == 5);
+    test::check_silent(device);
+}
+
 TEST_CASE("an empty scene is its background, a camera inside a sphere sees past it",
           "[render][gpu]") {
     GpuDevice device(test::validated());
