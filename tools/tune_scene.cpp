@@ -109,7 +109,7 @@ double two_digits(double value) {
 
 // A tenth of a strong force is felt as 0.3 N, a strong one as 1.3 N; what is thrice as strong as
 // 2.7 N. So neither friction (0.26 N) hides what is there, nor do motors get warm of it.
-std::array<double, 2> choose_range_pN(double strong_pN) {
+std::array<double, 2> choose_range(double strong_pN) {
     const double strong = std::max(strong_pN, 10.0);
     return {two_digits(strong / 10), two_digits(3 * strong)};
 }
@@ -176,9 +176,10 @@ std::vector<std::uint32_t> find_table_order(const SystemCopy& copy) {
 void bring_to_rest(const std::filesystem::path& folder, const StageFunction& on_stage,
                    Tuning& tuning) {
     const Simulation simulation = load_simulation(read_scene(folder / "scene.toml"), on_stage);
-    const Flexible& flexible = simulation.flexible.value();
-    tuning.relaxed = flexible.relaxed;
-    tuning.joints = flexible.joints;
+    if (simulation.flexible) {
+        tuning.relaxed = simulation.flexible->relaxed;
+        tuning.joints = simulation.flexible->joints;
+    }
     const std::vector<std::uint32_t> order = find_table_order(tuning.copy);
     for (std::size_t i = 0; i < order.size(); ++i) {
         tuning.rest.positions[order[i]] = flexible.model.reference[i];
@@ -227,7 +228,7 @@ void set_period(const Played& played, Tuning& tuning) {
 }
 
 void set_coupling(const Played& first, Tuning& tuning) {
-    tuning.tuning.feel_pN = choose_range_pN(first.strong_pN);
+    tuning.tuning.feel_pN = choose_range(first.strong_pN);
     tuning.tuning.coupling_note = fmt::format(
         "The emulated hand found forces of up to {:.0f} pN for 95 % of its stroke: a tenth of that "
         "is felt as 0.3 N, three times that as 2.7 N.",
@@ -279,18 +280,23 @@ Played try_ways(const std::filesystem::path& folder, const StageFunction& on_sta
     const Structure rest = tuning.rest;
     const Vec3 out = find_way_out(rest, tuning.copy.hand.held);
     const Vec3 across = out.unitOrthogonal();
-    std::optional<std::pair<Played, Vec3>> best;
+    Played best;
+    best.moved_angstrom = -1;
+    Vec3 best_way = out;
     for (const Vec3& way : {out, across, Vec3(out.cross(across))}) {
         tuning.rest = rest;
         take_way(way, tuning);
         const Played played =
             play_written(folder, "looking for the forces", {"run.seconds=5"}, on_stage, tuning);
-        if (!best || played.moved_angstrom > best->first.moved_angstrom) best = {played, way};
-        if (best->first.moved_angstrom > least_moved) break;
+        if (played.moved_angstrom > best.moved_angstrom) {
+            best = played;
+            best_way = way;
+        }
+        if (best.moved_angstrom > least_moved) break;
     }
     tuning.rest = rest;
-    take_way(best->second, tuning);
-    return best->first;
+    take_way(best_way, tuning);
+    return best;
 }
 
 TunedScene tune(PreparedSystem& system, Tuning& tuning, const StageFunction& on_stage) {

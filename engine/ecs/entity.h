@@ -1,14 +1,14 @@
-// A handle of something in a World: an index and how often that index was used before.
+// A handle of something in a World.
 #pragma once
 #include <compare>
 #include <cstdint>
 
 namespace palpa {
 
-// The default value names nothing: generation 0 is never alive.
+// Counted from 1 in the order of creation, and never given to anything else. The default value
+// names nothing.
 struct Entity {
-    std::uint32_t index = 0;
-    std::uint32_t generation = 0;
+    std::uint32_t number = 0;
 
     friend auto operator<=>(const Entity&, const Entity&) = default;
 };

@@ -1,9 +1,10 @@
-// The components of one type, packed without holes, found by entity in constant time.
+// The components of one type, packed without holes in the order of their entities.
 #pragma once
 #include "ecs/entity.h"
 
+#include <algorithm>
 #include <cstddef>
-#include <cstdint>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -13,64 +14,59 @@ namespace palpa {
 // What a World needs of every pool, whatever its component type.
 class AnyPool {
 public:
-    AnyPool() = default;
-    AnyPool(const AnyPool&) = delete;
-    AnyPool& operator=(const AnyPool&) = delete;
     virtual ~AnyPool() = default;
 
-    // Nothing happens if the entity has no component here. The last component fills the gap.
-    virtual void remove(std::uint32_t entity_index) = 0;
+    virtual std::unique_ptr<AnyPool> clone() const = 0;
+    // Nothing happens if the entity has no component here.
+    virtual void remove(Entity entity) = 0;
 
+    // In the order of their creation.
     std::span<const Entity> entities() const noexcept { return owners_; }
 
 protected:
-    static constexpr std::uint32_t none = UINT32_MAX;
-
-    // Place of the entity's component in the packed arrays, or `none`.
-    std::uint32_t slot(std::uint32_t entity_index) const noexcept {
-        return entity_index < slots_.size() ? slots_[entity_index] : none;
+    // Place of the entity's component in the packed arrays, or where it would stand.
+    std::size_t place_of(Entity entity) const noexcept {
+        return static_cast<std::size_t>(std::lower_bound(owners_.begin(), owners_.end(), entity) -
+                                        owners_.begin());
+    }
+    bool is_at(std::size_t place, Entity entity) const noexcept {
+        return place < owners_.size() && owners_[place] == entity;
     }
 
-    std::vector<std::uint32_t> slots_;  // by entity index
-    std::vector<Entity> owners_;        // packed, beside the components
+    std::vector<Entity> owners_;  // beside the components
 };
 
-// A sparse set. Components stand in the order they were added until one is removed.
+// Entities are molecules, hands, marks: hundreds, found by bisection.
 template <class Component>
 class Pool final : public AnyPool {
 public:
     // Adds the component, or replaces the one that the entity has.
     Component& set(Entity entity, Component component) {
-        if (const std::uint32_t old = slot(entity.index); old != none) {
-            return components_[old] = std::move(component);
-        }
-        if (entity.index >= slots_.size()) slots_.resize(entity.index + std::size_t{1}, none);
-        slots_[entity.index] = static_cast<std::uint32_t>(components_.size());
-        owners_.push_back(entity);
-        return components_.emplace_back(std::move(component));
+        const std::size_t place = place_of(entity);
+        if (is_at(place, entity)) return components_[place] = std::move(component);
+        const auto at = static_cast<std::ptrdiff_t>(place);
+        owners_.insert(owners_.begin() + at, entity);
+        return *components_.insert(components_.begin() + at, std::move(component));
     }
 
-    Component* find(std::uint32_t entity_index) noexcept {
-        const std::uint32_t at = slot(entity_index);
-        return at == none ? nullptr : &components_[at];
+    Component* find(Entity entity) noexcept {
+        const std::size_t place = place_of(entity);
+        return is_at(place, entity) ? &components_[place] : nullptr;
     }
-    const Component* find(std::uint32_t entity_index) const noexcept {
-        const std::uint32_t at = slot(entity_index);
-        return at == none ? nullptr : &components_[at];
+    const Component* find(Entity entity) const noexcept {
+        const std::size_t place = place_of(entity);
+        return is_at(place, entity) ? &components_[place] : nullptr;
     }
 
-    void remove(std::uint32_t entity_index) override {
-        const std::uint32_t at = slot(entity_index);
-        if (at == none) return;
-        slots_[owners_.back().index] = at;
-        slots_[entity_index] = none;
-        if (at + std::size_t{1} != components_.size()) {
-            components_[at] = std::move(components_.back());
-            owners_[at] = owners_.back();
-        }
-        components_.pop_back();
-        owners_.pop_back();
+    void remove(Entity entity) override {
+        const std::size_t place = place_of(entity);
+        if (!is_at(place, entity)) return;
+        const auto at = static_cast<std::ptrdiff_t>(place);
+        owners_.erase(owners_.begin() + at);
+        components_.erase(components_.begin() + at);
     }
+
+    std::unique_ptr<AnyPool> clone() const override { return std::make_unique<Pool>(*this); }
 
 private:
     std::vector<Component> components_;

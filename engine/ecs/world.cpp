@@ -4,24 +4,34 @@
 
 namespace palpa {
 
+World::World(const World& other) : last_(other.last_), entities_(other.entities_) {
+    for (const auto& pool : other.pools_) pools_.push_back(pool ? pool->clone() : nullptr);
+}
+
+World& World::operator=(const World& other) {
+    if (this != &other) *this = World(other);
+    return *this;
+}
+
 Entity World::create() {
-    if (free_.empty()) {
-        generations_.push_back(1);
-        return {static_cast<std::uint32_t>(generations_.size() - 1), 1};
-    }
-    const std::uint32_t index = free_.back();
-    free_.pop_back();
-    return {index, generations_[index]};
+    ++last_.number;
+    entities_.push_back(last_);
+    return last_;
 }
 
 void World::destroy(Entity entity) {
-    if (!is_alive(entity)) return;
+    const auto at = std::lower_bound(entities_.begin(), entities_.end(), entity);
+    if (at == entities_.end() || *at != entity) return;
     for (const auto& pool : pools_) {
-        if (pool) pool->remove(entity.index);
+        if (pool) pool->remove(entity);
     }
-    // The next generation is alive only once create() hands the index out again; 0 is skipped.
-    if (++generations_[entity.index] == 0) generations_[entity.index] = 1;
-    free_.push_back(entity.index);
+    entities_.erase(at);
+}
+
+void World::restore(Entity entity) {
+    PALPA_ASSERT(entity != Entity{} && entity <= last_);
+    const auto at = std::lower_bound(entities_.begin(), entities_.end(), entity);
+    if (at == entities_.end() || *at != entity) entities_.insert(at, entity);
 }
 
 std::size_t World::next_type_number() noexcept {

@@ -375,7 +375,7 @@ void Recording::finish(const Summary& summary) {
 }
 
 void Recording::flush() {
-    trace_->write(rows_);
+    if (trace_) trace_->write(rows_);
     rows_.clear();
 }
 

@@ -108,10 +108,10 @@ void add_signs(const Simulation& simulation, const TouchModel& touch, FrameScene
     const AtomRange& atoms = simulation.world.find<Molecule>(grab.molecule)->atoms;
     const HeldMolecule held{atoms.first + atoms.count, as_float(grabbed_place(simulation)),
                             as_float(centre_of_mass(simulation.atoms, atoms))};
-    constexpr double nN = 1e9, nN_angstrom = 1e19;
+    constexpr double nN = 1e9, angstrom_nN = 1e19;
     add_force(as_float(nN * touch.force_newton), held, frame, labels);
     if (!moves_in_space(simulation)) return;
-    add_torque(as_float(nN_angstrom * touch.torque_newton_metre), held, frame, labels);
+    add_torque(as_float(angstrom_nN * touch.torque_newton_metre), held, frame, labels);
 }
 
 }  // namespace

@@ -167,16 +167,16 @@ void add_force(const glm::vec3& force_nN, const HeldMolecule& held, FrameScene& 
     labels.push_back({comes_from_behind ? tail : tip, with_unit(size, "N")});
 }
 
-void add_torque(const glm::vec3& torque_nN_angstrom, const HeldMolecule& held, FrameScene& frame,
+void add_torque(const glm::vec3& torque_angstrom_nN, const HeldMolecule& held, FrameScene& frame,
                 std::vector<ViewLabel>& labels) {
-    const auto size = static_cast<double>(glm::length(torque_nN_angstrom));
-    if (!(size > least_shown_nN_angstrom)) return;
+    const auto size = static_cast<double>(glm::length(torque_angstrom_nN));
+    if (!(size > least_shown_angstrom_nN)) return;
     constexpr float each = pi / 3, most = 11 * pi / 6;  // rad
     const float sweep =
-        std::min(each * static_cast<float>(std::log10(size / least_shown_nN_angstrom)), most);
+        std::min(each * static_cast<float>(std::log10(size / least_shown_angstrom_nN)), most);
     const float decade = decade_of(held, frame);
     const float radius = 0.8F * decade, thin = 0.07F * decade;
-    const glm::vec3 axis = torque_nN_angstrom / static_cast<float>(size);
+    const glm::vec3 axis = torque_angstrom_nN / static_cast<float>(size);
     const float out = way_out({held.centre, axis, radius + thin}, held, frame);
     const glm::vec3 foot = held.centre + out * axis;
     const glm::vec3 middle = foot + 0.5F * decade * axis;

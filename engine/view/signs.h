@@ -29,7 +29,7 @@ struct ViewLabel {
 // The arrow of a force is longer by a decade's length for every decade above this.
 inline constexpr double least_shown_nN = 1e-3, most_shown_nN = 1e3;
 // The arc of a torque is 60° longer for every decade above this, up to 330°.
-inline constexpr double least_shown_nN_angstrom = 1e-3;
+inline constexpr double least_shown_angstrom_nN = 1e-3;
 
 // What is in the hand and pulled at: its atoms are the spheres picked below `grabbed_atoms`.
 struct HeldMolecule {
@@ -46,7 +46,7 @@ void add_force(const glm::vec3& force_nN, const HeldMolecule& held, FrameScene& 
 
 // An arc with a head about the axis of the torque, right-handed, where that axis leaves the
 // molecule on the side to which it points.
-void add_torque(const glm::vec3& torque_nN_angstrom, const HeldMolecule& held, FrameScene& frame,
+void add_torque(const glm::vec3& torque_angstrom_nN, const HeldMolecule& held, FrameScene& frame,
                 std::vector<ViewLabel>& labels);
 
 // Dashes from the hydrogen to the acceptor, where the atoms as drawn leave room. The lengths of up

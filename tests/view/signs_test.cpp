@@ -133,9 +133,9 @@ TEST_CASE("the torque is an arc about its axis, right-handed, longer by 60° for
     Stage stage;
     const glm::vec3 axis = glm::normalize(glm::vec3(1, 2, -0.5F));
     // The angle from the arc's first piece to the tip of its head, going round with the torque.
-    const auto sweep = [&](float nN_angstrom) {
+    const auto sweep = [&](float angstrom_nN) {
         stage.frame = {.spheres = {{{0, 0, 0}, 0.5F}}};
-        add_torque(nN_angstrom * axis, stage.held, stage.frame, stage.labels);
+        add_torque(angstrom_nN * axis, stage.held, stage.frame, stage.labels);
         double turned = 0;
         glm::vec3 centre(0);
         for (std::size_t i = 1; i < stage.frame.cones.size(); ++i) {
