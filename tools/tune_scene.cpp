@@ -1,5 +1,6 @@
 #include "tools/tune_scene.h"
 
+#include "core/assertion.h"
 #include "core/load_error.h"
 #include "devices/emulated_omni.h"
 #include "formats/crd.h"
@@ -176,10 +177,11 @@ std::vector<std::uint32_t> find_table_order(const SystemCopy& copy) {
 void bring_to_rest(const std::filesystem::path& folder, const StageFunction& on_stage,
                    Tuning& tuning) {
     const Simulation simulation = load_simulation(read_scene(folder / "scene.toml"), on_stage);
-    if (simulation.flexible) {
-        tuning.relaxed = simulation.flexible->relaxed;
-        tuning.joints = simulation.flexible->joints;
-    }
+    PALPA_ASSERT(simulation.flexible);  // the scene says so
+    if (!simulation.flexible) return;
+    const Flexible& flexible = *simulation.flexible;
+    tuning.relaxed = flexible.relaxed;
+    tuning.joints = flexible.joints;
     const std::vector<std::uint32_t> order = find_table_order(tuning.copy);
     for (std::size_t i = 0; i < order.size(); ++i) {
         tuning.rest.positions[order[i]] = flexible.model.reference[i];

@@ -2,7 +2,7 @@
 
 #include "core/assertion.h"
 #include "forces/pair_list.h"
-#include "math/curvature_memory.h"
+#include "math/minimiser.h"
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -109,37 +109,64 @@ Vector bound_direction(const Vector& direction, const std::vector<Vec3>& forces,
     return flat(forces).dot(cut) >= slope ? cut : Vector(scale * direction);
 }
 
-void place_along(const Point& from, const Vector& direction, double length,
-                 std::span<const std::uint8_t> is_fixed, Point& to) {
-    for (std::size_t i = 0; i < from.positions.size(); ++i) {
-        const bool stays = !is_fixed.empty() && is_fixed[i];
-        to.positions[i] = from.positions[i];
-        if (!stays) to.positions[i] += length * of_atom(direction, i);
+// The energy over the coordinates of all atoms.
+class Descent {
+public:
+    Descent(Landscape& landscape, const MinimiseSettings& settings, const Restraints& restraints,
+            Point start)
+        : landscape_(landscape),
+          settings_(settings),
+          is_fixed_(restraints.is_fixed),
+          here_(std::move(start)),
+          trial_(here_) {
+        landscape_.evaluate(here_);
+        forces_ = flat(here_.forces);
     }
-}
 
-// Looks for a lower place along a direction, in shorter and shorter steps, until the energy falls
-// as far as the slope lets one hope (Armijo's condition). Whether there is one; it is in `to`,
-// then.
-bool find_lower(Landscape& landscape, const Point& from, const Vector& direction,
-                const Restraints& restraints, Point& to) {
-    constexpr int tries = 30;
-    constexpr double share = 1e-4;
-    const double slope = flat(from.forces).dot(direction);  // by which the energy falls
-    if (!(slope > 0)) return false;
-    double length = 1;
-    for (int i = 0; i < tries; ++i) {
-        place_along(from, direction, length, restraints.is_fixed, to);
-        landscape.evaluate(to);
-        if (to.energy() < from.energy() && to.energy() <= from.energy() - share * length * slope)
-            return true;
-        // To the minimum of the parabola through both energies and the slope, within bounds.
-        const double above = to.energy() - (from.energy() - length * slope);
-        const double best = 0.5 * length * length * slope / above;
-        length = std::isfinite(best) ? std::clamp(best, 0.1 * length, 0.5 * length) : 0.1 * length;
+    const Point& here() const noexcept { return here_; }
+
+    const Vector& forces() const noexcept { return forces_; }
+    const Vector& trial_forces() const noexcept { return trial_forces_; }
+
+    Vector precondition(const Vector& forces) const { return compliance_.array() * forces.array(); }
+    Vector limit(const Vector& direction) const {
+        return bound_direction(direction, here_.forces, settings_.largest_step);
     }
-    return false;
-}
+
+    double try_move(const Vector& move) {
+        for (std::size_t i = 0; i < here_.positions.size(); ++i) {
+            const bool stays = !is_fixed_.empty() && is_fixed_[i];
+            trial_.positions[i] = here_.positions[i];
+            if (!stays) trial_.positions[i] += of_atom(move, i);
+        }
+        landscape_.evaluate(trial_);
+        trial_forces_ = flat(trial_.forces);
+        return trial_.energy() - here_.energy();
+    }
+
+    static bool accepts(const Vector& /*move*/, double change, double linear_change) {
+        return is_sufficient(change, linear_change);
+    }
+
+    void accept() {
+        std::swap(here_, trial_);
+        std::swap(forces_, trial_forces_);
+    }
+
+    // Whether there was a step that lowers the energy.
+    bool step(CurvaturePairs& pairs) {
+        constexpr int tries = 30;
+        compliance_ = find_compliance(here_.forces, settings_.largest_step);
+        return step_downhill(*this, pairs, tries);
+    }
+
+private:
+    Landscape& landscape_;
+    const MinimiseSettings& settings_;
+    std::span<const std::uint8_t> is_fixed_;
+    Point here_, trial_;
+    Vector forces_, trial_forces_, compliance_;
+};
 
 void measure_forces(const Point& point, const Restraints& restraints, MinimiseReport& report) {
     double sum2 = 0, largest2 = 0;
@@ -165,43 +192,29 @@ MinimiseReport minimise(const Topology& topology, const MinimiseSettings& settin
     PALPA_ASSERT(restraints.is_fixed.empty() || restraints.is_fixed.size() == positions.size());
     PALPA_ASSERT(settings.largest_step > 0);
     Landscape landscape(topology, settings, restraints);
-    Point here{positions, {}, {}, 0}, next = here;
-    landscape.evaluate(here);
+    Descent descent(landscape, settings, restraints, {positions, {}, {}, 0});
     MinimiseReport report;
-    report.before = here.terms;
-    report.restraint_before = here.restraint;
-    if (on_step) on_step(0, here.energy());
+    report.before = descent.here().terms;
+    report.restraint_before = descent.here().restraint;
+    if (on_step) on_step(0, descent.here().energy());
 
-    CurvatureMemory memory;
-    measure_forces(here, restraints, report);
+    CurvaturePairs pairs;
+    measure_forces(descent.here(), restraints, report);
     while (report.rms_force > settings.force_tolerance && report.steps < settings.steps) {
-        const Vector compliance = find_compliance(here.forces, settings.largest_step);
-        const auto yield = [&](const Vector& forces) -> Vector {
-            return compliance.array() * forces.array();
-        };
-        const Vector direction = bound_direction(memory.find_direction(flat(here.forces), yield),
-                                                 here.forces, settings.largest_step);
-        if (!find_lower(landscape, here, direction, restraints, next)) {
-            if (memory.is_empty()) {
-                report.end = MinimiseEnd::Stuck;
-                break;
-            }
-            memory.clear();
-            continue;
+        if (!descent.step(pairs)) {
+            report.end = MinimiseEnd::Stuck;
+            break;
         }
-        memory.add(flat(next.positions) - flat(here.positions),
-                   flat(here.forces) - flat(next.forces));
-        std::swap(here, next);
         ++report.steps;
-        measure_forces(here, restraints, report);
-        if (on_step) on_step(report.steps, here.energy());
+        measure_forces(descent.here(), restraints, report);
+        if (on_step) on_step(report.steps, descent.here().energy());
     }
     if (report.rms_force <= settings.force_tolerance) report.end = MinimiseEnd::Converged;
-    report.after = here.terms;
-    report.restraint_after = here.restraint;
+    report.after = descent.here().terms;
+    report.restraint_after = descent.here().restraint;
     report.evaluations = landscape.evaluations;
     report.lists = landscape.lists;
-    positions = std::move(here.positions);
+    positions = descent.here().positions;
     return report;
 }
 

@@ -1,6 +1,6 @@
 #include "statics/relax_joints.h"
 
-#include "math/curvature_memory.h"
+#include "math/minimiser.h"
 
 #include <algorithm>
 #include <cmath>
@@ -63,67 +63,56 @@ Coordinates find_compliance(const TorsionModel& model, const TorsionState& state
     return compliance;
 }
 
-// Limited-memory BFGS from where the state is.
+// The energy over the coordinates, from where the state is.
 class Descent {
 public:
     Descent(const TorsionModel& model, const RelaxSettings& settings, TorsionState& state,
             QuasiStatics& statics)
         : model_(model), settings_(settings), state_(state), statics_(statics) {}
 
+    const Coordinates& forces() const { return state_.coordinate_forces; }
+    const Coordinates& trial_forces() const { return statics_.trial.coordinate_forces; }
+
+    Coordinates precondition(const Coordinates& forces) {
+        if (settings_.method != RelaxMethod::InverseMass) {
+            return compliance_.array() * forces.array();
+        }
+        Coordinates accelerations;
+        multiply_by_inverse_mass(model_, state_, forces, statics_.assembly, accelerations);
+        return accelerations;
+    }
+
+    // Moves are limited where atoms are placed.
+    static const Coordinates& limit(const Coordinates& direction) { return direction; }
+
+    double try_move(Coordinates& move) {
+        TorsionState& trial = statics_.trial;
+        place_within(model_, state_, settings_.largest_move, move, trial);
+        update_forces(model_, settings_.step.forces, statics_.memory, trial);
+        update_coordinate_forces(model_, trial);
+        return trial.energy() - state_.energy();
+    }
+
+    bool accepts(const Coordinates& move, double change, double linear_change) const {
+        if (!is_lower(settings_.step.forces, state_, statics_.trial, move)) return false;
+        return settings_.step.forces.fast || is_sufficient(change, linear_change);
+    }
+
+    void accept() { take_over(statics_.trial, state_); }
+
     // Whether there was a step that lowers the energy.
     bool step() {
-        while (true) {
-            if (find_lower(find_direction())) return true;
-            if (memory_.is_empty()) return false;
-            memory_.clear();
+        if (settings_.method != RelaxMethod::InverseMass) {
+            compliance_ = find_compliance(model_, state_);
         }
+        return step_downhill(*this, statics_.pairs);
     }
 
 private:
-    Coordinates find_direction() {
-        const bool has_masses = settings_.method == RelaxMethod::InverseMass;
-        if (!has_masses) compliance_ = find_compliance(model_, state_);
-        return memory_.find_direction(
-            state_.coordinate_forces, [&](const Coordinates& forces) -> Coordinates {
-                if (!has_masses) return compliance_.array() * forces.array();
-                Coordinates accelerations;
-                multiply_by_inverse_mass(model_, state_, forces, statics_.assembly, accelerations);
-                return accelerations;
-            });
-    }
-
-    // In shorter and shorter steps, until the energy falls as far as the slope lets one hope
-    // (Armijo's condition).
-    bool find_lower(Coordinates move) {
-        constexpr int tries = 25;
-        constexpr double share = 1e-4;
-        if (!move.allFinite() || !(state_.coordinate_forces.dot(move) > 0)) return false;
-        TorsionState& trial = statics_.trial;
-        for (int i = 0; i < tries; ++i) {
-            place_within(model_, state_, settings_.largest_move, move, trial);
-            update_forces(model_, settings_.step.forces, statics_.memory, trial);
-            update_coordinate_forces(model_, trial);
-            const double slope = state_.coordinate_forces.dot(move);  // by which the energy falls
-            const double change = trial.energy() - state_.energy();
-            const bool falls =
-                std::isfinite(change) && is_lower(settings_.step.forces, state_, trial, move);
-            if (falls && (settings_.step.forces.fast || change <= -share * slope)) {
-                memory_.add(move, state_.coordinate_forces - trial.coordinate_forces);
-                take_over(trial, state_);
-                return true;
-            }
-            // To the minimum of the parabola through both energies and the slope, within bounds.
-            const double best = 0.5 * slope / (change + slope);
-            move *= std::isfinite(best) ? std::clamp(best, 0.1, 0.5) : 0.1;
-        }
-        return false;
-    }
-
     const TorsionModel& model_;
     const RelaxSettings& settings_;
     TorsionState& state_;
     QuasiStatics& statics_;
-    CurvatureMemory memory_;
     Coordinates compliance_;
 };
 
@@ -138,6 +127,7 @@ JointRelaxReport relax_joints(const TorsionModel& model, const RelaxSettings& se
     update_coordinate_forces(model, state);
     JointRelaxReport report;
     report.energy_before = state.energy();
+    if (!settings.keeps_pairs) statics.pairs.clear();
     Descent descent(model, settings, state, statics);
     int refused = 0;
     while (true) {

@@ -21,6 +21,7 @@ struct RelaxSettings {
     double force_tolerance =
         0.01;                  // rms over the coordinates, kcal/mol/rad and kcal/mol/Å: the end
     std::size_t steps = 2000;  // at most
+    bool keeps_pairs = false;  // curvature pairs of the call before still hold
 };
 
 enum class RelaxEnd : std::uint8_t {

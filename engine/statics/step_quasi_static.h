@@ -2,6 +2,7 @@
 // the energy falls.
 #pragma once
 #include "assembly/passes.h"
+#include "math/minimiser.h"
 #include "statics/torsion_state.h"
 
 #include <cmath>
@@ -24,7 +25,8 @@ struct QuasiStatics {
     AssemblyState assembly;
     TorsionState trial;
     Coordinates move;
-    double h = 0;  // AKMA time; 0 before the first step
+    double h = 0;          // AKMA time; 0 before the first step
+    CurvaturePairs pairs;  // of the minimisers (relax_joints.h)
 };
 
 QuasiStatics build_quasi_statics(const TorsionModel& model);
