@@ -1,11 +1,14 @@
 #include "tools/command_line.h"
 
+#include "core/load_error.h"
 #include "core/text.h"
+#include "scene/find_scene.h"
 
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <filesystem>
 #include <string_view>
 
 namespace palpa {
@@ -192,6 +195,18 @@ std::string hint_of(const std::string& name, const std::vector<std::string>& nam
     return near_name_hint(name, std::vector<std::string_view>(names.begin(), names.end()));
 }
 
+// For who leaves out the command: what is typed may be a scene, or what a scene is made of.
+std::string scene_hint(const std::string& typed) {
+    std::error_code error;
+    try {
+        (void)find_scene_file(typed);
+        return fmt::format("; did you mean 'palpa run {}'?", printable(typed));
+    } catch (const LoadError& problem) {
+        const bool is_there = !typed.empty() && std::filesystem::exists(typed, error);
+        return is_there ? fmt::format("; {}", printable(problem.what())) : std::string();
+    }
+}
+
 std::string explain_extras(const CLI::App& program, const CLI::App& command) {
     std::vector<std::string> extras = program.remaining(true);
     const std::string extra =
@@ -253,17 +268,22 @@ std::optional<std::string> explain_command(const CLI::App& program, const std::s
     if (command.starts_with("-") || std::find(names.begin(), names.end(), command) != names.end()) {
         return std::nullopt;
     }
+    const std::string near = hint_of(command, names);
     return fmt::format("palpa: no command '{}'{}; see palpa --help", printable(command),
-                       hint_of(command, names));
+                       near.empty() ? scene_hint(command) : near);
 }
 
 std::string explain(const CLI::ParseError& error, const CLI::App& program,
                     const std::string& command) {
     if (command.starts_with("-")) {
-        return fmt::format("palpa: no option '{}' without a command; see palpa --help",
-                           printable(command));
+        return fmt::format("palpa: no option '{}' without a command{}; see palpa --help",
+                           printable(command), hint_of(command, names_of_options(program)));
     }
     std::string what = error.what();
+    if (const std::size_t colon = what.find(": ");
+        what.ends_with(" missing") && dynamic_cast<const CLI::ArgumentMismatch*>(&error)) {
+        what = fmt::format("no value for {}", what.substr(0, colon));
+    }
     if (dynamic_cast<const CLI::ExtrasError*>(&error)) {
         what = explain_extras(program, *program.get_subcommand(command));
     }

@@ -5,6 +5,7 @@
 #include "core/load_error.h"
 #include "haptics/hand.h"
 #include "render/picture.h"
+#include "scene/read_scene.h"
 #include "session/recording.h"
 #include "tools/hands.h"
 #include "tools/print_run.h"
@@ -61,6 +62,17 @@ Existing check_shot(const RunOptions& options) {
                              : Existing::Refuse;
 }
 
+// How the file is opened again, where it lies apart from the files that it names.
+std::string describe_saved(const fs::path& file) {
+    try {
+        (void)read_scene(file);
+        return file.string();
+    } catch (const LoadError&) {
+        return fmt::format("{}; it names files in other folders, so open it with 'palpa run {} {}'",
+                           file.string(), file.string(), allow_outside);
+    }
+}
+
 void print_report(const SceneDescription& played, const WindowReport& report) {
     print_summary(played, report.summary);
     fmt::print("  drawn       {} frames, {:.1f} ms median, scale {:.2f} at the end\n",
@@ -95,13 +107,13 @@ int open_window(const SceneDescription& scene, const SceneDescription& as_read,
     const WindowDevice first =
         devices.open_first(options.play ? std::optional<std::string>("emulated") : options.device);
     if (!devices.notice().empty()) fmt::print(stderr, "warning: {}\n", devices.notice());
-    if (preferences.can_keep()) remember_scene(options.scene, preferences);
+    if (preferences.can_keep()) remember_scene(as_read.file, preferences);
     SceneSaver saver(as_read.file, options.screenshots);
     const auto save = [&](const LiveSettings& live) {
         SceneDescription set = as_read;
         set.coupling = live.coupling;
         set.period_ms = live.period_ms;
-        return saver.save(set).string();
+        return describe_saved(saver.save(set));
     };
     const WindowReport report = run_window(scene, *first.device,
                                            {.view = first_settings(scene.view, simulation),

@@ -26,7 +26,8 @@ void print_scenes(const std::optional<std::string>& last) {
                        scene.is_made ? " (made on demand)" : "");
         }
     }
-    if (last) fmt::print("  last time        {}\n", printable(*last));
+    std::error_code error;
+    if (last && fs::exists(*last, error)) fmt::print("  last time        {}\n", printable(*last));
     fmt::print(
         "\n"
         "  palpa run water                opens one in a window\n"

@@ -61,7 +61,7 @@ struct WindowOptions {
     DeviceMenu devices{};
     SoundChoice sound{};
     TextScaleChoice text_scale{};
-    // Writes the scene with these settings and returns the file; throws LoadError. Empty: cannot.
+    // Writes the scene with these settings and says where; throws LoadError. Empty: cannot.
     std::function<std::string(const LiveSettings&)> save{};
     std::string notice{};  // to begin with
     double most_frames_per_s = 60;

@@ -254,7 +254,11 @@ void Window::capture_cursor(bool is_captured) {
 
 bool has_display() {
 #if defined(__linux__) || defined(__FreeBSD__)
-    return std::getenv("DISPLAY") || std::getenv("WAYLAND_DISPLAY");
+    const auto is_named = [](const char* variable) {
+        const char* const value = std::getenv(variable);
+        return value && *value != 0;
+    };
+    return is_named("DISPLAY") || is_named("WAYLAND_DISPLAY");
 #else
     return true;
 #endif

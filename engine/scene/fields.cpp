@@ -451,7 +451,6 @@ void visit_lesson(FieldVisitor& v, std::vector<LessonStepDescription>& steps) {
     v.leave_table();
 }
 
-// Gathers the notes; the values visited are the defaults.
 void visit_view(FieldVisitor& v, ViewDescription& view) {
     v.enter_table({.key = "view", .meaning = "how the scene is seen at first"});
     std::optional<std::size_t> representation;
@@ -483,6 +482,7 @@ void visit_view(FieldVisitor& v, ViewDescription& view) {
     v.leave_table();
 }
 
+// Gathers the notes; the values visited are the defaults.
 class Lister final : public FieldVisitor {
 public:
     std::vector<FieldNote> notes;

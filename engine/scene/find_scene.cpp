@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string_view>
 #include <system_error>
 
@@ -34,12 +35,9 @@ std::vector<fs::path> list_folder(const fs::path& folder) {
 }
 
 bool is_structure(const fs::path& path) {
-    constexpr std::array<std::string_view, 6> endings{".pdb",   ".ent", ".cif",
-                                                      ".mmcif", ".crd", ".psf"};
-    std::string ending = path.extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(), [](char letter) {
-        return letter >= 'A' && letter <= 'Z' ? letter + 32 : letter;
-    });
+    constexpr std::array<std::string_view, 6> endings{".PDB",   ".ENT", ".CIF",
+                                                      ".MMCIF", ".CRD", ".COR"};
+    const std::string ending = upper_case(path.extension().string());
     return std::find(endings.begin(), endings.end(), ending) != endings.end();
 }
 
@@ -69,9 +67,30 @@ std::string join_some(const std::vector<std::string>& names) {
                        names.size() > count ? ", ..." : "");
 }
 
+// As it is typed in a shell.
+std::string shell_word(const std::string& word) {
+    return word.find_first_of(" ()&;'") == std::string::npos ? word : "\"" + word + "\"";
+}
+
 std::string prepare_hint(const fs::path& structure) {
     return fmt::format("'palpa prepare {} -o {} --toppar ...' makes a scene of it",
-                       structure.string(), structure.stem().string());
+                       shell_word(structure.string()), shell_word(structure.stem().string()));
+}
+
+// Throws where that is known to be something else than a scene.
+void refuse_other_files(const fs::path& file) {
+    const std::string ending = upper_case(file.extension().string());
+    if (is_structure(file)) {
+        throw LoadError({file.string()}, "is a structure, not a scene; " + prepare_hint(file));
+    }
+    if (ending == ".PSF") {
+        throw LoadError({file.string()},
+                        "is a topology, not a scene; 'palpa prepare' makes a scene of a structure "
+                        "(.pdb, .cif, .crd)");
+    }
+    if (ending == ".GZ") {
+        throw LoadError({file.string()}, "is compressed, unpack it first (gunzip)");
+    }
 }
 
 // What a folder without a scene of the usual name holds instead.
@@ -92,6 +111,15 @@ std::string describe_contents(const fs::path& folder) {
     const fs::path parent = fs::absolute(folder, error).lexically_normal().parent_path();
     for (const SceneEntry& scene : list_scenes(parent)) scenes.push_back(scene.file.string());
     return scenes.empty() ? std::string() : fmt::format("; scenes near it: {}", join_some(scenes));
+}
+
+std::optional<fs::path> find_own_scene(const std::string& name) {
+    for (const fs::path& folder : own_scene_folders()) {
+        for (const SceneEntry& scene : list_scenes(folder)) {
+            if (scene.name == name) return scene.file;
+        }
+    }
+    return std::nullopt;
 }
 
 std::string describe_own_scenes(const std::string& named) {
@@ -140,19 +168,21 @@ fs::path find_scene_file(const fs::path& named) {
     if (fs::is_directory(named, error)) {
         const fs::path file = named / usual_name;
         if (fs::exists(file, error)) return file;
-        throw LoadError({named.string()}, "this folder holds no scene.toml, so it is no scene" +
-                                              describe_contents(named));
+        std::string contents = describe_contents(named);
+        const std::optional<fs::path> own = find_own_scene(named.string());
+        if (own) {
+            contents += fmt::format("; Palpa's own scene of that name: {}", own->string());
+        } else if (contents.empty()) {
+            contents = describe_own_scenes({});
+        }
+        throw LoadError({named.string()},
+                        "this folder holds no scene.toml, so it is no scene" + contents);
     }
     if (fs::exists(named, error)) {
-        if (!is_structure(named)) return named;
-        throw LoadError({named.string()}, "is a structure, not a scene; " + prepare_hint(named));
+        refuse_other_files(named);
+        return named;
     }
-    for (const fs::path& folder : own_scene_folders()) {
-        const std::string name = named.lexically_normal().string();
-        for (const SceneEntry& scene : list_scenes(folder)) {
-            if (scene.name == name) return scene.file;
-        }
-    }
+    if (auto own = find_own_scene(named.lexically_normal().string())) return *own;
     throw LoadError({named.string()},
                     "no such scene; expected a scene folder, a .toml file or the "
                     "name of a scene" +

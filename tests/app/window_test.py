@@ -258,7 +258,7 @@ class Session(unittest.TestCase):
 
     def test_alone_it_opens_the_scene_of_last_time(self):
         with Display() as display:
-            self.start(display, scene=ROOT / "scenes" / "water" / "space.toml")
+            self.start(display, scene="water/space")  # by its name, which is no path from here
             self.quit(display)
             self.program = subprocess.Popen(
                 [PROGRAM], cwd=self.folder, text=True, stdout=subprocess.PIPE,

@@ -84,6 +84,8 @@ class Cli(unittest.TestCase):
     def test_what_is_misspelt_gets_the_near_name(self):
         for arguments, hint in ((["rnu", WATER], "did you mean 'run'"),
                                 (["hlep"], "did you mean 'help'"),
+                                (["hiv/flexible"], "did you mean 'palpa run hiv/flexible'?"),
+                                (["--hepl"], "did you mean '--help'"),
                                 (["run", WATER, "--hedless"], "did you mean '--headless'"),
                                 (["run", WATER, "--frction=0"], "did you mean '--friction'"),
                                 (["run", "hvi"], "did you mean 'hiv'"),
@@ -100,6 +102,13 @@ class Cli(unittest.TestCase):
         for scene in ("water", "water/space", "hiv", "hiv/flexible"):
             self.assertRegex(result.stdout, rf"(?m)^  {scene} ")
         self.assertIn("palpa run water", result.stdout)
+        (self.tmp / "palpa").mkdir()
+        (self.tmp / "palpa" / "preferences.toml").write_text("scene = '/nowhere/scene.toml'\n")
+        # An empty name is no display, and what is gone is not offered.
+        result = subprocess.run([PROGRAM], capture_output=True, text=True, cwd=self.tmp,
+                                env={**clean, "DISPLAY": "", "XDG_CONFIG_HOME": str(self.tmp)})
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertNotIn("nowhere", result.stdout)
 
     def test_own_scenes_go_by_name(self):
         self.assertIn("Two waters in space", self.palpa("run", "water/space", "--headless",
@@ -120,6 +129,17 @@ class Cli(unittest.TestCase):
         self.assert_bad_input(self.palpa("run", "."), "scenes below it: ./mine/scene.toml")
         (self.tmp / "other").mkdir()
         self.assert_bad_input(self.palpa("run", "other"), "scenes near it: ", "mine/scene.toml")
+        (self.tmp / "hiv").mkdir()  # hides Palpa's own
+        self.assert_bad_input(self.palpa("run", "hiv"), "Palpa's own scene of that name: ",
+                              "hiv/scene.toml")
+        (self.tmp / "other" / "empty").mkdir()
+        self.assert_bad_input(self.palpa("run", "other/empty"), "Palpa's own scenes: ", "water")
+        for name, said in (("my protein.PDB", 'palpa prepare "my protein.PDB" -o "my protein"'),
+                           ("a.psf", "is a topology, not a scene"),
+                           ("1abc.pdb.gz", "is compressed")):
+            (self.tmp / name).write_text("END\n")
+            self.assert_bad_input(self.palpa("run", name), said)
+            self.assert_bad_input(self.palpa(name), "no command", said)
 
     def test_an_error_cites_what_was_typed(self):
         for arguments in (["--mode", "7"], ["--mode=7"]):
@@ -142,6 +162,7 @@ class Cli(unittest.TestCase):
                                 (["run"], "palpa run: scene is required; 'palpa' alone lists"),
                                 (["run", WATER, "--speed", "3"], "palpa run: no option '--speed'"),
                                 (["run", WATER, WATER], "is one argument too many"),
+                                (["run", WATER, "--mode"], "palpa run: no value for --mode;"),
                                 (["--speed"], "palpa: no option '--speed' without a command"),
                                 (["bench"], "palpa bench: a scene"), (["bench", "--json"], "a scene"),
                                 (["help", "fly"], "palpa: no command 'fly'")):

@@ -4,12 +4,14 @@
 #include "simulation/step.h"
 #include "tests/support/water_scene.h"
 #include "ui/backend.h"
+#include "ui/question.h"
 
 #include <imgui.h>
 #include <imgui_internal.h>
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <limits>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -42,6 +44,9 @@ struct Screen {
     void frame() {
         ImGui::NewFrame();
         overlay.draw(readout, status, commands, actions);
+        if (question) {
+            if (const Answer* const answer = draw_question(*question)) given = answer->key;
+        }
         ImGui::Render();
     }
     void drag(ImVec2 from, ImVec2 to) {
@@ -64,6 +69,8 @@ struct Screen {
     OverlayStatus status;
     std::vector<Command> commands;
     std::vector<Action> actions;
+    std::optional<Question> question;
+    std::optional<Key> given;
 };
 
 }  // namespace
@@ -166,6 +173,21 @@ TEST_CASE("Esc closes an open list, then the help, and then nothing", "[ui][over
     screen.frame();
     CHECK(ImGui::GetCurrentContext()->OpenPopupStack.Size == 0);
     CHECK_FALSE(screen.overlay.close_something());
+}
+
+TEST_CASE("a question is answered before anything behind it can be changed", "[ui][overlay]") {
+    Screen screen;
+    screen.question = Question{"Sure?", {{Key::Y, "Yes"}, {Key::Escape, "No"}}};
+    screen.frame();
+    screen.frame();
+    for (const float x : {100.0F, 250.0F, 1000.0F}) {
+        for (float y = 20; y < 790; y += 6) screen.drag({x, y}, {x + 60, y});
+    }
+    CHECK(screen.commands.empty());
+    CHECK(screen.actions.empty());
+    CHECK_FALSE(screen.given);
+    for (float y = 380; y < 440 && !screen.given; y += 6) screen.drag({620, y}, {620, y});
+    CHECK(screen.given == Key::Y);
 }
 
 TEST_CASE("at the wall the overlay says how to get off it", "[ui][overlay]") {
