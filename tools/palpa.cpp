@@ -87,7 +87,7 @@ void add_seed_option(CLI::App& command, std::uint64_t& seed) {
                 }
                 seed = static_cast<std::uint64_t>(*value);
             },
-            "of everything random, 1 unless given")
+            "random seed, 1 unless given")
         ->type_name("UINT");
 }
 
@@ -211,8 +211,8 @@ void add_run(CLI::App& program, palpa::RunOptions& options) {
         run, "--engage",
         "at-once, or ramp: the force of guarded coupling comes after a pause, in 2 s", settings);
     palpa::add_setting(run, "--seconds", "length of the run", settings);
-    palpa::add_setting(run, "--seed", "of everything random", settings);
-    palpa::add_setting(run, "--every", "keep one row of this many in the trace", settings);
+    palpa::add_setting(run, "--seed", "random seed, 1 unless given", settings);
+    palpa::add_setting(run, "--every", "write every Nth row of the trace", settings);
     add_set_option(run, settings);
     add_window_options(run, options);
     add_headless_options(run, options);
@@ -560,8 +560,8 @@ void add_report(CLI::App& program, palpa::ReportOptions& options) {
     report
         .add_option(
             "--hiv", options.flexible,
-            "with molecules that give way; unless given scenes/hiv/flexible.toml, left out where "
-            "that is not there")
+            "flexible scene, scenes/hiv/flexible.toml unless given; left out where that is not "
+            "there")
         ->check(CLI::ExistingPath);
     report.add_flag("--quick", options.quick, "fewer and shorter runs: half a minute");
     add_seed_option(report, options.seed);

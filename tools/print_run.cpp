@@ -74,7 +74,7 @@ void print_line(const SceneDescription& scene, const Simulation& simulation,
         const RelaxReport& r = *simulation.relaxed;
         const TouchModel start = simulation.touch.model;
         fmt::print(
-            "  relaxed     {:.3f} to {:.3f} kcal/mol in {} looks, moved {:.3f} Å, turned "
+            "  relaxed     {:.3f} to {:.3f} kcal/mol in {} evaluations, moved {:.3f} Å, turned "
             "{:.2f}°, {:.3f} pN left\n",
             r.energy_before, r.energy_after, r.evaluations, r.displacement,
             r.angle * 180 / std::numbers::pi, r.force * nN * 1e3);
@@ -100,25 +100,28 @@ void print_line(const SceneDescription& scene, const Simulation& simulation,
         fmt::print("  attraction  {:.3f} nN at {:.2f} Å, felt as {:.3f} N\n", strongest, where,
                    hand_force(simulation.laws.force, strongest * 1e-9));
     }
+    // In space these are places on a line along x, and no distances.
+    const bool in_space = moves_in_space(simulation);
+    const char* const along = in_space ? "x = " : "";
     // A spring is pulled at; its molecule is not moved against others.
     const bool on_spring = !scene.grab.atom.empty();
     tell(progress.stages(), "looking for where it repels");
     const std::optional<double> wall =
-        on_spring
-            ? std::nullopt
-            : repulsion_distance(simulation, scene.hand.peak_nN / nN,
-                                 moves_in_space(simulation) ? grabbed_distance(simulation) : 30);
+        on_spring ? std::nullopt
+                  : repulsion_distance(simulation, scene.hand.peak_nN / nN,
+                                       in_space ? grabbed_distance(simulation) : 30);
     progress.wipe();
     if (wall) {
-        fmt::print("  repulsion   {} nN at {:.3f} Å, felt as {:.3f} N\n", scene.hand.peak_nN, *wall,
+        fmt::print("  {}   {} nN at {}{:.3f} Å, felt as {:.3f} N\n",
+                   in_space ? "resists  " : "repulsion", scene.hand.peak_nN, along, *wall,
                    hand_force(simulation.laws.force, scene.hand.peak_nN * 1e-9));
     }
     const FeltStiffness stiffest = stiffest_place(scene, simulation, progress.stages());
     progress.wipe();
     const double calm =
         calm_stiffness(scene, hand_model(static_cast<Grip>(scene.hand.grip)), simulation.period_s);
-    fmt::print("  stiffest    {:.3g} N/m felt at {:.3f} Å, this hand keeps {:.3g} N/m calm\n",
-               stiffest.newton_per_metre, stiffest.angstrom, calm);
+    fmt::print("  stiffest    {:.3g} N/m felt at {}{:.3f} Å, this hand keeps {:.3g} N/m calm\n",
+               stiffest.newton_per_metre, along, stiffest.angstrom, calm);
     print_gains(scene, simulation, stiffest.angstrom);
 }
 
@@ -182,7 +185,8 @@ void print_summary(const SceneDescription& scene, const Summary& s) {
     if (s.journey) {
         const Journey& j = *s.journey;
         fmt::print("  journey     centre of mass up to {:.2f} Å from its start", j.farthest);
-        if (std::isfinite(j.closest)) {
+        // What a spring holds is bonded to others.
+        if (std::isfinite(j.closest) && scene.grab.atom.empty()) {
             fmt::print(
                 ", heavy atoms {:.2f} Å from all others there;\n              {:.2f} Å at the "
                 "closest",

@@ -249,7 +249,8 @@ void Window::capture_cursor(bool is_captured) {
     if (is_captured == is_captured_) return;
     is_captured_ = is_captured;
     glfwSetInputMode(window_, GLFW_CURSOR, is_captured ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
-    has_mouse_ = false;  // where it jumps to is no move of the hand
+    has_mouse_ = false;                                 // where it jumps to is no move of the hand
+    glfwGetCursorPos(window_, &cursor_x_, &cursor_y_);  // a jump is no event
 }
 
 bool has_display() {

@@ -175,9 +175,11 @@ void Overlay::draw_readings(const Readout& readout, const OverlayStatus& status,
             "Energy given to the hand so far, mJ: over a way there and back it should not be above "
             "0.");
     if (is_guarded()) {
-        reading("held back", fmt::format("{:.1f} mm", 1e3 * kept_m_),
-                "Handle travel that the molecule did not follow, since an atom would be pushed too "
-                "hard (coupling.stop_nN); it is felt, and has to be given back.");
+        reading("overtravel", fmt::format("{:.1f} mm", 1e3 * kept_m_),
+                fmt::format("The contact force reached {:.3g} nN (coupling.stop_nN), so the "
+                            "molecule stopped. Move back by this much before it follows again.",
+                            settings_.coupling.stop_nN)
+                    .c_str());
     }
     draw_comparison(readout);
     reading(has_flexible_ ? "energy of all" : "energy",

@@ -27,18 +27,31 @@ const ElementLook& look_of(std::string_view element) {
     return found == element_looks.end() ? other_element : *found;
 }
 
+// The atoms in the hand: a molecule, the first of the table, or what of it is held by a spring.
+std::vector<bool> find_held_atoms(const Simulation& simulation) {
+    std::vector<bool> held(simulation.atoms.size(), false);
+    if (simulation.flexible && simulation.flexible->state.tether) {
+        for (const std::uint32_t atom : simulation.flexible->state.tether->atoms) held[atom] = true;
+    } else {
+        std::fill_n(held.begin(), grabbed_points(simulation).positions.size(), true);
+    }
+    return held;
+}
+
 // One colour an atom.
 std::vector<glm::vec3> build_colours(const Simulation& simulation, Colouring colouring) {
     const AtomTable& atoms = simulation.atoms;
-    const std::size_t grabbed = grabbed_points(simulation).positions.size();
+    const std::vector<bool> held = find_held_atoms(simulation);
     std::size_t chain = 0;
+    bool is_first = true;  // of those that are not held
     std::vector<glm::vec3> colours;
     for (std::size_t i = 0; i < atoms.size(); ++i) {
-        if (i > grabbed && atoms.names[i].segment != atoms.names[i - 1].segment) ++chain;
+        const bool is_next = i > 0 && atoms.names[i].segment != atoms.names[i - 1].segment;
+        if (!held[i] && !std::exchange(is_first, false) && is_next) ++chain;
         const std::string_view element = element_of(atoms, i);
         colours.push_back(look_of(element).colour);
         if (element != "C") continue;
-        if (i < grabbed) {
+        if (held[i]) {
             colours.back() = grabbed_carbon;
         } else if (colouring == Colouring::Chain) {
             colours.back() = chain_carbons[chain % chain_carbons.size()];

@@ -274,6 +274,9 @@ class Cli(unittest.TestCase):
         for text in ("-6.594 kcal/mol at 2.767 Å, 29.3 N/m", "0.322 nN at 3.10 Å, felt as 0.896 N",
                      "3 nN at 2.473 Å, felt as 2.120 N", "200 N/m felt at"):
             self.assertIn(text, result.stdout)
+        in_space = self.palpa("run", "--check", ROOT / "scenes" / "hiv").stdout
+        self.assertIn("5 nN at x = -0.300 Å", in_space)  # a place on a line, which is no distance
+        self.assertNotIn("repulsion", in_space)
         self.assertIn("663 N/m felt at 2.760 Å",
                       self.palpa("run", "--check", WATER, "--mode", "2").stdout)
         self.assertIn("vibrates", self.palpa("run", "--check", WATER, "--mode", "1").stdout)

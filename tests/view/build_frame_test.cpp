@@ -1,10 +1,13 @@
 #include "view/build_frame.h"
 
 #include "render/renderer.h"
+#include "scene/read_scene.h"
 #include "simulation/probe.h"
 #include "tests/support/gpu.h"
+#include "tests/support/paths.h"
 #include "tests/support/water_scene.h"
 #include "view/orbit_camera.h"
+#include "view/palette.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -111,6 +114,32 @@ TEST_CASE("chains have carbons of their own colours, the grabbed molecule's stan
     CHECK(by_element[3] == by_element[5]);
     CHECK(by_element[0] != by_element[3]);
     CHECK(by_chain[0] == by_element[0]);
+}
+
+TEST_CASE("of a molecule of which a spring holds a residue, that residue stands out", "[view]") {
+    // Two peptides of four residues each; carbons of the second one are in a colour of their own.
+    const std::vector<std::string> on_spring{"molecules.held.motion=free", "grab.atom=\"3\"",
+                                             "statics.relax_steps=0"};
+    const Simulation simulation =
+        load_simulation(read_scene(test::test_data("two_peptides"), on_spring));
+    const std::string in_hand = simulation.atoms.names.front().segment;
+    std::vector<glm::vec3> found, rest, others;
+    for (const SphereShape& sphere : build_frame(simulation, {.force_arrow = false}).spheres) {
+        const AtomName& name = simulation.atoms.names[sphere.pick];
+        if (name.atom.front() != 'C') continue;
+        if (name.segment != in_hand) {
+            others.push_back(sphere.colour);
+        } else {
+            (name.number == "3" ? found : rest).push_back(sphere.colour);
+        }
+    }
+    REQUIRE((!found.empty() && !rest.empty() && !others.empty()));
+    const auto all_are = [](const std::vector<glm::vec3>& colours, const glm::vec3& colour) {
+        return std::ranges::all_of(colours, [&](const glm::vec3& c) { return c == colour; });
+    };
+    CHECK(all_are(found, grabbed_carbon));
+    CHECK(all_are(rest, chain_carbons[0]));
+    CHECK(all_are(others, chain_carbons[1]));
 }
 
 TEST_CASE("the arrow is seen on the molecule's free side, and covers none of its atoms",
