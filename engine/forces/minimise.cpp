@@ -125,6 +125,7 @@ public:
 
     const Point& here() const noexcept { return here_; }
 
+    double value() const noexcept { return here_.energy(); }
     const Vector& forces() const noexcept { return forces_; }
     const Vector& trial_forces() const noexcept { return trial_forces_; }
 
@@ -133,19 +134,21 @@ public:
         return bound_direction(direction, here_.forces, settings_.largest_step);
     }
 
-    double try_move(const Vector& move) {
+    double try_move(const Vector& direction, double length) {
         for (std::size_t i = 0; i < here_.positions.size(); ++i) {
             const bool stays = !is_fixed_.empty() && is_fixed_[i];
             trial_.positions[i] = here_.positions[i];
-            if (!stays) trial_.positions[i] += of_atom(move, i);
+            if (!stays) trial_.positions[i] += length * of_atom(direction, i);
         }
         landscape_.evaluate(trial_);
         trial_forces_ = flat(trial_.forces);
-        return trial_.energy() - here_.energy();
+        return trial_.energy();
     }
 
-    static bool accepts(const Vector& /*move*/, double change, double linear_change) {
-        return is_sufficient(change, linear_change);
+    Vector trial_move() const { return flat(trial_.positions) - flat(here_.positions); }
+
+    bool accepts(double value, double linear_change) const {
+        return is_sufficient(here_.energy(), value, linear_change);
     }
 
     void accept() {

@@ -72,45 +72,51 @@ private:
     double first_scale_ = 1;  // of steps without pairs
 };
 
-// What is minimised. It stands at a point and knows the forces there, its negative gradient.
+// What is minimised. It stands at a point and knows its value and the forces there, the negative
+// gradient.
 template <class Function>
 concept Minimisable = requires(Function& function, const Function& at, const Eigen::VectorXd& v,
-                               Eigen::VectorXd& move, double change) {
+                               Eigen::VectorXd& direction, double& length) {
+    { at.value() } -> std::convertible_to<double>;
     { at.forces() } -> std::convertible_to<const Eigen::VectorXd&>;
     // The inverse Hessian as far as it is known, times v.
     { function.precondition(v) } -> std::convertible_to<Eigen::VectorXd>;
     // Limits a direction to the longest step that is allowed.
     { function.limit(v) } -> std::convertible_to<Eigen::VectorXd>;
-    // Evaluates the trial point at this move, which it may shorten; by how much the function rises.
-    { function.try_move(move) } -> std::convertible_to<double>;
-    // Whether that is far enough down, for a change that the gradient alone would make.
-    { at.accepts(move, change, change) } -> std::convertible_to<bool>;
+    // The value at the trial point, length times direction away. Where that is too far, the
+    // direction becomes a shorter one, and the length 1.
+    { function.try_move(direction, length) } -> std::convertible_to<double>;
+    { at.trial_move() } -> std::convertible_to<Eigen::VectorXd>;
     { at.trial_forces() } -> std::convertible_to<const Eigen::VectorXd&>;
+    // Whether that value is far enough down, for the change that the gradient alone would make.
+    { at.accepts(length, length) } -> std::convertible_to<bool>;
     { function.accept() };  // the trial point is where it stands now
 };
 
-// Armijo's condition: a change of the function against the one that the gradient alone would make,
-// which is negative.
-inline bool is_sufficient(double change, double linear_change) {
+// Armijo's condition: a value against the one before, and against the change that the gradient
+// alone would make, which is negative.
+inline bool is_sufficient(double before, double value, double linear_change) {
     constexpr double share = 1e-4;
-    return change < 0 && change <= share * linear_change;
+    return value < before && value <= before + share * linear_change;
 }
 
 // Shorter and shorter moves, until one is accepted, which gives a curvature pair.
 template <Minimisable Function>
-bool search_line(Function& function, CurvaturePairs& pairs, Eigen::VectorXd move, int tries) {
-    if (!move.allFinite() || !(function.forces().dot(move) > 0)) return false;
+bool search_line(Function& function, CurvaturePairs& pairs, Eigen::VectorXd direction, int tries) {
+    if (!direction.allFinite() || !(function.forces().dot(direction) > 0)) return false;
+    double length = 1;
     for (int i = 0; i < tries; ++i) {
-        const double change = function.try_move(move);
-        const double slope = function.forces().dot(move);
-        if (std::isfinite(change) && function.accepts(move, change, -slope)) {
-            pairs.add(move, function.forces() - function.trial_forces());
+        const double value = function.try_move(direction, length);
+        const double slope = function.forces().dot(direction);
+        if (std::isfinite(value) && function.accepts(value, -length * slope)) {
+            pairs.add(function.trial_move(), function.forces() - function.trial_forces());
             function.accept();
             return true;
         }
         // To the minimum of the parabola through both values and the slope, within bounds.
-        const double best = 0.5 * slope / (change + slope);
-        move *= std::isfinite(best) ? std::clamp(best, 0.1, 0.5) : 0.1;
+        const double above = value - (function.value() - length * slope);
+        const double best = 0.5 * length * length * slope / above;
+        length = std::isfinite(best) ? std::clamp(best, 0.1 * length, 0.5 * length) : 0.1 * length;
     }
     return false;
 }

@@ -70,6 +70,7 @@ public:
             QuasiStatics& statics)
         : model_(model), settings_(settings), state_(state), statics_(statics) {}
 
+    double value() const { return state_.energy(); }
     const Coordinates& forces() const { return state_.coordinate_forces; }
     const Coordinates& trial_forces() const { return statics_.trial.coordinate_forces; }
 
@@ -85,17 +86,21 @@ public:
     // Moves are limited where atoms are placed.
     static const Coordinates& limit(const Coordinates& direction) { return direction; }
 
-    double try_move(Coordinates& move) {
+    double try_move(Coordinates& direction, double& length) {
+        direction *= std::exchange(length, 1);
         TorsionState& trial = statics_.trial;
-        place_within(model_, state_, settings_.largest_move, move, trial);
+        place_within(model_, state_, settings_.largest_move, direction, trial);
+        move_ = direction;
         update_forces(model_, settings_.step.forces, statics_.memory, trial);
         update_coordinate_forces(model_, trial);
-        return trial.energy() - state_.energy();
+        return trial.energy();
     }
 
-    bool accepts(const Coordinates& move, double change, double linear_change) const {
-        if (!is_lower(settings_.step.forces, state_, statics_.trial, move)) return false;
-        return settings_.step.forces.fast || is_sufficient(change, linear_change);
+    const Coordinates& trial_move() const { return move_; }
+
+    bool accepts(double value, double linear_change) const {
+        if (!is_lower(settings_.step.forces, state_, statics_.trial, move_)) return false;
+        return settings_.step.forces.fast || is_sufficient(state_.energy(), value, linear_change);
     }
 
     void accept() { take_over(statics_.trial, state_); }
@@ -113,7 +118,7 @@ private:
     const RelaxSettings& settings_;
     TorsionState& state_;
     QuasiStatics& statics_;
-    Coordinates compliance_;
+    Coordinates compliance_, move_;
 };
 
 }  // namespace
