@@ -287,6 +287,9 @@ std::string explain(const CLI::ParseError& error, const CLI::App& program,
     if (dynamic_cast<const CLI::ExtrasError*>(&error)) {
         what = explain_extras(program, *program.get_subcommand(command));
     }
+    if (what == "structure is required") {
+        what += "; it stands before options that take several values (--toppar, --without)";
+    }
     if (what == "scene is required") what += "; 'palpa' alone lists those that there are";
     return fmt::format("palpa {}: {}; see palpa help {}", command, what, command);
 }

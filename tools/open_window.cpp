@@ -109,14 +109,19 @@ int open_window(const SceneDescription& scene, const SceneDescription& as_read,
     if (!devices.notice().empty()) fmt::print(stderr, "warning: {}\n", devices.notice());
     if (preferences.can_keep()) remember_scene(as_read.file, preferences);
     SceneSaver saver(as_read.file, options.screenshots);
-    const auto save = [&](const LiveSettings& live) {
+    const ViewSettings first_view = first_settings(scene.view, simulation);
+    const auto save = [&](const LiveSettings& live, const ViewSettings& view) {
         SceneDescription set = as_read;
         set.coupling = live.coupling;
         set.period_ms = live.period_ms;
+        set.view.colouring = view.colouring;
+        if (view.representation != first_view.representation) {
+            set.view.representation = view.representation;
+        }
         return describe_saved(saver.save(set));
     };
     const WindowReport report = run_window(scene, *first.device,
-                                           {.view = first_settings(scene.view, simulation),
+                                           {.view = first_view,
                                             .width = options.width,
                                             .height = options.height,
                                             .screenshots = options.screenshots,

@@ -1,5 +1,6 @@
 #include "tools/start.h"
 
+#include "core/load_error.h"
 #include "core/text.h"
 #include "platform/window.h"
 #include "scene/find_scene.h"
@@ -55,7 +56,12 @@ int start_command() {
     if (const std::optional<fs::path> scene = find_scene_to_open(last)) {
         RunOptions options;
         options.scene = *scene;
-        return run_command(options);
+        try {
+            return run_command(options);
+        } catch (const LoadError&) {  // whoever cannot open that one may want another
+            print_scenes({});
+            throw;
+        }
     }
     print_scenes(last);
     return 0;

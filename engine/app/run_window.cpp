@@ -510,7 +510,7 @@ void Sandbox::give(const Answer& answer) {
 bool Sandbox::save_scene() {
     if (!options_.save) return false;
     try {
-        const std::string file = options_.save(overlay_.settings());
+        const std::string file = options_.save(overlay_.settings(), view_);
         saved_ = overlay_.settings();
         notice(fmt::format("saved {}", file), first_notice_s);
         return true;

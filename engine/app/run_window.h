@@ -61,8 +61,9 @@ struct WindowOptions {
     DeviceMenu devices{};
     SoundChoice sound{};
     TextScaleChoice text_scale{};
-    // Writes the scene with these settings and says where; throws LoadError. Empty: cannot.
-    std::function<std::string(const LiveSettings&)> save{};
+    // Writes the scene with these settings, shown so, and says where; throws LoadError. Empty:
+    // cannot.
+    std::function<std::string(const LiveSettings&, const ViewSettings&)> save{};
     std::string notice{};  // to begin with
     double most_frames_per_s = 60;
     std::uint64_t lose_device_at = 0;  // frame at which the graphics device is given up, for tests

@@ -156,7 +156,7 @@ void Overlay::draw_readings(const Readout& readout, const OverlayStatus& status,
                 "force can be several times that of a relaxed pocket. Measured in "
                 "scenes/hiv/results.md.");
     }
-    if (!on_axis) {
+    if (!on_axis && scene_.grab.atom.empty()) {  // a spring turns nothing
         reading("torque", fmt::format("{:.3g} nN Å", 1e19 * touch.torque_newton_metre.norm()),
                 "On the molecule in hand about its centre of mass. No motor plays it, so a "
                 "molecule that is turned between the way in and the way out can give the hand "

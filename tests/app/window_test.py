@@ -279,7 +279,7 @@ class Session(unittest.TestCase):
         scene = Path(shutil.copytree(ROOT / "scenes" / "water", self.folder / "mine"))
         with Display() as display:
             self.start(display, scene=scene)
-            display.do("key", "2")
+            display.do("key", "2", "key", "v", "key", "c")
             display.do("key", "ctrl+s")
             saved = scene / "scene-2.toml"
             self.wait_until(saved.exists, "the saved scene")
@@ -289,6 +289,8 @@ class Session(unittest.TestCase):
             self.screenshot(display)
             self.quit(display)  # as saved again: nothing to ask
         self.assertIn('mode = "2"', saved.read_text())
+        self.assertIn('representation = "space-filling"', saved.read_text())
+        self.assertIn('colouring = "element"', saved.read_text())
         self.assertFalse((scene / "scene-3.toml").exists())
         for options in ((saved, "--check"), (saved, "--headless", "--seconds", "0.1")):
             result = subprocess.run([PROGRAM, "run", *options], capture_output=True, text=True)

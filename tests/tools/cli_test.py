@@ -109,6 +109,13 @@ class Cli(unittest.TestCase):
                                 env={**clean, "DISPLAY": "", "XDG_CONFIG_HOME": str(self.tmp)})
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertNotIn("nowhere", result.stdout)
+        # What cannot be opened any more is said, and what can be is listed.
+        (self.tmp / "broken.toml").write_text("title = 3")
+        (self.tmp / "palpa" / "preferences.toml").write_text(f"scene = '{self.tmp}/broken.toml'\n")
+        result = subprocess.run([PROGRAM], capture_output=True, text=True, cwd=self.tmp,
+                                env={**clean, "DISPLAY": ":1", "XDG_CONFIG_HOME": str(self.tmp)})
+        self.assert_bad_input(result, "broken.toml:1:")
+        self.assertIn("palpa run water", result.stdout)
 
     def test_own_scenes_go_by_name(self):
         self.assertIn("Two waters in space", self.palpa("run", "water/space", "--headless",
@@ -162,6 +169,8 @@ class Cli(unittest.TestCase):
                                 (["run"], "palpa run: scene is required; 'palpa' alone lists"),
                                 (["run", WATER, "--speed", "3"], "palpa run: no option '--speed'"),
                                 (["run", WATER, WATER], "is one argument too many"),
+                                (["prepare", "--toppar", "a.rtf", "1abc.pdb", "-o", "x"],
+                                 "structure is required; it stands before options"),
                                 (["run", WATER, "--mode"], "palpa run: no value for --mode;"),
                                 (["--speed"], "palpa: no option '--speed' without a command"),
                                 (["bench"], "palpa bench: a scene"), (["bench", "--json"], "a scene"),
