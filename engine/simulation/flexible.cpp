@@ -254,6 +254,7 @@ RelaxSettings build_settings(const SceneDescription& scene) {
     settings.force_tolerance = s.rest_kcal_per_mol;
     settings.steps = static_cast<std::size_t>(s.steps);
     settings.largest_move = s.largest_move_angstrom;
+    settings.keeps_pairs = true;  // from period to period
     settings.step.largest_move = s.largest_move_angstrom;
     ForceSettings& forces = settings.step.forces;
     forces.fast = s.pairs == PairPrecision::Fast;
