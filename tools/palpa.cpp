@@ -136,6 +136,7 @@ void add_window_options(CLI::App& run, palpa::RunOptions& options) {
     run.add_flag("--sound", options.sound,
                  "play the felt force as a tone, the stronger the higher and louder");
     add_size_option(run, "--size", options.width, options.height);
+    run.get_option("--size")->each([&options](const std::string&) { options.has_size = true; });
     run.add_option("--screenshots", options.screenshots,
                    "folder for screenshots, the present one "
                    "unless given")

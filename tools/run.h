@@ -25,6 +25,7 @@ struct RunOptions {
     bool sound = false;                 // in a window: the felt force as a tone, from the beginning
     bool play = false;  // in a window: the emulated hand plays the scene's stroke, no mouse
     std::uint32_t width = 1280, height = 800;        // of the window
+    bool has_size = false;                           // they were asked for
     std::filesystem::path screenshots = ".";         // folder for those of the window
     std::optional<std::filesystem::path> last_shot;  // of the window, which then closes
     double last_shot_s = 5;

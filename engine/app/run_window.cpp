@@ -121,6 +121,7 @@ public:
             throw LoadError({options.screenshots.string()},
                             "is no folder; expected one for screenshots");
         }
+        if (options.grows) window_.grow_with_display();
         // Drawing, which may be done by threads of the driver, comes after feeling.
         (void)nice(5);
         graphics_ = std::make_unique<Graphics>(window_, options.validation, text_scale_);

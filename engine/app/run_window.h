@@ -51,6 +51,7 @@ struct TextScaleChoice {
 struct WindowOptions {
     ViewSettings view{};
     std::uint32_t width = 1280, height = 800;
+    bool grows = true;  // with the display's scale: nobody asked for that size in pixels
     std::filesystem::path screenshots{"."};            // folder
     std::optional<std::filesystem::path> last_shot{};  // taken after `last_shot_s`, then it quits
     Existing last_shot_existing = Existing::Refuse;

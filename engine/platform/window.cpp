@@ -1,6 +1,7 @@
 #include "platform/window.h"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <optional>
@@ -199,6 +200,24 @@ VkSurfaceKHR Window::create_surface(VkInstance instance) const {
             fmt::format("Vulkan cannot draw into the window ({})", last_glfw_error()));
     }
     return surface;
+}
+
+void Window::grow_with_display() {
+    int width = 0, height = 0, left = 0, top = 0, most_wide = 0, most_high = 0;
+    glfwGetWindowSize(window_, &width, &height);
+    const VkExtent2D pixels = size();
+    GLFWmonitor* const monitor = glfwGetPrimaryMonitor();
+    if (pixels.width == 0 || !monitor) return;
+    glfwGetMonitorWorkarea(monitor, &left, &top, &most_wide, &most_high);
+    // On some systems a window's size is not in pixels, and has the scale already.
+    const float factor =
+        content_scale() * static_cast<float>(width) / static_cast<float>(pixels.width);
+    if (!(factor > 1)) return;
+    const auto grown = [&](int length, int most) {
+        const auto wanted = static_cast<int>(std::lround(factor * static_cast<float>(length)));
+        return std::max(length, std::min(wanted, most));
+    };
+    glfwSetWindowSize(window_, grown(width, most_wide), grown(height, most_high));
 }
 
 VkExtent2D Window::size() const {

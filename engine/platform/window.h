@@ -119,6 +119,9 @@ public:
     std::vector<const char*> vulkan_extensions() const;
     VkSurfaceKHR create_surface(VkInstance instance) const;
 
+    // Makes the window larger by the display's scale, as text is, where the display has the room.
+    void grow_with_display();
+
     // Of the picture, in pixels; 0x0 while the window is folded away.
     VkExtent2D size() const;
 

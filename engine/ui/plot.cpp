@@ -1,5 +1,7 @@
 #include "ui/plot.h"
 
+#include "ui/layout.h"
+
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
@@ -109,13 +111,14 @@ void draw_plot(const char* id, const Plot& plot, float height) {
         for (std::size_t i = 0; i < curve.x.size(); ++i) {
             places.push_back(area.place(curve.x[i], curve.y[i]));
         }
-        list.AddPolyline(places.data(), static_cast<int>(places.size()), curve.colour, 0, 1.6F);
+        list.AddPolyline(places.data(), static_cast<int>(places.size()), curve.colour, 0,
+                         scaled(1.6F));
     }
     for (const PlotPoint& point : plot.points) {
         const ImVec2 at = area.place(std::clamp(point.x, plot.x.low, plot.x.high),
                                      std::clamp(point.y, plot.y.low, plot.y.high));
-        list.AddCircleFilled(at, 4.5F, point.colour);
-        list.AddCircle(at, 4.5F, faded(ImGuiCol_Text, 1));
+        list.AddCircleFilled(at, scaled(4.5F), point.colour);
+        list.AddCircle(at, scaled(4.5F), faded(ImGuiCol_Text, 1));
     }
     list.PopClipRect();
 }

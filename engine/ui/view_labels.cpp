@@ -1,6 +1,7 @@
 #include "ui/view_labels.h"
 
 #include "render/renderer.h"
+#include "ui/layout.h"
 
 #include <imgui.h>
 #include <algorithm>
@@ -12,7 +13,7 @@ namespace palpa {
 namespace {
 
 constexpr ImU32 ink = IM_COL32(25, 30, 40, 255), halo = IM_COL32(255, 255, 255, 140);
-constexpr float below = 12;  // pixels from the place to the text
+constexpr float below = 12;  // pixels from the place to the text, at the usual size of text
 
 constexpr int most_lines_down = 5;
 
@@ -43,7 +44,7 @@ void draw_view_labels(std::span<const ViewLabel> labels, const FrameCamera& came
                     static_cast<std::uint32_t>(std::max(screen.y, 1.0F)));
         if (!(seen.z > camera.near)) return;
         const ImVec2 size = ImGui::CalcTextSize(label.text.c_str());
-        ImVec2 at{std::round(seen.x - size.x / 2), std::round(seen.y + below)};
+        ImVec2 at{std::round(seen.x - size.x / 2), std::round(seen.y + scaled(below))};
         const auto is_taken = [&] {
             const TextBox box{at, {at.x + size.x, at.y + size.y}};
             return std::ranges::any_of(taken,

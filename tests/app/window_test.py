@@ -1,5 +1,6 @@
 """One session in a window under Xvfb: start, drag the molecule, move a slider, switch the mode, take
 a screenshot, set the graphics up again, change the size, quit. Vulkan's validation watches."""
+import ctypes
 import json
 import os
 import shutil
@@ -27,10 +28,13 @@ def size_of_png(path):
 class Display:
     """A display that nobody sees, on a number that is free."""
 
+    def __init__(self, screen="1280x800"):
+        self.screen = screen
+
     def __enter__(self):
         read, write = os.pipe()
         self.server = subprocess.Popen(
-            ["Xvfb", "-displayfd", str(write), "-screen", "0", "1280x800x24", "-nolisten", "tcp",
+            ["Xvfb", "-displayfd", str(write), "-screen", "0", f"{self.screen}x24", "-nolisten", "tcp",
              "-noreset"],
             pass_fds=[write], stderr=subprocess.DEVNULL)
         os.close(write)
@@ -55,6 +59,18 @@ class Display:
         return subprocess.run(["xdotool", "search", "--onlyvisible", "--name", "^Palpa - "],
                               capture_output=True, text=True,
                               env={**os.environ, "DISPLAY": self.name}).stdout.split()
+
+    def set_dots_per_inch(self, dots):
+        """As desktops tell programs how large text should be."""
+        resource_manager, string, eight_bits, replace = 23, 31, 8, 0
+        x11 = ctypes.CDLL("libX11.so.6")
+        x11.XOpenDisplay.restype, x11.XDefaultRootWindow.restype = ctypes.c_void_p, ctypes.c_ulong
+        display = ctypes.c_void_p(x11.XOpenDisplay(self.name.encode()))
+        text = f"Xft.dpi:\t{dots}\n".encode()
+        x11.XChangeProperty(display, ctypes.c_ulong(x11.XDefaultRootWindow(display)),
+                            ctypes.c_ulong(resource_manager), ctypes.c_ulong(string), eight_bits,
+                            replace, text, len(text))
+        x11.XCloseDisplay(display)
 
     def focus_window(self):
         """Whether the window could be given the keys; it may not be there yet."""
@@ -321,6 +337,16 @@ class Session(unittest.TestCase):
             display.do("key", "ctrl+0")
             self.wait_until(lambda: "text_scale = 1.0" in chosen.read_text(), "the choice on disk")
             self.quit(display)
+
+    def test_a_window_grows_with_the_text_that_the_display_asks_for(self):
+        for options, size in (([], (2560, 1500)), (["--size", "900x600"], (900, 600))):
+            with self.subTest(options=options), Display("2560x1500") as display:
+                display.set_dots_per_inch(192)  # twice as large: 2560x1600, but for the screen
+                for file in self.folder.glob("*.png"):
+                    file.unlink()
+                self.start(display, *options)
+                self.assertEqual(size_of_png(self.folder / "palpa-0001.png"), size)
+                self.quit(display)
 
     def test_escape_closes_what_is_open_before_it_quits(self):
         with Display() as display:
