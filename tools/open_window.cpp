@@ -110,14 +110,11 @@ int open_window(const SceneDescription& scene, const SceneDescription& as_read,
     if (preferences.can_keep()) remember_scene(as_read.file, preferences);
     SceneSaver saver(as_read.file, options.screenshots);
     const ViewSettings first_view = first_settings(scene.view, simulation);
-    const auto save = [&](const LiveSettings& live, const ViewSettings& view) {
+    const auto save = [&](const LiveSettings& live, const ViewDescription& view) {
         SceneDescription set = as_read;
         set.coupling = live.coupling;
         set.period_ms = live.period_ms;
-        set.view.colouring = view.colouring;
-        if (view.representation != first_view.representation) {
-            set.view.representation = view.representation;
-        }
+        set.view = view;
         return describe_saved(saver.save(set));
     };
     const WindowReport report = run_window(scene, *first.device,

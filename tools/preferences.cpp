@@ -105,14 +105,17 @@ PreferencesFile::PreferencesFile(std::optional<fs::path> file) : file_(std::move
 
 void PreferencesFile::keep(const Preferences& preferences) {
     if (preferences == now_) return;
-    const TextPlace place{"the choice"};
-    if (!problem_.empty()) throw LoadError(place, "is not remembered: " + problem_);
-    if (!file_) throw LoadError(place, "is not remembered: no folder for settings is named");
+    const TextPlace place{"preferences"};
+    if (!problem_.empty()) throw LoadError(place, "what was chosen is not remembered: " + problem_);
+    if (!file_)
+        throw LoadError(place,
+                        "what was chosen is not remembered: no folder for settings is named");
     std::error_code error;
     fs::create_directories(file_->parent_path(), error);
     if (error) {
-        throw LoadError(place, fmt::format("is not remembered: {} cannot be made: {}",
-                                           file_->parent_path().string(), error.message()));
+        throw LoadError(place,
+                        fmt::format("what was chosen is not remembered: {} cannot be made: {}",
+                                    file_->parent_path().string(), error.message()));
     }
     write_text_file(*file_, format_preferences(preferences), Existing::Replace);
     now_ = preferences;

@@ -20,10 +20,10 @@
 namespace palpa {
 namespace {
 
-// Until a step answers with the whole pocket (second order), flexible scenes say this.
+// Until a step answers with all surroundings at rest (second order), flexible scenes say this.
 constexpr const char* unrelaxed_note =
-    "not relaxed: the force can be several times that of a relaxed pocket\n"
-    "              (scenes/hiv/README.md)";
+    "not complete in a step: the force can be several times that of surroundings\n"
+    "              at rest (README.md, Limits)";
 
 // What moves by itself, and how it came to rest.
 void print_flexible(const Simulation& simulation, const Flexible& flexible) {
@@ -42,7 +42,7 @@ void print_flexible(const Simulation& simulation, const Flexible& flexible) {
     const TouchModel start = simulation.touch.model;
     fmt::print("  start       {:.3f} kcal/mol, {:.3f} nN\n", start.potential_kcal_per_mol,
                start.force_newton.norm() * 1e9);
-    fmt::print("  pocket      {}\n", unrelaxed_note);
+    fmt::print("  relaxation  {}\n", unrelaxed_note);
 }
 
 // How much of the handle's way a molecule takes where it is stiffest, along and across.
@@ -203,7 +203,7 @@ void print_summary(const SceneDescription& scene, const Summary& s) {
             a.active, a.choices, 100 * a.within_budget);
     }
     if (s.feel) print_feel(*s.feel);
-    if (s.journey) fmt::print("  pocket      {}\n", unrelaxed_note);
+    if (s.journey) fmt::print("  relaxation  {}\n", unrelaxed_note);
     fmt::print("  clamped     {:.1f} % of the time\n", 100 * s.clamped_share);
     fmt::print("  step        {:.2f} µs median, {:.2f} µs p99 of {} steps\n", s.step_median_us,
                s.step_p99_us, s.steps);

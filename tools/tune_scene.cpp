@@ -111,7 +111,8 @@ double two_digits(double value) {
 // A tenth of a strong force is felt as 0.3 N, a strong one as 1.3 N; what is thrice as strong as
 // 2.7 N. So neither friction (0.26 N) hides what is there, nor do motors get warm of it.
 std::array<double, 2> choose_range(double strong_pN) {
-    const double strong = std::max(strong_pN, 10.0);
+    constexpr double weakest = 10, strongest = 3e5;  // so that the key takes what comes of it
+    const double strong = std::clamp(strong_pN, weakest, strongest);
     return {two_digits(strong / 10), two_digits(3 * strong)};
 }
 

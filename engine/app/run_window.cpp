@@ -170,6 +170,7 @@ private:
     void press_key(const KeyPress& press);
     void give(const Answer& answer);
     bool save_scene();
+    ViewDescription describe_view() const;
     void ask_to_quit();
     void ask_for_stand_in();
     bool is_stand_in(const std::string& name) const;
@@ -493,7 +494,8 @@ bool is_of_picture(Action action) {
 
 void Sandbox::press_key(const KeyPress& press) {
     if (question_) {
-        if (const Answer* const answer = find_answer(*question_, press.key)) return give(*answer);
+        const Answer* const answer = press.control ? nullptr : find_answer(*question_, press.key);
+        if (answer) return give(*answer);
         if (find_action(press.key, press.control) != Action::Screenshot) return;
     }
     if (options_.study && press.key == Key::Enter) return press_study_key();
@@ -508,10 +510,22 @@ void Sandbox::give(const Answer& answer) {
     if (then) then();
 }
 
+// As it is seen now, for a scene's file.
+ViewDescription Sandbox::describe_view() const {
+    ViewDescription view = first_;
+    view.colouring = view_.colouring;
+    if (view_.representation != options_.view.representation) {
+        view.representation = view_.representation;
+    }
+    view.camera = describe_camera(camera_, first_, first_picture_, frame_.framed, free_room());
+    view.clip = clips_;
+    return view;
+}
+
 bool Sandbox::save_scene() {
     if (!options_.save) return false;
     try {
-        const std::string file = options_.save(overlay_.settings(), view_);
+        const std::string file = options_.save(overlay_.settings(), describe_view());
         saved_ = overlay_.settings();
         notice(fmt::format("saved {}", file), first_notice_s);
         return true;
@@ -533,8 +547,10 @@ void Sandbox::ask_to_quit() {
 }
 
 void Sandbox::change_text_scale(double scale) {
-    constexpr double smallest = 0.5, largest = 4;
-    text_scale_ = std::clamp(scale, smallest, largest);
+    // Panels need 900 pixels of width at the usual size; beyond a little more they would be cut.
+    constexpr double smallest = 0.7, largest = 4, needed_pixels = 900, too_wide = 1.2;
+    const double fits = too_wide * window_.size().width / (needed_pixels * window_.content_scale());
+    text_scale_ = std::clamp(scale, smallest, std::clamp(fits, 1.0, largest));
     restart_graphics();
     notice(fmt::format("text: {:.0f} %", 100 * text_scale_));
     if (!options_.text_scale.remember) return;

@@ -64,7 +64,7 @@ struct WindowOptions {
     TextScaleChoice text_scale{};
     // Writes the scene with these settings, shown so, and says where; throws LoadError. Empty:
     // cannot.
-    std::function<std::string(const LiveSettings&, const ViewSettings&)> save{};
+    std::function<std::string(const LiveSettings&, const ViewDescription&)> save{};
     std::string notice{};  // to begin with
     double most_frames_per_s = 60;
     std::uint64_t lose_device_at = 0;  // frame at which the graphics device is given up, for tests

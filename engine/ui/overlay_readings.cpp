@@ -74,10 +74,13 @@ void Overlay::draw_scene(const Readout& readout, const OverlayStatus& status,
     ImGui::SetNextWindowPos({edge, edge});
     ImGui::SetNextWindowSizeConstraints({column, 0}, {column, screen.y - 2 * edge});
     ImGui::SetNextWindowSize({column, 0});
-    const bool is_open =
-        ImGui::Begin(fmt::format("{}###scene", scene_.title).c_str(), nullptr, fixed_panel);
+    // A title that the bar would cut stands below it.
+    const bool fits = ImGui::CalcTextSize(scene_.title.c_str()).x < column - scaled(45);
+    const std::string title = fmt::format("{}###scene", fits ? scene_.title : "Scene");
+    const bool is_open = ImGui::Begin(title.c_str(), nullptr, fixed_panel);
     left_covered_ = is_open ? column + edge : 0;
     if (is_open) {
+        if (!fits) ImGui::TextWrapped("%s", scene_.title.c_str());
         if (!scene_.about.empty() && ImGui::CollapsingHeader("About")) {
             ImGui::TextWrapped("%s", scene_.about.c_str());
         }
@@ -151,10 +154,11 @@ void Overlay::draw_readings(const Readout& readout, const OverlayStatus& status,
             fmt::format("{:.3f} N{}", std::abs(last_.hand_N), doing(on_axis, last_.hand_N)),
             "F_h = f(F_m), N, as sent to the device; eq. 2 of the paper in modes 1 and 2");
     if (has_flexible_) {
-        reading("pocket", "not relaxed",
-                "The pocket follows the hand by a few steps, and is not at rest meanwhile: the "
-                "force can be several times that of a relaxed pocket. Measured in "
-                "scenes/hiv/results.md.");
+        reading(
+            "relaxation", "not complete",
+            "The surroundings follow the hand by a few steps and are not at rest meanwhile: the "
+            "force can be several times that of surroundings at rest. Measured in "
+            "scenes/hiv/results.md.");
     }
     if (!on_axis && scene_.grab.atom.empty()) {  // a spring turns nothing
         reading("torque", fmt::format("{:.3g} nN Å", 1e19 * touch.torque_newton_metre.norm()),

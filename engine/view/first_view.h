@@ -7,6 +7,8 @@
 #include "view/build_frame.h"
 #include "view/orbit_camera.h"
 
+#include <array>
+
 namespace palpa {
 
 // Unless the scene says, balls and sticks, but `pocket` where others would hide the molecule.
@@ -18,5 +20,11 @@ AtomRange framed_atoms(const ViewDescription& view, Simulation& simulation);
 // Sees those atoms of a frame, or everything, as the scene says.
 OrbitCamera first_camera(const ViewDescription& view, const FrameScene& frame,
                          const AtomRange& framed, const Room& room);
+
+// The `camera` of a [view] that sees the frame as this camera does, but for where it was shifted
+// to: to tenths of a degree and hundredths of the zoom, within what the key takes.
+std::array<double, 3> describe_camera(const OrbitCamera& camera, const ViewDescription& view,
+                                      const FrameScene& frame, const AtomRange& framed,
+                                      const Room& room);
 
 }  // namespace palpa

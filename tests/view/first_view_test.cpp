@@ -48,3 +48,22 @@ TEST_CASE("a scene's [view] says how it is shown at first", "[view][first-view]"
     CHECK(camera.distance == Approx(at_fixed.distance / 2));
     CHECK(glm::distance(backward(camera), backward(at_fixed)) < 1e-5);
 }
+
+TEST_CASE("a camera that was turned is described so that the scene opens as it is seen",
+          "[view][first-view]") {
+    const SceneDescription scene = test::water_scene({"view.camera=[20, 10, 1]"});
+    Simulation simulation = load_simulation(scene);
+    const FrameScene frame = build_frame(simulation, first_settings(scene.view, simulation));
+    OrbitCamera camera = first_camera(scene.view, frame, {}, 1.5F);
+    CHECK(describe_camera(camera, scene.view, frame, {}, 1.5F) == scene.view.camera);
+    orbit(camera, 4 * std::acos(-1.0F) + 0.5F, 0.25F);  // twice around, and on
+    zoom(camera, 0.4F);
+
+    ViewDescription described = scene.view;
+    described.camera = describe_camera(camera, scene.view, frame, {}, 1.5F);
+    const OrbitCamera again = first_camera(described, frame, {}, 1.5F);
+
+    CHECK(described.camera[0] == Approx(20 + 0.5 * 180 / std::acos(-1.0)).margin(0.06));
+    CHECK(glm::distance(backward(again), backward(camera)) < 2e-3);
+    CHECK(again.distance == Approx(camera.distance).epsilon(0.005));
+}
