@@ -100,9 +100,10 @@ inline bool is_sufficient(double before, double value, double linear_change) {
     return value < before && value <= before + share * linear_change;
 }
 
-// Shorter and shorter moves, until one is accepted, which gives a curvature pair.
+// Shorter and shorter moves, until one is accepted, which gives a curvature pair. The direction is
+// the function's to shorten.
 template <Minimisable Function>
-bool search_line(Function& function, CurvaturePairs& pairs, Eigen::VectorXd direction, int tries) {
+bool search_line(Function& function, CurvaturePairs& pairs, Eigen::VectorXd& direction, int tries) {
     if (!direction.allFinite() || !(function.forces().dot(direction) > 0)) return false;
     double length = 1;
     for (int i = 0; i < tries; ++i) {
@@ -126,7 +127,7 @@ bool search_line(Function& function, CurvaturePairs& pairs, Eigen::VectorXd dire
 template <Minimisable Function>
 bool step_downhill(Function& function, CurvaturePairs& pairs, int tries = 25) {
     while (true) {
-        const Eigen::VectorXd direction = function.limit(pairs.find_direction(
+        Eigen::VectorXd direction = function.limit(pairs.find_direction(
             function.forces(), [&](const Eigen::VectorXd& v) { return function.precondition(v); }));
         if (search_line(function, pairs, direction, tries)) return true;
         if (pairs.is_empty()) return false;

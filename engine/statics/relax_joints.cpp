@@ -84,7 +84,7 @@ public:
     }
 
     // Moves are limited where atoms are placed.
-    static const Coordinates& limit(const Coordinates& direction) { return direction; }
+    static Coordinates limit(Coordinates direction) { return direction; }
 
     double try_move(Coordinates& direction, double& length) {
         direction *= std::exchange(length, 1);
