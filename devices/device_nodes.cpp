@@ -1,9 +1,9 @@
 #include "devices/device_nodes.h"
 
+#include "core/files.h"
+#include "platform/file.h"
+
 #include <fmt/format.h>
-#ifndef _WIN32
-#include <unistd.h>
-#endif
 #include <algorithm>
 #include <cctype>
 #include <charconv>
@@ -21,17 +21,6 @@ std::string first_line(const fs::path& file) {
     std::string line;
     std::getline(stream, line);
     return line;
-}
-
-std::vector<fs::path> entries(const fs::path& folder) {
-    std::vector<fs::path> found;
-    std::error_code error;
-    for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
-         entry.increment(error)) {
-        found.push_back(entry->path());
-    }
-    std::sort(found.begin(), found.end());
-    return found;
 }
 
 std::uint16_t hex(const std::string& text) {
@@ -65,18 +54,12 @@ std::string lower(std::string text) {
 
 }  // namespace
 
-bool is_open_to_user(const fs::path& node) {
-#ifdef _WIN32
-    return !node.empty();
-#else
-    return access(node.c_str(), R_OK | W_OK) == 0;
-#endif
-}
+bool is_open_to_user(const fs::path& node) { return may_read_and_write(node); }
 
 std::vector<FoundDevice> find_usb_devices(const fs::path& root, std::span<const UsbId> ids) {
     std::vector<FoundDevice> found;
     std::vector<fs::path> folders;
-    for (const fs::path& folder : entries(root / "sys/bus/usb/devices")) {
+    for (const fs::path& folder : list_folder(root / "sys/bus/usb/devices")) {
         const UsbId id{hex(first_line(folder / "idVendor")), hex(first_line(folder / "idProduct"))};
         if (std::find(ids.begin(), ids.end(), id) == ids.end()) continue;
         const std::string product = first_line(folder / "product");
@@ -88,7 +71,7 @@ std::vector<FoundDevice> find_usb_devices(const fs::path& root, std::span<const 
         folders.push_back(fs::canonical(folder, error));
     }
     for (const char* kind : {"hidraw", "tty"}) {
-        for (const fs::path& node : entries(root / "sys/class" / kind)) {
+        for (const fs::path& node : list_folder(root / "sys/class" / kind)) {
             const fs::path above = usb_device_above(node / "device");
             for (std::size_t i = 0; i < found.size(); ++i) {
                 if (above.empty() || above != folders[i]) continue;
@@ -101,7 +84,7 @@ std::vector<FoundDevice> find_usb_devices(const fs::path& root, std::span<const 
 
 std::vector<FoundDevice> find_firewire_devices(const fs::path& root, const std::string& name) {
     std::vector<FoundDevice> found;
-    for (const fs::path& folder : entries(root / "sys/bus/firewire/devices")) {
+    for (const fs::path& folder : list_folder(root / "sys/bus/firewire/devices")) {
         const std::string words =
             first_line(folder / "vendor_name") + " " + first_line(folder / "model_name");
         if (lower(words).find(lower(name)) == std::string::npos) continue;

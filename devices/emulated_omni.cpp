@@ -116,9 +116,9 @@ void EmulatedOmni::write(const Vec3& force_newton) noexcept {
     ++tick_;
 }
 
-void EmulatedOmni::show(const TouchModel& touch) noexcept {
-    operator_.see({units::metre_per_angstrom * touch.molecule.place_angstrom,
-                   touch.displacement_gain, true_position_m()});
+void EmulatedOmni::show(const ContactModel& contact) noexcept {
+    operator_.see({units::metre_per_angstrom * contact.molecule.place_angstrom,
+                   contact.displacement_gain, true_position_m()});
 }
 
 bool EmulatedOmni::take_orders() noexcept {

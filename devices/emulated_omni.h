@@ -45,7 +45,7 @@ public:
     const DeviceSpec& spec() const noexcept override { return spec_; }
     DeviceReading read() noexcept override;
     void write(const Vec3& force_newton) noexcept override;
-    void show(const TouchModel& touch) noexcept override;
+    void show(const ContactModel& contact) noexcept override;
 
     // What no device knows: where the handle is between two encoder steps.
     Vec3 true_position_m() const noexcept;

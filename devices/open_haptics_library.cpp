@@ -1,80 +1,38 @@
 #include "devices/open_haptics_library.h"
 
-#include <fmt/format.h>
-#ifdef _WIN32
-#include <windows.h>
-#else
-#include <dlfcn.h>
-#endif
-#include <array>
+#include "platform/library.h"
 
 namespace palpa::hd {
 namespace {
 
-#ifdef _WIN32
-constexpr std::array names{"HD.dll"};
-using Loaded = HMODULE;
-
-Loaded load(const std::string& name, std::string& why) {
-    const Loaded loaded = LoadLibraryA(name.c_str());
-    if (!loaded) why = fmt::format("{}: Windows' error {}", name, GetLastError());
-    return loaded;
-}
-
-void* find(Loaded loaded, const char* function) {
-    return reinterpret_cast<void*>(GetProcAddress(loaded, function));
-}
-
-std::string path_of(Loaded loaded, void*) {
-    std::array<char, MAX_PATH> path{};
-    GetModuleFileNameA(loaded, path.data(), static_cast<DWORD>(path.size()));
-    return path.data();
-}
-#else
-// As the maker's packages of 3.4 and 3.0 name it.
-constexpr std::array names{"libHD.so", "libHD.so.3.4", "libHD.so.3.4.0", "libHD.so.3",
-                           "libHD.so.3.0"};
-using Loaded = void*;
-
-Loaded load(const std::string& name, std::string& why) {
-    const Loaded loaded = dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL);
-    if (!loaded) why = dlerror();  // begins with the name
-    return loaded;
-}
-
-void* find(Loaded loaded, const char* function) { return dlsym(loaded, function); }
-
-std::string path_of(Loaded, void* function) {
-    Dl_info info{};
-    return dladdr(function, &info) != 0 && info.dli_fname ? info.dli_fname : "";
-}
-#endif
-
 template <class Function>
-void take(Loaded loaded, const char* name, Function& function, LibrarySearch& search) {
-    void* const found = find(loaded, name);
+void take(const SharedLibrary& loaded, const char* name, Function& function,
+          LibrarySearch& search) {
+    void* const found = loaded.find(name);
     if (!found) {
         search.missing.emplace_back(name);
         return;
     }
     function = reinterpret_cast<Function>(found);
-    if (search.path.empty()) search.path = path_of(loaded, found);
+    if (search.path.empty()) search.path = loaded.path_of(found);
 }
 
 }  // namespace
 
 LibrarySearch find_library(const std::optional<std::filesystem::path>& path) {
-    std::vector<std::string> candidates(names.begin(), names.end());
-    if (path) candidates = {path->string()};
+    // As the maker's packages of 3.4 and 3.0 name it.
+    std::vector<std::string> files = list_library_files("HD", {"3.4", "3.4.0", "3", "3.0"});
+    if (path) files = {path->string()};
     LibrarySearch search;
-    Loaded loaded = nullptr;
-    for (const std::string& name : candidates) {
-        std::string why;
-        loaded = load(name, why);
-        if (loaded) break;
-        search.tried.push_back(why);
+    std::optional<SharedLibrary> found;
+    for (const std::string& file : files) {
+        found.emplace(file);
+        if (found->is_open()) break;
+        search.tried.push_back(found->problem());
+        found.reset();
     }
-    if (!loaded) return search;
+    if (!found) return search;
+    const SharedLibrary& loaded = *found;
 
     search.is_found = true;
     Library& l = search.library;

@@ -6,15 +6,21 @@ usage: check_layers.py [ROOT]
 An arrow is written in one place only, the DEPENDS of a palpa_module(...). A file may include what
 its own module reaches along the arrows. Fails, with file and line, on an include that no arrow
 allows, on an include of a folder that is no module, on an arrow to a module that does not exist,
-on a source that no palpa_module lists, and on a cycle of arrows.
+on a source that no palpa_module lists, on a cycle of arrows, on a header of POSIX or Windows
+outside of the module `platform`, and where the table of modules in engine/README.md says anything
+else.
 """
 import re
 import sys
 from pathlib import Path
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]')
+MAP_ROW = re.compile(r"\| (\w+) \| [^|]+ \|([\w ]*)\|$")
 COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
-KEYWORDS = {"SOURCES", "DEPENDS", "LIBRARIES"}
+SOURCES = ("SOURCES", "POSIX", "WINDOWS")
+SYSTEM = re.compile(r"(sys|linux|arpa|net|netinet)/|(aio|dirent|dlfcn|fcntl|glob|grp|io|langinfo|poll|pthread"
+                    r"|pwd|sched|semaphore|signal|spawn|strings|syslog|termios|unistd|utime|windows|winsock2?)\.h$")
+KEYWORDS = {*SOURCES, "DEPENDS", "LIBRARIES"}
 FOLDERS = ("engine", "devices", "tools", "tests")
 SUFFIXES = {".h", ".cpp"}
 
@@ -27,7 +33,7 @@ def read_modules(root):
             text = re.sub(r"#[^\n]*", "", cmake.read_text())
             for call in re.finditer(r"palpa_module\(([^)]*)\)", text):
                 words = call.group(1).split()
-                module = {"folder": cmake.parent, "SOURCES": [], "DEPENDS": [], "LIBRARIES": []}
+                module = {"folder": cmake.parent, **{keyword: [] for keyword in KEYWORDS}}
                 part = None
                 for word in words[1:]:
                     if word in KEYWORDS:
@@ -91,6 +97,29 @@ def check(root):
         for path in sorted((root / folder).rglob("*")):
             if path.suffix in SUFFIXES and path.is_file():
                 problems += check_file(root, path, folders, modules)
+    return problems + check_map(root, modules)
+
+
+def check_map(root, modules):
+    """The table of modules in engine/README.md has the engine's modules and their arrows, no others."""
+    readme = root / "engine" / "README.md"
+    if not readme.is_file():
+        return []
+    problems, rows = [], {}
+    for number, line in enumerate(readme.read_text().splitlines(), 1):
+        row = MAP_ROW.match(line)
+        if row and row.group(1) != "module":
+            rows[row.group(1)] = (number, row.group(2).split())
+    of_engine = {name for name, module in modules.items() if root / "engine" in module["folder"].parents}
+    for name in sorted(of_engine - rows.keys()):
+        problems.append(f"engine/README.md: has no row of the module '{name}'")
+    for name, (number, uses) in rows.items():
+        place = f"engine/README.md:{number}"
+        if name not in of_engine:
+            problems.append(f"{place}: '{name}' is no module of the engine")
+        elif sorted(uses) != sorted(modules[name]["DEPENDS"]):
+            problems.append(f"{place}: '{name}' uses {' '.join(uses) or 'nothing'}; its CMakeLists.txt has "
+                            f"{' '.join(modules[name]['DEPENDS']) or 'nothing'}")
     return problems
 
 
@@ -102,7 +131,7 @@ def check_file(root, path, folders, modules):
             return [f"{path.relative_to(root)}: its folder has no palpa_module(...)"]
         owner = top[0] if top[0] in ("tests",) else None
     problems = []
-    sources = modules[owner]["SOURCES"] if owner in modules else []
+    sources = [file for kind in SOURCES for file in modules[owner][kind]] if owner in modules else []
     if owner in modules and owner not in ("tools", "tests") and path.suffix == ".cpp":
         if path.relative_to(modules[owner]["folder"]).as_posix() not in sources:
             problems.append(f"{path.relative_to(root)}: not among the SOURCES of '{owner}'")
@@ -114,6 +143,8 @@ def check_file(root, path, folders, modules):
         if not match:
             continue
         place = f"{path.relative_to(root)}:{number}"
+        if SYSTEM.match(match.group(2).lower()) and owner not in ("platform", "tests", None):
+            problems.append(f"{place}: <{match.group(2)}> is the operating system's; only 'platform' calls it")
         target = match.group(2).split("/")[0]
         if match.group(1) == "<" and ("/" not in match.group(2) or target not in modules):
             continue  # a library's

@@ -1,18 +1,22 @@
 #include "app/live_session.h"
 
+#include "core/files.h"
 #include "core/load_error.h"
+#include "platform/thread.h"
 #include "session/run_headless.h"
-#include "simulation/probe.h"
-#include "simulation/step.h"
+#include "simulation/held.h"
+#include "simulation/resources.h"
 #include "view/first_view.h"
 
-#include <pthread.h>
-#include <sched.h>
-#include <sys/mman.h>
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <optional>
+#include <string>
 #include <utility>
+#include <variant>
+#include <vector>
 
 namespace palpa {
 namespace {
@@ -28,53 +32,100 @@ int ticks_of(double period_ms) {
     return static_cast<int>(std::lround(period_ms * 1e-3 * servo_rate_hz));
 }
 
-// Above all ordinary threads, where the system lets us.
-bool ask_for_real_time() noexcept {
-    sched_param parameters{};
-    parameters.sched_priority = 50;
-    return pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters) == 0;
+Duration period_of(const World& world) {
+    return std::chrono::duration_cast<Duration>(
+        std::chrono::duration<double>(world.resource<Clock>().period_s));
 }
 
-// So that no tick waits for a page.
-bool ask_for_locked_memory() noexcept {
-    return mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0;
+HandDevice describe(const LiveDevice& device) {
+    return {device.device->spec(), device.orders != nullptr};
 }
 
-Duration period_of(const Simulation& simulation) {
-    return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(simulation.period_s));
+std::vector<HandDevice> describe(std::span<const LiveDevice> devices) {
+    std::vector<HandDevice> described;
+    for (const LiveDevice& device : devices) described.push_back(describe(device));
+    return described;
 }
 
-// While nothing moves, the hand feels nothing and has no hold.
-TouchModel without_force(TouchModel touch) noexcept {
-    touch.force_newton.setZero();
-    touch.is_still = true;
-    return touch;
+// Of what the event is about to read.
+std::vector<std::optional<std::string>> read_files(const LiveEvent& event) {
+    const auto* const command = std::get_if<CommandEvent>(&event);
+    const auto* const edit = command ? std::get_if<EditDescription>(&command->command) : nullptr;
+    if (!edit) return {};
+    std::vector<std::optional<std::string>> contents;
+    EditAction action = edit->action;
+    for (const std::filesystem::path* const file : list_files(action)) {
+        try {
+            contents.emplace_back(read_text_file(*file));
+        } catch (const LoadError&) {  // the edit will say so
+            contents.emplace_back();
+        }
+    }
+    return contents;
 }
 
-// Where forces must be exact, real time is what limits the work for it, unless the scene does.
-SceneDescription limited_by_period(SceneDescription scene) {
-    constexpr double share = 0.8;
-    if (scene.coupling.feel_within_pN && !scene.statics.budget_us)
-        scene.statics.budget_us = share * 1e3 * scene.period_ms;
-    return scene;
+// A spring holds an atom or a residue.
+std::string find_held_address(const World& world, Entity hand, const AtomDirectory& atoms) {
+    const Grip* const grip = world.find<Grip>(hand);
+    if (!grip) return {};
+    const std::uint32_t first = held_range(world, hand).first;
+    if (grip->atoms.empty()) return address_of(atoms, first, AtomScope::Molecule);
+    return address_of(atoms, first + grip->atoms.front(),
+                      grip->atoms.size() == 1 ? AtomScope::Atom : AtomScope::Residue);
+}
+
+LiveHand show_hand(const World& world, Entity hand, const AtomDirectory& atoms) {
+    const bool holds = world.find<Grip>(hand) != nullptr;
+    return {held_range(world, hand), holds ? held_place(world, hand) : Vec3(Vec3::Zero()),
+            find_held_address(world, hand, atoms), contact_of(world, hand).answer.model};
 }
 
 }  // namespace
 
+// To the servos' mailboxes.
+class LiveSession::Line final : public ServoLine {
+public:
+    explicit Line(ServoBank& servos) : servos_(servos) {}
+
+    void post(std::size_t slot, const LocalContactModel& contact, std::uint64_t number) override {
+        Mailbox<LocalContactModel>& mailbox = servos_.exchange(slot).contact;
+        LocalContactModel& draft = mailbox.draft();
+        draft = contact;
+        draft.model.number = number;
+        mailbox.send();
+    }
+    void post(std::size_t slot, const ServoOrder& order) override {
+        servos_.orders(slot).post(order);
+    }
+
+private:
+    ServoBank& servos_;
+};
+
+LiveSession::LiveSession(const SceneDescription& scene, const ViewSettings& view,
+                         std::span<const LiveDevice> devices, LiveClock* clock)
+    : clock_(clock ? *clock : machine_clock_),
+      devices_(devices.begin(), devices.end()),
+      orders_(devices.size()),
+      servos_(devices.size()),
+      line_(std::make_unique<Line>(servos_)),
+      simulation_(scene, describe(devices), *line_),
+      ticks_(std::make_unique<Ticks<ServoTick>>()),
+      journal_ticks_(std::make_unique<Ticks<LiveTick>>()),
+      view_(view),
+      poses_(devices.size()),
+      atoms_(list_atoms(simulation_.world())),
+      framed_(framed_atoms(scene.view, simulation_.world())),
+      recorder_(scene, simulation_.devices()) {
+    for (HandOrder& order : orders_) order.granted_ticks = ticks_of(scene.period_ms);
+    start_servo();
+    simulation_thread_ = std::thread([this] { run_simulation(); });
+    recorder_thread_ = std::thread([this] { run_recorder(); });
+}
+
 LiveSession::LiveSession(const SceneDescription& scene, const ViewSettings& view, Device& device,
                          HandOrders* orders, LiveClock* clock)
-    : clock_(clock ? *clock : machine_clock_),
-      scene_(scene),
-      device_(&device),
-      orders_(orders),
-      state_{load_simulation(limited_by_period(scene)), view, {}, {}, false, {}, {}},
-      framed_(framed_atoms(scene.view, state_.simulation)) {
-    check_period(device.spec(), scene.period_ms * 1e-3);
-    order_.granted_ticks = ticks_of(scene.period_ms);
-    exchange_.touch.post(state_.simulation.touch);
-    start_servo(state_);
-    simulation_thread_ = std::thread([this] { run_simulation(state_); });
-}
+    : LiveSession(scene, view, std::array{LiveDevice{&device, orders}}, clock) {}
 
 LiveSession::~LiveSession() {
     {
@@ -84,21 +135,26 @@ LiveSession::~LiveSession() {
     has_command_.notify_one();
     stop_servo();
     simulation_thread_.join();
+    recorder_stopping_ = true;
+    recorder_thread_.join();
 }
 
 void LiveSession::send(const Command& command) {
-    if (const auto* const pause = std::get_if<Pause>(&command)) {
-        order_.frozen = pause->paused;
-    } else if (std::holds_alternative<StepOnce>(command)) {
-        order_.frozen = true;
-        ++order_.grants;
-    } else if (std::holds_alternative<Reset>(command)) {
-        ++order_.restarts;
-    } else if (const auto* const settings = std::get_if<LiveSettings>(&command)) {
-        if (bears_period(device_->spec(), settings->period_ms * 1e-3))
-            order_.granted_ticks = ticks_of(settings->period_ms);
+    for (std::size_t slot = 0; slot < devices_.size(); ++slot) {
+        HandOrder& order = orders_[slot];
+        if (const auto* const pause = std::get_if<Pause>(&command)) {
+            order.frozen = pause->paused;
+        } else if (std::holds_alternative<StepOnce>(command)) {
+            order.frozen = true;
+            ++order.grants;
+        } else if (std::holds_alternative<Reset>(command)) {
+            ++order.restarts;
+        } else if (const auto* const settings = std::get_if<LiveSettings>(&command)) {
+            if (bears_period(devices_[slot].device->spec(), settings->period_ms * 1e-3))
+                order.granted_ticks = ticks_of(settings->period_ms);
+        }
+        if (devices_[slot].orders) devices_[slot].orders->post(order);
     }
-    if (orders_) orders_->post(order_);
     {
         const std::lock_guard lock(mutex_);
         commands_.push_back(command);
@@ -106,19 +162,20 @@ void LiveSession::send(const Command& command) {
     has_command_.notify_one();
 }
 
-void LiveSession::change_device(Device& device, HandOrders* orders) {
-    check_period(device.spec(), order_.granted_ticks / servo_rate_hz);
-    order_.target_m.setZero();
-    if (orders) orders->post(order_);
+void LiveSession::change_device(Device& device, HandOrders* orders, std::size_t slot) {
+    check_period(device.spec(), orders_[slot].granted_ticks / servo_rate_hz);
+    orders_[slot].target_m.setZero();
+    if (orders) orders->post(orders_[slot]);
+    const LiveDevice next{&device, orders};
     std::unique_lock lock(mutex_);
-    device_change_ = {&device, orders};
+    device_change_ = {{slot, describe(next)}, next};
     has_command_.notify_one();
     device_changed_.wait(lock, [&] { return !device_change_; });
 }
 
-void LiveSession::move_hand(const Vec3& target_m) {
-    order_.target_m = target_m;
-    if (orders_) orders_->post(order_);
+void LiveSession::move_hand(const Vec3& target_m, std::size_t slot) {
+    orders_[slot].target_m = target_m;
+    if (devices_[slot].orders) devices_[slot].orders->post(orders_[slot]);
 }
 
 bool LiveSession::read_frame(LiveFrame& frame) {
@@ -127,12 +184,50 @@ bool LiveSession::read_frame(LiveFrame& frame) {
     return is_new;
 }
 
+bool LiveSession::pop_ticks(std::span<ServoTick> ticks) noexcept {
+    if (!ticks_->pop(ticks[0])) return false;
+    // The servo pushes those of all hands or none.
+    for (std::size_t slot = 1; slot < hands();) slot += ticks_->pop(ticks[slot]) ? 1 : 0;
+    return true;
+}
+
+bool LiveSession::pop_tick(ServoTick& tick) noexcept {
+    std::array<ServoTick, most_hands> ticks;
+    if (!pop_ticks(std::span(ticks).first(hands()))) return false;
+    tick = ticks[0];
+    return true;
+}
+
 ServoHealth LiveSession::servo_health() const noexcept { return {overruns_, real_time_, locked_}; }
 
-void LiveSession::start_servo(const State& state) {
-    ServoOrder order = build_order(state);
-    order.restarts = restarts_;
-    servo_thread_ = std::thread([this, order] { run_servo(order); });
+void LiveSession::begin_recording(const std::filesystem::path& folder, bool overwrites) {
+    const std::lock_guard lock(recorder_mutex_);
+    if (recorder_.is_recording())
+        throw LoadError({folder.string()},
+                        "another recording is under way; expected its end first");
+    record_what_happened();
+    recording_problem_.clear();
+    recorder_.begin(folder, overwrites);
+}
+
+void LiveSession::end_recording() {
+    const std::lock_guard lock(recorder_mutex_);
+    record_what_happened();
+    recorder_.end();
+    if (recording_problem_.empty()) return;
+    throw LoadError({"recording"}, std::exchange(recording_problem_, {}));
+}
+
+std::optional<double> LiveSession::recorded_s() {
+    const std::lock_guard lock(recorder_mutex_);
+    if (!recorder_.is_recording()) return std::nullopt;
+    return recorder_.recorded_s();
+}
+
+// ---- the servos' thread ------------------------------------------------------------------------
+
+void LiveSession::start_servo() {
+    servo_thread_ = std::thread([this] { run_servo(); });
 }
 
 // The force fades first.
@@ -140,35 +235,47 @@ void LiveSession::stop_servo() {
     servo_stopping_ = true;
     servo_thread_.join();
     servo_stopping_ = false;
-    device_->write(Vec3::Zero());
+    for (const LiveDevice& device : devices_) device.device->write(Vec3::Zero());
 }
 
-void LiveSession::run_servo(ServoOrder order) {
+void LiveSession::run_servo() {
     real_time_ = &clock_ == &machine_clock_ && ask_for_real_time();
     locked_ = ask_for_locked_memory();
-    ServoState& state = servo_state_;
-    ServoTick last;
+    const std::size_t count = devices_.size();
+    // An emulated device lives on the servo's ticks, however late they come, and can stand still.
+    const bool is_emulated =
+        std::ranges::all_of(devices_, [](const LiveDevice& d) { return d.orders != nullptr; });
+    std::array<DeviceReading, most_hands> readings;
+    std::array<double, most_hands> stamps{};
+    std::array<LiveTick, most_hands> last{};
+    std::array<ServoTick, most_hands> ticks{};
     const LiveClock::Moment start = clock_.now();
     LiveClock::Moment next = start;
     // The force fades before the last tick.
     constexpr int last_ticks = 12;
-    for (int ending = 0; ending < last_ticks; ending += order.settings.is_ending ? 1 : 0) {
-        const std::uint32_t restarts = order.restarts;
-        if (servo_orders_.read(order) && order.restarts != restarts) release(state.safety);
-        order.settings.is_ending = servo_stopping_;
-        const DeviceReading reading = device_->read();
-        // An emulated device lives on the servo's ticks, however late they come, and can stand
-        // still.
-        const std::chrono::duration<double> real_s = clock_.now() - start;
-        const bool stands_still =
-            order.is_paused && !servo_stopping_ && reading.time_s == last.reading.time_s;
-        if (!stands_still) {
-            last = step_servo(order.settings, state, exchange_, reading,
-                              orders_ ? reading.time_s : real_s.count());
-            ticks_.push(last);
+    for (int ending = 0; ending < last_ticks;) {
+        servos_.take_orders();
+        const bool is_ending = servo_stopping_;
+        ending += is_ending ? 1 : 0;
+        bool stands_still = servos_.is_paused() && !is_ending;
+        for (std::size_t slot = 0; slot < count; ++slot) {
+            readings[slot] = devices_[slot].device->read();
+            stands_still = stands_still && readings[slot].time_s == stamps[slot];
+            stamps[slot] = readings[slot].time_s;
         }
-        device_->show(last.touch);
-        device_->write(last.sent_newton);
+        const std::chrono::duration<double> real_s = clock_.now() - start;
+        if (!stands_still) {
+            servos_.tick(std::span(readings).first(count),
+                         is_emulated ? readings[0].time_s : real_s.count(), is_ending);
+            std::ranges::copy(servos_.ticks(), last.begin());
+            std::ranges::transform(servos_.ticks(), ticks.begin(), &LiveTick::tick);
+            ticks_->push(std::span<const ServoTick>(ticks).first(count));
+            journal_ticks_->push(servos_.ticks());
+        }
+        for (std::size_t slot = 0; slot < count; ++slot) {
+            devices_[slot].device->show(last[slot].tick.contact);
+            devices_[slot].device->write(last[slot].tick.sent_newton);
+        }
         next += servo_tick;
         const LiveClock::Moment now = clock_.now();
         if (now - next > servo_tick) {
@@ -179,22 +286,31 @@ void LiveSession::run_servo(ServoOrder order) {
     }
 }
 
+// ---- the simulation's thread -------------------------------------------------------------------
+
 // The same order as in lockstep: where a period begins, the last step's answer is published, and
-// the next step starts from the hand's pose at that moment. Commands are obeyed at once, between
+// the next step starts from the hands' poses at that moment. Commands are obeyed at once, between
 // steps.
-void LiveSession::run_simulation(State& state) {
+void LiveSession::run_simulation() {
     LiveClock::Moment next = clock_.now();
     while (!stopping_) {
-        const bool settles = clock_.now() < state.settled;
-        if (!settles && (!state.readout.paused || state.step_once)) {
-            step(state);
-        } else if (settles || !orders_) {  // a paused emulated handle stands still by itself
-            hold(state);
+        adopt_edit();
+        const bool settles = clock_.now() < settled_;
+        const bool is_paused = simulation_.readout().paused;
+        if (building_.valid()) {
+            // Nothing moves until the edit is made; what lasts longer than servos go on with the
+            // same contact model lets their forces fade.
+        } else if (!settles && (!is_paused || step_once_)) {
+            step_once_ = false;
+            play(PublishEvent{});
+            play(StepEvent{});
+        } else if (settles || !simulation_.all_stand_still()) {
+            play(HoldEvent{});
         }
-        next += period_of(state.simulation);
+        next += period_of(simulation_.world());
         const LiveClock::Moment now = clock_.now();
         if (now > next) next = now;  // late: the clock goes on from here
-        post_frame_if_wanted(state);
+        post_frame_if_wanted();
         for (bool waited = false; !waited && !stopping_;) {
             std::vector<Command> commands;
             {
@@ -204,135 +320,152 @@ void LiveSession::run_simulation(State& state) {
                 });
                 commands.swap(commands_);
                 if (device_change_) {  // who asked for it waits
-                    change_device(state, *device_change_);
+                    change_device(device_change_->event, device_change_->device);
                     device_change_.reset();
                     device_changed_.notify_one();
                 }
             }
-            for (const Command& command : commands) obey(state, command);
-            if (!commands.empty()) post_frame_if_wanted(state);
+            for (const Command& command : commands) obey(command);
+            if (!commands.empty()) post_frame_if_wanted();
         }
     }
 }
 
-// Whatever the hand does meanwhile moves nothing, and it feels nothing.
-void LiveSession::hold(State& state) {
-    exchange_.hand.read(state.hand);
-    take_hold(state.simulation, state.hand);
-    exchange_.touch.post(state.felt = without_force(state.simulation.touch.model));
-}
-
-void LiveSession::step(State& state) {
-    state.step_once = false;
-    exchange_.touch.post(state.simulation.touch);
-    state.felt = state.simulation.touch.model;
-    exchange_.hand.read(state.hand);
-    const LiveClock::Moment begin = clock_.now();
-    (void)step_simulation(state.simulation, state.hand, state.felt);
-    state.readout.step_ms = std::chrono::duration<double, std::milli>(clock_.now() - begin).count();
-    ++state.readout.steps;
-}
-
-void LiveSession::obey(State& state, const Command& command) {
-    if (const auto* const settings = std::get_if<LiveSettings>(&command)) {
-        state.readout.problem.clear();
-        if (can_build_laws(settings->coupling)) {
-            scene_.coupling = settings->coupling;
-        } else {
-            state.readout.problem =
-                "eq. 2 of these numbers cannot have these slopes: the law from before stays";
-        }
-        try {
-            check_period(device_->spec(), settings->period_ms * 1e-3);
-            scene_.period_ms = settings->period_ms;
-        } catch (const LoadError& error) {
-            state.readout.problem = error.what();
-        }
-        set_coupling(scene_.coupling, state.simulation);
-        state.simulation.period_s = scene_.period_ms * 1e-3;
-        order_servo(state);
-    } else if (const auto* const view = std::get_if<ViewSettings>(&command)) {
-        state.view = *view;
-    } else if (const auto* const pause = std::get_if<Pause>(&command)) {
-        if (!orders_) hold(state);  // not what was travelled since the last look
-        state.readout.paused = pause->paused;
-        order_servo(state);
-    } else if (std::holds_alternative<StepOnce>(command)) {
-        state.readout.paused = state.step_once = true;
-        order_servo(state);
-    } else if (const auto* const anew = std::get_if<Reset>(&command)) {
-        if (anew->start_angstrom) scene_.hand.start_angstrom = anew->start_angstrom;
-        reset(state);
+void LiveSession::play(const LiveEvent& event) {
+    PlayedEvent played{event, {}};
+    for (std::size_t slot = 0; slot < devices_.size(); ++slot) {
+        servos_.exchange(slot).hand.read(poses_[slot]);
+        played.poses.push_back(poses_[slot].number);
     }
+    played.files = read_files(event);
+    simulation_.play(event, poses_);
+    if (auto* const step = std::get_if<StepEvent>(&played.event))
+        step->took_us = simulation_.world().resource<StepReport>().took_us;
+    const std::lock_guard lock(event_mutex_);
+    events_.push_back(std::move(played));
 }
 
-void LiveSession::reset(State& state) {
-    try {
-        state.simulation = load_simulation(limited_by_period(scene_));
-    } catch (const LoadError& error) {  // the files changed meanwhile: what runs, runs on
-        state.readout.problem = error.what();
+void LiveSession::obey(const Command& command) {
+    if (const auto* const view = std::get_if<ViewSettings>(&command)) {
+        view_ = *view;
         return;
     }
-    state.readout.problem.clear();
-    take_hold_anew(state);
-    order_servo(state);
+    if (const auto* const edit = std::get_if<EditDescription>(&command)) {
+        if (!building_.valid()) return make(*edit);
+        waiting_edits_.push_back(*edit);
+        return;
+    }
+    step_once_ = step_once_ || std::holds_alternative<StepOnce>(command);
+    if (std::holds_alternative<Reset>(command)) {
+        if (building_.valid()) building_.get();  // of a world that goes
+        waiting_edits_.clear();
+        settled_ = clock_.now() + settle_time;
+    }
+    play(CommandEvent{command, clock_.now() < settled_});
 }
 
-void LiveSession::change_device(State& state, const DeviceChange& change) {
+void LiveSession::make(const EditDescription& edit) {
+    const bool is_long = simulation_.takes_long(edit);
+    play(CommandEvent{edit, clock_.now() < settled_, is_long});
+    if (is_long) building_ = std::async(std::launch::async, [this] { simulation_.build_draft(); });
+}
+
+// As soon as it is built; then those that had to wait, up to the next that takes long.
+void LiveSession::adopt_edit() {
+    if (!building_.valid()) return;
+    if (building_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+    building_.get();
+    play(AdoptEvent{clock_.now() < settled_});
+    while (!building_.valid() && !waiting_edits_.empty()) {
+        make(waiting_edits_.front());
+        waiting_edits_.pop_front();
+    }
+}
+
+void LiveSession::change_device(const DeviceEvent& change, const LiveDevice& device) {
     stop_servo();
-    device_ = change.device;
-    orders_ = change.orders;
-    // What the molecule was given of the handle's travel and work stays its own.
-    ServoState fresh;
-    fresh.travel_m = servo_state_.travel_m;
-    fresh.turn = servo_state_.turn;
-    fresh.hand_energy_J = servo_state_.hand_energy_J;
-    servo_state_ = fresh;
-    take_hold_anew(state);
-    start_servo(state);
-    order_servo(state);  // or it would take one that was meant for the device before
+    devices_[change.slot] = device;
+    servos_.begin_anew();
+    settled_ = clock_.now() + settle_time;
+    play(change);
+    start_servo();
 }
 
-// Once the hand rests; until then it moves nothing.
-void LiveSession::take_hold_anew(State& state) {
-    state.settled = clock_.now() + settle_time;
-    ++restarts_;
-    state.simulation.touch.model.start = restarts_;
-    hold(state);
-}
-
-// A hand takes hold quietly; laws that are exchanged glide.
-LiveSession::ServoOrder LiveSession::build_order(const State& state) {
-    ServoOrder order{build_servo_settings(scene_, state.simulation, device_->spec())};
-    order.is_paused = orders_ && state.readout.paused;
-    SafetySettings& safety = order.settings.safety;
-    safety.starts_engaged = false;
-    limit_to(device_->spec(), safety);
-    if (order.settings.guarded) order.settings.guarded->revision = revision_++;
-    return order;
-}
-
-void LiveSession::order_servo(const State& state) {
-    ServoOrder order = build_order(state);
-    order.restarts = restarts_;
-    servo_orders_.post(order);
-}
-
-void LiveSession::post_frame_if_wanted(const State& state) {
+void LiveSession::post_frame_if_wanted() {
     if (!frame_wanted_.exchange(false)) return;
-    const auto grabbed =
-        static_cast<std::uint32_t>(grabbed_points(state.simulation).positions.size());
-    LiveFrame frame{{}, grabbed, grabbed_place(state.simulation), framed_, {}, state.readout};
-    frame.picture =
-        build_frame(state.simulation, state.simulation.touch.model, state.view, &frame.labels);
-    frame.readout.touch = state.simulation.touch.model;
-    if (const auto& flexible = state.simulation.flexible; flexible && flexible->adaptive) {
-        if (const auto& exactness = flexible->adaptive->exactness) {
-            frame.readout.error_pN = exactness->error();
-            frame.readout.effort = exactness->effort();
-        }
+    const World& world = simulation_.world();
+    if (edition_ != simulation_.edition()) {
+        edition_ = simulation_.edition();
+        atoms_ = list_atoms(world);
+    }
+    LiveFrame frame{{}, {}, atoms_, {}, framed_, {}, simulation_.readout()};
+    const std::vector<Vec3>& positions = world.resource<AtomTable>().positions;
+    frame.places.resize(positions.size());
+    std::ranges::transform(positions, frame.places.begin(), as_float);
+    std::vector<ContactModel> contacts;
+    for (const Entity hand : find_hands(world)) {
+        frame.hands.push_back(show_hand(world, hand, *atoms_));
+        contacts.push_back(frame.hands.back().contact);
+    }
+    frame.picture = build_frame(world, contacts, view_, &frame.labels);
+    frame.readout.holds_something = frame.hands.front().held.count > 0;
+    frame.readout.contact = contacts.front();
+    const AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();
+    frame.readout.error_pN = find_error_estimate(world);
+    if (adaptive && adaptive->accuracy) {
+        frame.readout.error_pN = adaptive->accuracy->error();
+        frame.readout.work_budget = adaptive->accuracy->work_budget();
     }
     frames_.post(frame);
+}
+
+// ---- the journal's thread ----------------------------------------------------------------------
+
+void LiveSession::run_recorder() {
+    constexpr std::chrono::milliseconds between{20};
+    for (bool is_last = false; !is_last;) {
+        is_last = recorder_stopping_;
+        {
+            const std::lock_guard lock(recorder_mutex_);
+            record_what_happened();
+            if (is_last && recorder_.is_recording()) {
+                try {
+                    recorder_.end();
+                } catch (const LoadError& error) {
+                    recording_problem_ = error.what();
+                }
+            }
+        }
+        if (!is_last) std::this_thread::sleep_for(between);
+    }
+}
+
+// Events first: what a tick uses was posted by one of before.
+void LiveSession::record_what_happened() {
+    std::vector<PlayedEvent> events;
+    {
+        const std::lock_guard lock(event_mutex_);
+        events.swap(events_);
+    }
+    if (journal_ticks_->dropped() > 0) {
+        recorder_.lose();
+        if (recorder_.is_recording() && recording_problem_.empty())
+            recording_problem_ =
+                "ticks are missing: the machine was too busy to keep them all, and a replay will "
+                "not be exact";
+    }
+    try {
+        for (const PlayedEvent& event : events) recorder_.add(event);
+        std::array<LiveTick, most_hands> ticks;
+        while (journal_ticks_->pop(ticks[0])) {
+            for (std::size_t slot = 1; slot < hands();)
+                slot += journal_ticks_->pop(ticks[slot]) ? 1 : 0;
+            recorder_.add(std::span(ticks).first(hands()));
+        }
+    } catch (const LoadError& error) {  // a full disk
+        recording_problem_ = error.what();
+        recorder_.give_up();
+    }
 }
 
 }  // namespace palpa

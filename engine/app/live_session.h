@@ -1,48 +1,71 @@
-// A scene that runs in real time: the servo at 1 kHz and the simulation at its declared period,
-// each on a thread of its own, and what a third one, with the window, may ask of them and see of
-// them.
+// A scene that runs in real time: the servos of all hands at 1 kHz and the simulation at its
+// declared period, each on a thread of its own, a third that keeps the journal, and what a fourth
+// one, with the window, may ask of them and see of them.
 #pragma once
 #include "app/live_clock.h"
-#include "core/mailbox.h"
 #include "core/ring.h"
 #include "haptics/device.h"
-#include "haptics/exchange.h"
 #include "haptics/hand.h"
-#include "haptics/servo.h"
 #include "render/frame_scene.h"
 #include "scene/description.h"
 #include "session/commands.h"
-#include "simulation/simulation.h"
+#include "session/live_simulation.h"
+#include "session/servo_bank.h"
+#include "session/session_recorder.h"
+#include "simulation/atom_directory.h"
 #include "view/build_frame.h"
 
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <future>
+#include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
 
 namespace palpa {
 
-// What the window shows, all of one moment between two steps.
-struct LiveFrame {
-    FrameScene picture;                    // its camera is the window's business
-    std::uint32_t grabbed_atoms = 0;       // what is picked below this is in hand
-    Vec3 grabbed_angstrom = Vec3::Zero();  // the reference atom in hand, in the world
-    AtomRange framed;                      // what the first view frames; none: everything
-    std::vector<ViewLabel> labels;         // of the picture
-    Readout readout;
+// A device in a hand. `orders`: of an emulated device's hand; null where it cannot stand still.
+struct LiveDevice {
+    Device* device = nullptr;
+    HandOrders* orders = nullptr;
 };
 
-// The device must outlive the session, and belongs to its servo thread meanwhile.
+// What the window shows of a hand.
+struct LiveHand {
+    AtomRange held;                        // atoms in hand, as they are picked; none: it is empty
+    Vec3 grabbed_angstrom = Vec3::Zero();  // the reference atom in hand, in the world
+    std::string held_address;              // as an edit takes it; empty: nothing is held
+    ContactModel contact;
+};
+
+// What the window shows, all of one moment between two steps.
+struct LiveFrame {
+    FrameScene picture;  // its camera is the window's business
+    std::vector<LiveHand> hands;
+    std::shared_ptr<const AtomDirectory> atoms;  // what picks mean
+    std::vector<glm::vec3> places;               // Å, of all atoms, drawn or not
+    AtomRange framed;                            // what the first view frames; none: everything
+    std::vector<ViewLabel> labels;               // of the picture
+    Readout readout;                             // its contact is the first hand's
+};
+
+// The devices must outlive the session, and belong to its servo thread meanwhile.
 class LiveSession {
 public:
-    // Loads the scene and starts both threads. `orders`: of an emulated device's hand; null where
-    // the device cannot stand still. `clock`: null is the machine's. Throws LoadError, and where
-    // the device must not be run with the scene's period (check_period).
+    // Loads the scene and starts all threads. `devices` are of the hands of the scene, in their
+    // order; hands beyond these stand still. `clock`: null is the machine's. Throws LoadError, and
+    // where a device must not be run with the scene's period (check_period).
+    LiveSession(const SceneDescription& scene, const ViewSettings& view,
+                std::span<const LiveDevice> devices, LiveClock* clock = nullptr);
+    // With one device.
     LiveSession(const SceneDescription& scene, const ViewSettings& view, Device& device,
                 HandOrders* orders, LiveClock* clock = nullptr);
     LiveSession(const LiveSession&) = delete;
@@ -51,74 +74,63 @@ public:
 
     void send(const Command& command);
 
-    // Puts another device in the hand's place, which takes hold of the molecule where it is: no
+    // Puts another device in a hand's place, which takes hold of the molecule where it is: no
     // force, then quiet cycles and ramp. Waits for the step that is under way; the device before is
     // the caller's again. Throws LoadError, and changes nothing, where the other one must not be
     // run with the present period.
-    void change_device(Device& device, HandOrders* orders);
+    void change_device(Device& device, HandOrders* orders, std::size_t slot = 0);
 
     // Where a live hand wants the handle, m.
-    void move_hand(const Vec3& target_m);
+    void move_hand(const Vec3& target_m, std::size_t slot = 0);
 
     // The newest frame; asks for the next one. False if none came since the last call.
     bool read_frame(LiveFrame& frame);
 
-    // Every servo tick in its order, as long as somebody takes them out.
-    bool pop_tick(ServoTick& tick) noexcept { return ticks_.pop(tick); }
+    // Every servo tick in its order, as long as somebody takes them out: of all hands, by slot.
+    bool pop_ticks(std::span<ServoTick> ticks) noexcept;
+    bool pop_tick(ServoTick& tick) noexcept;  // of the first hand
+    std::size_t hands() const noexcept { return devices_.size(); }
 
     ServoHealth servo_health() const noexcept;
 
+    // Records from now on into the folder, with the journal since the session began. Throws
+    // LoadError where a Recording would, or where something is recorded already.
+    void begin_recording(const std::filesystem::path& folder, bool overwrites = false);
+    // Throws LoadError where not all could be written.
+    void end_recording();
+    // Seconds that are recorded so far; nothing where nothing is.
+    std::optional<double> recorded_s();
+
 private:
-    // What only the simulation's thread touches.
-    struct State {
-        Simulation simulation;
-        ViewSettings view;
-        HandPose hand;
-        TouchModel felt;  // by the hand now; the last step's answer is the simulation's
-        bool step_once = false;
-        LiveClock::Moment settled{};  // after a reset, until the hand rests
-        Readout readout;
-    };
+    class Line;
 
-    // What the servo is told.
-    struct ServoOrder {
-        ServoSettings settings;
-        std::uint32_t restarts = 0;  // another number ends a latched stop
-        bool is_paused = false;      // on a device that stands still
-    };
-
-    struct DeviceChange {
-        Device* device;
-        HandOrders* orders;
-    };
-
-    void start_servo(const State& state);
+    void start_servo();
     void stop_servo();
-    void run_servo(ServoOrder order);
-    void run_simulation(State& state);
-    void step(State& state);
-    void hold(State& state);
-    void obey(State& state, const Command& command);
-    void reset(State& state);
-    void change_device(State& state, const DeviceChange& change);
-    void take_hold_anew(State& state);
-    ServoOrder build_order(const State& state);
-    void order_servo(const State& state);
-    void post_frame_if_wanted(const State& state);
+    void run_servo();
+    void run_simulation();
+    void run_recorder();
+    void play(const LiveEvent& event);
+    void obey(const Command& command);
+    void make(const EditDescription& edit);
+    void adopt_edit();
+    void change_device(const DeviceEvent& change, const LiveDevice& device);
+    void post_frame_if_wanted();
+    void record_what_happened();
 
-    static constexpr std::size_t ring_size = 8192;  // 8 s of ticks
+    static constexpr std::size_t ring_size = 8192;  // 4 s or more of ticks
+    template <class Value>
+    using Ticks = Ring<Value, ring_size>;
 
     LiveClock machine_clock_;
     LiveClock& clock_;
-    SceneDescription scene_;
-    Device* device_;
-    HandOrders* orders_;
-    HandOrder order_;  // as posted last
-    Exchange exchange_;
-    Mailbox<ServoOrder> servo_orders_;
-    std::uint32_t restarts_ = 0, revision_ = 0;
+    std::vector<LiveDevice> devices_;
+    std::vector<HandOrder> orders_;  // as posted last
+    ServoBank servos_;
+    std::unique_ptr<Line> line_;
+    LiveSimulation simulation_;
+    std::unique_ptr<Ticks<ServoTick>> ticks_;
+    std::unique_ptr<Ticks<LiveTick>> journal_ticks_;
     Mailbox<LiveFrame> frames_;
-    Ring<ServoTick, ring_size> ticks_;
     std::atomic<bool> frame_wanted_{true};
     std::atomic<std::uint64_t> overruns_{0};
     std::atomic<bool> real_time_{false}, locked_{false};
@@ -126,14 +138,32 @@ private:
     std::mutex mutex_;  // of the commands
     std::condition_variable has_command_;
     std::vector<Command> commands_;
+    struct DeviceChange {
+        DeviceEvent event;
+        LiveDevice device;
+    };
     std::optional<DeviceChange> device_change_;  // until it is done
     std::condition_variable device_changed_;
-    std::atomic<bool> stopping_{false}, servo_stopping_{false};
+    std::atomic<bool> stopping_{false}, servo_stopping_{false}, recorder_stopping_{false};
 
-    State state_;
+    // The simulation's thread's own.
+    ViewSettings view_;
+    std::vector<HandPose> poses_;
+    std::shared_ptr<const AtomDirectory> atoms_;
+    std::uint64_t edition_ = 0;
+    bool step_once_ = false;
+    LiveClock::Moment settled_{};  // after a reset, until the hand rests
     AtomRange framed_;
-    ServoState servo_state_;  // the servo's, while it runs
-    std::thread simulation_thread_, servo_thread_;
+    std::future<void> building_;  // of a long edit
+    std::deque<EditDescription> waiting_edits_;
+
+    std::mutex event_mutex_;
+    std::vector<PlayedEvent> events_;  // for the journal
+    std::mutex recorder_mutex_;
+    SessionRecorder recorder_;
+    std::string recording_problem_;  // since the last call of end_recording()
+
+    std::thread simulation_thread_, servo_thread_, recorder_thread_;
 };
 
 }  // namespace palpa

@@ -1,12 +1,12 @@
 // The sandbox in a window: draws a running scene, and lets a person take part.
 #pragma once
 #include "core/files.h"
+#include "experiments/study_course.h"
 #include "haptics/device.h"
 #include "haptics/hand.h"
 #include "scene/description.h"
 #include "session/commands.h"
 #include "session/statistics.h"
-#include "session/study_course.h"
 #include "ui/overlay.h"
 
 #include <cstdint>
@@ -24,6 +24,13 @@ struct WindowDevice {
     std::unique_ptr<Device> device;
     HandOrders* orders = nullptr;  // of one that can stand still
     double mouse_reach_m = 0;      // how far ahead of its handle a mouse may be; 0: none leads it
+};
+
+// The same of somebody else's, which outlives the window.
+struct LedDevice {
+    Device* device = nullptr;  // null: there is none
+    HandOrders* orders = nullptr;
+    double mouse_reach_m = 0;
 };
 
 // From what a person may choose. None where `open` is empty.
@@ -56,9 +63,12 @@ struct WindowOptions {
     std::optional<std::filesystem::path> last_shot{};  // taken after `last_shot_s`, then it quits
     Existing last_shot_existing = Existing::Refuse;
     double last_shot_s = 5;
-    HandOrders* orders = nullptr;  // of an emulated device's hand
-    double mouse_reach_m = 0;      // as of WindowDevice
-    PadLink* pads = nullptr;       // where game pads are posted
+    HandOrders* orders = nullptr;                   // of an emulated device's hand
+    double mouse_reach_m = 0;                       // as of WindowDevice
+    LedDevice second{};                             // in the scene's second hand, where it has one
+    std::optional<std::filesystem::path> record{};  // folder, from the first moment on
+    bool overwrites = false;                        // a recording in it
+    PadLink* pads = nullptr;                        // where game pads are posted
     DeviceMenu devices{};
     SoundChoice sound{};
     TextScaleChoice text_scale{};

@@ -2,66 +2,35 @@
 
 #include "core/load_error.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <deque>
 #include <optional>
 #include <system_error>
 #include <utility>
-#ifndef _WIN32
-#include <sys/file.h>
-#endif
 
 namespace palpa {
 namespace {
 
 namespace fs = std::filesystem;
 
-#ifdef _WIN32
-constexpr int read_flags = O_RDONLY | O_BINARY, write_flags = O_WRONLY | O_BINARY, no_links = 0;
-#else
-// A pipe that nobody writes into would be waited for when it is opened; it is refused afterwards.
-constexpr int read_flags = O_RDONLY | O_CLOEXEC | O_NONBLOCK, write_flags = O_WRONLY | O_CLOEXEC,
-              no_links = O_NOFOLLOW;
-#endif
-
 constexpr const char* is_there = "is there already; expected another name, or --overwrite";
 
-// The reason of the last failed call, in the system's words.
-std::string last_reason() { return std::generic_category().message(errno); }
-
-// Closes what it holds.
-class Descriptor {
-public:
-    explicit Descriptor(int value) : value_(value) {}
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(const Descriptor&) = delete;
-    ~Descriptor() {
-        if (value_ >= 0) ::close(value_);
-    }
-    int get() const noexcept { return value_; }
-
-private:
-    int value_;
-};
-
-int open_new(const fs::path& path) {
-    return ::open(path.string().c_str(), write_flags | O_CREAT | O_EXCL | no_links, 0666);
+[[noreturn]] void refuse_write(const fs::path& path, const std::error_code& error) {
+    throw LoadError({path.string()}, "cannot be written: " + error.message());
 }
 
-void write_all(int descriptor, std::string_view text, const fs::path& path) {
-    while (!text.empty()) {
-        const std::size_t most = std::min(text.size(), std::size_t{1} << 24);
-        const auto written = ::write(descriptor, text.data(), most);
-        if (written < 0 && errno == EINTR) continue;
-        if (written < 0) throw LoadError({path.string()}, "cannot be written: " + last_reason());
-        text.remove_prefix(static_cast<std::size_t>(written));
-    }
+void write_all(const File& file, std::string_view text, const fs::path& path) {
+    std::error_code error;
+    file.write(text, error);
+    if (error) refuse_write(path, error);
+}
+
+void close_all(File& file, const fs::path& path) {
+    std::error_code error;
+    file.close(error);
+    if (error) refuse_write(path, error);
 }
 
 // A device or a pipe, which is written into: a draft moved there would take its place.
@@ -78,9 +47,10 @@ fs::file_status status_of(const fs::path& path) {
 }
 
 void write_into(const fs::path& path, std::string_view text) {
-    const Descriptor stream(::open(path.string().c_str(), write_flags));
-    if (stream.get() < 0) throw LoadError({path.string()}, "cannot be written: " + last_reason());
-    write_all(stream.get(), text, path);
+    std::error_code error;
+    const File stream(path, FileUse::Write, error);
+    if (error) refuse_write(path, error);
+    write_all(stream, text, path);
 }
 
 // A whole file beside the one that it will become; gone unless moved there.
@@ -88,29 +58,26 @@ class Draft {
 public:
     explicit Draft(const fs::path& path) : path_(path) {
         constexpr int most_drafts = 1000;  // of other programs, or left by one that was killed
+        std::error_code error;
         for (int number = 0; number < most_drafts; ++number) {
             draft_ = path;
             draft_ += number == 0 ? ".draft" : fmt::format(".draft{}", number);
-            descriptor_ = open_new(draft_);
-            if (descriptor_ >= 0 || errno != EEXIST) break;
+            file_ = File(draft_, FileUse::Create, error);
+            if (error != std::errc::file_exists) break;
         }
-        if (descriptor_ < 0) {
-            throw LoadError({path.string()}, "cannot be written: " + last_reason());
-        }
+        if (error) refuse_write(path, error);
     }
     Draft(const Draft&) = delete;
     Draft& operator=(const Draft&) = delete;
     ~Draft() {
-        if (descriptor_ >= 0) ::close(descriptor_);
         std::error_code ignored;
+        file_.close(ignored);  // some systems remove no open file
         fs::remove(draft_, ignored);
     }
 
     void write(std::string_view text) {
-        write_all(descriptor_, text, path_);
-        if (::close(std::exchange(descriptor_, -1)) != 0) {
-            throw LoadError({path_.string()}, "cannot be written: " + last_reason());
-        }
+        write_all(file_, text, path_);
+        close_all(file_, path_);
     }
 
     void move(Existing existing) const {
@@ -122,12 +89,12 @@ public:
             // A file system without hard links.
         }
         fs::rename(draft_, path_, error);
-        if (error) throw LoadError({path_.string()}, "cannot be written: " + error.message());
+        if (error) refuse_write(path_, error);
     }
 
 private:
     fs::path path_, draft_;
-    int descriptor_ = -1;
+    File file_;
 };
 
 std::string size_text(std::uintmax_t bytes) {
@@ -139,26 +106,26 @@ std::string size_text(std::uintmax_t bytes) {
                                                  size_text(most_file_bytes)));
 }
 
-// Appends up to `most` bytes; false where reading failed.
-bool read_some(int descriptor, std::size_t most, std::string& content) {
+// Appends up to `most` bytes.
+void read_some(const File& file, std::size_t most, std::string& content, std::error_code& error) {
     std::array<char, 1 << 16> part{};
     while (most > 0) {
-        const auto got = ::read(descriptor, part.data(), std::min(most, part.size()));
-        if (got < 0 && errno == EINTR) continue;
-        if (got < 0) return false;
-        if (got == 0) return true;
-        content.append(part.data(), static_cast<std::size_t>(got));
-        most -= static_cast<std::size_t>(got);
+        const std::size_t got =
+            file.read(std::span(part).first(std::min(most, part.size())), error);
+        if (got == 0) return;  // or an error
+        content.append(part.data(), got);
+        most -= got;
     }
-    return true;
 }
 
 // Of a regular file that is no link; empty otherwise.
 std::string beginning_of(const fs::path& path) {
     std::string beginning;
     if (!fs::is_regular_file(status_of(path))) return beginning;
-    const Descriptor file(::open(path.string().c_str(), read_flags | no_links));
-    if (file.get() < 0 || !read_some(file.get(), 4096, beginning)) beginning.clear();
+    std::error_code error;
+    const File file(path, FileUse::ReadHere, error);
+    if (!error) read_some(file, 4096, beginning, error);
+    if (error) beginning.clear();
     return beginning;
 }
 
@@ -173,23 +140,17 @@ std::string read_text_file(const fs::path& path) {
     if (!fs::is_regular_file(path, error)) {
         throw LoadError({path.string()}, "is no regular file, one was expected");
     }
-    const Descriptor file(::open(path.string().c_str(), read_flags));
-    struct stat status{};
-    if (file.get() < 0 || ::fstat(file.get(), &status) != 0) {
-        throw LoadError({path.string()}, "cannot be read: " + last_reason());
-    }
-    if (!S_ISREG(status.st_mode)) {
-        throw LoadError({path.string()}, "is no regular file, one was expected");
-    }
-    const auto bytes =
-        static_cast<std::uintmax_t>(std::max<decltype(status.st_size)>(status.st_size, 0));
-    if (bytes > most_file_bytes) refuse_size(path, size_text(bytes));
+    const File file(path, FileUse::Read, error);
+    std::optional<std::uintmax_t> bytes;
+    if (!error) bytes = file.find_size(error);
+    if (error) throw LoadError({path.string()}, "cannot be read: " + error.message());
+    if (!bytes) throw LoadError({path.string()}, "is no regular file, one was expected");
+    if (*bytes > most_file_bytes) refuse_size(path, size_text(*bytes));
     std::string content;
-    content.reserve(static_cast<std::size_t>(bytes));
+    content.reserve(static_cast<std::size_t>(*bytes));
     // One more than may be: what grows meanwhile, or has no size before it is read, ends there.
-    if (!read_some(file.get(), most_file_bytes + 1, content)) {
-        throw LoadError({path.string()}, "cannot be read: " + last_reason());
-    }
+    read_some(file, most_file_bytes + 1, content, error);
+    if (error) throw LoadError({path.string()}, "cannot be read: " + error.message());
     if (content.size() > most_file_bytes)
         refuse_size(path, "more than " + size_text(most_file_bytes));
     return content;
@@ -253,45 +214,32 @@ Existing check_output(const fs::path& path, std::string_view mark, bool overwrit
     return fs::exists(status) ? Existing::Replace : Existing::Refuse;
 }
 
-NewFile::NewFile(fs::path path) : path_(std::move(path)), descriptor_(open_new(path_)) {
-    if (descriptor_ >= 0) return;
-    if (errno == EEXIST) throw LoadError({path_.string()}, is_there);
-    throw LoadError({path_.string()}, "cannot be written: " + last_reason());
-}
-
-NewFile::~NewFile() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-}
-
-void NewFile::write(std::string_view text) { write_all(descriptor_, text, path_); }
-
-void NewFile::close() {
-    if (descriptor_ < 0 || ::close(std::exchange(descriptor_, -1)) == 0) return;
-    throw LoadError({path_.string()}, "cannot be written: " + last_reason());
-}
-
-#ifdef _WIN32
-FolderLock::FolderLock(const fs::path&) {}
-#else
-FolderLock::FolderLock(const fs::path& folder)
-    : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-    // Other failures are of file systems that know no locks.
-    if (descriptor_ < 0 || ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) {
-        return;
+std::vector<fs::path> list_folder(const fs::path& folder, std::size_t most) {
+    std::vector<fs::path> paths;
+    std::error_code error;
+    for (fs::directory_iterator entry(folder, error), end;
+         !error && entry != end && paths.size() < most; entry.increment(error)) {
+        paths.push_back(entry->path());
     }
-    ::close(descriptor_);
+    std::sort(paths.begin(), paths.end());
+    return paths;
+}
+
+NewFile::NewFile(fs::path path) : path_(std::move(path)) {
+    std::error_code error;
+    file_ = File(path_, FileUse::Create, error);
+    if (error == std::errc::file_exists) throw LoadError({path_.string()}, is_there);
+    if (error) refuse_write(path_, error);
+}
+
+void NewFile::write(std::string_view text) { write_all(file_, text, path_); }
+
+void NewFile::close() { close_all(file_, path_); }
+
+FolderLock::FolderLock(const fs::path& folder) : folder_(folder) {
+    if (!folder_.is_taken()) return;
     throw LoadError({folder.string()},
                     "another run is writing into this folder; expected another folder");
-}
-#endif
-
-FolderLock::~FolderLock() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-}
-
-fs::path find_program_folder() {
-    std::error_code error;
-    return fs::read_symlink("/proc/self/exe", error).parent_path();
 }
 
 }  // namespace palpa

@@ -1,11 +1,16 @@
 // Whole text files, in and out, with errors that name the file. Nothing that is there is replaced
 // unless the caller says so, and links are never written through.
 #pragma once
+#include "platform/file.h"
+
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace palpa {
 
@@ -42,20 +47,24 @@ Existing check_output(const std::filesystem::path& path, std::string_view mark, 
 bool has_mark(const std::filesystem::path& path, std::string_view mark);
 bool begins_with(const std::filesystem::path& path, std::string_view text);
 
+// What a folder holds, sorted by name, at most `most`; nothing where it cannot be read.
+std::vector<std::filesystem::path> list_folder(
+    const std::filesystem::path& folder,
+    std::size_t most = std::numeric_limits<std::size_t>::max());
+
 // A file that was not there before, written piece by piece. All throw LoadError.
 class NewFile {
 public:
     explicit NewFile(std::filesystem::path path);
     NewFile(const NewFile&) = delete;
     NewFile& operator=(const NewFile&) = delete;
-    ~NewFile();
 
     void write(std::string_view text);
     void close();  // tells what the system could not write
 
 private:
     std::filesystem::path path_;
-    int descriptor_;
+    File file_;
 };
 
 // As long as this lives, no other run of the program gets the same folder to write into: it throws
@@ -65,13 +74,9 @@ public:
     explicit FolderLock(const std::filesystem::path& folder);
     FolderLock(const FolderLock&) = delete;
     FolderLock& operator=(const FolderLock&) = delete;
-    ~FolderLock();
 
 private:
-    int descriptor_ = -1;
+    LockedFolder folder_;
 };
-
-// The folder of the running program; empty where the system does not say.
-std::filesystem::path find_program_folder();
 
 }  // namespace palpa

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace palpa {
 
@@ -20,6 +21,18 @@ public:
         }
         values_[at % Size] = value;
         pushed_.store(at + 1, std::memory_order_release);
+        return true;
+    }
+
+    // All of them or none.
+    bool push(std::span<const Value> values) noexcept {
+        const std::uint64_t at = pushed_.load(std::memory_order_relaxed);
+        if (at - popped_.load(std::memory_order_acquire) + values.size() > Size) {
+            dropped_.fetch_add(values.size(), std::memory_order_relaxed);
+            return false;
+        }
+        for (std::size_t i = 0; i < values.size(); ++i) values_[(at + i) % Size] = values[i];
+        pushed_.store(at + values.size(), std::memory_order_release);
         return true;
     }
 

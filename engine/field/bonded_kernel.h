@@ -1,6 +1,6 @@
 // Springs, angles and torsions in double, many of one kind beside each other, as wide as the
-// processor at hand can: the arithmetic of forces/fast_bonded.h. Its slow twin is forces/bonded.h,
-// which says what happens where atoms coincide or stand in line.
+// processor at hand can: the arithmetic of forces/fast_bonded.h. Its reference implementation is
+// forces/bonded.h, which says what happens where atoms coincide or stand in line.
 #pragma once
 #include <array>
 #include <cstddef>

@@ -242,7 +242,7 @@ public:
     }
 
 private:
-    void touch(std::uint32_t row_cluster) {
+    void contact(std::uint32_t row_cluster) {
         if (memory_.is_touched[row_cluster] != 0) return;
         memory_.is_touched[row_cluster] = 1;
         memory_.touched.push_back(row_cluster);
@@ -253,7 +253,7 @@ private:
         memory_.touched.clear();
         for (const std::uint32_t cluster : memory_.moved) {
             memory_.tree.visit_near(cluster, 0, cluster + 1, reach2_,
-                                    [&](std::uint32_t other) { touch(other); });
+                                    [&](std::uint32_t other) { contact(other); });
         }
     }
 
@@ -272,7 +272,7 @@ private:
             const std::uint32_t rows =
                 find_near_rows(tree.places(row_cluster), tree.places(cluster), reach2_);
             if (rows == 0) return;
-            touch(row_cluster);
+            contact(row_cluster);
             memory_.found.push_back({row_cluster, cluster, rows});
             ++memory_.slots[row_cluster];
         };

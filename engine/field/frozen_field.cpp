@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 // From here on once for each kind of processor.
 #undef HWY_TARGET_INCLUDE
@@ -118,9 +119,82 @@ HWY_INLINE Row load_row(const FrozenPoints::Column& column, std::size_t at) {
                       HWY_ATTR { return hn::Load(floats, column.data() + at + k * lane_count); });
 }
 
+// Nothing beside the sums of a frozen field.
+struct NothingFollows {
+    HWY_INLINE void begin_point(std::size_t /*i*/) {}
+    HWY_INLINE void add(std::size_t /*sixteen*/, std::size_t /*at*/, const std::array<V, 3>& /*d*/,
+                        V /*gradient*/, V /*curvature*/) {}
+    HWY_INLINE void end_part() {}
+};
+
+// What points that follow add, of one point of the group with the others. With D how far the one
+// goes away from the other per Å of each coordinate, a pair's force f and stiffness k are D^T f and
+// D^T k D along the coordinates.
+class Following {
+public:
+    explicit HWY_INLINE Following(const FollowingPoints& points) : points_(points) {
+        for (W& x : total_) x = hn::Zero(doubles);
+    }
+
+    HWY_INLINE void begin_point(std::size_t i) {
+        for (std::size_t k = 0; k < 9; ++k)
+            own_[k] = all(static_cast<float>(points_.group[i].data()[k]));
+        for (V& x : part_) x = hn::Zero(floats);
+    }
+
+    HWY_INLINE void add(std::size_t sixteen, std::size_t at, const std::array<V, 3>& d, V gradient,
+                        V curvature) {
+        const std::array<FrozenPoints::Column, 9>& others = points_.sixteens[sixteen];
+        std::array<V, 9> D;
+        for (std::size_t k = 0; k < 9; ++k)
+            D[k] = hn::Sub(own_[k], hn::Load(floats, others[k].data() + at));
+        const auto product = [&](const V* a, const V* b) HWY_ATTR {
+            return hn::MulAdd(a[2], b[2], hn::MulAdd(a[1], b[1], hn::Mul(a[0], b[0])));
+        };
+        std::array<V, 3> along;
+        for (std::size_t c = 0; c < 3; ++c) {
+            along[c] = product(d.data(), D.data() + 3 * c);
+            part_[c] = hn::MulAdd(gradient, along[c], part_[c]);
+        }
+        const V third = hn::Mul(all(3), curvature);
+        std::size_t k = 3;
+        for (std::size_t c = 0; c < 3; ++c) {
+            const V bent = hn::Mul(third, along[c]);
+            for (std::size_t e = c; e < 3; ++e, ++k) {
+                part_[k] = hn::MulAdd(bent, along[e], part_[k]);
+                part_[k] =
+                    hn::NegMulAdd(gradient, product(D.data() + 3 * c, D.data() + 3 * e), part_[k]);
+            }
+        }
+    }
+
+    HWY_INLINE void end_part() {
+        for (std::size_t k = 0; k < 9; ++k) {
+            total_[k] = hn::Add(total_[k], both_halves(part_[k]));
+            part_[k] = hn::Zero(floats);
+        }
+    }
+
+    void write(FollowingJobSum& sum) const {
+        std::size_t k = 3;
+        for (Eigen::Index c = 0; c < 3; ++c) {
+            sum.along[c] = sum_of(total_[static_cast<std::size_t>(c)]);
+            for (Eigen::Index e = c; e < 3; ++e, ++k)
+                sum.slope(c, e) = sum.slope(e, c) = sum_of(total_[k]);
+        }
+    }
+
+private:
+    const FollowingPoints& points_;
+    std::array<V, 9> own_, part_;
+    std::array<W, 9> total_;
+};
+
 // d from the environment's points to the group's: as in field/pair_field.cpp.
+template <class Follow>
 HWY_INLINE void add_pairs(const Point& point, const FrozenPoints& others, std::size_t at,
-                          const Row& epsilon12, const Row& rmin, Nearest& nearest, Partial& sum) {
+                          const Row& epsilon12, const Row& rmin, Nearest& nearest, Partial& sum,
+                          std::size_t sixteen, Follow& follow) {
     const auto difference = [&](V own_high, V own_low, std::size_t axis) HWY_ATTR {
         const Row high = load_row(others.high[axis], at), low = load_row(others.low[axis], at);
         return row_of([&](std::size_t k) HWY_ATTR {
@@ -170,15 +244,19 @@ HWY_INLINE void add_pairs(const Point& point, const FrozenPoints& others, std::s
         sum.kyy = hn::MulAdd(cy, dy[k], sum.kyy);
         sum.kyz = hn::MulAdd(cy, dz[k], sum.kyz);
         sum.kzz = hn::MulAdd(cz, dz[k], sum.kzz);
+        follow.add(sixteen, at + k * lane_count, {dx[k], dy[k], dz[k]}, gradient[k], curvature[k]);
     }
 }
 
 // Sixteens of points between two sums in double.
 constexpr std::size_t most_sixteens = 64 * lane_count / 16 > 0 ? 64 * lane_count / 16 : 1;
 
-// `motion`: from where the group was to where it is as seen from the field's origin.
-FrozenJobSum sum_field(const FrozenField& field, std::span<const Vec3> group,
-                       const RigidMotion& motion) {
+// `motion`: from where the group was to where it is as seen from the field's origin. `points`: the
+// field's, or these elsewhere.
+template <class Follow>
+HWY_INLINE FrozenJobSum sum_pairs(const FrozenField& field, std::span<const FrozenPoints> points,
+                                  std::span<const Vec3> group, const RigidMotion& motion,
+                                  Follow& follow) {
     Total total;
     Nearest nearest;
     for (std::size_t i = 0; i < group.size(); ++i) {
@@ -191,22 +269,22 @@ FrozenJobSum sum_field(const FrozenField& field, std::span<const Vec3> group,
                           all(low.x()),    all(low.y()),       all(low.z()),
                           all(own.charge), all(own.epsilon12), all(own.half_rmin)};
         const FrozenNumbers* const numbers =
-            own.row < 0
-                ? nullptr
-                : field.numbers.data() + static_cast<std::size_t>(own.row) * field.points.size();
-        for (std::size_t p = 0; p < field.points.size();) {
-            const std::size_t end = std::min(p + most_sixteens, field.points.size());
+            own.row < 0 ? nullptr
+                        : field.numbers.data() + static_cast<std::size_t>(own.row) * points.size();
+        follow.begin_point(i);
+        for (std::size_t p = 0; p < points.size();) {
+            const std::size_t end = std::min(p + most_sixteens, points.size());
             Partial part;
             if (numbers) {
                 for (; p < end; ++p) {
                     for (std::size_t at = 0; at < 16; at += abreast * lane_count) {
-                        add_pairs(point, field.points[p], at, load_row(numbers[p].epsilon12, at),
-                                  load_row(numbers[p].rmin, at), nearest, part);
+                        add_pairs(point, points[p], at, load_row(numbers[p].epsilon12, at),
+                                  load_row(numbers[p].rmin, at), nearest, part, p, follow);
                     }
                 }
             } else {
                 for (; p < end; ++p) {
-                    const FrozenPoints& others = field.points[p];
+                    const FrozenPoints& others = points[p];
                     for (std::size_t at = 0; at < 16; at += abreast * lane_count) {
                         const Row epsilon = load_row(others.sqrt_epsilon, at);
                         const Row radius = load_row(others.half_rmin, at);
@@ -216,17 +294,34 @@ FrozenJobSum sum_field(const FrozenField& field, std::span<const Vec3> group,
                                   row_of([&](std::size_t k) HWY_ATTR {
                                       return hn::Add(point.half_rmin, radius[k]);
                                   }),
-                                  nearest, part);
+                                  nearest, part, p, follow);
                     }
                 }
             }
             total.add(part, place);
+            follow.end_part();
         }
         total.end_point();
     }
     FrozenJobSum result{total.sum(), hn::GetLane(hn::MinOfLanes(floats, nearest.r2))};
     result.sum.clearance = hn::GetLane(hn::MinOfLanes(floats, nearest.clearance));
     return result;
+}
+
+FrozenJobSum sum_field(const FrozenField& field, std::span<const Vec3> group,
+                       const RigidMotion& motion) {
+    NothingFollows nothing;
+    return sum_pairs(field, field.points, group, motion, nothing);
+}
+
+// Of points that are where they are in `memory`, the group's as seen from the field's origin.
+FollowingJobSum sum_following(const FrozenField& field, const FollowingPoints& points,
+                              const FollowingMemory& memory) {
+    Following following(points);
+    FollowingJobSum sum;
+    sum.of_pairs = sum_pairs(field, memory.points, memory.group, {}, following);
+    following.write(sum);
+    return sum;
 }
 
 }  // namespace
@@ -238,6 +333,7 @@ namespace palpa {
 namespace {
 
 HWY_EXPORT(sum_field);
+HWY_EXPORT(sum_following);
 
 FrozenField::Points copy_points(const FieldPoints& points) {
     const auto copy = [](const auto& span) { return std::vector(span.begin(), span.end()); };
@@ -255,6 +351,15 @@ Vec3 middle_of(std::span<const Vec3> positions) noexcept {
     return 0.5 * (low + high);
 }
 
+// Of one of sixteen, from the origin.
+void set_place(const Vec3& place, std::size_t k, FrozenPoints& points) noexcept {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double x = place(static_cast<Eigen::Index>(axis)), high = rounded_to_grid(x);
+        points.high[axis][k] = static_cast<float>(high);
+        points.low[axis][k] = static_cast<float>(x - high);
+    }
+}
+
 void fill_points(FrozenField& field) {
     const FrozenField::Points& all = field.environment;
     field.points.assign((all.positions.size() + 15) / 16, {});
@@ -266,12 +371,7 @@ void fill_points(FrozenField& field) {
             for (auto& high : points.high) high[k] = 4e4F;
             continue;
         }
-        const Vec3 place = all.positions[j] - field.origin;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const double x = place(static_cast<Eigen::Index>(axis)), high = rounded_to_grid(x);
-            points.high[axis][k] = static_cast<float>(high);
-            points.low[axis][k] = static_cast<float>(x - high);
-        }
+        set_place(all.positions[j] - field.origin, k, points);
         points.charge[k] = static_cast<float>(all.charge[j]);
         points.sqrt_epsilon[k] = static_cast<float>(all.sqrt_epsilon[j]);
         points.half_rmin[k] = static_cast<float>(all.half_rmin[j]);
@@ -279,7 +379,7 @@ void fill_points(FrozenField& field) {
 }
 
 const ReplacedPair* find_replaced(const FrozenField& field, std::uint32_t a, std::uint32_t b) {
-    // The last one counts, as for the twin.
+    // The last one counts, as for the reference.
     const auto found =
         std::find_if(field.replaced.rbegin(), field.replaced.rend(), [&](const ReplacedPair& pair) {
             return (pair.a == a && pair.b == b) || (pair.a == b && pair.b == a);
@@ -344,19 +444,22 @@ FieldPoints view(const FrozenField::Points& points, std::span<const Vec3> positi
             part(points.type)};
 }
 
-double find_clearance(const FrozenField& field, std::size_t i, const Vec3& place) noexcept {
+double find_rmin(const FrozenField& field, std::size_t i, std::size_t j) noexcept {
     const FrozenField::Points &own = field.group_numbers, &others = field.environment;
+    const ReplacedPair* const pair =
+        field.replaced.empty() ? nullptr : find_replaced(field, own.type[i], others.type[j]);
+    return pair ? pair->rmin : own.half_rmin[i] + others.half_rmin[j];
+}
+
+double find_clearance(const FrozenField& field, std::size_t i, const Vec3& place) noexcept {
+    const std::vector<Vec3>& others = field.environment.positions;
     double clearance = std::numeric_limits<double>::infinity();
-    for (std::size_t j = 0; j < others.positions.size(); ++j) {
-        const ReplacedPair* const pair =
-            field.replaced.empty() ? nullptr : find_replaced(field, own.type[i], others.type[j]);
-        const double rmin = pair ? pair->rmin : own.half_rmin[i] + others.half_rmin[j];
-        clearance = std::min(clearance, (place - others.positions[j]).norm() - rmin);
-    }
+    for (std::size_t j = 0; j < others.size(); ++j)
+        clearance = std::min(clearance, (place - others[j]).norm() - find_rmin(field, i, j));
     return clearance;
 }
 
-// Point by point by the twin.
+// Point by point by the reference.
 FrozenSum evaluate_in_double(const FrozenField& field, std::span<const Vec3> group,
                              const RigidMotion& motion) noexcept {
     FrozenSum sum;
@@ -374,6 +477,47 @@ FrozenSum evaluate_in_double(const FrozenField& field, std::span<const Vec3> gro
         sum.clearance = std::min(sum.clearance, find_clearance(field, i, place));
     }
     return sum;
+}
+
+// Pair by pair by the reference, of points that are where they are in `memory`, the group's as seen
+// from the field's origin.
+FollowingSum evaluate_following_in_double(const FrozenField& field,
+                                          const FollowingPoints& following,
+                                          const FollowingMemory& memory) noexcept {
+    FollowingSum result;
+    FrozenSum& sum = result.sum;
+    for (std::size_t i = 0; i < memory.group.size(); ++i) {
+        const Vec3 place = memory.group[i] + field.origin;
+        Vec3 force = Vec3::Zero();
+        for (std::size_t j = 0; j < memory.environment.size(); ++j) {
+            const FieldSum pair = evaluate_pair_field(
+                view(field.group_numbers, std::span(&place, 1), i, 1),
+                view(field.environment, std::span(&memory.environment[j], 1), j, 1),
+                {field.coulomb_constant, field.replaced});
+            const Mat3 D = following.group[i] - following.environment[j];
+            result.along += D.transpose() * pair.force;
+            result.slope += D.transpose() * pair.stiffness * D;
+            force += pair.force;
+            sum.torque += pair.torque;
+            sum.stiffness += pair.stiffness;
+            sum.clearance = std::min(
+                sum.clearance, (place - memory.environment[j]).norm() - find_rmin(field, i, j));
+        }
+        sum.force += force;
+        sum.largest_force = std::max(sum.largest_force, force.norm());
+    }
+    return result;
+}
+
+void move_points(const FrozenField& field, std::span<const Vec3> group,
+                 const FollowingPoints& following, const Vec3& by,
+                 FollowingMemory& memory) noexcept {
+    for (std::size_t i = 0; i < group.size(); ++i)
+        memory.group[i] = group[i] - field.origin + following.group[i] * by;
+    for (std::size_t j = 0; j < memory.environment.size(); ++j) {
+        memory.environment[j] = field.environment.positions[j] + following.environment[j] * by;
+        set_place(memory.environment[j] - field.origin, j % 16, memory.points[j / 16]);
+    }
 }
 
 }  // namespace
@@ -406,6 +550,41 @@ FrozenSum evaluate_frozen_field(const FrozenField& field, std::span<const Vec3> 
         }
     }
     return evaluate_in_double(field, group, motion);
+}
+
+FollowingPoints build_following_points(std::vector<Mat3> group, std::vector<Mat3> environment) {
+    FollowingPoints points;
+    points.sixteens.resize((environment.size() + 15) / 16);  // those that fill up stay
+    for (std::size_t j = 0; j < environment.size(); ++j) {
+        for (std::size_t k = 0; k < 9; ++k)
+            points.sixteens[j / 16][k][j % 16] = static_cast<float>(environment[j].data()[k]);
+    }
+    points.group = std::move(group);
+    points.environment = std::move(environment);
+    return points;
+}
+
+FollowingMemory build_following_memory(const FrozenField& field) {
+    return {std::vector<Vec3>(field.group.size()), field.environment.positions, field.points};
+}
+
+FollowingSum evaluate_following_field(const FrozenField& field, std::span<const Vec3> group,
+                                      const FollowingPoints& following, const Vec3& by,
+                                      FollowingMemory& memory) noexcept {
+    PALPA_ASSERT(group.size() == field.group.size() && group.size() == following.group.size());
+    move_points(field, group, following, by, memory);
+    if (is_near(memory.group, {}) &&
+        is_near(memory.environment, {Mat3::Identity(), -field.origin})) {
+        const FollowingJobSum result =
+            HWY_DYNAMIC_DISPATCH(sum_following)(field, following, memory);
+        constexpr double nearest = nearest_single_precision;
+        if (result.of_pairs.nearest2 > nearest * nearest) {
+            FollowingSum sum{result.of_pairs.sum, result.along, result.slope};
+            sum.sum.torque += field.origin.cross(sum.sum.force);
+            return sum;
+        }
+    }
+    return evaluate_following_in_double(field, following, memory);
 }
 
 }  // namespace palpa

@@ -1,6 +1,6 @@
 // The field of points that stay where they are on a group that moves, in single precision and as
-// wide as the processor at hand can: what a servo tick can afford. Its slow twin in double is
-// field/pair_field.h.
+// wide as the processor at hand can: what a servo tick can afford. Its reference implementation, in
+// double, is field/pair_field.h.
 #pragma once
 #include "field/pair_field.h"
 #include "math/rigid_motion.h"
@@ -49,7 +49,7 @@ struct FrozenField {
     };
     std::vector<GroupPoint> group;
 
-    // What the twin takes, where single precision does not do.
+    // What the reference takes, where single precision does not do.
     struct Points {
         std::vector<Vec3> positions;
         std::vector<double> charge, sqrt_epsilon, half_rmin;
@@ -79,13 +79,43 @@ struct FrozenSum {
 // As `evaluate_pair_field`, of the group moved by `motion`. Pairs are in single precision, sums
 // over more than some hundreds in double; with two points nearer than `nearest_single_precision`,
 // or one further than `farthest_single_precision` from the middle of the environment
-// (field/pair_kernel.h), all is the twin's. Repeats to the bit on the same kind of processor.
+// (field/pair_kernel.h), all is the reference's. Repeats to the bit on the same kind of processor.
 // Without allocation or lock.
 //
-// Against the twin: force, torque (about the origin of the frozen field, in a lever of 1 Å at
+// Against the reference: force, torque (about the origin of the frozen field, in a lever of 1 Å at
 // least) and stiffness within 2e-6 of the sum of all pairs' magnitudes; the clearance within 1e-5
 // Å, the largest force within 2e-6 of the sum of the point's pairs.
 FrozenSum evaluate_frozen_field(const FrozenField& field, std::span<const Vec3> group,
                                 const RigidMotion& motion = {}) noexcept;
+
+// Where the points of both sides move with three coordinates: column c of a matrix is how far a
+// point goes per Å of coordinate c. Constant after building.
+struct FollowingPoints {
+    std::vector<Mat3> group, environment;
+    // Those of the environment again, element (axis, c) as [3 c + axis], in sixteens.
+    std::vector<std::array<FrozenPoints::Column, 9>> sixteens;
+};
+
+FollowingPoints build_following_points(std::vector<Mat3> group, std::vector<Mat3> environment);
+
+// What an evaluation writes to, so that it allocates nothing; of one field.
+struct FollowingMemory {
+    std::vector<Vec3> group, environment;
+    std::vector<FrozenPoints> points;
+};
+
+FollowingMemory build_following_memory(const FrozenField& field);
+
+struct FollowingSum {
+    FrozenSum sum;              // as of a frozen field, where the points are now
+    Vec3 along = Vec3::Zero();  // minus the energy's slope along the coordinates, kcal/mol/Å
+    Mat3 slope = Mat3::Zero();  // and its curvature, kcal/mol/Å^2
+};
+
+// With the points where the coordinates `by` (Å) bring them. Precision as above; repeats to the
+// bit, without allocation or lock.
+FollowingSum evaluate_following_field(const FrozenField& field, std::span<const Vec3> group,
+                                      const FollowingPoints& following, const Vec3& by,
+                                      FollowingMemory& memory) noexcept;
 
 }  // namespace palpa

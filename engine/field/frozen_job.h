@@ -12,4 +12,10 @@ struct FrozenJobSum {
     float nearest2 = std::numeric_limits<float>::infinity();  // Å^2
 };
 
+struct FollowingJobSum {
+    FrozenJobSum of_pairs;
+    Vec3 along = Vec3::Zero();
+    Mat3 slope = Mat3::Zero();
+};
+
 }  // namespace palpa

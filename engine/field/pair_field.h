@@ -41,6 +41,11 @@ struct FieldSum {
 
     double energy() const noexcept { return van_der_waals + electrostatic; }
     Vec3 torque_about(const Vec3& place) const noexcept { return torque - place.cross(force); }
+
+    friend FieldSum operator+(const FieldSum& a, const FieldSum& b) noexcept {
+        return {a.van_der_waals + b.van_der_waals, a.electrostatic + b.electrostatic,
+                a.force + b.force, a.torque + b.torque, a.stiffness + b.stiffness};
+    }
 };
 
 // Inside this distance (Å) a pair's force falls linearly to zero at zero distance, so that energy,

@@ -8,6 +8,14 @@
 #include <cstdint>
 #include <limits>
 
+// Of a lambda that runs in the innermost loop; other compilers know no such word there.
+#undef PALPA_INLINED
+#ifdef __GNUC__
+#define PALPA_INLINED __attribute__((always_inline))
+#else
+#define PALPA_INLINED
+#endif
+
 // From here on once for each kind of processor.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "field/pair_job.cpp"
@@ -397,7 +405,7 @@ private:
             const V sqrt_epsilon = load_columns(a.sqrt_epsilon, b.sqrt_epsilon, column);
             const V half_rmin = load_columns(a.half_rmin, b.half_rmin, column);
             V fx = hn::Zero(floats), fy = fx, fz = fx;
-            const auto add_row = [&](std::uint32_t r) HWY_ATTR __attribute__((always_inline)) {
+            const auto add_row = [&](std::uint32_t r) HWY_ATTR PALPA_INLINED {
                 const V dx = hn::Sub(hn::Set(floats, rows_.x[r]), x);
                 const V dy = hn::Sub(hn::Set(floats, rows_.y[r]), y);
                 const V dz = hn::Sub(hn::Set(floats, rows_.z[r]), z);

@@ -1,6 +1,6 @@
 // Lennard-Jones and Coulomb over a list of clusters in single precision, as wide as the processor
-// at hand can: what is near the speed of light for a force field. Its slow twin in double is
-// forces/nonbonded.h.
+// at hand can: what is near the speed of light for a force field. Its reference implementation, in
+// double, is forces/nonbonded.h.
 #pragma once
 #include "field/cluster_list.h"
 #include "field/cutoff.h"
@@ -63,7 +63,7 @@ PairWorkspace build_pair_workspace(const ClusterList& list, const PairParameters
 struct PairKernelSum {
     // Without it nothing was added: two atoms are nearer than `nearest_single_precision`, or one is
     // further than `farthest_single_precision` from the origin, or nowhere. Such pairs are the
-    // twin's.
+    // reference's.
     bool is_sound = false;
     double van_der_waals = 0;  // kcal/mol; 0 where no energies are asked for
     double electrostatic = 0;  // kcal/mol
@@ -88,7 +88,7 @@ struct PairThreads {
 // whose cutoff is at least the scheme's. Pairs are in single precision, sums over more than a
 // thousand of them in double. Repeats to the bit with the same list, processor and threads.
 //
-// Against the twin: forces within 2e-5 of the larger of the atom's own and the rms force, the
+// Against the reference: forces within 2e-5 of the larger of the atom's own and the rms force, the
 // energy within 1e-6 of the sum of all pairs' repulsion, attraction and electrostatic energy, each
 // without its sign. (Of a single pair the van der Waals part alone can be off by 2e-6 of its own.)
 PairKernelSum add_cluster_pair_forces(const ClusterList& list, const PairScheme& scheme,

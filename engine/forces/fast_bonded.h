@@ -1,5 +1,5 @@
 // The bonded terms of a topology many at a time, as fast as the processor at hand can; in double.
-// Its slow twin is forces/bonded.h.
+// Its reference implementation is forces/bonded.h.
 #pragma once
 #include "charmm/topology.h"
 #include "field/bonded_kernel.h"
@@ -41,9 +41,9 @@ struct BondedEnergy {
 };
 
 // Adds the forces (kcal/mol/Å, one entry per atom) of all bonds, angles, Urey-Bradley springs,
-// dihedrals and impropers. Against the twin: forces within 1e-12 of the larger of the atom's own
-// and the rms force, each energy within 1e-12 of its terms' magnitudes. Repeats to the bit on the
-// same kind of processor.
+// dihedrals and impropers. Against the reference: forces within 1e-12 of the larger of the atom's
+// own and the rms force, each energy within 1e-12 of its terms' magnitudes. Repeats to the bit on
+// the same kind of processor.
 BondedEnergy add_fast_bonded_forces(const FastBonded& bonded, std::span<const Vec3> positions,
                                     std::span<Vec3> forces) noexcept;
 

@@ -36,10 +36,10 @@ struct Point {
 };
 
 // The energy that is lowered.
-class Landscape {
+class EnergyFunction {
 public:
-    Landscape(const Topology& topology, const MinimiseSettings& settings,
-              const Restraints& restraints)
+    EnergyFunction(const Topology& topology, const MinimiseSettings& settings,
+                   const Restraints& restraints)
         : topology_(topology), settings_(settings), restraints_(restraints) {}
 
     void evaluate(Point& point) {
@@ -112,14 +112,14 @@ Vector bound_direction(const Vector& direction, const std::vector<Vec3>& forces,
 // The energy over the coordinates of all atoms.
 class Descent {
 public:
-    Descent(Landscape& landscape, const MinimiseSettings& settings, const Restraints& restraints,
-            Point start)
-        : landscape_(landscape),
+    Descent(EnergyFunction& energy_function, const MinimiseSettings& settings,
+            const Restraints& restraints, Point start)
+        : energy_function_(energy_function),
           settings_(settings),
           is_fixed_(restraints.is_fixed),
           here_(std::move(start)),
           trial_(here_) {
-        landscape_.evaluate(here_);
+        energy_function_.evaluate(here_);
         forces_ = flat(here_.forces);
     }
 
@@ -140,7 +140,7 @@ public:
             trial_.positions[i] = here_.positions[i];
             if (!stays) trial_.positions[i] += length * of_atom(direction, i);
         }
-        landscape_.evaluate(trial_);
+        energy_function_.evaluate(trial_);
         trial_forces_ = flat(trial_.forces);
         return trial_.energy();
     }
@@ -158,13 +158,13 @@ public:
 
     // Whether there was a step that lowers the energy.
     bool step(CurvaturePairs& pairs) {
-        constexpr int tries = 30;
+        constexpr LineSearch search{.tries = 30};
         compliance_ = find_compliance(here_.forces, settings_.largest_step);
-        return step_downhill(*this, pairs, tries);
+        return step_downhill(*this, pairs, search);
     }
 
 private:
-    Landscape& landscape_;
+    EnergyFunction& energy_function_;
     const MinimiseSettings& settings_;
     std::span<const std::uint8_t> is_fixed_;
     Point here_, trial_;
@@ -194,8 +194,8 @@ MinimiseReport minimise(const Topology& topology, const MinimiseSettings& settin
     PALPA_ASSERT(restraints.k.empty() || restraints.k.size() == positions.size());
     PALPA_ASSERT(restraints.is_fixed.empty() || restraints.is_fixed.size() == positions.size());
     PALPA_ASSERT(settings.largest_step > 0);
-    Landscape landscape(topology, settings, restraints);
-    Descent descent(landscape, settings, restraints, {positions, {}, {}, 0});
+    EnergyFunction energy_function(topology, settings, restraints);
+    Descent descent(energy_function, settings, restraints, {positions, {}, {}, 0});
     MinimiseReport report;
     report.before = descent.here().terms;
     report.restraint_before = descent.here().restraint;
@@ -215,8 +215,8 @@ MinimiseReport minimise(const Topology& topology, const MinimiseSettings& settin
     if (report.rms_force <= settings.force_tolerance) report.end = MinimiseEnd::Converged;
     report.after = descent.here().terms;
     report.restraint_after = descent.here().restraint;
-    report.evaluations = landscape.evaluations;
-    report.lists = landscape.lists;
+    report.evaluations = energy_function.evaluations;
+    report.lists = energy_function.lists;
     positions = descent.here().positions;
     return report;
 }

@@ -9,7 +9,7 @@
 
 namespace palpa {
 
-struct TouchModel;
+struct ContactModel;
 
 // The servo ticks this often, on every device so far.
 inline constexpr double servo_rate_hz = 1000;
@@ -80,7 +80,7 @@ public:
     virtual void write(const Vec3& force_newton) noexcept = 0;
 
     // What the person at it sees of the molecule: in every tick, before the force is written.
-    virtual void show(const TouchModel& /*touch*/) noexcept {}
+    virtual void show(const ContactModel& /*contact*/) noexcept {}
 
     // What the person has to know or do for the device to work, one sentence, which is never freed;
     // empty where all is well. From any thread.

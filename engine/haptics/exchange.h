@@ -1,10 +1,11 @@
 // The one place where servo and simulation meet: two mailboxes, the hand's pose inward and the
-// touch model outward. Here the loop from hand to molecule to hand is closed.
+// contact model outward. Here the loop from hand to molecule to hand is closed.
 #pragma once
 #include "core/mailbox.h"
 #include "haptics/local_field.h"
 #include "math/vec.h"
 
+#include <cstdint>
 #include <optional>
 
 namespace palpa {
@@ -19,20 +20,23 @@ struct HandPose {
     // Where guarded coupling has put the molecule. Without it the simulation moves the molecule by
     // travel and turn.
     std::optional<MoleculePose> molecule = {};
+    std::uint32_t start = 0;   // of the contact model by which it did
+    std::uint64_t number = 0;  // of the servo's ticks, from 1 on
 };
 
 // The simulation's answer. One simulation step old when it is felt: the paper's z^-1.
-struct Touch {
-    TouchModel model;
+struct LocalContactModel {
+    ContactModel model;
     LocalField field;
 
-    Touch() = default;
-    Touch(const TouchModel& without_field) : model(without_field) {}  // NOLINT: as good as one
+    LocalContactModel() = default;
+    LocalContactModel(const ContactModel& without_field)
+        : model(without_field) {}  // NOLINT: as good as one
 };
 
 struct Exchange {
     Mailbox<HandPose> hand;
-    Mailbox<Touch> touch;
+    Mailbox<LocalContactModel> contact;
 };
 
 }  // namespace palpa

@@ -1,6 +1,7 @@
 // Guarded coupling: the servo moves the molecule itself, in the field as the last step left it, so
 // that force and stiffness are of this very moment whatever the period of the simulation.
 #pragma once
+#include "core/choices.h"
 #include "haptics/device.h"
 #include "haptics/exchange.h"
 #include "haptics/gains.h"
@@ -10,9 +11,6 @@
 #include <cstdint>
 
 namespace palpa {
-
-// Whether A_d is one number, or larger only along directions in which the molecule is stiff.
-enum class GainShape { Scalar, Tensor };
 
 struct GuardedSettings {
     ForceLaw force_law = PrintedForceLaw({});
@@ -26,9 +24,9 @@ struct GuardedSettings {
     // molecule that is far from any wall would else go further in a tick than the limits of a step
     // let it.
     double least_A_d_per_newton = 0;
-    double damping_N_s_per_m = 0.5;      // B
-    double late_s = 1.5 * servo_tick_s;  // by which the force is foretold
-    double stop_newton = 10e-9;          // on it or on one atom; the molecule goes no further in
+    double damping_N_s_per_m = 0.5;         // B
+    double horizon_s = 1.5 * servo_tick_s;  // by which the force is predicted
+    double stop_newton = 10e-9;             // on it or on one atom; the molecule goes no further in
     Vec3 half_workspace_m = Vec3::Constant(0.1);  // of the device
     std::uint32_t revision = 0;  // another number: laws changed, the force glides to theirs
 };
@@ -40,14 +38,14 @@ struct GuardedSettings {
 double guarded_cap(double viscosity_N_s_per_m, double damping_N_s_per_m, int delay_ticks) noexcept;
 
 // What of a damping (N s/m) is played: late by its filter and the servo's delay it shakes a light
-// handle by itself from pi/2 m/lateness on, and a third of that is the most.
+// handle by itself from pi/2 m/delay on, and a third of that is the most.
 double guarded_damping(double damping_N_s_per_m, double inertia_kg, int delay_ticks) noexcept;
 
-// How far ahead (s) the force is foretold: from a reading to the middle of the tick in which its
+// How far ahead (s) the force is predicted: from a reading to the middle of the tick in which its
 // force acts, half a tick and the delay. That damps as well, by up to the cap times this, and no
 // more than `guarded_damping` has room for.
-double guarded_lateness(double cap_N_per_m, double damping_N_s_per_m, double inertia_kg,
-                        int delay_ticks) noexcept;
+double guarded_horizon(double cap_N_per_m, double damping_N_s_per_m, double inertia_kg,
+                       int delay_ticks) noexcept;
 
 // What a tick may feel of the cap: out of a stiff place the gain is the mean of what holds at both
 // ends, or the molecule would drift, and where the tick begins more is felt than the cap.
@@ -59,7 +57,7 @@ struct GuardedGain {
     // A_d of every direction, and back, molecule metres per handle metre: dr = inverse dx.
     Mat3 tensor = Mat3::Zero(), inverse = Mat3::Zero();
     Mat3 felt = Mat3::Zero();  // stiffness at the handle, N/m, of every direction
-    double raised = 1;         // A_d, where it is largest, over the law's
+    double cap_ratio = 1;      // A_d, where it is largest, over the law's
 };
 
 // Where the molecule feels this force (N) and stiffness (N/m): the law's A_d, raised until the cap
@@ -71,25 +69,32 @@ GuardedGain guarded_gain(const GuardedSettings& settings, const Vec3& force_newt
 // Everything that one tick leaves to the next.
 struct GuardedState {
     bool is_placed = false;
-    std::uint32_t start = 0;  // of the touch model
+    std::uint32_t start = 0;  // of the contact model
     MoleculePose molecule;
-    Vec3 kept_m = Vec3::Zero();  // handle travel that the stop did not let the molecule follow
+    Vec3 overtravel_m =
+        Vec3::Zero();  // handle travel that the stop did not let the molecule follow
     LocalForce at_place;
     double allowance_angstrom = 0;  // that it may go at once
     // The last step, if it was followed whole: handle travel, and molecule per handle travel as it
     // was where it began, and as was taken.
     Vec3 stepped_m = Vec3::Zero();
     Mat3 began_with = Mat3::Zero(), went_with = Mat3::Zero();
-    Vec3 jump_newton = Vec3::Zero();  // what is left of the old model's force over the new one's
-    double since_arrival_s = 0, interval_s = 0;  // of touch models: the last, between the last two
-    Vec3 handle_m_per_s = Vec3::Zero();          // filtered
+    Vec3 blend_residual_newton = Vec3::Zero();  // the old model's force less the new one's, fading
+    double since_arrival_s = 0,
+           interval_s = 0;               // of contact models: the last, between the last two
+    double blend_s = 0;                  // in which nearly all of that residual goes
+    Vec3 handle_m_per_s = Vec3::Zero();  // filtered
     // Of late, m: handle travel that the molecule was to follow, and what the limits left of it.
     double wanted_m = 0, allowed_m = 0;
-    double debt_J = 0;  // work on the hand where the molecule did not follow, less what was damped
-    double hold = 1;    // 0 to 1: of the forces, what a hand with a clutch feels
-    Vec3 law_newton = Vec3::Zero();       // that the force law gave
-    Vec3 law_jump_newton = Vec3::Zero();  // what is left of the old law's over the new one's
+    double energy_balance_J =
+        0;  // work on the hand where the molecule did not follow, less what was damped
+    double clutch_blend = 1;          // 0 to 1: of the forces, what a hand with a clutch feels
+    Vec3 law_newton = Vec3::Zero();   // that the force law gave
+    Vec3 felt_newton = Vec3::Zero();  // the same with what the stop has kept, as it was felt
+    Vec3 law_blend_residual_newton =
+        Vec3::Zero();  // the old law's force less the new one's, fading
     std::uint32_t revision = 0;
+    bool holds_another = false;  // since the last tick: the force glides to what that one feels
 };
 
 // What a tick found.
@@ -98,10 +103,10 @@ struct GuardedTick {
     Vec3 damping_newton = Vec3::Zero();       // its part that damps
     Vec3 force_newton = Vec3::Zero();         // on the molecule
     double displacement_gain = 0;             // A_d, where it is largest
-    double raised = 1;                        // the same over the law's
+    double cap_ratio = 1;                     // the same over the law's
     double felt_N_per_m = 0;                  // of the molecule's stiffness, where it is largest
     Mat3 molecule_per_handle = Mat3::Zero();  // travel: 1/A_d, of every direction
-    Vec3 dropped_m = Vec3::Zero();  // handle travel that the limits of a step did away with
+    Vec3 clipped_m = Vec3::Zero();  // handle travel that the limits of a step did away with
 };
 
 // What the handle did in a tick.
@@ -115,14 +120,16 @@ struct HandleStep {
 // handle does, more than a metre in a tick, counts as a metre, and is soon forgotten.
 Vec3 filtered_velocity(const Vec3& before_m_per_s, const Vec3& moved_m) noexcept;
 
-// A touch model has come, in place of `before`'s. To be called in the tick in which it is first
-// seen, before step_guarded.
-void take_touch(const Touch& touch, GuardedState& state) noexcept;
+// A contact model has come, in place of `before`'s. To be called in the tick in which it is first
+// seen, before step_guarded. `live`: what other hands hold, as far as their servos have got.
+void take_local_contact(const LocalContactModel& contact, GuardedState& state,
+                        LiveMolecules live = {}) noexcept;
 
 // Moves the molecule with the handle, and turns it if that is what the handle does to it, as far
 // as limits let it. In one tick of 1 ms the handle went by `handle` to `handle_m`; clutched, that
-// is none of the molecule's. `touch` is the one taken last.
-GuardedTick step_guarded(const GuardedSettings& settings, const Touch& touch, const Vec3& handle_m,
-                         const HandleStep& handle, bool is_clutched, GuardedState& state) noexcept;
+// is none of the molecule's. `contact` is the one taken last.
+GuardedTick step_guarded(const GuardedSettings& settings, const LocalContactModel& contact,
+                         const Vec3& handle_m, const HandleStep& handle, bool is_clutched,
+                         GuardedState& state, LiveMolecules live = {}) noexcept;
 
 }  // namespace palpa

@@ -12,19 +12,19 @@ HandTarget target_at(const HandWaypoint& point) noexcept {
 
 }  // namespace
 
-std::optional<HandModel> hand_model(Grip grip) noexcept {
+std::optional<HandModel> hand_model(HandGrip grip) noexcept {
     switch (grip) {
-        case Grip::None:
+        case HandGrip::None:
             return std::nullopt;
-        case Grip::Light:
+        case HandGrip::Light:
             return HandModel{0.10, 1, 50, 0, 0};
-        case Grip::Slack:
+        case HandGrip::Slack:
             return HandModel{0.50, 1, 50, 0, 0};
-        case Grip::Medium:
+        case HandGrip::Medium:
             return HandModel{0.15, 4, 200, 0, 0};
-        case Grip::Firm:
+        case HandGrip::Firm:
             return HandModel{0.30, 10, 500, 0, 0};
-        case Grip::FirmGrip:
+        case HandGrip::FirmGrip:
             return HandModel{0.30, 10, 500, 1000, 5};
     }
     return std::nullopt;

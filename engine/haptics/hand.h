@@ -1,5 +1,6 @@
 // Models of the hand that holds the handle, and the path it wants to follow.
 #pragma once
+#include "core/choices.h"
 #include "core/mailbox.h"
 #include "math/vec.h"
 
@@ -23,14 +24,8 @@ struct HandModel {
     double grip_damping_N_s_per_m = 0;
 };
 
-enum class Grip { None, Light, Slack, Medium, Firm, FirmGrip };
-
-// In the order of Grip, as scene files and the command line spell them.
-inline constexpr std::array<std::string_view, 6> grip_names{"none",   "light", "slack",
-                                                            "medium", "firm",  "firm-grip"};
-
 // The hand of that grip; nothing where nobody holds the handle.
-std::optional<HandModel> hand_model(Grip grip) noexcept;
+std::optional<HandModel> hand_model(HandGrip grip) noexcept;
 
 // The same hand once it wants no place any more: its mass and its damping stay on the handle.
 std::optional<HandModel> relaxed(std::optional<HandModel> hand) noexcept;

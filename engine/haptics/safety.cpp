@@ -118,13 +118,14 @@ void update_stale(const SafetySettings& settings, SafetyState& state, const Safe
 }
 
 // What motors say that are warmer than the heat of our own forces tells.
-void update_warm(const SafetySettings& settings, SafetyState& state, DeviceTrouble trouble,
-                 double elapsed_s) noexcept {
+void update_cool_down(const SafetySettings& settings, SafetyState& state, DeviceTrouble trouble,
+                      double elapsed_s) noexcept {
     const bool is_warm = trouble == DeviceTrouble::WarmMotors;
-    const double change = elapsed_s / settings.warm_s;
-    state.warmed = std::clamp(state.warmed + (is_warm ? change : -change), 0.0, 1.0);
-    if (state.warmed > 1 - rounding_s) state.warmed = 1;
-    const double hot = settings.hot_newton * settings.hot_newton;
+    const double change = elapsed_s / settings.cool_down_s;
+    state.cool_down_share =
+        std::clamp(state.cool_down_share + (is_warm ? change : -change), 0.0, 1.0);
+    if (state.cool_down_share > 1 - rounding_s) state.cool_down_share = 1;
+    const double hot = settings.thermal_limit_newton * settings.thermal_limit_newton;
     if (is_warm) state.mean_square_newton2 = std::max(state.mean_square_newton2, hot);
 }
 
@@ -140,18 +141,21 @@ double update_ending(const SafetySettings& settings, SafetyState& state, bool is
 double update_heat(const SafetySettings& settings, SafetyState& state, double elapsed_s) noexcept {
     state.mean_square_newton2 += (state.sent_newton.squaredNorm() - state.mean_square_newton2) *
                                  -std::expm1(-elapsed_s / settings.heat_s);
-    const double hot = settings.hot_newton * settings.hot_newton;
-    const double lowest = std::min(settings.hot_newton, settings.clamp_newton);
-    if (!state.is_hot && state.mean_square_newton2 >= hot) {
-        state.is_hot = true;
+    const double hot = settings.thermal_limit_newton * settings.thermal_limit_newton;
+    const double lowest = std::min(settings.thermal_limit_newton, settings.clamp_newton);
+    if (!state.is_thermally_limited && state.mean_square_newton2 >= hot) {
+        state.is_thermally_limited = true;
         state.glided = 0;
-        state.hot_from_newton = std::clamp(state.sent_newton.norm(), lowest, settings.clamp_newton);
+        state.limited_from_newton =
+            std::clamp(state.sent_newton.norm(), lowest, settings.clamp_newton);
     }
-    if (state.mean_square_newton2 < settings.cooled_share * hot) state.is_hot = false;
+    if (state.mean_square_newton2 < settings.cooled_share * hot) state.is_thermally_limited = false;
     const double change = elapsed_s / settings.glide_s;
-    state.glided = std::clamp(state.glided + (state.is_hot ? change : -change), 0.0, 1.0);
-    const double highest = state.is_hot ? std::min(state.hot_from_newton, settings.clamp_newton)
-                                        : settings.clamp_newton;
+    state.glided =
+        std::clamp(state.glided + (state.is_thermally_limited ? change : -change), 0.0, 1.0);
+    const double highest = state.is_thermally_limited
+                               ? std::min(state.limited_from_newton, settings.clamp_newton)
+                               : settings.clamp_newton;
     return highest - state.glided * (std::max(highest, lowest) - lowest);
 }
 
@@ -235,9 +239,10 @@ void limit_to(const DeviceSpec& device, SafetySettings& settings) noexcept {
         settings.clamp_newton = std::min(settings.clamp_newton, device.peak_force_newton);
     } else {
         constexpr double never = std::numeric_limits<double>::infinity();
-        settings.frozen_s = settings.frozen_newton = settings.hot_newton = never;
+        settings.frozen_s = settings.frozen_newton = settings.thermal_limit_newton = never;
     }
-    if (device.continuous_force_newton > 0) settings.hot_newton = device.continuous_force_newton;
+    if (device.continuous_force_newton > 0)
+        settings.thermal_limit_newton = device.continuous_force_newton;
 }
 
 std::string_view words(SafetyStage stage) noexcept {
@@ -248,7 +253,7 @@ std::string_view words(SafetyStage stage) noexcept {
             return "The force changes faster than the device may: it follows a little later.";
         case SafetyStage::Clamped:
             return "The force is larger than the limit: push less, or choose a smaller force gain.";
-        case SafetyStage::Hot:
+        case SafetyStage::ThermalLimit:
             return "The motors are warm and the force is limited: let them rest for a while.";
         case SafetyStage::Engaging:
             return "The force is coming back: hold the handle, in two seconds it is there in full.";
@@ -262,7 +267,7 @@ std::string_view words(SafetyStage stage) noexcept {
         case SafetyStage::Stale:
             return "The simulation is too slow or stands still, so the force fades: wait, or let "
                    "fewer joints move.";
-        case SafetyStage::Warm:
+        case SafetyStage::CoolDown:
             return "The device says that its motors are too warm, so the force fades: let them "
                    "rest until it returns.";
         case SafetyStage::TooFast:
@@ -294,7 +299,7 @@ SafetyResult guard_force(const SafetySettings& settings, SafetyState& state,
     // what is wrong
     if (state.engagement == Engagement::Off) forget(state);
     const Elapsed elapsed = update_clock(settings, state, input.now_s);
-    update_warm(settings, state, input.reading.trouble, elapsed.s);
+    update_cool_down(settings, state, input.reading.trouble, elapsed.s);
     const double clamp_newton = update_heat(settings, state, elapsed.s);
     update_stale(settings, state, input, elapsed.s);
     const double ending_share = update_ending(settings, state, input.is_ending, elapsed.s);
@@ -308,7 +313,7 @@ SafetyResult guard_force(const SafetySettings& settings, SafetyState& state,
         fault = std::max(fault, SafetyStage::Refused);
     }
     if (state.faded == 1) fault = std::max(fault, SafetyStage::Stale);
-    if (state.warmed == 1) fault = std::max(fault, SafetyStage::Warm);
+    if (state.cool_down_share == 1) fault = std::max(fault, SafetyStage::CoolDown);
     if (ending_share == 0) fault = std::max(fault, SafetyStage::Ending);
     if (state.not_finite) fault = SafetyStage::NotFinite;
 
@@ -319,7 +324,7 @@ SafetyResult guard_force(const SafetySettings& settings, SafetyState& state,
     }
     if (fault != SafetyStage::None) {
         stop(state, fault);
-        const bool is_sudden = fault > SafetyStage::Warm;
+        const bool is_sudden = fault > SafetyStage::CoolDown;
         const Vec3 from = is_sudden ? Vec3(Vec3::Zero()) : state.sent_newton;
         state.sent_newton = slewed(settings, from, Vec3::Zero(), elapsed.s, fault);
         return {state.sent_newton, fault, state.reason, 0};
@@ -327,15 +332,16 @@ SafetyResult guard_force(const SafetySettings& settings, SafetyState& state,
     SafetyResult result;
     result.stage = update_engagement(settings, state, input.wanted_newton, elapsed.s);
     if (state.faded > 0) result.stage = std::max(result.stage, SafetyStage::Stale);
-    if (state.warmed > 0) result.stage = std::max(result.stage, SafetyStage::Warm);
+    if (state.cool_down_share > 0) result.stage = std::max(result.stage, SafetyStage::CoolDown);
     if (ending_share < 1) result.stage = std::max(result.stage, SafetyStage::Ending);
 
     // fades, clamp, slew
-    result.share = state.risen * (1 - state.faded) * (1 - state.warmed) * ending_share;
+    result.share = state.risen * (1 - state.faded) * (1 - state.cool_down_share) * ending_share;
     const double before = result.share;
     const Vec3 force = clamped(input.wanted_newton * result.share, clamp_newton, result.share);
     if (result.share < before) {
-        const SafetyStage clamp = state.glided > 0 ? SafetyStage::Hot : SafetyStage::Clamped;
+        const SafetyStage clamp =
+            state.glided > 0 ? SafetyStage::ThermalLimit : SafetyStage::Clamped;
         result.stage = std::max(result.stage, clamp);
         // Cold motors would have been clamped too, and that has given no energy.
         const double cold_newton =

@@ -42,19 +42,20 @@ struct SafetySettings {
     double frozen_s = 0.05;
     double frozen_newton = 2;
 
-    // A touch model older than the larger of the first two is stale. The force then fades, to zero
-    // when it is older than the larger of the others.
+    // A contact model older than the larger of the first two is stale. The force then fades, to
+    // zero when it is older than the larger of the others.
     double stale_periods = 1.5;
     double stale_s = 0.1;
     double dead_periods = 2;
     double dead_s = 0.2;
 
-    // Motors: while the device says that they are warm the force fades in `warm_s`, and they count
-    // as hot from then on. Once the leaky mean of F^2 over `heat_s` reaches hot_newton^2, the clamp
-    // glides from what is sent to hot_newton, the force that the motors stand for ever; once the
-    // mean is below `cooled_share` of that, it glides back.
-    double warm_s = 0.1;
-    double hot_newton = 0.88;
+    // Motors: while the device says that they are warm the force fades in `cool_down_s`, and they
+    // count as hot from then on. Once the leaky mean of F^2 over `heat_s` reaches
+    // thermal_limit_newton^2, the clamp glides from what is sent to thermal_limit_newton, the force
+    // that the motors stand for ever; once the mean is below `cooled_share` of that, it glides
+    // back.
+    double cool_down_s = 0.1;
+    double thermal_limit_newton = 0.88;
     double heat_s = 30;
     double cooled_share = 0.8;
     double glide_s = 1;
@@ -82,13 +83,13 @@ enum class SafetyStage {
     None,
     Slewed,
     Clamped,
-    Hot,         // clamped at less than the clamp
-    Engaging,    // the ramp
-    Waiting,     // for quiet cycles
-    Disengaged,  // by disengage()
+    ThermalLimit,  // clamped at less than the clamp
+    Engaging,      // the ramp
+    Waiting,       // for quiet cycles
+    Disengaged,    // by disengage()
     Ending,
-    Stale,  // fading, or faded
-    Warm,   // the device says so of its motors: the same
+    Stale,     // fading, or faded
+    CoolDown,  // the device says that its motors are warm: the same
     TooFast,
     Late,  // or the clock stands still, went back, or is no number
     Frozen,
@@ -140,14 +141,14 @@ struct SafetyState {
     // stale model
     double faded = 0;  // 0 to 1
     // warm motors
-    double warmed = 0;  // share of the force that they take away, 0 to 1
+    double cool_down_share = 0;  // share of the force that they take away, 0 to 1
     // end
     double ending_s = 0;  // since it was asked for
     // heat
     double mean_square_newton2 = 0;  // leaky mean
-    bool is_hot = false;
-    double hot_from_newton = 0;  // what was sent when they got hot
-    double glided = 0;           // 0: clamp as set, 1: clamp at hot_newton
+    bool is_thermally_limited = false;
+    double limited_from_newton = 0;  // what was sent when they got hot
+    double glided = 0;               // 0: clamp as set, 1: clamp at thermal_limit_newton
     // engaging
     enum class Engagement { Fresh, Off, Waiting, Rising, On };
     Engagement engagement = Engagement::Fresh;

@@ -2,7 +2,11 @@
 
 #include "core/assertion.h"
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <span>
 
 namespace palpa {
 namespace {
@@ -21,17 +25,17 @@ HandleStep take_reading(ServoState& state, const DeviceReading& reading) noexcep
     return step;
 }
 
-// The touch model with what guarded coupling knows of this moment.
-TouchModel touch_now(TouchModel touch, const GuardedState& state,
-                     const GuardedTick& tick) noexcept {
-    if (!state.is_placed || touch.is_still) return touch;
-    touch.molecule = state.molecule;
-    touch.force_newton = tick.force_newton;
-    touch.torque_newton_metre = state.at_place.torque_newton_metre;
-    touch.displacement_gain = tick.displacement_gain;
-    touch.stiffness_matrix_N_per_m = state.at_place.stiffness_N_per_m;
-    touch.stiffness_N_per_m = extreme_stiffness(touch.stiffness_matrix_N_per_m);
-    return touch;
+// The contact model with what guarded coupling knows of this moment.
+ContactModel touch_now(ContactModel contact, const GuardedState& state,
+                       const GuardedTick& tick) noexcept {
+    if (!state.is_placed || contact.is_still) return contact;
+    contact.molecule = state.molecule;
+    contact.force_newton = tick.force_newton;
+    contact.torque_newton_metre = state.at_place.torque_newton_metre;
+    contact.displacement_gain = tick.displacement_gain;
+    contact.stiffness_matrix_N_per_m = state.at_place.stiffness_N_per_m;
+    contact.stiffness_N_per_m = extreme_stiffness(contact.stiffness_matrix_N_per_m);
+    return contact;
 }
 
 // The force that left `delay` ticks ago; before the first has arrived that at once rather than
@@ -46,10 +50,10 @@ Vec3 delayed(const ServoSettings& settings, ServoState& state, const Vec3& wante
 }
 
 // A hand that had no hold takes hold anew, quietly.
-void follow_stillness(const TouchModel& touch, ServoState& state) noexcept {
-    if (touch.is_still == state.was_still) return;
-    state.was_still = touch.is_still;
-    touch.is_still ? disengage(state.safety) : engage(state.safety);
+void follow_stillness(const ContactModel& contact, ServoState& state) noexcept {
+    if (contact.is_still == state.was_still) return;
+    state.was_still = contact.is_still;
+    contact.is_still ? disengage(state.safety) : engage(state.safety);
 }
 
 // The chain that begins to watch knows nothing of before; what is felt goes on.
@@ -65,10 +69,17 @@ void follow_safety(const SafetySettings& settings, ServoState& state) noexcept {
     state.was_full = settings.is_full;
 }
 
+// What the hand holds, where guarded coupling has put it.
+std::optional<LiveMolecule> live_molecule(const ServoState& state) noexcept {
+    const GuardedState& guarded = state.guarded;
+    if (!guarded.is_placed) return {};
+    return LiveMolecule{guarded.molecule, guarded.start};
+}
+
 }  // namespace
 
 ServoTick step_servo(const ServoSettings& settings, ServoState& state, Exchange& exchange,
-                     const DeviceReading& reading, double now_s) noexcept {
+                     const DeviceReading& reading, double now_s, LiveMolecules live) noexcept {
     PALPA_ASSERT(settings.delay_ticks >= 0 && settings.delay_ticks <= max_servo_delay_ticks);
     follow_safety(settings.safety, state);
     HandleStep handle = take_reading(state, reading);
@@ -82,10 +93,10 @@ ServoTick step_servo(const ServoSettings& settings, ServoState& state, Exchange&
         state.turn = (handle.turned * state.turn).normalized();
     }
 
-    const bool is_new = exchange.touch.take();
-    const Touch& touch = exchange.touch.taken();
-    if (is_new) state.touch = touch.model;
-    follow_stillness(state.touch, state);
+    const bool is_new = exchange.contact.take();
+    const LocalContactModel& contact = exchange.contact.taken();
+    if (is_new) state.contact = contact.model;
+    follow_stillness(state.contact, state);
     state.has_touch = state.has_touch || is_new;
     // A clock that goes back makes no model younger.
     if (is_new || !state.has_touch || now_s < state.model_s) state.model_s = now_s;
@@ -93,35 +104,40 @@ ServoTick step_servo(const ServoSettings& settings, ServoState& state, Exchange&
     ServoTick tick;
     tick.reading = reading;
     tick.clutched = clutched;
-    tick.touch = state.touch;
+    tick.contact = state.contact;
     HandPose pose{reading.time_s, state.travel_m, state.turn};
     Vec3 wanted = Vec3::Zero();
     if (settings.guarded) {
         GuardedState& guarded = state.guarded;
-        if (is_new || (state.has_touch && !guarded.is_placed)) take_touch(touch, guarded);
-        const GuardedTick done =
-            step_guarded(*settings.guarded, touch, state.handle_m, handle, clutched, guarded);
+        if (is_new || (state.has_touch && !guarded.is_placed))
+            take_local_contact(contact, guarded, live);
+        const GuardedTick done = step_guarded(*settings.guarded, contact, state.handle_m, handle,
+                                              clutched, guarded, live);
         wanted = done.hand_newton;
-        tick.raised = done.raised;
+        tick.cap_ratio = done.cap_ratio;
         tick.felt_N_per_m = done.felt_N_per_m;
         tick.molecule_per_handle = done.molecule_per_handle;
         tick.damping_newton = done.damping_newton;
-        tick.dropped_m = done.dropped_m;
-        tick.kept_m = guarded.kept_m;
-        tick.touch = touch_now(state.touch, guarded, done);
-        if (guarded.is_placed) pose.molecule = guarded.molecule;
+        tick.clipped_m = done.clipped_m;
+        tick.overtravel_m = guarded.overtravel_m;
+        tick.contact = touch_now(state.contact, guarded, done);
+        if (guarded.is_placed) {
+            pose.molecule = guarded.molecule;
+            pose.start = guarded.start;
+        }
     } else {
         const Vec3 velocity = filtered_velocity(state.guarded.handle_m_per_s, handle.moved_m);
         state.guarded = {};
         state.guarded.handle_m_per_s = velocity;
-        wanted = hand_force(settings.force_law, state.touch.force_newton);
+        wanted = hand_force(settings.force_law, state.contact.force_newton);
     }
+    pose.number = ++state.poses;
     exchange.hand.post(pose);
 
     const SafetyResult safe =
         guard_force(settings.safety, state.safety,
                     {delayed(settings, state, wanted), reading, now_s, now_s - state.model_s,
-                     state.touch.period_s, state.guarded.handle_m_per_s, settings.is_ending});
+                     state.contact.period_s, state.guarded.handle_m_per_s, settings.is_ending});
     tick.sent_newton = safe.newton;
     tick.stage = safe.stage;
     tick.reason = safe.reason;
@@ -131,9 +147,21 @@ ServoTick step_servo(const ServoSettings& settings, ServoState& state, Exchange&
     tick.is_safety_full = settings.safety.is_full;
     tick.clamped = safe.stage == SafetyStage::Clamped;
     const ForceLaw& law = settings.guarded ? settings.guarded->force_law : settings.force_law;
-    tick.force_gain = force_gain(law, tick.touch.force_newton.norm());
+    tick.force_gain = force_gain(law, tick.contact.force_newton.norm());
     tick.hand_energy_J = state.hand_energy_J;
     return tick;
+}
+
+void step_servos(std::span<ServoHand> hands, double now_s) noexcept {
+    PALPA_ASSERT(hands.size() <= most_hands);
+    std::array<std::optional<LiveMolecule>, most_hands> live;
+    for (std::size_t i = 0; i < hands.size(); ++i) live[i] = live_molecule(hands[i].state);
+    for (std::size_t i = 0; i < hands.size(); ++i) {
+        ServoHand& hand = hands[i];
+        hand.tick = step_servo(hand.settings, hand.state, hand.exchange, hand.reading, now_s,
+                               std::span(live).first(hands.size()));
+        live[i] = live_molecule(hand.state);
+    }
 }
 
 }  // namespace palpa

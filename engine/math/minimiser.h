@@ -1,12 +1,14 @@
-// Minimisers on a function object: limited-memory BFGS with a backtracking line search, and
-// preconditioned steepest descent where no curvature pairs are known (J. Nocedal, S. J. Wright,
-// Numerical Optimization, 2nd ed., algorithms 3.1, 7.4 and 7.5).
+// Minimisers on a function object, all with a backtracking line search: BFGS for few variables,
+// limited-memory BFGS for many, and steepest descent, preconditioned, where nothing is known of the
+// curvature (J. Nocedal, S. J. Wright, Numerical Optimization, 2nd ed., algorithms 3.1, 6.1, 7.4
+// and 7.5).
 #pragma once
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <utility>
 #include <vector>
@@ -16,6 +18,13 @@ namespace palpa {
 // The last steps of a way downhill and what the gradient did along them.
 class CurvaturePairs {
 public:
+    using Vector = Eigen::VectorXd;
+
+    // `scales`: what is known beforehand of the inverse Hessian is scaled by the last pair, as
+    // suits one whose size is a guess.
+    CurvaturePairs() = default;
+    explicit CurvaturePairs(bool scales) noexcept : scales_(scales) {}
+
     bool is_empty() const noexcept { return steps_.empty(); }
 
     void clear() noexcept {
@@ -51,7 +60,7 @@ public:
         d = precondition(d);
         if (steps_.empty()) {
             d *= first_scale_;
-        } else {
+        } else if (scales_) {
             const Eigen::VectorXd& y = steps_.back().y;
             d /= steps_.back().rho * y.dot(precondition(y));
         }
@@ -69,70 +78,137 @@ private:
         double rho;  // 1/(s·y)
     };
     std::deque<Step> steps_;
+    bool scales_ = true;
     double first_scale_ = 1;  // of steps without pairs
+};
+
+// The inverse Hessian as BFGS's formula has it after all steps, as a matrix.
+template <int Size>
+class InverseHessian {
+public:
+    using Vector = Eigen::Matrix<double, Size, 1>;
+    using Matrix = Eigen::Matrix<double, Size, Size>;
+
+    bool is_empty() const noexcept { return is_first_; }
+
+    void clear() noexcept { *this = {}; }
+
+    // The same of a step s and y. The first step gives the scale of all directions.
+    void add(const Vector& s, const Vector& y) {
+        constexpr double least = 1e-12;
+        const bool is_first = std::exchange(is_first_, false);
+        const double curvature = s.dot(y);
+        if (curvature <= least * y.squaredNorm()) return;
+        if (is_first) inverse_ = Matrix::Identity() * (curvature / y.squaredNorm());
+        const Matrix left = Matrix::Identity() - s * y.transpose() / curvature;
+        inverse_ = (left * inverse_ * left.transpose() + s * s.transpose() / curvature).eval();
+    }
+
+    // Before the first step, and where the formula would lead uphill, steepest descent.
+    template <class Precondition>
+    Vector find_direction(const Vector& forces, const Precondition& precondition) const {
+        if (is_first_) return precondition(forces);
+        const Vector direction = inverse_ * forces;
+        return direction.dot(forces) > 0 ? direction : Vector(precondition(forces));
+    }
+
+private:
+    Matrix inverse_ = Matrix::Identity();
+    bool is_first_ = true;
 };
 
 // What is minimised. It stands at a point and knows its value and the forces there, the negative
 // gradient.
-template <class Function>
-concept Minimisable = requires(Function& function, const Function& at, const Eigen::VectorXd& v,
-                               Eigen::VectorXd& direction, double& length) {
+template <class Function, class Vector>
+concept Minimisable = requires(Function& function, const Function& at, const Vector& v,
+                               Vector& direction, double& length) {
     { at.value() } -> std::convertible_to<double>;
-    { at.forces() } -> std::convertible_to<const Eigen::VectorXd&>;
+    { at.forces() } -> std::convertible_to<const Vector&>;
     // The inverse Hessian as far as it is known, times v.
-    { function.precondition(v) } -> std::convertible_to<Eigen::VectorXd>;
+    { function.precondition(v) } -> std::convertible_to<Vector>;
     // Limits a direction to the longest step that is allowed.
-    { function.limit(v) } -> std::convertible_to<Eigen::VectorXd>;
+    { function.limit(v) } -> std::convertible_to<Vector>;
     // The value at the trial point, length times direction away. Where that is too far, the
     // direction becomes a shorter one, and the length 1.
     { function.try_move(direction, length) } -> std::convertible_to<double>;
-    { at.trial_move() } -> std::convertible_to<Eigen::VectorXd>;
-    { at.trial_forces() } -> std::convertible_to<const Eigen::VectorXd&>;
+    { at.trial_move() } -> std::convertible_to<Vector>;
+    { at.trial_forces() } -> std::convertible_to<const Vector&>;
     // Whether that value is far enough down, for the change that the gradient alone would make.
     { at.accepts(length, length) } -> std::convertible_to<bool>;
     { function.accept() };  // the trial point is where it stands now
 };
 
-// Armijo's condition: a value against the one before, and against the change that the gradient
-// alone would make, which is negative.
-inline bool is_sufficient(double before, double value, double linear_change) {
+// Armijo's condition: a value against the one before and the change that the gradient alone would
+// make, which is negative.
+inline bool meets_armijo(double before, double value, double linear_change) {
     constexpr double share = 1e-4;
-    return value < before && value <= before + share * linear_change;
+    return value <= before + share * linear_change;
 }
 
-// Shorter and shorter moves, until one is accepted, which gives a curvature pair. The direction is
-// the function's to shorten.
-template <Minimisable Function>
-bool search_line(Function& function, CurvaturePairs& pairs, Eigen::VectorXd& direction, int tries) {
+// The same where rounding must not hide that nothing falls.
+inline bool is_sufficient(double before, double value, double linear_change) {
+    return value < before && meets_armijo(before, value, linear_change);
+}
+
+// How a line search goes on after a move that is not accepted, and where it ends.
+enum class Backtracking : std::uint8_t {
+    Parabola,  // to the minimum of the parabola through both values and the slope, within bounds
+    Halving,
+};
+
+struct LineSearch {
+    int tries = 25;
+    Backtracking backtracking = Backtracking::Parabola;
+    double shortest = 0;  // move that is tried
+};
+
+inline double find_shorter(Backtracking backtracking, double length, double slope, double above) {
+    if (backtracking == Backtracking::Halving) return 0.5 * length;
+    const double best = 0.5 * length * length * slope / above;
+    return std::isfinite(best) ? std::clamp(best, 0.1 * length, 0.5 * length) : 0.1 * length;
+}
+
+// Shorter and shorter moves, until one is accepted, of whose curvature `memory` learns. The
+// direction is the function's to shorten.
+template <class Memory, Minimisable<typename Memory::Vector> Function>
+bool search_line(Function& function, Memory& memory, typename Memory::Vector& direction,
+                 const LineSearch& search = {}) {
     if (!direction.allFinite() || !(function.forces().dot(direction) > 0)) return false;
     double length = 1;
-    for (int i = 0; i < tries; ++i) {
+    for (int i = 0; i < search.tries; ++i) {
+        if (search.shortest > 0 && !(length * direction.norm() > search.shortest)) return false;
         const double value = function.try_move(direction, length);
         const double slope = function.forces().dot(direction);
         if (std::isfinite(value) && function.accepts(value, -length * slope)) {
-            pairs.add(function.trial_move(), function.forces() - function.trial_forces());
+            memory.add(function.trial_move(), function.forces() - function.trial_forces());
             function.accept();
             return true;
         }
-        // To the minimum of the parabola through both values and the slope, within bounds.
         const double above = value - (function.value() - length * slope);
-        const double best = 0.5 * length * length * slope / above;
-        length = std::isfinite(best) ? std::clamp(best, 0.1 * length, 0.5 * length) : 0.1 * length;
+        length = find_shorter(search.backtracking, length, slope, above);
     }
     return false;
 }
 
+// One step along the direction that `memory` has: CurvaturePairs or InverseHessian. False where the
+// line search finds nothing lower.
+template <class Memory, Minimisable<typename Memory::Vector> Function>
+bool step_along(Function& function, Memory& memory, const LineSearch& search = {}) {
+    using Vector = typename Memory::Vector;
+    Vector direction = function.limit(memory.find_direction(
+        function.forces(), [&](const Vector& v) { return function.precondition(v); }));
+    return search_line(function, memory, direction, search);
+}
+
 // One step downhill; false where even steepest descent finds nothing lower. The caller keeps the
-// pairs for as long as they describe the function.
-template <Minimisable Function>
-bool step_downhill(Function& function, CurvaturePairs& pairs, int tries = 25) {
-    while (true) {
-        Eigen::VectorXd direction = function.limit(pairs.find_direction(
-            function.forces(), [&](const Eigen::VectorXd& v) { return function.precondition(v); }));
-        if (search_line(function, pairs, direction, tries)) return true;
-        if (pairs.is_empty()) return false;
-        pairs.clear();
+// memory for as long as it describes the function.
+template <class Memory, Minimisable<typename Memory::Vector> Function>
+bool step_downhill(Function& function, Memory& memory, const LineSearch& search = {}) {
+    while (!step_along(function, memory, search)) {
+        if (memory.is_empty()) return false;
+        memory.clear();
     }
+    return true;
 }
 
 }  // namespace palpa

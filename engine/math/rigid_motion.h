@@ -14,6 +14,11 @@ struct RigidMotion {
     RigidMotion operator*(const RigidMotion& inner) const noexcept {
         return {rotation * inner.rotation, rotation * inner.translation + translation};
     }
+
+    // The way back.
+    RigidMotion inverse() const noexcept {
+        return {rotation.transpose(), -(rotation.transpose() * translation)};
+    }
 };
 
 // By `angle` (rad) about an axis of length 1 through a point, right-handed.

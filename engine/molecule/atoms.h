@@ -87,6 +87,10 @@ struct AtomRange {
     std::uint32_t count = 0;
 };
 
+inline bool has_atom(const AtomRange& range, std::size_t atom) noexcept {
+    return atom >= range.first && atom - range.first < range.count;
+}
+
 // All atoms of a world; every array up to `type` has one entry per atom. Written once on loading,
 // but for `positions`, which each simulation step updates.
 struct AtomTable {

@@ -27,7 +27,7 @@ private:
     std::vector<std::uint32_t> first_, numbers_;
 };
 
-// Hydrogens are told by their mass. A bond between two of them, which three-site waters have, is
+// Hydrogens are known by their mass. A bond between two of them, which three-site waters have, is
 // none here. The topology must outlive it.
 class BondGraph {
 public:

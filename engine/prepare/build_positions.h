@@ -42,8 +42,8 @@ struct BuiltPositions {
 //   X without neighbours        (water) in any orientation.
 // An atom of three bonds is planar where its angles in the parameters sum up to 350 degree or more.
 // A dihedral between two such atoms is flat where the table has it within 15 degree of that. The
-// two hydrogens of an XH2 are told apart by the table, as are mirror images everywhere; without a
-// line that says so either may come out. Finite wherever the given atoms are.
+// two hydrogens of an XH2 are distinguished by the table, as are mirror images everywhere; without
+// a line that says so either may come out. Finite wherever the given atoms are.
 BuiltPositions build_positions(const Connectivity& connectivity, const Topology& topology,
                                std::span<const AtomCoordinate> coordinates,
                                std::span<Vec3> positions);

@@ -184,13 +184,13 @@ void orient(PreparedSystem& system, std::span<const std::uint32_t> added,
     }
 }
 
-std::string contact_label(const PreparedSystem& system, const std::optional<Contact>& contact) {
+std::string contact_label(const PreparedSystem& system, const std::optional<AtomContact>& contact) {
     if (!contact) return "none within 4 Å";
     return fmt::format("{:.2f} Å, {} and {}", contact->distance, atom_label(system, contact->a),
                        atom_label(system, contact->b));
 }
 
-void warn_of_clash(PreparedSystem& system, const std::optional<Contact>& closest) {
+void warn_of_clash(PreparedSystem& system, const std::optional<AtomContact>& closest) {
     constexpr double clash = 1.5;  // Å
     if (!closest || closest->distance > clash) return;
     system.report.warn(fmt::format("a clash is left: {}", contact_label(system, closest)));

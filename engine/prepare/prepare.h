@@ -24,7 +24,7 @@ struct PreparedSystem {
     Report report;
 };
 
-// The stages are listed in engine/README.md. Throws LoadError with everything that is missing:
+// The stages are listed in engine/design.md. Throws LoadError with everything that is missing:
 // residues, atoms, patches and parameters.
 PreparedSystem prepare_system(const ForceField& force_field, const Structure& structure,
                               const PrepareSettings& settings, const StageFunction& progress);

@@ -40,9 +40,9 @@ std::size_t steps_for(std::size_t atoms) {
     return std::clamp<std::size_t>(atom_steps / std::max<std::size_t>(atoms, 1), 50, 300);
 }
 
-Contact find_largest_move(std::span<const Vec3> before, std::span<const Vec3> after,
-                          std::span<const double> k) {
-    Contact largest;
+AtomContact find_largest_move(std::span<const Vec3> before, std::span<const Vec3> after,
+                              std::span<const double> k) {
+    AtomContact largest;
     for (std::size_t i = 0; i < before.size(); ++i) {
         const double distance = (after[i] - before[i]).norm();
         if (k[i] > 0 && distance > largest.distance) {
@@ -54,11 +54,11 @@ Contact find_largest_move(std::span<const Vec3> before, std::span<const Vec3> af
 
 }  // namespace
 
-std::optional<Contact> find_closest_contact(const Topology& topology,
-                                            std::span<const Vec3> positions) {
+std::optional<AtomContact> find_closest_contact(const Topology& topology,
+                                                std::span<const Vec3> positions) {
     constexpr double reach = 4;  // Å
     const PairList list = build_pair_list(topology.exclusions, reach, 0, positions);
-    std::optional<Contact> closest;
+    std::optional<AtomContact> closest;
     double least = reach;
     for (std::size_t row = 0; row < list.atoms.size(); ++row) {
         const std::uint32_t a = list.atoms[row];
@@ -66,7 +66,7 @@ std::optional<Contact> find_closest_contact(const Topology& topology,
             const double distance = (positions[a] - positions[b]).norm();
             if (!(distance < least)) continue;
             least = distance;
-            closest = Contact{std::min(a, b), std::max(a, b), distance};
+            closest = AtomContact{std::min(a, b), std::max(a, b), distance};
         }
     }
     return closest;

@@ -14,7 +14,7 @@
 namespace palpa {
 
 // Two atoms that are more than three bonds apart, or in different molecules.
-struct Contact {
+struct AtomContact {
     std::uint32_t a = 0, b = 0;
     double distance = 0;  // Å
 };
@@ -24,8 +24,8 @@ struct ClashReport {
     EnergyTerms before, after;  // kcal/mol, dielectric 4 r, to 9 Å
     std::size_t steps = 0;
     double rms_force = 0;  // at the end, kcal/mol/Å
-    std::optional<Contact> closest_before, closest_after;
-    Contact largest_move;  // of a given heavy atom, a; b unused
+    std::optional<AtomContact> closest_before, closest_after;
+    AtomContact largest_move;  // of a given heavy atom, a; b unused
 };
 
 // First the built atoms alone, then all of them, the given heavy atoms held by 5 kcal/mol/Å^2 to
@@ -37,7 +37,7 @@ ClashReport relax(const Topology& topology, std::span<const std::uint8_t> is_bui
                   const std::function<void(double share)>& progress);
 
 // The closest of all pairs that interact, but for those three bonds apart, within 4 Å.
-std::optional<Contact> find_closest_contact(const Topology& topology,
-                                            std::span<const Vec3> positions);
+std::optional<AtomContact> find_closest_contact(const Topology& topology,
+                                                std::span<const Vec3> positions);
 
 }  // namespace palpa

@@ -1,6 +1,7 @@
 #include "prepare/scene_of.h"
 
 #include "prepare/residues.h"
+#include "scene/write_scene.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -99,24 +100,26 @@ std::string format_scene(const Structure& structure, std::span<const SystemSegme
                          const HandChoice& hand, const Vec3& way, const SceneText& text,
                          const SceneTuning& tuning) {
     std::string scene = fmt::format(
-        "# Written by palpa prepare. Every key: palpa run --keys.\ntitle = {:?}\nabout = {:?}\n"
-        "made_by = {:?}\n\n[force_field]\nfiles = [\"system.prm\"]\n",
-        text.title, text.about, text.made_by);
+        "# Written by palpa prepare. Every key: palpa run --keys.\ntitle = {}\nabout = {}\n"
+        "made_by = {}\n\n[force_field]\nfiles = [\"system.prm\"]\n",
+        in_quotes(text.title), in_quotes(text.about), in_quotes(text.made_by));
     for (const SystemSegment& segment : segments) {
+        const std::string name = in_quotes(segment.name);
+        const std::uint32_t reference = find_reference(structure, segment, hand);
         fmt::format_to(std::back_inserter(scene),
-                       "\n[molecules.{:?}]\nstructure = {:?}\ntopology = {:?}\nsegment = {:?}\n"
-                       "reference_atom = {:?}\n",
-                       segment.name, text.structure, text.topology, segment.name,
-                       atom_text(structure, find_reference(structure, segment, hand)));
+                       "\n[molecules.{}]\nstructure = {}\ntopology = {}\nsegment = {}\n"
+                       "reference_atom = {}\n",
+                       name, in_quotes(text.structure), in_quotes(text.topology), name,
+                       in_quotes(atom_text(structure, reference)));
         if (segment.kind == SegmentKind::Molecule) scene += "shape = \"flexible\"\n";
         if (segment.name == hand.segment && hand.atom.empty()) {
             scene += "motion = \"translate-and-turn\"\n";
         }
     }
     scene += format_statics(structure.names.size(), tuning);
-    scene += fmt::format("\n[grab]\nmolecule = {:?}\nmeasured_from = {:?}\n", hand.segment,
-                         find_origin(segments, hand));
-    if (!hand.atom.empty()) scene += fmt::format("atom = {:?}\n", hand.atom);
+    scene += fmt::format("\n[grab]\nmolecule = {}\nmeasured_from = {}\n", in_quotes(hand.segment),
+                         in_quotes(find_origin(segments, hand)));
+    if (!hand.atom.empty()) scene += fmt::format("atom = {}\n", in_quotes(hand.atom));
     scene += fmt::format("\n[hand]\nstroke = \"lead\"\npath = [{}]\n", format_path(way));
     scene += format_coupling(tuning);
     scene += fmt::format("\n[run]\n{}period_ms = {}\nseconds = 10\n",

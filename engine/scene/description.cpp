@@ -10,10 +10,25 @@ TextPlace SceneDescription::place_of(std::string_view key) const {
 }
 
 bool SceneDescription::has_statics() const {
-    return !grab.atom.empty() || std::ranges::any_of(molecules, [](const MoleculeDescription& m) {
-        return m.shape == Shape::Flexible || m.motion == Motion::TranslateAndTurn ||
-               m.motion == Motion::Free;
-    });
+    const bool by_spring = !grab.atom.empty() || (second && !second->grab.atom.empty());
+    return by_spring || std::ranges::any_of(molecules, [](const MoleculeDescription& m) {
+               return m.shape == Shape::Flexible || m.motion == Motion::TranslateAndTurn ||
+                      m.motion == Motion::Free;
+           });
+}
+
+RelaxMethod method_of(const StaticsDescription& statics) noexcept {
+    if (statics.method) return *statics.method;
+    const bool is_adaptive = statics.budget_us || statics.active < StaticsDescription{}.active;
+    return is_adaptive ? RelaxMethod::QuasiStatic : RelaxMethod::SecondOrder;
+}
+
+std::vector<HandTables> list_hands(const SceneDescription& scene) {
+    std::vector<HandTables> hands{{"grab", "hand", scene.grab, scene.hand}};
+    if (scene.second) {
+        hands.push_back({"second.grab", "second.hand", scene.second->grab, scene.second->hand});
+    }
+    return hands;
 }
 
 }  // namespace palpa

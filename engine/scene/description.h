@@ -2,6 +2,8 @@
 #pragma once
 #include "core/load_error.h"
 #include "core/units.h"
+#include "scene/choices.h"
+#include "scene/edits.h"
 
 #include <array>
 #include <cstdint>
@@ -14,79 +16,6 @@
 #include <vector>
 
 namespace palpa {
-
-// Every choice of a scene file: its names stand in the order of the enumerators.
-enum class Motion { Fixed, AlongX, Translate, TranslateAndTurn, Free, WithHandle };
-inline constexpr std::array<std::string_view, 6> motion_names{
-    "fixed", "along-x", "translate", "translate-and-turn", "free", "with-handle"};
-
-enum class Shape { Rigid, Flexible };
-inline constexpr std::array<std::string_view, 2> shape_names{"rigid", "flexible"};
-
-enum class PairPrecision { Double, Fast };
-inline constexpr std::array<std::string_view, 2> pair_precision_names{"double", "fast"};
-
-// What counts where active joints are chosen.
-enum class JointWeights { Plain, Inertia, Single, Light, NearHand };
-inline constexpr std::array<std::string_view, 5> joint_weight_names{"plain", "inertia", "single",
-                                                                    "light", "near-hand"};
-
-// In the order of statics' RelaxMethod.
-enum class StaticsMethod { QuasiStatic, LimitedMemory, InverseMass };
-inline constexpr std::array<std::string_view, 3> statics_method_names{
-    "quasi-static", "limited-memory", "inverse-mass"};
-
-enum class Stroke { Hold, InOut, Path, Lead };
-inline constexpr std::array<std::string_view, 4> stroke_names{"hold", "in-out", "path", "lead"};
-
-// The paper's five modes, and guarded coupling.
-enum class CouplingMode {
-    VariableForceVariableDisplacement,
-    VariableForceConstantDisplacement,
-    ConstantForceVariableDisplacement,
-    ConstantForceConstantDisplacement,
-    NoForce,
-    Guarded
-};
-inline constexpr std::array<std::string_view, 6> coupling_mode_names{"1", "2", "3",
-                                                                     "4", "5", "guarded"};
-
-// The laws of guarded coupling, and what carries the workspace.
-enum class ForceLawChoice { Printed, Calibrated, Constant, Perceptual };
-inline constexpr std::array<std::string_view, 4> force_law_names{"printed", "calibrated",
-                                                                 "constant", "perceptual"};
-enum class DisplacementLawChoice { Repaired, Printed, Constant };
-inline constexpr std::array<std::string_view, 3> displacement_law_names{"repaired", "printed",
-                                                                        "constant"};
-enum class WorkspaceChoice { Clutch, Bubble, Drift };
-inline constexpr std::array<std::string_view, 3> workspace_names{"clutch", "bubble", "drift"};
-
-enum class GainShapeChoice { Scalar, Tensor };
-inline constexpr std::array<std::string_view, 2> gain_shape_names{"scalar", "tensor"};
-
-// How a hand takes hold when nobody looks: a window always has the ramp.
-enum class Engage { AtOnce, Ramp };
-inline constexpr std::array<std::string_view, 2> engage_names{"at-once", "ramp"};
-
-// In the order of haptics' Grip.
-inline constexpr std::array<std::string_view, 6> hand_names{"none",   "light", "slack",
-                                                            "medium", "firm",  "firm-grip"};
-
-// What a step of a lesson looks at.
-enum class LessonQuantity { Distance, Force, FeltForce, Mode };
-inline constexpr std::array<std::string_view, 4> lesson_quantity_names{
-    "distance_angstrom", "force_nN", "felt_N", "mode"};
-
-// In hand: the grabbed molecule as balls and sticks, all others as thin sticks without hydrogens.
-// Pocket: of the others the backbone, and thin sticks of those residues that are near to it.
-enum class Representation { BallAndStick, SpaceFilling, Licorice, InHand, Pocket };
-inline constexpr std::array<std::string_view, 5> representation_names{
-    "ball-and-stick", "space-filling", "licorice", "in-hand", "pocket"};
-
-// By chain: carbons in a colour of their chain, everything else as by element. Carbons of the
-// grabbed molecule have a colour of their own either way.
-enum class Colouring { Element, Chain };
-inline constexpr std::array<std::string_view, 2> colouring_names{"element", "chain"};
 
 struct ForceFieldDescription {
     std::vector<std::filesystem::path> files;
@@ -115,24 +44,35 @@ struct JointsDescription {
 
 // How flexible molecules come to rest.
 struct StaticsDescription {
-    StaticsMethod method = StaticsMethod::QuasiStatic;
-    std::int64_t steps = 1;  // in each period
+    std::optional<RelaxMethod> method;  // unset: see method_of
+    std::int64_t steps = 1;             // in each period
     double largest_move_angstrom = 0.05;
+    // Of second order: pairs between what is held and atoms so near are exact; the way of a hand
+    // between two linearisations.
+    double near_angstrom = 6;
+    double renew_angstrom = 0.1;
+    double renewal_ms = 0;  // declared: from the request of a linearisation to its use
     PairPrecision pairs = PairPrecision::Fast;
     std::optional<double> cutoff_angstrom;  // unset: all pairs
     std::int64_t active = 1'000'000;        // degrees of freedom at most
     std::optional<double> budget_us;        // of a step; unset: none
-    JointWeights weights = JointWeights::NearHand;
+    JointWeights weights = JointWeights::HandProximity;
     std::int64_t choose_every = 10;  // steps
     double rest_kcal_per_mol = 0.05;
     std::int64_t relax_steps = 4000;
 };
+
+// Where no method is set: second order, but the paper's step where fewer degrees of freedom than
+// all are to be active, or steps have a time budget.
+RelaxMethod method_of(const StaticsDescription& statics) noexcept;
 
 struct GrabDescription {
     std::string molecule;       // that the hand moves
     std::string measured_from;  // molecule whose reference atom distances start at
     std::string atom;           // "25 CA", or a residue "25": held by a spring; empty: no spring
     double spring_kcal_per_mol_angstrom2 = 20;
+
+    friend bool operator==(const GrabDescription&, const GrabDescription&) = default;
 };
 
 // Where the hand is to be at a time, mm, or where it is to have brought the molecule, Å from its
@@ -145,7 +85,7 @@ struct PathPoint {
 };
 
 struct HandDescription {
-    std::size_t grip = 3;  // into hand_names: medium
+    HandGrip grip = HandGrip::Medium;
     Stroke stroke = Stroke::InOut;
     std::optional<double> start_angstrom;
     std::array<double, 3> start_offset_angstrom{};
@@ -156,6 +96,16 @@ struct HandDescription {
     std::optional<double> release_s;
     double kick_N_s = 0;
     std::vector<PathPoint> path;
+
+    friend bool operator==(const HandDescription&, const HandDescription&) = default;
+};
+
+// On a device like the first hand's, with the same coupling.
+struct SecondHand {
+    GrabDescription grab;
+    HandDescription hand;
+
+    friend bool operator==(const SecondHand&, const SecondHand&) = default;
 };
 
 struct DeviceDescription {
@@ -181,7 +131,7 @@ struct CouplingDescription {
     // Of guarded coupling.
     ForceLawChoice force_law = ForceLawChoice::Printed;
     DisplacementLawChoice displacement_law = DisplacementLawChoice::Repaired;
-    GainShapeChoice gain_shape = GainShapeChoice::Scalar;
+    GainShape gain_shape = GainShape::Scalar;
     WorkspaceChoice workspace = WorkspaceChoice::Clutch;
     double F_lo_pN = 20, F_hi_nN = 3;  // of the perceptual law
     double damping_N_s_per_m = 0.5;
@@ -219,10 +169,12 @@ struct SceneDescription {
     StaticsDescription statics;
     GrabDescription grab;
     HandDescription hand;
+    std::optional<SecondHand> second;
     DeviceDescription device;
     CouplingDescription coupling;
     ViewDescription view;
     std::vector<LessonStepDescription> lesson;  // in the order of the file
+    std::vector<EditDescription> edits;         // in the order of the file
     double period_ms = 1;
     double seconds = 10;
     std::int64_t every = 1;
@@ -237,5 +189,15 @@ struct SceneDescription {
     // Whether something moves by itself: joints, a molecule that turns, one that is free.
     bool has_statics() const;
 };
+
+// One of the hands, with the tables that say what it holds and does: "grab", "second.grab".
+struct HandTables {
+    std::string grab_key, hand_key;
+    const GrabDescription& grab;
+    const HandDescription& hand;
+};
+
+// The first, and the second where there is one. They are the scene's, which must outlive them.
+std::vector<HandTables> list_hands(const SceneDescription& scene);
 
 }  // namespace palpa

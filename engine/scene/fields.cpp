@@ -1,18 +1,13 @@
 #include "scene/fields.h"
 
+#include "scene/edit_fields.h"
+
 #include <fmt/format.h>
+#include <numeric>
 #include <utility>
 
 namespace palpa {
 namespace {
-
-template <class Enum, std::size_t Count>
-void choose(FieldVisitor& visitor, const Field& field,
-            const std::array<std::string_view, Count>& names, Enum& value) {
-    auto index = static_cast<std::size_t>(value);
-    visitor.choice(field, names, index);
-    value = static_cast<Enum>(index);
-}
 
 void visit_force_field(FieldVisitor& v, ForceFieldDescription& f) {
     v.enter_table(
@@ -74,8 +69,8 @@ void visit_molecules(FieldVisitor& v, std::vector<MoleculeDescription>& molecule
     v.leave_table();
 }
 
-void visit_grab(FieldVisitor& v, GrabDescription& g) {
-    v.enter_table({.key = "grab", .meaning = "what the hand holds", .required = true});
+void visit_grab(FieldVisitor& v, const Field& table, GrabDescription& g) {
+    v.enter_table(table);
     v.text({.key = "molecule",
             .meaning = "name of the molecule that the hand moves",
             .required = true},
@@ -131,11 +126,16 @@ void visit_joints(FieldVisitor& v, JointsDescription& j) {
 
 void visit_statics(FieldVisitor& v, StaticsDescription& s) {
     v.enter_table({.key = "statics", .meaning = "how flexible molecules come to rest"});
-    choose(v,
-           {.key = "method",
-            .meaning = "the paper's step, or a minimiser: limited-memory BFGS with each joint on "
-                       "its own, or coupled by the mass matrix"},
-           statics_method_names, s.method);
+    choose_if_set(
+        v,
+        {.key = "method",
+         .meaning = "second-order: everything follows the hand by the second derivatives of the "
+                    "energy, exact near the hand; quasi-static: the paper's step, of few joints "
+                    "or all; or a minimiser, limited-memory BFGS with each joint on its own or "
+                    "coupled by the mass matrix. Unset: second-order, but quasi-static with "
+                    "`active` below all, with `budget_us`, or with more than 3,000 degrees of "
+                    "freedom"},
+        relax_method_names, s.method);
     v.integer({.key = "steps",
                .meaning = "of the method, in each period of the simulation",
                .lowest = 1,
@@ -146,6 +146,22 @@ void visit_statics(FieldVisitor& v, StaticsDescription& s) {
             .lowest = 1e-4,
             .highest = 1},
            s.largest_move_angstrom);
+    v.real({.key = "near_angstrom",
+            .meaning = "second-order: pairs of what is held with atoms so near are exact",
+            .lowest = 0,
+            .highest = 20},
+           s.near_angstrom);
+    v.real({.key = "renew_angstrom",
+            .meaning = "second-order: way of a hand from one linearisation to the next",
+            .lowest = 0.02,
+            .highest = 0.3},
+           s.renew_angstrom);
+    v.real({.key = "renewal_ms",
+            .meaning = "second-order: declared time from the request of a linearisation to its "
+                       "use; 0: within the step",
+            .lowest = 0,
+            .highest = 1000},
+           s.renewal_ms);
     choose(v,
            {.key = "pairs",
             .meaning = "all in double, or the non-bonded pairs in single precision, ten times "
@@ -172,7 +188,8 @@ void visit_statics(FieldVisitor& v, StaticsDescription& s) {
            {.key = "weights",
             .meaning = "what counts in that choice: accelerations of regions, as in the paper, or "
                        "with the inertia that they move; of joints one by one; of these the more "
-                       "the fewer atoms they move; and the nearer they are to the hand"},
+                       "the fewer atoms they move; and the nearer they are to the hand",
+            .renamed = renamed_joint_weights},
            joint_weight_names, s.weights);
     v.integer({.key = "choose_every",
                .meaning = "steps from one choice to the next",
@@ -191,10 +208,10 @@ void visit_statics(FieldVisitor& v, StaticsDescription& s) {
     v.leave_table();
 }
 
-void visit_hand(FieldVisitor& v, HandDescription& h) {
-    v.enter_table({.key = "hand", .meaning = "the hand on the emulated device"});
-    v.choice({.key = "grip", .meaning = "how firmly the handle is held; none leaves it free"},
-             hand_names, h.grip);
+void visit_hand(FieldVisitor& v, const Field& table, HandDescription& h) {
+    v.enter_table(table);
+    choose(v, {.key = "grip", .meaning = "how firmly the handle is held; none leaves it free"},
+           grip_names, h.grip);
     choose(v,
            {.key = "stroke",
             .meaning = "what the hand does: keep the handle where the force vanishes, go in to "
@@ -251,6 +268,21 @@ void visit_hand(FieldVisitor& v, HandDescription& h) {
     v.leave_table();
 }
 
+void visit_second(FieldVisitor& v, std::optional<SecondHand>& second) {
+    const Field table{.key = "second", .meaning = "a second hand"};
+    if (!v.is_there(table, second.has_value())) return;
+    if (!second) second.emplace();
+    v.enter_table(table);
+    visit_grab(v,
+               {.key = "grab",
+                .meaning = "what a second hand holds, on a device of its own",
+                .required = true,
+                .like = "grab"},
+               second->grab);
+    visit_hand(v, {.key = "hand", .meaning = "what it does", .like = "hand"}, second->hand);
+    v.leave_table();
+}
+
 void visit_device(FieldVisitor& v, DeviceDescription& d) {
     v.enter_table({.key = "device", .meaning = "the emulated Omni"});
     v.real(
@@ -282,6 +314,194 @@ void visit_device(FieldVisitor& v, DeviceDescription& d) {
 
 void visit_coupling(FieldVisitor& v, CouplingDescription& c) {
     v.enter_table({.key = "coupling", .meaning = "from molecule to hand and back"});
+    visit_coupling_keys(v, c);
+    v.leave_table();
+}
+
+void visit_lesson_step(FieldVisitor& v, LessonStepDescription& s) {
+    v.enter_table({.key = s.name, .meaning = "one step of the lesson"});
+    v.text({.key = "text", .meaning = "what there is to know", .required = true}, s.text);
+    v.text({.key = "task", .meaning = "what to do", .required = true}, s.task);
+    choose(v,
+           {.key = "quantity",
+            .meaning = "what tells that it was done: the distance of the reference atoms, the "
+                       "force on the molecule or on the hand (+ repels), the coupling's mode"},
+           lesson_quantity_names, s.quantity);
+    v.optional_real({.key = "at_least",
+                     .meaning = "smallest value that will do",
+                     .lowest = -1e6,
+                     .highest = 1e6},
+                    s.at_least);
+    v.optional_real(
+        {.key = "at_most", .meaning = "largest value that will do", .lowest = -1e6, .highest = 1e6},
+        s.at_most);
+    v.real({.key = "for_s",
+            .meaning = "how long without a break, in simulated seconds",
+            .lowest = 0,
+            .highest = 1e3},
+           s.for_s);
+    v.leave_table();
+}
+
+void visit_lesson(FieldVisitor& v, std::vector<LessonStepDescription>& steps) {
+    v.enter_table({.key = "lesson", .meaning = "a first lesson, step by step"});
+    std::vector<std::string> names;
+    for (const LessonStepDescription& step : steps) names.push_back(step.name);
+    v.list_tables({.key = "STEP", .meaning = "one step, under a name of your choice"}, names);
+    steps.resize(names.size());
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        steps[i].name = names[i];
+        visit_lesson_step(v, steps[i]);
+    }
+    v.leave_table();
+}
+
+void visit_view(FieldVisitor& v, ViewDescription& view) {
+    v.enter_table({.key = "view", .meaning = "how the scene is seen at first"});
+    choose_if_set(
+        v,
+        {.key = "representation",
+         .meaning = "how molecules are drawn; in-hand: all but the molecule in hand as thin sticks "
+                    "without hydrogens; pocket: of these only residues within 4.5 Å of it, and "
+                    "backbones as tubes; unset: pocket where others would hide it, else "
+                    "ball-and-stick"},
+        representation_names, view.representation);
+    choose(v,
+           {.key = "colouring",
+            .meaning = "carbons in a colour of their chain, or all atoms by element"},
+           colouring_names, view.colouring);
+    v.triple(
+        {.key = "camera",
+         .meaning = "[azimuth, elevation, zoom]: degrees around what is looked at and above it, "
+                    "-90 to 90, and how many times nearer than where all of that is seen, 0.01 "
+                    "to 100; a device's right is the picture's right where the azimuth is 0",
+         .lowest = -360,
+         .highest = 360},
+        view.camera);
+    v.text({.key = "look_at", .meaning = "name of a molecule that the picture frames; unset: all"},
+           view.look_at);
+    v.flag({.key = "clip", .meaning = "leave out what stands in front of the molecule in hand"},
+           view.clip);
+    v.leave_table();
+}
+
+// Gathers the notes; the values visited are the defaults.
+class Lister final : public FieldVisitor {
+public:
+    std::vector<FieldNote> notes;
+
+    void enter_table(const Field& field) override {
+        if (field.is_inline) {
+            inline_table_ = field;
+            inline_keys_.clear();
+            return;
+        }
+        if (!field.like.empty()) {
+            notes.push_back({fmt::format("{}{}.KEY", path_, field.key),
+                             fmt::format("as `{}.KEY`", field.like), "as there",
+                             std::string(field.meaning)});
+        }
+        is_documented_ = !field.like.empty();
+        path_ += std::string(field.key) + ".";
+    }
+    void leave_table() override {
+        if (inline_table_) {
+            const Field table = *inline_table_;
+            inline_table_.reset();
+            return add(table, fmt::format("table of {}", fmt::join(inline_keys_, ", ")), "unset");
+        }
+        is_documented_ = false;
+        path_.pop_back();
+        path_.resize(path_.rfind('.') == std::string::npos ? 0 : path_.rfind('.') + 1);
+    }
+    void list_tables(const Field& field, std::vector<std::string>& names) override {
+        names = {std::string(field.key)};
+    }
+    void list_entries(const Field& /*field*/, std::size_t& count) override { count = 1; }
+    void enter_entry(const Field& field, std::size_t /*index*/, TextPlace& /*place*/) override {
+        enter_table(field);
+    }
+    std::vector<std::size_t> one_of(std::span<const std::string_view> keys,
+                                    std::size_t /*chosen*/) override {
+        std::vector<std::size_t> all(keys.size());
+        std::iota(all.begin(), all.end(), 0);
+        return all;
+    }
+    bool is_there(const Field& /*field*/, bool /*there*/) override { return true; }
+    void real(const Field& field, double& value) override {
+        add(field, fmt::format("number{}", range(field)), fmt::format("{}", value));
+    }
+    void optional_real(const Field& field, std::optional<double>& /*value*/) override {
+        add(field, fmt::format("number{}", range(field)), "unset");
+    }
+    void optional_pair(const Field& field,
+                       std::optional<std::array<double, 2>>& /*value*/) override {
+        add(field, fmt::format("two numbers{}", range(field)), "unset");
+    }
+    void triple(const Field& field, std::array<double, 3>& value) override {
+        add(field, fmt::format("three numbers{}", range(field)),
+            fmt::format("[{}]", fmt::join(value, ", ")));
+    }
+    void flag(const Field& field, bool& value) override {
+        add(field, "true, false", fmt::format("{}", value));
+    }
+    void integer(const Field& field, std::int64_t& value) override {
+        add(field, fmt::format("whole number{}", range(field)), fmt::format("{}", value));
+    }
+    void text(const Field& field, std::string& value) override {
+        add(field, "text", is_address(field) ? "unset" : fmt::format("\"{}\"", value));
+    }
+    void texts(const Field& field, std::vector<std::string>& /*value*/) override {
+        if (is_address(field))
+            return add(field, fmt::format("list of {} to {} texts", field.lowest, field.highest),
+                       "unset");
+        add(field, "list of texts", "[]");
+    }
+    void choice(const Field& field, std::span<const std::string_view> names,
+                std::size_t& value) override {
+        add(field, fmt::format("\"{}\"", fmt::join(names, "\", \"")),
+            fmt::format("\"{}\"", names[value]));
+    }
+    void optional_choice(const Field& field, std::span<const std::string_view> names,
+                         std::optional<std::size_t>& /*value*/) override {
+        add(field, fmt::format("\"{}\"", fmt::join(names, "\", \"")), "unset");
+    }
+    void file(const Field& field, std::filesystem::path& /*value*/) override {
+        add(field, "file name", "unset");
+    }
+    void files(const Field& field, std::vector<std::filesystem::path>& /*value*/) override {
+        add(field, "list of file names", "[]");
+    }
+    void path(const Field& field, std::vector<PathPoint>& /*value*/) override {
+        add(field, fmt::format("list of 2, 4 or 7 numbers each{}", range(field)), "[]");
+    }
+    void mark(const Field& field) override { add(field, "true", "unset"); }
+    void coupling_settings(const Field& field, std::vector<std::string>& /*value*/) override {
+        add(field, "table of keys of [coupling]", "unset");
+    }
+
+private:
+    static bool is_address(const Field& field) { return field.form != TextForm::Any; }
+    static std::string range(const Field& field) {
+        return fmt::format(", {}{} to {}", field.zero ? "0 or " : "", field.lowest, field.highest);
+    }
+    void add(const Field& field, std::string type, std::string fallback) {
+        if (inline_table_) return inline_keys_.push_back(field.key);
+        if (is_documented_) return;
+        notes.push_back({path_ + std::string(field.key), std::move(type),
+                         field.required ? "required" : std::move(fallback),
+                         std::string(field.meaning)});
+    }
+
+    std::string path_;
+    bool is_documented_ = false;         // the table under way is like one before
+    std::optional<Field> inline_table_;  // that is under way: one note with all its keys
+    std::vector<std::string_view> inline_keys_;
+};
+
+}  // namespace
+
+void visit_coupling_keys(FieldVisitor& v, CouplingDescription& c) {
     choose(v,
            {.key = "mode",
             .meaning = "guarded: the servo moves the molecule in the field around it; the paper's, "
@@ -410,150 +630,7 @@ void visit_coupling(FieldVisitor& v, CouplingDescription& c) {
             .meaning = "guarded, headless: the force is there at once, or after quiet ticks in a "
                        "ramp of 2 s, as in a window"},
            engage_names, c.engage);
-    v.leave_table();
 }
-
-void visit_lesson_step(FieldVisitor& v, LessonStepDescription& s) {
-    v.enter_table({.key = s.name, .meaning = "one step of the lesson"});
-    v.text({.key = "text", .meaning = "what there is to know", .required = true}, s.text);
-    v.text({.key = "task", .meaning = "what to do", .required = true}, s.task);
-    choose(v,
-           {.key = "quantity",
-            .meaning = "what tells that it was done: the distance of the reference atoms, the "
-                       "force on the molecule or on the hand (+ repels), the coupling's mode"},
-           lesson_quantity_names, s.quantity);
-    v.optional_real({.key = "at_least",
-                     .meaning = "smallest value that will do",
-                     .lowest = -1e6,
-                     .highest = 1e6},
-                    s.at_least);
-    v.optional_real(
-        {.key = "at_most", .meaning = "largest value that will do", .lowest = -1e6, .highest = 1e6},
-        s.at_most);
-    v.real({.key = "for_s",
-            .meaning = "how long without a break, in simulated seconds",
-            .lowest = 0,
-            .highest = 1e3},
-           s.for_s);
-    v.leave_table();
-}
-
-void visit_lesson(FieldVisitor& v, std::vector<LessonStepDescription>& steps) {
-    v.enter_table({.key = "lesson", .meaning = "a first lesson, step by step"});
-    std::vector<std::string> names;
-    for (const LessonStepDescription& step : steps) names.push_back(step.name);
-    v.list_tables({.key = "STEP", .meaning = "one step, under a name of your choice"}, names);
-    steps.resize(names.size());
-    for (std::size_t i = 0; i < names.size(); ++i) {
-        steps[i].name = names[i];
-        visit_lesson_step(v, steps[i]);
-    }
-    v.leave_table();
-}
-
-void visit_view(FieldVisitor& v, ViewDescription& view) {
-    v.enter_table({.key = "view", .meaning = "how the scene is seen at first"});
-    std::optional<std::size_t> representation;
-    if (view.representation) representation = static_cast<std::size_t>(*view.representation);
-    v.optional_choice(
-        {.key = "representation",
-         .meaning = "how molecules are drawn; in-hand: all but the molecule in hand as thin sticks "
-                    "without hydrogens; pocket: of these only residues within 4.5 Å of it, and "
-                    "backbones as tubes; unset: pocket where others would hide it, else "
-                    "ball-and-stick"},
-        representation_names, representation);
-    if (representation) view.representation = static_cast<Representation>(*representation);
-    choose(v,
-           {.key = "colouring",
-            .meaning = "carbons in a colour of their chain, or all atoms by element"},
-           colouring_names, view.colouring);
-    v.triple(
-        {.key = "camera",
-         .meaning = "[azimuth, elevation, zoom]: degrees around what is looked at and above it, "
-                    "-90 to 90, and how many times nearer than where all of that is seen, 0.01 "
-                    "to 100; a device's right is the picture's right where the azimuth is 0",
-         .lowest = -360,
-         .highest = 360},
-        view.camera);
-    v.text({.key = "look_at", .meaning = "name of a molecule that the picture frames; unset: all"},
-           view.look_at);
-    v.flag({.key = "clip", .meaning = "leave out what stands in front of the molecule in hand"},
-           view.clip);
-    v.leave_table();
-}
-
-// Gathers the notes; the values visited are the defaults.
-class Lister final : public FieldVisitor {
-public:
-    std::vector<FieldNote> notes;
-
-    void enter_table(const Field& field) override { path_ += std::string(field.key) + "."; }
-    void leave_table() override {
-        path_.pop_back();
-        path_.resize(path_.rfind('.') == std::string::npos ? 0 : path_.rfind('.') + 1);
-    }
-    void list_tables(const Field& field, std::vector<std::string>& names) override {
-        names = {std::string(field.key)};
-    }
-    void real(const Field& field, double& value) override {
-        add(field, fmt::format("number{}", range(field)), fmt::format("{}", value));
-    }
-    void optional_real(const Field& field, std::optional<double>& /*value*/) override {
-        add(field, fmt::format("number{}", range(field)), "unset");
-    }
-    void optional_pair(const Field& field,
-                       std::optional<std::array<double, 2>>& /*value*/) override {
-        add(field, fmt::format("two numbers{}", range(field)), "unset");
-    }
-    void triple(const Field& field, std::array<double, 3>& value) override {
-        add(field, fmt::format("three numbers{}", range(field)),
-            fmt::format("[{}]", fmt::join(value, ", ")));
-    }
-    void flag(const Field& field, bool& value) override {
-        add(field, "true, false", fmt::format("{}", value));
-    }
-    void integer(const Field& field, std::int64_t& value) override {
-        add(field, fmt::format("whole number{}", range(field)), fmt::format("{}", value));
-    }
-    void text(const Field& field, std::string& value) override {
-        add(field, "text", fmt::format("\"{}\"", value));
-    }
-    void texts(const Field& field, std::vector<std::string>& /*value*/) override {
-        add(field, "list of texts", "[]");
-    }
-    void choice(const Field& field, std::span<const std::string_view> names,
-                std::size_t& value) override {
-        add(field, fmt::format("\"{}\"", fmt::join(names, "\", \"")),
-            fmt::format("\"{}\"", names[value]));
-    }
-    void optional_choice(const Field& field, std::span<const std::string_view> names,
-                         std::optional<std::size_t>& /*value*/) override {
-        add(field, fmt::format("\"{}\"", fmt::join(names, "\", \"")), "unset");
-    }
-    void file(const Field& field, std::filesystem::path& /*value*/) override {
-        add(field, "file name", "unset");
-    }
-    void files(const Field& field, std::vector<std::filesystem::path>& /*value*/) override {
-        add(field, "list of file names", "[]");
-    }
-    void path(const Field& field, std::vector<PathPoint>& /*value*/) override {
-        add(field, fmt::format("list of 2, 4 or 7 numbers each{}", range(field)), "[]");
-    }
-
-private:
-    static std::string range(const Field& field) {
-        return fmt::format(", {}{} to {}", field.zero ? "0 or " : "", field.lowest, field.highest);
-    }
-    void add(const Field& field, std::string type, std::string fallback) {
-        notes.push_back({path_ + std::string(field.key), std::move(type),
-                         field.required ? "required" : std::move(fallback),
-                         std::string(field.meaning)});
-    }
-
-    std::string path_;
-};
-
-}  // namespace
 
 void visit_scene(FieldVisitor& v, SceneDescription& scene) {
     v.text({.key = "title", .meaning = "name of the scene"}, scene.title);
@@ -567,8 +644,9 @@ void visit_scene(FieldVisitor& v, SceneDescription& scene) {
     visit_molecules(v, scene.molecules);
     visit_joints(v, scene.joints);
     visit_statics(v, scene.statics);
-    visit_grab(v, scene.grab);
-    visit_hand(v, scene.hand);
+    visit_grab(v, {.key = "grab", .meaning = "what the hand holds", .required = true}, scene.grab);
+    visit_hand(v, {.key = "hand", .meaning = "the hand on the emulated device"}, scene.hand);
+    visit_second(v, scene.second);
     visit_device(v, scene.device);
     visit_coupling(v, scene.coupling);
     visit_view(v, scene.view);
@@ -592,6 +670,7 @@ void visit_scene(FieldVisitor& v, SceneDescription& scene) {
                .highest = 1e15},
               scene.seed);
     v.leave_table();
+    visit_edits(v, scene.edits);
 }
 
 std::vector<FieldNote> list_fields() {

@@ -15,12 +15,19 @@
 
 namespace palpa {
 
+// What a text has to name (scene/edits.h).
+enum class TextForm { Any, Molecule, MoleculeOrPart, ResidueOrAtom, Atom };
+
 struct Field {
     std::string_view key;
     std::string_view meaning;
     double lowest = 0, highest = 0;  // of a number; every one has a range, which a test looks at
     bool zero = false;               // 0 will do, below `lowest`
     bool required = false;
+    TextForm form = TextForm::Any;
+    bool is_inline = false;      // a table in braces
+    std::string_view like = {};  // a table with the keys of that one, which is documented
+    std::span<const RenamedChoice> renamed = {};  // of a choice
 };
 
 class FieldVisitor {
@@ -34,6 +41,16 @@ public:
     virtual void leave_table() = 0;
     // The tables inside the present one, by name; a reader fills `names`, others go by them.
     virtual void list_tables(const Field& field, std::vector<std::string>& names) = 0;
+
+    // Entries of a list of tables: a reader fills `count` and `place`, others go by them.
+    virtual void list_entries(const Field& field, std::size_t& count) = 0;
+    virtual void enter_entry(const Field& field, std::size_t index, TextPlace& place) = 0;
+
+    // Which of these keys to visit: the one that the file has, or `chosen` where none is read.
+    virtual std::vector<std::size_t> one_of(std::span<const std::string_view> keys,
+                                            std::size_t chosen) = 0;
+    // Whether to visit what has no value of its own for "unset"; a reader looks into the file.
+    virtual bool is_there(const Field& field, bool there) = 0;
 
     virtual void real(const Field& field, double& value) = 0;
     virtual void optional_real(const Field& field, std::optional<double>& value) = 0;
@@ -50,9 +67,33 @@ public:
     virtual void file(const Field& field, std::filesystem::path& value) = 0;
     virtual void files(const Field& field, std::vector<std::filesystem::path>& value) = 0;
     virtual void path(const Field& field, std::vector<PathPoint>& value) = 0;
+    // A key that can only be true.
+    virtual void mark(const Field& field) = 0;
+    // A table with some keys of [coupling], as settings "key=value".
+    virtual void coupling_settings(const Field& field, std::vector<std::string>& value) = 0;
 };
 
+// A choice among enumerators, by names in their order.
+template <class Enum, std::size_t Count>
+void choose(FieldVisitor& visitor, const Field& field,
+            const std::array<std::string_view, Count>& names, Enum& value) {
+    auto index = static_cast<std::size_t>(value);
+    visitor.choice(field, names, index);
+    value = static_cast<Enum>(index);
+}
+template <class Enum, std::size_t Count>
+void choose_if_set(FieldVisitor& visitor, const Field& field,
+                   const std::array<std::string_view, Count>& names, std::optional<Enum>& value) {
+    std::optional<std::size_t> index;
+    if (value) index = static_cast<std::size_t>(*value);
+    visitor.optional_choice(field, names, index);
+    if (index) value = static_cast<Enum>(*index);
+}
+
 void visit_scene(FieldVisitor& visitor, SceneDescription& scene);
+
+// What the table [coupling] holds.
+void visit_coupling_keys(FieldVisitor& visitor, CouplingDescription& coupling);
 
 // For documentation and messages: every key in full ("molecules.NAME.segment") with its meaning,
 // default or choices, and range.

@@ -3,6 +3,7 @@
 #include "core/files.h"
 #include "core/load_error.h"
 #include "core/text.h"
+#include "platform/program.h"
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
@@ -22,28 +23,9 @@ constexpr std::size_t most_entries = 1000;  // of a folder that are looked at
 constexpr std::size_t most_named = 8;       // in a message
 constexpr const char* usual_name = "scene.toml";
 
-std::vector<fs::path> list_folder(const fs::path& folder) {
-    std::vector<fs::path> paths;
-    std::error_code error;
-    for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
-         entry.increment(error)) {
-        paths.push_back(entry->path());
-        if (paths.size() == most_entries) break;
-    }
-    std::sort(paths.begin(), paths.end());
-    return paths;
-}
-
-bool is_structure(const fs::path& path) {
-    constexpr std::array<std::string_view, 6> endings{".PDB",   ".ENT", ".CIF",
-                                                      ".MMCIF", ".CRD", ".COR"};
-    const std::string ending = upper_case(path.extension().string());
-    return std::find(endings.begin(), endings.end(), ending) != endings.end();
-}
-
 void add_scenes_of(const fs::path& folder, const std::string& prefix,
                    std::vector<SceneEntry>& scenes) {
-    for (const fs::path& path : list_folder(folder)) {
+    for (const fs::path& path : list_folder(folder, most_entries)) {
         if (path.extension() != ".toml") continue;
         try {
             const toml::table table = toml::parse(read_text_file(path), path.string());
@@ -97,7 +79,7 @@ void refuse_other_files(const fs::path& file) {
 std::string describe_contents(const fs::path& folder) {
     std::vector<std::string> scenes, structures;
     for (const SceneEntry& scene : list_scenes(folder)) scenes.push_back(scene.file.string());
-    for (const fs::path& path : list_folder(folder)) {
+    for (const fs::path& path : list_folder(folder, most_entries)) {
         if (is_structure(path)) structures.push_back(path.string());
     }
     if (!scenes.empty()) return fmt::format("; scenes below it: {}", join_some(scenes));
@@ -139,9 +121,9 @@ std::string describe_own_scenes(const std::string& named) {
 }  // namespace
 
 std::vector<fs::path> own_scene_folders() {
-    const fs::path program = find_program_folder();
+    const fs::path program = find_program_file().parent_path();
     if (program.empty()) return {};
-    std::vector<fs::path> folders{program.parent_path() / "share" / "palpa" / "scenes"};
+    std::vector<fs::path> folders{(program / PALPA_SHARE / "scenes").lexically_normal()};
     const fs::path builds = program.parent_path().parent_path();  // build/PRESET/bin
     if (builds.filename() == "build") folders.push_back(builds.parent_path() / "scenes");
     std::erase_if(folders, [](const fs::path& folder) {
@@ -151,9 +133,16 @@ std::vector<fs::path> own_scene_folders() {
     return folders;
 }
 
+bool is_structure(const fs::path& file) {
+    constexpr std::array<std::string_view, 6> endings{".PDB",   ".ENT", ".CIF",
+                                                      ".MMCIF", ".CRD", ".COR"};
+    const std::string ending = upper_case(file.extension().string());
+    return std::find(endings.begin(), endings.end(), ending) != endings.end();
+}
+
 std::vector<SceneEntry> list_scenes(const fs::path& folder) {
     std::vector<SceneEntry> scenes;
-    for (const fs::path& path : list_folder(folder)) {
+    for (const fs::path& path : list_folder(folder, most_entries)) {
         std::error_code error;
         if (fs::is_directory(path, error)) add_scenes_of(path, path.filename().string(), scenes);
     }

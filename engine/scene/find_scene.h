@@ -21,6 +21,9 @@ std::vector<std::filesystem::path> own_scene_folders();
 // left out.
 std::vector<SceneEntry> list_scenes(const std::filesystem::path& folder);
 
+// Whether the file's ending is that of a structure: .pdb, .cif, .crd and others.
+bool is_structure(const std::filesystem::path& file);
+
 // The scene file that is meant by a folder, a file or the name of one of our own scenes. Throws
 // LoadError where there is none, with what is near: other scenes, or the command that makes a scene
 // of a structure.

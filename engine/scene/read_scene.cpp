@@ -3,8 +3,11 @@
 #include "core/files.h"
 #include "core/load_error.h"
 #include "core/text.h"
+#include "scene/check_scene.h"
+#include "scene/edit_fields.h"
 #include "scene/fields.h"
 #include "scene/find_scene.h"
+#include "scene/problems.h"
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
@@ -13,10 +16,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <system_error>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -25,16 +26,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Problem {
-    TextPlace place;
-    std::string what;
-};
-
 // ---- where a node stands ---------------------------------------------------------------------
+
+// What stands before a setting in place of a file: of the command line, of an edit.
+constexpr std::array<std::string_view, 2> setting_origins{"--set ", "setting "};
 
 TextPlace place_of(const toml::source_region& source) {
     TextPlace place{source.path ? *source.path : "", source.begin.line, source.begin.column};
-    if (place.file.starts_with("--set ")) place.line = place.column = 0;  // the command line
+    const bool is_setting = std::ranges::any_of(
+        setting_origins, [&](std::string_view origin) { return place.file.starts_with(origin); });
+    if (is_setting) place.line = place.column = 0;  // it is one line
     return place;
 }
 
@@ -67,6 +68,43 @@ std::string kind_of(const toml::node& node) {
     return "nothing";
 }
 
+// The value of a setting, as a person types it.
+std::string setting_of(const toml::node& node) {
+    if (const toml::array* const list = node.as_array()) {
+        std::vector<std::string> entries;
+        for (const toml::node& entry : *list) entries.push_back(setting_of(entry));
+        return fmt::format("[{}]", fmt::join(entries, ", "));
+    }
+    return node.is_string() ? node.ref<std::string>() : kind_of(node);
+}
+
+// ---- what a text has to name -------------------------------------------------------------------
+
+bool has_form(std::string_view text, TextForm form) {
+    if (form == TextForm::Any) return true;
+    const std::optional<Address> address = find_address(text);
+    if (!address) return false;
+    if (form == TextForm::Molecule) return address->residue.empty();
+    if (form == TextForm::ResidueOrAtom) return !address->residue.empty();
+    return form == TextForm::MoleculeOrPart || !address->atom.empty();
+}
+
+std::string_view form_meaning(TextForm form) {
+    switch (form) {
+        case TextForm::Molecule:
+            return "the name of a molecule";
+        case TextForm::MoleculeOrPart:
+            return "a molecule, residue or atom, \"NAME\", \"NAME:25\" or \"NAME:25 CA\"";
+        case TextForm::ResidueOrAtom:
+            return "a residue or atom, \"NAME:25\" or \"NAME:25 CA\"";
+        case TextForm::Atom:
+            return "an atom, \"NAME:25 CA\"";
+        case TextForm::Any:
+            break;
+    }
+    return "text";
+}
+
 // ---- which files a scene may name --------------------------------------------------------------
 
 // Where links lead.
@@ -84,12 +122,18 @@ bool is_below(const fs::path& path, const fs::path& folder) {
 
 // ---- reading ---------------------------------------------------------------------------------
 
-// Fills a description from a table. Problems are gathered, so that the first one in the file is
-// told and not the first one in our list.
+// Fills a description from a table.
 class Reader final : public FieldVisitor {
 public:
-    Reader(const toml::table& root, fs::path file, bool allows_outside)
-        : file_(std::move(file)), folder_(file_.parent_path()), is_made_(root.contains("made_by")) {
+    Reader(const toml::table& root, const fs::path& file, bool allows_outside, Problems& problems)
+        : Reader(root, file, file.parent_path(), allows_outside, problems) {}
+    // `folder`: from where file names are taken.
+    Reader(const toml::table& root, fs::path file, fs::path folder, bool allows_outside,
+           Problems& problems)
+        : file_(std::move(file)),
+          folder_(std::move(folder)),
+          problems_(problems),
+          is_made_(root.contains("made_by")) {
         if (!allows_outside) {
             may_read_ = {real_path(folder_.empty() ? "." : folder_)};
             for (const fs::path& folder : own_scene_folders()) {
@@ -99,36 +143,8 @@ public:
         levels_.push_back({&root, "", place_or_start(root), {}, false});
     }
 
-    // Throws what was found, or gives the places of all fields that the file has.
-    std::map<std::string, TextPlace, std::less<>> finish() {
-        report_unknown_keys(levels_.back());
-        if (problems_.empty()) return std::move(places_);
-        std::stable_sort(problems_.begin(), problems_.end(),
-                         [](const Problem& a, const Problem& b) {
-                             return std::tie(a.place.line, a.place.column) <
-                                    std::tie(b.place.line, b.place.column);
-                         });
-        const std::size_t others = problems_.size() - 1;
-        throw LoadError(
-            problems_[0].place,
-            problems_[0].what + (others == 0   ? ""
-                                 : others == 1 ? " (and 1 more problem)"
-                                               : fmt::format(" (and {} more problems)", others)));
-    }
-
-    void problem(const TextPlace& place, std::string what) {
-        problems_.push_back({place, std::move(what)});
-    }
-    void problem(const toml::node& node, std::string what) {
-        problem(place_of(node.source()), std::move(what));
-    }
-
-    // The place of a field that was read, or of the table where it should be.
-    TextPlace place_of_key(const std::string& key) const {
-        auto found = places_.find(key);
-        if (found == places_.end()) found = places_.find(key.substr(0, key.rfind('.')));
-        return found == places_.end() ? TextPlace{file_.string(), 1, 1} : found->second;
-    }
+    // Whether there were problems, the problems tell.
+    void finish() { report_unknown_keys(levels_.back()); }
 
     void enter_table(const Field& field) override {
         Level level{
@@ -172,6 +188,59 @@ public:
                                 level.path.substr(0, level.path.size() - 1), field.meaning));
         }
     }
+
+    void list_entries(const Field& field, std::size_t& count) override {
+        count = 0;
+        const toml::node* const node = find(field);
+        if (!node) return;
+        const toml::array* const list = node->as_array();
+        if (list) {
+            count = list->size();
+        } else {
+            problem(*node, fmt::format("'{0}' is {1}; expected a list of tables, [[{0}]]",
+                                       full_key(field.key), kind_of(*node)));
+        }
+    }
+
+    void enter_entry(const Field& field, std::size_t index, TextPlace& place) override {
+        const std::string key = fmt::format("{}[{}]", full_key(field.key), index + 1);
+        const toml::node& node = *levels_.back().table->get(field.key)->as_array()->get(index);
+        place = place_of(node.source());
+        problems_.set_place(key, place);
+        const toml::table* const table = node.as_table();
+        if (!table) problem(node, fmt::format("'{}' is {}; expected a table", key, kind_of(node)));
+        levels_.push_back({table, key + ".", place, {}, table == nullptr});
+    }
+
+    std::vector<std::size_t> one_of(std::span<const std::string_view> keys,
+                                    std::size_t /*chosen*/) override {
+        Level& level = levels_.back();
+        level.known.insert(level.known.end(), keys.begin(), keys.end());
+        if (!level.table) return {};
+        std::vector<std::pair<toml::source_position, std::size_t>> found;
+        for (std::size_t i = 0; i < keys.size(); ++i) {
+            const auto place = level.table->find(keys[i]);
+            if (place != level.table->end()) {
+                found.emplace_back(place->first.source().begin, i);
+            }
+        }
+        if (found.empty()) {
+            level.lacks =
+                fmt::format("'{}' has none of {}; expected one",
+                            level.path.substr(0, level.path.size() - 1), fmt::join(keys, ", "));
+            return {};
+        }
+        std::ranges::sort(found);
+        for (std::size_t i = 1; i < found.size(); ++i) {
+            const std::string_view extra = keys[found[i].second];
+            problem(place_of(level.table->find(extra)->first.source()),
+                    fmt::format("'{}' beside '{}'; expected one of them", full_key(extra),
+                                keys[found[0].second]));
+        }
+        return {found[0].second};
+    }
+
+    bool is_there(const Field& field, bool /*there*/) override { return find(field) != nullptr; }
 
     void real(const Field& field, double& value) override {
         const toml::node* const node = find_value(field);
@@ -244,6 +313,9 @@ public:
         if (field.required && node->ref<std::string>().empty()) {
             return problem(*node, expected(field, *node, "text that is not empty"));
         }
+        if (!has_form(node->ref<std::string>(), field.form)) {
+            return problem(*node, expected(field, *node, form_meaning(field.form)));
+        }
         value = node->ref<std::string>();
     }
 
@@ -252,11 +324,22 @@ public:
         if (!node) return;
         const toml::array* const list = node->as_array();
         if (!list) return problem(*node, expected(field, *node, "a list of texts, [\"...\"]"));
+        const auto count = static_cast<double>(list->size());
+        if (field.highest > 0 && (count < field.lowest || count > field.highest)) {
+            return problem(*node,
+                           fmt::format("'{}' is a list of {}; expected {} to {} texts",
+                                       full_key(field.key), count, field.lowest, field.highest));
+        }
         value.clear();
         for (const toml::node& entry : *list) {
             if (!entry.is_string()) {
                 return problem(entry, fmt::format("an entry of '{}' is {}; expected text in quotes",
                                                   full_key(field.key), kind_of(entry)));
+            }
+            if (!has_form(entry.ref<std::string>(), field.form)) {
+                return problem(
+                    entry, fmt::format("an entry of '{}' is {}; expected {}", full_key(field.key),
+                                       kind_of(entry), form_meaning(field.form)));
             }
             value.push_back(entry.ref<std::string>());
         }
@@ -270,6 +353,11 @@ public:
                                  : node->is_integer() ? fmt::format("{}", node->ref<std::int64_t>())
                                                       : "";
         const auto found = std::find(names.begin(), names.end(), read);
+        const auto renamed = std::ranges::find(field.renamed, read, &RenamedChoice::before);
+        if (renamed != field.renamed.end()) {
+            return problem(*node, fmt::format("'{}': {} is now {}", full_key(field.key),
+                                              renamed->before, renamed->now));
+        }
         if (found == names.end()) {
             return problem(*node, expected(field, *node,
                                            fmt::format("one of {}{}", fmt::join(names, ", "),
@@ -322,6 +410,32 @@ public:
         }
     }
 
+    void mark(const Field& field) override {
+        const toml::node* const node = find_value(field);
+        if (node && node->value_exact<bool>() != true) {
+            problem(*node, expected(field, *node, "true, or no such key"));
+        }
+    }
+
+    void coupling_settings(const Field& field, std::vector<std::string>& value) override {
+        enter_table(field);
+        CouplingDescription read;  // for what is wrong with the values
+        visit_coupling_keys(*this, read);
+        value.clear();
+        const Level& level = levels_.back();
+        for (const std::string& key : level.known) {
+            if (const toml::node* const node = level.table ? level.table->get(key) : nullptr) {
+                value.push_back(fmt::format("{}={}", key, setting_of(*node)));
+            }
+        }
+        if (level.table && level.table->empty()) {
+            problem(level.place, fmt::format("'{}' is empty; expected one of {}",
+                                             level.path.substr(0, level.path.size() - 1),
+                                             fmt::join(level.known, ", ")));
+        }
+        leave_table();
+    }
+
 private:
     // One table under way. `table` is null where the file has none: defaults, or errors.
     struct Level {
@@ -330,6 +444,7 @@ private:
         TextPlace place;
         std::vector<std::string> known;  // keys that were asked for
         bool missing;                    // told already
+        std::string lacks = {};  // message, unless a key is unknown, which was meant for what lacks
     };
 
     // A list of so many numbers in the field's range.
@@ -376,9 +491,11 @@ private:
 
     const toml::node* find(const Field& field) {
         Level& level = levels_.back();
-        level.known.emplace_back(field.key);
+        if (std::ranges::find(level.known, field.key) == level.known.end()) {
+            level.known.emplace_back(field.key);
+        }
         const toml::node* const node = level.table ? level.table->get(field.key) : nullptr;
-        if (node) places_[full_key(field.key)] = place_of(node->source());
+        if (node) problems_.set_place(full_key(field.key), place_of(node->source()));
         return node;
     }
 
@@ -427,11 +544,21 @@ private:
         return false;
     }
 
-    void report_unknown_keys(const Level& level) {
-        if (!level.table) return;
-        const std::vector<std::string_view> known(level.known.begin(), level.known.end());
+    static std::vector<toml::key> find_unknown_keys(const Level& level) {
+        std::vector<toml::key> unknown;
+        if (!level.table) return unknown;
         for (const auto& [key, node] : *level.table) {
-            if (std::find(known.begin(), known.end(), key.str()) != known.end()) continue;
+            const bool is_known = std::ranges::find(level.known, key.str()) != level.known.end();
+            if (!is_known) unknown.push_back(key);
+        }
+        return unknown;
+    }
+
+    void report_unknown_keys(const Level& level) {
+        const std::vector<std::string_view> known(level.known.begin(), level.known.end());
+        const std::vector<toml::key> unknown = find_unknown_keys(level);
+        if (unknown.empty() && !level.lacks.empty()) problem(level.place, level.lacks);
+        for (const toml::key& key : unknown) {
             const TextPlace place = place_of(key.source());
             const std::string name = level.path + std::string(key.str());
             const std::string hint = near_name_hint(key.str(), known);
@@ -442,192 +569,19 @@ private:
         }
     }
 
+    void problem(const TextPlace& place, std::string what) {
+        problems_.add(place, std::move(what));
+    }
+    void problem(const toml::node& node, std::string what) {
+        problem(place_of(node.source()), std::move(what));
+    }
+
     fs::path file_, folder_;
+    Problems& problems_;
     std::vector<fs::path> may_read_;  // folders, links resolved; empty: everything
     bool is_made_;                    // the scene says how its files are made
     std::vector<Level> levels_;
-    std::vector<Problem> problems_;
-    std::map<std::string, TextPlace, std::less<>> places_;  // by full key
 };
-
-// ---- what fields must be together ------------------------------------------------------------
-
-std::string_view name_of(Motion motion) { return motion_names[static_cast<std::size_t>(motion)]; }
-
-// The molecule that a field names; null where the problem is told.
-const MoleculeDescription* find_named(const SceneDescription& scene, Reader& reader,
-                                      const std::string& key, const std::string& name) {
-    if (name.empty()) return nullptr;  // told already
-    std::vector<std::string_view> names;
-    for (const MoleculeDescription& molecule : scene.molecules) {
-        if (molecule.name == name) return &molecule;
-        names.emplace_back(molecule.name);
-    }
-    reader.problem(reader.place_of_key(key),
-                   fmt::format("'{}' is \"{}\", which is no molecule of this scene; "
-                               "expected one of {}{}",
-                               key, name, fmt::join(names, ", "), near_name_hint(name, names)));
-    return nullptr;
-}
-
-// Whether the hand can do something with the molecule.
-bool check_grabbed(const SceneDescription& scene, const MoleculeDescription& grabbed,
-                   Reader& reader) {
-    const bool by_spring = !scene.grab.atom.empty();
-    const bool yields = grabbed.motion == Motion::Free ||
-                        (grabbed.motion == Motion::Fixed && grabbed.shape == Shape::Flexible);
-    const bool is_moved = grabbed.motion == Motion::AlongX || grabbed.motion == Motion::Translate ||
-                          grabbed.motion == Motion::TranslateAndTurn ||
-                          grabbed.motion == Motion::WithHandle;
-    if (by_spring ? yields : is_moved) return true;
-    reader.problem(
-        reader.place_of_key("grab.molecule"),
-        fmt::format("'grab.molecule' is \"{}\", whose motion is \"{}\"; expected {}",
-                    scene.grab.molecule, name_of(grabbed.motion),
-                    by_spring ? "a free molecule, or one that is fixed and flexible: the hand "
-                                "pulls at it by a spring (grab.atom)"
-                              : "a molecule that moves, along-x, translate, translate-and-turn "
-                                "or with-handle"));
-    return false;
-}
-
-void check_start(const SceneDescription& scene, bool along_x, Reader& reader) {
-    const bool has_offset = scene.hand.start_offset_angstrom != std::array<double, 3>{};
-    if (along_x && has_offset) {
-        reader.problem(reader.place_of_key("hand.start_offset_angstrom"),
-                       "'hand.start_offset_angstrom' is for a molecule that moves in space; "
-                       "expected hand.start_angstrom");
-    }
-    if (!along_x && scene.hand.start_angstrom) {
-        reader.problem(reader.place_of_key("hand.start_angstrom"),
-                       "'hand.start_angstrom' is for a molecule that moves along x; expected "
-                       "hand.start_offset_angstrom");
-    }
-}
-
-void check_grab(const SceneDescription& scene, Reader& reader) {
-    const MoleculeDescription* const origin =
-        find_named(scene, reader, "grab.measured_from", scene.grab.measured_from);
-    if (origin && origin->motion != Motion::Fixed) {
-        reader.problem(
-            reader.place_of_key("grab.measured_from"),
-            fmt::format("'grab.measured_from' is \"{}\", whose motion is \"{}\"; expected a "
-                        "fixed molecule",
-                        scene.grab.measured_from, name_of(origin->motion)));
-    }
-    // Without the right molecule in hand, what the others do is no problem of its own.
-    const MoleculeDescription* const grabbed =
-        find_named(scene, reader, "grab.molecule", scene.grab.molecule);
-    if (!grabbed || !check_grabbed(scene, *grabbed, reader)) return;
-    check_start(scene, grabbed->motion == Motion::AlongX, reader);
-    for (const MoleculeDescription& molecule : scene.molecules) {
-        const std::string key = "molecules." + molecule.name + ".motion";
-        const bool by_itself = molecule.motion == Motion::Fixed || molecule.motion == Motion::Free;
-        if (!by_itself && &molecule != grabbed) {
-            reader.problem(
-                reader.place_of_key(key),
-                fmt::format("'{}' is \"{}\", but the hand moves only grab.molecule; expected "
-                            "fixed or free",
-                            key, name_of(molecule.motion)));
-        }
-        if (molecule.motion == Motion::AlongX && scene.has_statics()) {
-            reader.problem(reader.place_of_key(key),
-                           fmt::format("'{}' is \"along-x\" beside something that moves by "
-                                       "itself; expected translate or translate-and-turn",
-                                       key));
-        }
-        if (molecule.motion == Motion::WithHandle && scene.has_statics()) {
-            reader.problem(reader.place_of_key(key),
-                           fmt::format("'{}' is \"with-handle\" beside something that moves by "
-                                       "itself, which a handle does not turn yet; expected "
-                                       "translate or translate-and-turn",
-                                       key));
-        }
-    }
-    if (!scene.joints.around.empty())
-        find_named(scene, reader, "joints.around", scene.joints.around);
-}
-
-void check_view(const ViewDescription& view, const SceneDescription& scene, Reader& reader) {
-    find_named(scene, reader, "view.look_at", view.look_at);
-    const auto [azimuth, elevation, zoom] = view.camera;
-    if (std::abs(elevation) <= 90 && zoom >= 0.01 && zoom <= 100) return;
-    reader.problem(
-        reader.place_of_key("view.camera"),
-        fmt::format("'view.camera' is [{}, {}, {}]; expected [azimuth, elevation, zoom]: "
-                    "degrees, the second from -90 to 90, and a factor from 0.01 to 100",
-                    azimuth, elevation, zoom));
-}
-
-void check_ranges(const SceneDescription& scene, Reader& reader) {
-    const auto check = [&](bool right, const std::string& key, const std::string& what) {
-        if (!right) reader.problem(reader.place_of_key(key), what);
-    };
-    const CouplingDescription& c = scene.coupling;
-    check(
-        c.F_h2_N > c.F_h1_N, "coupling.F_h2_N",
-        fmt::format("'coupling.F_h2_N' is {}; expected more than F_h1_N, {}", c.F_h2_N, c.F_h1_N));
-    check(c.A_d_max >= c.A_d_min, "coupling.A_d_max",
-          fmt::format("'coupling.A_d_max' is {}; expected A_d_min, {}, or more", c.A_d_max,
-                      c.A_d_min));
-    check(c.F_hi_nN * 1e3 > 2 * c.F_lo_pN, "coupling.F_hi_nN",
-          fmt::format("'coupling.F_hi_nN' is {}; expected more than twice F_lo_pN, {}", c.F_hi_nN,
-                      c.F_lo_pN));
-    if (const auto range = c.feel_pN) {
-        constexpr double most_felt_newton = 3;
-        const auto [weakest, strongest] = *range;
-        check(strongest > weakest, "coupling.feel_pN",
-              fmt::format("'coupling.feel_pN' is [{}, {}]; expected the weaker force first",
-                          weakest, strongest));
-        check(c.mode == CouplingMode::Guarded, "coupling.feel_pN",
-              fmt::format("'coupling.feel_pN' is for guarded coupling, and coupling.mode is {}, "
-                          "with forces of its own; expected mode = \"guarded\", or no feel_pN",
-                          coupling_mode_names[static_cast<std::size_t>(c.mode)]));
-        check(c.clamp_N >= most_felt_newton, "coupling.clamp_N",
-              fmt::format("'coupling.clamp_N' is {}, and what feel_pN names is felt as up to {} N; "
-                          "expected that or more",
-                          c.clamp_N, most_felt_newton));
-    }
-    check(!c.feel_within_pN || !scene.has_statics() ||
-              scene.statics.method == StaticsMethod::QuasiStatic,
-          "statics.method",
-          fmt::format("'statics.method' is \"{}\", which moves all joints at once; expected "
-                      "quasi-static with coupling.feel_within_pN",
-                      statics_method_names[static_cast<std::size_t>(scene.statics.method)]));
-    check(std::abs(scene.period_ms - std::round(scene.period_ms)) < 1e-9, "run.period_ms",
-          fmt::format("'run.period_ms' is {}; expected a whole number of servo ticks of 1 ms",
-                      scene.period_ms));
-    const HandDescription& h = scene.hand;
-    check(h.stroke != Stroke::InOut || h.grip != 0, "hand.stroke",
-          "'hand.stroke' is \"in-out\" with a grip of \"none\": nobody would move the handle; "
-          "expected \"hold\", or a hand");
-    const bool has_path = h.stroke == Stroke::Path || h.stroke == Stroke::Lead;
-    check(!has_path || !h.path.empty(), "hand.stroke",
-          fmt::format("'hand.stroke' is \"{}\", but 'hand.path' has no point; expected [[time, "
-                      "place], ...]",
-                      stroke_names[static_cast<std::size_t>(h.stroke)]));
-    check(h.stroke != Stroke::Lead || h.grip != 0, "hand.stroke",
-          "'hand.stroke' is \"lead\" with a grip of \"none\": nobody would move the handle; "
-          "expected a hand");
-    const auto turns = [](const PathPoint& point) {
-        return point.turn_deg != PathPoint{}.turn_deg;
-    };
-    check(h.stroke != Stroke::Lead || std::ranges::none_of(h.path, turns), "hand.path",
-          "'hand.path' turns the handle, but 'hand.stroke' is \"lead\", which only moves; expected "
-          "[s, Å] or [s, Å, Å, Å]");
-    for (std::size_t i = 1; i < h.path.size(); ++i) {
-        check(h.path[i].time_s > h.path[i - 1].time_s, "hand.path",
-              fmt::format("'hand.path' has the time {} after {}; expected ascending times",
-                          h.path[i].time_s, h.path[i - 1].time_s));
-    }
-    for (const LessonStepDescription& step : scene.lesson) {
-        const std::string key = "lesson." + step.name;
-        check(step.at_least || step.at_most, key,
-              fmt::format("'{}' has neither at_least nor at_most; expected one or both", key));
-        check(!(step.at_least && step.at_most) || *step.at_least <= *step.at_most, key + ".at_most",
-              fmt::format("'{}.at_most' is below at_least; no value would do", key));
-    }
-}
 
 // ---- before reading ---------------------------------------------------------------------------
 
@@ -643,10 +597,17 @@ void check_dots(std::string_view line, const TextPlace& place) {
 
 // The full key that "mode" or "coupling.mode" means.
 std::string full_setting_key(const std::string& key, const TextPlace& place) {
+    if (key == "edits" || key.starts_with("edits.") || key.starts_with("edits[")) {
+        throw LoadError(place, "edits are a list, [[edits]], that only the file of a scene has");
+    }
     if (key.find('.') != std::string::npos) return key;
     std::vector<std::string> matches;
     std::vector<std::string_view> last_parts;
-    const std::vector<FieldNote> fields = list_fields();
+    std::vector<FieldNote> fields = list_fields();
+    std::erase_if(fields, [](const FieldNote& field) {
+        // A bare name is one of the first hand.
+        return field.key.starts_with("edits.") || field.key.starts_with("second.");
+    });
     for (const FieldNote& field : fields) {
         const std::string_view last = std::string_view(field.key).substr(field.key.rfind('.') + 1);
         last_parts.push_back(last);
@@ -703,12 +664,14 @@ std::string setting_value(std::string_view text, const TextPlace& place) {
     return "\"" + value + "\"";
 }
 
-void apply_setting(const std::string& setting, toml::table& root) {
+void apply_setting(std::string_view origin, const std::string& setting, toml::table& root) {
     const bool printable = std::none_of(setting.begin(), setting.end(), [](char letter) {
         return static_cast<unsigned char>(letter) < 0x20 || letter == 0x7f;
     });
-    if (!printable) throw LoadError({"--set"}, "a setting is one line of printable text");
-    const TextPlace place{"--set " + setting};
+    if (!printable) {
+        throw LoadError({std::string(trimmed(origin))}, "a setting is one line of printable text");
+    }
+    const TextPlace place{std::string(origin) + setting};
     check_dots(setting, place);
     const std::size_t equals = setting.find('=');
     const std::string left(trimmed(std::string_view(setting).substr(0, equals)));
@@ -731,20 +694,27 @@ void apply_setting(const std::string& setting, toml::table& root) {
 
 }  // namespace
 
-SceneDescription parse_scene(std::string_view text, const fs::path& file,
-                             std::span<const std::string> settings) {
+namespace {
+
+toml::table parse_table(std::string_view text, const fs::path& file) {
     std::size_t line_number = 0;
     for (const std::string_view line : split_lines(text)) {
         check_dots(line, {file.string(), ++line_number, 1});
     }
-    toml::table root;
     try {
-        root = toml::parse(text, std::string_view(file.string()));
+        return toml::parse(text, std::string_view(file.string()));
     } catch (const toml::parse_error& error) {
         std::string what(error.description());
         if (!what.empty() && what[0] >= 'A' && what[0] <= 'Z') what[0] += 'a' - 'A';
         throw LoadError(place_of(error.source()), what);
     }
+}
+
+}  // namespace
+
+SceneDescription parse_scene(std::string_view text, const fs::path& file,
+                             std::span<const std::string> settings) {
+    toml::table root = parse_table(text, file);
     if (root.empty()) {
         throw LoadError({file.string(), 1, 1},
                         "an empty scene; expected [force_field], [molecules.NAME] and [grab]");
@@ -754,19 +724,76 @@ SceneDescription parse_scene(std::string_view text, const fs::path& file,
         if (setting == allow_outside) {
             allows_outside = true;
         } else {
-            apply_setting(setting, root);
+            apply_setting(setting_origins[0], setting, root);
         }
     }
 
     SceneDescription scene;
     scene.file = file;
-    Reader reader(root, file, allows_outside);
+    Problems problems(file);
+    Reader reader(root, file, allows_outside, problems);
     visit_scene(reader, scene);
-    check_grab(scene, reader);
-    check_ranges(scene, reader);
-    check_view(scene.view, scene, reader);
-    scene.places = reader.finish();
+    check_scene(scene, problems);
+    reader.finish();
+    scene.places = problems.finish();
     return scene;
+}
+
+namespace {
+
+// `check` sees it before what does not fit is thrown.
+template <class Check>
+CouplingDescription read_coupling(const CouplingDescription& coupling,
+                                  std::span<const std::string> settings, const Check& check) {
+    constexpr std::string_view table = "coupling.";
+    toml::table root;
+    for (const std::string& setting : settings) {
+        const bool is_full = trimmed(setting).starts_with(table);
+        apply_setting(setting_origins[1], is_full ? setting : std::string(table) + setting, root);
+    }
+    CouplingDescription result = coupling;
+    Problems problems({});
+    Reader reader(root, {}, true, problems);
+    reader.enter_table({.key = "coupling", .meaning = "from molecule to hand and back"});
+    visit_coupling_keys(reader, result);
+    reader.leave_table();
+    check(result, problems);
+    reader.finish();
+    (void)problems.finish();
+    return result;
+}
+
+}  // namespace
+
+CouplingDescription with_settings(const CouplingDescription& coupling,
+                                  std::span<const std::string> settings) {
+    return settings.empty() ? coupling : read_coupling(coupling, settings, check_coupling);
+}
+
+CouplingDescription parse_settings(std::span<const std::string> settings) {
+    return read_coupling({}, settings, [](const auto&, const auto&) {});
+}
+
+EditDescription parse_edit(std::string_view text, const TextPlace& place) {
+    SceneDescription scene;
+    scene.second.emplace();
+    try {
+        const toml::table root = parse_table(text, {});
+        Problems problems({});
+        Reader reader(root, {}, fs::path(place.file).parent_path(), false, problems);
+        visit_edits(reader, scene.edits);
+        check_edits(scene, problems);
+        reader.finish();
+        (void)problems.finish();
+    } catch (const LoadError& error) {
+        throw LoadError(place, fmt::format("bad edit: {}", error.what()));
+    }
+    if (scene.edits.size() != 1) {
+        throw LoadError(
+            place, fmt::format("holds {} edits; expected one table [[edits]]", scene.edits.size()));
+    }
+    scene.edits.front().place = place;
+    return scene.edits.front();
 }
 
 SceneDescription read_scene(const fs::path& path, std::span<const std::string> settings) {

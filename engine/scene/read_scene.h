@@ -28,4 +28,17 @@ SceneDescription read_scene(const std::filesystem::path& path,
 SceneDescription parse_scene(std::string_view text, const std::filesystem::path& file,
                              std::span<const std::string> settings = {});
 
+// A coupling with other values for some of its keys: settings of [coupling], "mode=3", applied in
+// order. Throws LoadError for what read_scene refuses of that table, with the keys that it has.
+CouplingDescription with_settings(const CouplingDescription& coupling,
+                                  std::span<const std::string> settings);
+
+// A coupling of settings as list_settings writes them. Each value is checked, but not against the
+// others: while sliders move, a window passes through values that no scene may have.
+CouplingDescription parse_settings(std::span<const std::string> settings);
+
+// One edit, of the text of one table [[edits]]. Files that it names are taken from the folder of
+// the file that it stands in, below which they must be, as a scene's. Throws LoadError at `place`.
+EditDescription parse_edit(std::string_view text, const TextPlace& place);
+
 }  // namespace palpa

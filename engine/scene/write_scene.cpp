@@ -1,29 +1,16 @@
 #include "scene/write_scene.h"
 
 #include "core/text.h"
+#include "scene/edit_fields.h"
 #include "scene/fields.h"
 
 #include <fmt/format.h>
-#include <iterator>
+#include <cstdint>
+#include <optional>
+#include <utility>
 
 namespace palpa {
 namespace {
-
-// A TOML basic string.
-std::string in_quotes(std::string_view text) {
-    std::string result = "\"";
-    for (const char letter : text) {
-        if (letter == '"' || letter == '\\') {
-            result += '\\';
-            result += letter;
-        } else if (static_cast<unsigned char>(letter) < 0x20 || letter == 0x7f) {
-            result += fmt::format("\\u{:04X}", static_cast<unsigned>(letter));
-        } else {
-            result += letter;
-        }
-    }
-    return result + "\"";
-}
 
 // A key needs no quotes if it is made of letters, digits, '_' and '-'.
 std::string key_text(std::string_view key) {
@@ -34,6 +21,17 @@ std::string key_text(std::string_view key) {
     return bare ? std::string(key) : in_quotes(key);
 }
 
+// The value of a setting as TOML: a number or list as it is, a bare word in quotes.
+std::string setting_text(std::string_view value) {
+    const bool is_toml = value.starts_with('[') || value.starts_with('"');
+    if (is_toml) return std::string(value);
+    if (const std::optional<std::int64_t> number = find_integer(value)) {
+        return fmt::format("{}", *number);
+    }
+    if (const std::optional<double> number = find_real(value)) return format_real(*number);
+    return in_quotes(value);
+}
+
 class Writer final : public FieldVisitor {
 public:
     explicit Writer(const std::function<std::string(const std::filesystem::path&)>& file_name)
@@ -42,14 +40,35 @@ public:
     std::string text_so_far;
 
     void enter_table(const Field& field) override {
+        if (field.is_inline) {
+            inline_table_ = field;
+            inline_pairs_.clear();
+            return;
+        }
         path_.push_back(key_text(field.key));
         header_due_ = true;
     }
     void leave_table() override {
+        if (inline_table_) {
+            const Field table = *inline_table_;
+            inline_table_.reset();
+            return add(table, fmt::format("{{ {} }}", fmt::join(inline_pairs_, ", ")));
+        }
         path_.pop_back();
         header_due_ = !path_.empty();
     }
     void list_tables(const Field& /*field*/, std::vector<std::string>& /*names*/) override {}
+    void list_entries(const Field& /*field*/, std::size_t& /*count*/) override {}
+    void enter_entry(const Field& field, std::size_t /*index*/, TextPlace& /*place*/) override {
+        path_.push_back(key_text(field.key));
+        text_so_far += fmt::format("\n[[{}]]\n", fmt::join(path_, "."));
+        header_due_ = false;
+    }
+    std::vector<std::size_t> one_of(std::span<const std::string_view> /*keys*/,
+                                    std::size_t chosen) override {
+        return {chosen};
+    }
+    bool is_there(const Field& /*field*/, bool there) override { return there; }
 
     void real(const Field& field, double& value) override { add(field, format_real(value)); }
     void optional_real(const Field& field, std::optional<double>& value) override {
@@ -106,9 +125,23 @@ public:
         }
         add(field, fmt::format("[{}]", fmt::join(points, ", ")));
     }
+    void mark(const Field& field) override { add(field, "true"); }
+    void coupling_settings(const Field& field, std::vector<std::string>& value) override {
+        std::vector<std::string> pairs;
+        for (const std::string_view setting : value) {
+            const std::size_t equals = setting.find('=');
+            if (equals == std::string_view::npos) continue;  // says nothing
+            pairs.push_back(fmt::format("{} = {}", key_text(trimmed(setting.substr(0, equals))),
+                                        setting_text(trimmed(setting.substr(equals + 1)))));
+        }
+        add(field, fmt::format("{{ {} }}", fmt::join(pairs, ", ")));
+    }
 
 private:
     void add(const Field& field, const std::string& value) {
+        if (inline_table_) {
+            return inline_pairs_.push_back(fmt::format("{} = {}", field.key, value));
+        }
         if (header_due_) text_so_far += fmt::format("\n[{}]\n", fmt::join(path_, "."));
         header_due_ = false;
         text_so_far += fmt::format("{} = {}\n", field.key, value);
@@ -117,9 +150,45 @@ private:
     const std::function<std::string(const std::filesystem::path&)>& file_name_;
     std::vector<std::string> path_;
     bool header_due_ = false;
+    std::optional<Field> inline_table_;  // that is under way
+    std::vector<std::string> inline_pairs_;
 };
 
 }  // namespace
+
+std::string in_quotes(std::string_view text) {
+    std::string result = "\"";
+    for (const char letter : text) {
+        if (letter == '"' || letter == '\\') {
+            result += '\\';
+            result += letter;
+        } else if (static_cast<unsigned char>(letter) < 0x20 || letter == 0x7f) {
+            result += fmt::format("\\u{:04X}", static_cast<unsigned>(letter));
+        } else {
+            result += letter;
+        }
+    }
+    return result + "\"";
+}
+
+std::string format_edit(const EditDescription& edit) {
+    const std::function<std::string(const std::filesystem::path&)> as_it_is =
+        [](const std::filesystem::path& file) { return file.generic_string(); };
+    Writer writer(as_it_is);
+    std::vector<EditDescription> edits{edit};
+    visit_edits(writer, edits);
+    return std::move(writer.text_so_far);
+}
+
+std::vector<std::string> list_settings(const CouplingDescription& coupling) {
+    const std::function<std::string(const std::filesystem::path&)> no_files;
+    Writer writer(no_files);
+    CouplingDescription copy = coupling;
+    visit_coupling_keys(writer, copy);
+    std::vector<std::string> settings;
+    for (const std::string_view line : split_lines(writer.text_so_far)) settings.emplace_back(line);
+    return settings;
+}
 
 std::string format_scene(
     const SceneDescription& scene,

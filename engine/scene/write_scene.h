@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace palpa {
 
@@ -12,5 +14,16 @@ namespace palpa {
 // scene is to be called in it, relative to where the text will stand.
 std::string format_scene(const SceneDescription& scene,
                          const std::function<std::string(const std::filesystem::path&)>& file_name);
+
+// One edit as the table [[edits]] of a scene file; read_scene.h's parse_edit reads it.
+std::string format_edit(const EditDescription& edit);
+
+// A coupling as settings "key = value", every one of them; read_scene.h's
+// parse_settings reads them.
+std::vector<std::string> list_settings(const CouplingDescription& coupling);
+
+// As text of a scene file, in quotes, with what TOML does not take as it is written as \uXXXX.
+// `text` must be UTF-8.
+std::string in_quotes(std::string_view text);
 
 }  // namespace palpa

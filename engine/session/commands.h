@@ -2,12 +2,14 @@
 #pragma once
 #include "haptics/exchange.h"
 #include "scene/description.h"
-#include "simulation/exactness.h"
+#include "scene/edits.h"
+#include "simulation/accuracy_controller.h"
 #include "view/build_frame.h"
 
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 
 namespace palpa {
@@ -30,19 +32,27 @@ struct Reset {
     // On a line, Å: where it is to start from now on, if not where it did.
     std::optional<double> start_angstrom{};
 };
-using Command = std::variant<LiveSettings, ViewSettings, Pause, StepOnce, Reset>;
+// An edit is made at once, whatever time it says.
+using Command = std::variant<LiveSettings, ViewSettings, Pause, StepOnce, Reset, EditDescription>;
+
+inline EditDescription edit_now(EditAction action) {
+    return {0, 0, std::move(action), {"not done"}};
+}
 
 // What a running scene tells, all of one moment between two steps.
 struct Readout {
-    TouchModel touch;
+    ContactModel contact;
     std::uint64_t steps = 0;
     double step_ms = 0;  // wall time of the last step
-    // Where the scene says how exact forces must be: what nine of ten of the last audits found at
-    // most, nothing before the first, and what a step uses for it.
+    // Where the scene says how exact forces must be: what nine of ten of the last error estimates
+    // found at most, nothing before the first, and what a step uses for it.
     std::optional<double> error_pN;
-    Effort effort;
+    WorkBudget work_budget;
     bool paused = false;
-    std::string problem;  // why the last Reset failed; else empty
+    bool holds_something = true;      // the hand
+    std::uint64_t refused_edits = 0;  // so far, but for undo and redo
+    std::string problem;              // why the last Reset or edit failed; else empty
+    std::string edit_under_way;       // its key in a scene file; empty: none
 };
 
 // How the servo fares.

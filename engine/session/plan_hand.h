@@ -1,8 +1,10 @@
 // Turns a scene's stroke into a path for the emulated hand.
 #pragma once
+#include "ecs/world.h"
 #include "haptics/hand.h"
 #include "scene/description.h"
-#include "simulation/simulation.h"
+
+#include <cstddef>
 
 namespace palpa {
 
@@ -10,7 +12,8 @@ namespace palpa {
 // force: the integral of A_d over the molecule's way, and how far force bends the hand. Delays and
 // strides add to that, so a run reaches the peak only about. Throws LoadError where no distance has
 // that force. `half_width_m`: half of the device's workspace along x.
-HandScript plan_hand(const SceneDescription& scene, const Simulation& simulation,
-                     double half_width_m);
+// `slot`: of the hand, 0 the first.
+HandScript plan_hand(const SceneDescription& scene, const World& world, double half_width_m,
+                     std::size_t slot = 0);
 
 }  // namespace palpa

@@ -1,5 +1,6 @@
 #include "session/recording.h"
 
+#include "core/assertion.h"
 #include "core/files.h"
 #include "core/load_error.h"
 #include "core/text.h"
@@ -7,7 +8,7 @@
 #include "field/processor.h"
 #include "render/picture.h"
 #include "scene/write_scene.h"
-#include "session/feel.h"
+#include "session/accuracy_report.h"
 
 #include <fmt/format.h>
 #include <Eigen/Core>
@@ -57,7 +58,66 @@ constexpr std::array columns = std::to_array<std::string_view>({"time_s",
                                                                 "handle_turn_z_rad",
                                                                 "molecule_turn_x_rad",
                                                                 "molecule_turn_y_rad",
-                                                                "molecule_turn_z_rad"});
+                                                                "molecule_turn_z_rad",
+                                                                "force_error_estimate_nN",
+                                                                "model_age_angstrom"});
+
+// The last two are there only where molecules relax.
+constexpr std::size_t count_columns(bool relaxes) noexcept {
+    return columns.size() - (relaxes ? 0 : 2);
+}
+
+// What all hands share.
+constexpr bool is_common(std::string_view column) noexcept {
+    return column == "time_s" || column == "period_ms";
+}
+
+// Of one hand, by column.
+std::array<double, columns.size()> trace_values(const ServoTick& tick) {
+    const DeviceReading& device = tick.reading;
+    const ContactModel& contact = tick.contact;
+    // Adding nothing makes -0 a plain 0.
+    const Vec3 zero = Vec3::Zero();
+    const Vec3 force_nN = contact.force_newton * 1e9 + zero;
+    const Vec3 torque = contact.torque_newton_metre * 1e19 + zero;  // nN Å
+    const Vec3 sent = tick.sent_newton + zero;
+    const Vec3 molecule = contact.molecule.place_angstrom + zero;
+    const Vec3 handle = device.position_m + zero;
+    const Vec3 handle_turn = rotation_vector_of(device.orientation) + zero;
+    const Vec3 molecule_turn = rotation_vector_of(contact.molecule.orientation) + zero;
+    return {device.time_s,
+            handle.x(),
+            handle.y(),
+            handle.z(),
+            molecule.x(),
+            molecule.y(),
+            molecule.z(),
+            force_nN.x(),
+            force_nN.y(),
+            force_nN.z(),
+            torque.x(),
+            torque.y(),
+            torque.z(),
+            sent.x(),
+            sent.y(),
+            sent.z(),
+            tick.force_gain,
+            contact.displacement_gain,
+            contact.stiffness_N_per_m,
+            tick.hand_energy_J,
+            contact.potential_kcal_per_mol,
+            static_cast<double>(contact.active_freedom),
+            contact.period_s * 1e3,
+            tick.clutched ? 1.0 : 0.0,
+            handle_turn.x(),
+            handle_turn.y(),
+            handle_turn.z(),
+            molecule_turn.x(),
+            molecule_turn.y(),
+            molecule_turn.z(),
+            contact.error_estimate_newton * 1e9,
+            contact.model_age_angstrom};
+}
 
 constexpr std::size_t flush_bytes = 1 << 16;
 
@@ -73,38 +133,50 @@ std::vector<fs::path> input_files(const SceneDescription& scene) {
         add(molecule.structure);
         add(molecule.topology);
     }
+    for (EditDescription edit : scene.edits) {
+        for (const fs::path* const file : list_files(edit.action)) add(*file);
+    }
     return files;
 }
 
-// What each file is called in the recording: "inputs/NAME", numbered where a name is taken, and of
+// What a file is called in the recording: "inputs/NAME", numbered where a name is taken, and of
 // letters that TOML and every file system take as they are.
-std::map<fs::path, std::string> input_names(const std::vector<fs::path>& files) {
-    std::map<fs::path, std::string> names;
-    std::set<std::string> taken;
-    for (const fs::path& file : files) {
-        std::string own = file.filename().string();
-        for (char& c : own) {
-            constexpr std::string_view plain = "-_.";
-            const bool is_letter = std::isalnum(static_cast<unsigned char>(c)) != 0;
-            if (!is_letter && plain.find(c) == std::string_view::npos) c = '_';
-        }
-        std::string name = own;
-        for (int number = 2; !taken.insert(name).second; ++number) {
-            name = fmt::format("{}-{}", number, own);
-        }
-        names[file] = "inputs/" + name;
+std::string input_name(const fs::path& file, std::set<std::string>& taken) {
+    std::string own = file.filename().string();
+    for (char& c : own) {
+        constexpr std::string_view plain = "-_.";
+        const bool is_letter = std::isalnum(static_cast<unsigned char>(c)) != 0;
+        if (!is_letter && plain.find(c) == std::string_view::npos) c = '_';
     }
+    std::string name = own;
+    for (int number = 2; !taken.insert(name).second; ++number) {
+        name = fmt::format("{}-{}", number, own);
+    }
+    return "inputs/" + name;
+}
+
+std::map<fs::path, std::string> input_names(const std::vector<fs::path>& files,
+                                            std::set<std::string>& taken) {
+    std::map<fs::path, std::string> names;
+    for (const fs::path& file : files) names[file] = input_name(file, taken);
     return names;
+}
+
+std::map<fs::path, std::string> input_names(const std::vector<fs::path>& files) {
+    std::set<std::string> taken;
+    return input_names(files, taken);
 }
 
 constexpr std::string_view session_mark = "# A recorded Palpa session";
 
-std::string format_session(const SceneDescription& scene) {
+std::string format_session(const SceneDescription& scene, RecordedBy by = RecordedBy::Hand) {
     const std::map<fs::path, std::string> names = input_names(input_files(scene));
     return fmt::format(
-        "{}, every field written out. To run it again:\n"
-        "#   palpa run session.toml --headless --record NEW_FOLDER\n{}",
-        session_mark, format_scene(scene, [&](const fs::path& file) { return names.at(file); }));
+        "{}, every field written out. To {}\n{}", session_mark,
+        by == RecordedBy::Hand
+            ? "run it again:\n#   palpa run session.toml --headless --record NEW_FOLDER"
+            : "play what people did in it (journal.txt):\n#   palpa replay THIS_FOLDER",
+        format_scene(scene, [&](const fs::path& file) { return names.at(file); }));
 }
 
 bool is_recording(const fs::path& folder) {
@@ -118,15 +190,13 @@ bool is_there(const fs::path& path) {
 
 // The files in one of a recording's own folders; none where that is not there. A link to another
 // folder is not followed.
-std::vector<fs::path> list_folder(const fs::path& folder) {
+std::vector<fs::path> list_own_folder(const fs::path& folder) {
     std::error_code error;
     if (!is_there(folder)) return {};
     if (!fs::is_directory(fs::symlink_status(folder, error))) {
         throw LoadError({folder.string()}, "is no folder; expected a recording's own");
     }
-    std::vector<fs::path> files;
-    for (const auto& entry : fs::directory_iterator(folder, error)) files.push_back(entry.path());
-    return files;
+    return list_folder(folder);
 }
 
 // All that was written for the recording in a folder, and not what somebody put beside it: inputs
@@ -134,7 +204,7 @@ std::vector<fs::path> list_folder(const fs::path& folder) {
 std::vector<fs::path> list_recorded(const fs::path& folder) {
     const std::string session = read_text_file(folder / "session.toml");
     std::vector<fs::path> files;
-    for (const char* const name : {"summary.json", "trace.csv"}) {
+    for (const char* const name : {"summary.json", "trace.csv", "journal.txt"}) {
         const fs::path file = folder / name;
         std::error_code error;
         if (!is_there(file)) continue;
@@ -143,11 +213,11 @@ std::vector<fs::path> list_recorded(const fs::path& folder) {
         }
         files.push_back(file);
     }
-    for (const fs::path& file : list_folder(folder / "inputs")) {
+    for (const fs::path& file : list_own_folder(folder / "inputs")) {
         const std::string name = fmt::format("\"inputs/{}\"", file.filename().string());
         if (session.find(name) != std::string::npos) files.push_back(file);
     }
-    for (const fs::path& file : list_folder(folder / "frames")) {
+    for (const fs::path& file : list_own_folder(folder / "frames")) {
         const std::string name = file.stem().string();
         const bool is_numbered =
             name.size() >= 4 && name.find_first_not_of("0123456789") == std::string::npos;
@@ -164,6 +234,12 @@ void make_folder(const fs::path& folder) {
 }
 
 }  // namespace
+
+InputNames::InputNames(const SceneDescription& scene) {
+    (void)input_names(input_files(scene), taken_);
+}
+
+std::string InputNames::add(const fs::path& file) { return input_name(file, taken_); }
 
 void check_record_folder(const fs::path& folder, bool overwrites) {
     std::error_code error;
@@ -214,26 +290,57 @@ void make_room(const fs::path& folder, const std::map<fs::path, std::string>& na
         fs::remove(folder / name, error);  // if empty
 }
 
-nlohmann::ordered_json feel_as_json(const Feel& feel) {
+// Readers know it by older names, which stay beside the newer ones.
+nlohmann::ordered_json accuracy_as_json(const AccuracyReport& report) {
     nlohmann::ordered_json json;
-    if (feel.range_pN) {
-        json["range_pN"] = *feel.range_pN;
-        json["ends_N"] = feel.ends_newton;
+    if (report.range_pN) {
+        json["range_pN"] = *report.range_pN;
+        json["ends_N"] = report.ends_newton;
     }
-    json["stiffest_share_of_cap"] = feel.stiffest_share;
-    json["largest_raise_of_A_d"] = feel.largest_raise;
-    json["warm_share"] = feel.warm_share;
-    if (feel.within_pN) {
-        json["within_pN"] = *feel.within_pN;
-        json["audits"] = feel.audits;
-        json["error_median_pN"] = feel.median_pN;
-        json["error_90_pN"] = feel.ninety_pN;
-        json["within_share"] = feel.within_share;
-        json["active_mean"] = feel.active;
-        json["steps_mean"] = feel.steps;
+    json["stiffest_share_of_cap"] = report.stiffest_share;
+    json["largest_cap_ratio"] = report.largest_cap_ratio;
+    json["largest_raise_of_A_d"] = report.largest_cap_ratio;
+    json["thermal_limit_share"] = report.thermal_share;
+    json["warm_share"] = report.thermal_share;
+    if (report.within_pN) {
+        json["within_pN"] = *report.within_pN;
+        json["error_estimates"] = report.estimates;
+        json["audits"] = report.estimates;
+        json["error_median_pN"] = report.median_pN;
+        json["error_90_pN"] = report.ninety_pN;
+        json["within_share"] = report.within_share;
+        json["active_mean"] = report.active;
+        json["steps_mean"] = report.steps;
     }
-    json["gave_way"] = find_yielding(feel).all();
+    json["not_met"] = find_unmet(report).all();
+    json["gave_way"] = json["not_met"];
     return json;
+}
+
+// What one hand felt and did.
+void add_felt(const Summary& hand, nlohmann::ordered_json& json) {
+    if (hand.ripple) {
+        json["ripple_N"] = hand.ripple->rms;
+        json["ripple_Hz"] = hand.ripple->hertz;
+    } else {  // too short a run to tell
+        json["ripple_N"] = json["ripple_Hz"] = nullptr;
+    }
+    json["net_work_J"] = hand.net_work_J;
+    json["largest_felt_N"] = hand.largest_felt_N;
+    if (hand.is_on_axis) {
+        json["largest_attraction_N"] = hand.largest_attraction_N;
+        json["largest_repulsion_N"] = hand.largest_repulsion_N;
+    }
+    json["closest_angstrom"] = hand.closest_angstrom;
+    json["last_angstrom"] = hand.last_angstrom;
+}
+
+// What held its force back.
+void add_safety(const Summary& hand, nlohmann::ordered_json& json) {
+    json["clamped_share"] = hand.clamped_share;
+    json["safety"] = hand.is_safety_full ? "full" : "paper";
+    json["safety_share"] = hand.safety_share;
+    json["stopped"] = hand.stopped;
 }
 
 }  // namespace
@@ -246,7 +353,16 @@ std::string scene_hash(const SceneDescription& scene) {
     return fmt::format("{:016x}", hash);
 }
 
-std::string trace_header() { return fmt::format("{}", fmt::join(columns, ",")); }
+std::string trace_header(std::size_t hands, bool relaxes) {
+    const auto own = std::span(columns).first(count_columns(relaxes));
+    std::string header = fmt::format("{}", fmt::join(own, ","));
+    for (std::size_t hand = 2; hand <= hands; ++hand) {
+        for (const std::string_view column : own) {
+            if (!is_common(column)) header += fmt::format(",{}_{}", column, hand);
+        }
+    }
+    return header;
+}
 
 std::string format_summary(const SceneDescription& scene, const Summary& summary) {
     nlohmann::ordered_json json;
@@ -258,7 +374,7 @@ std::string format_summary(const SceneDescription& scene, const Summary& summary
     json["scene"] = scene.title;
     json["scene_hash"] = scene_hash(scene);
     json["device"] = summary.device;
-    json["hand"] = hand_names[scene.hand.grip];
+    json["hand"] = grip_names[static_cast<std::size_t>(scene.hand.grip)];
     json["stroke"] = stroke_names[static_cast<std::size_t>(scene.hand.stroke)];
     json["mode"] = coupling_mode_names[static_cast<std::size_t>(scene.coupling.mode)];
     json["period_ms"] = scene.period_ms;
@@ -275,45 +391,46 @@ std::string format_summary(const SceneDescription& scene, const Summary& summary
     json["step_median_us"] = summary.step_median_us;
     json["step_p99_us"] = summary.step_p99_us;
     json["steps_not_finite"] = summary.steps_not_finite;
-    if (summary.ripple) {
-        json["ripple_N"] = summary.ripple->rms;
-        json["ripple_Hz"] = summary.ripple->hertz;
-    } else {  // too short a run to tell
-        json["ripple_N"] = json["ripple_Hz"] = nullptr;
-    }
-    json["net_work_J"] = summary.net_work_J;
-    json["largest_felt_N"] = summary.largest_felt_N;
-    if (summary.is_on_axis) {
-        json["largest_attraction_N"] = summary.largest_attraction_N;
-        json["largest_repulsion_N"] = summary.largest_repulsion_N;
-    }
-    json["closest_angstrom"] = summary.closest_angstrom;
-    json["last_angstrom"] = summary.last_angstrom;
+    add_felt(summary, json);
     if (summary.activity) {
         json["active_mean"] = summary.activity->active;
         json["neglected_share"] = summary.activity->neglected_share;
         json["choices"] = summary.activity->choices;
         json["within_budget_share"] = summary.activity->within_budget;
     }
-    if (summary.journey) {
-        json["farthest_angstrom"] = summary.journey->farthest;
-        json["clearance_angstrom"] = summary.journey->clearance;
-        json["closest_atoms_angstrom"] = summary.journey->closest;
-        json["last_rmsd_angstrom"] = summary.journey->last_rmsd;
+    if (summary.unbinding) {
+        json["farthest_angstrom"] = summary.unbinding->farthest;
+        json["clearance_angstrom"] = summary.unbinding->clearance;
+        json["closest_atoms_angstrom"] = summary.unbinding->closest;
+        json["last_rmsd_angstrom"] = summary.unbinding->last_rmsd;
     }
-    if (summary.feel) json["feel"] = feel_as_json(*summary.feel);
-    json["clamped_share"] = summary.clamped_share;
-    json["safety"] = summary.is_safety_full ? "full" : "paper";
-    json["safety_share"] = summary.safety_share;
-    json["stopped"] = summary.stopped;
+    if (summary.relaxation) {
+        const RelaxationSummary& r = *summary.relaxation;
+        json["relaxation"] = {{"error_estimates", r.estimates},
+                              {"error_median_pN", r.error_median_pN},
+                              {"error_90_pN", r.error_90_pN},
+                              {"renewals", r.renewals},
+                              {"snaps", r.snaps},
+                              {"released_kcal_per_mol", r.released}};
+    }
+    if (summary.accuracy) json["feel"] = accuracy_as_json(*summary.accuracy);
+    add_safety(summary, json);
     json["overruns"] = summary.overruns;
-    json["neglected"] = nlohmann::ordered_json::array();  // rigid, all pairs: nothing
+    for (std::size_t i = 0; i < summary.other_hands.size(); ++i) {
+        const Summary& hand = summary.other_hands[i];
+        nlohmann::ordered_json& other = json[fmt::format("hand_{}", i + 2)];
+        other["device"] = hand.device;
+        add_felt(hand, other);
+        add_safety(hand, other);
+    }
+    json["neglected"] = summary.neglected;
     json["warnings"] = summary.warnings;
     return json.dump(2) + "\n";
 }
 
-Recording::Recording(const fs::path& folder, const SceneDescription& scene, bool overwrites)
-    : folder_(folder), scene_(scene) {
+Recording::Recording(const fs::path& folder, const SceneDescription& scene, bool overwrites,
+                     std::size_t hands, RecordedBy by)
+    : folder_(folder), scene_(scene), hands_(hands) {
     const std::vector<fs::path> files = input_files(scene);
     // Read everything before the first byte is written: the folder may hold the inputs themselves.
     std::vector<std::string> contents;
@@ -325,14 +442,15 @@ Recording::Recording(const fs::path& folder, const SceneDescription& scene, bool
     make_room(folder, names);
     // The trace first: where it cannot be written, nothing is.
     trace_.emplace(folder / "trace.csv");
-    rows_ = trace_header() + "\n";
+    if (by == RecordedBy::Journal) journal_.emplace(folder / "journal.txt");
+    rows_ = trace_header(hands, scene.has_statics()) + "\n";
     flush();
     std::error_code error;
     fs::create_directory(folder / "inputs", error);
     if (error) throw LoadError({folder.string()}, "cannot be written: " + error.message());
     write_text_file(folder / "session.toml",
                     fmt::format("{}# Recorded by Palpa {}, {}, on a processor of kind {}.\n",
-                                format_session(scene), version_name, commit_name,
+                                format_session(scene, by), version_name, commit_name,
                                 list_processor_kinds().front()),
                     is_there(folder / "session.toml") ? Existing::Replace : Existing::Refuse);
     for (std::size_t i = 0; i < files.size(); ++i) {
@@ -340,33 +458,38 @@ Recording::Recording(const fs::path& folder, const SceneDescription& scene, bool
     }
 }
 
-std::string trace_row(const ServoTick& tick) {
-    const DeviceReading& device = tick.reading;
-    const TouchModel& touch = tick.touch;
-    // Adding nothing makes -0 a plain 0.
-    const Vec3 zero = Vec3::Zero();
-    const Vec3 force_nN = touch.force_newton * 1e9 + zero;
-    const Vec3 torque = touch.torque_newton_metre * 1e19 + zero;  // nN Å
-    const Vec3 sent = tick.sent_newton + zero;
-    const Vec3 molecule = touch.molecule.place_angstrom + zero;
-    const Vec3 handle = device.position_m + zero;
-    const Vec3 handle_turn = rotation_vector_of(device.orientation) + zero;
-    const Vec3 molecule_turn = rotation_vector_of(touch.molecule.orientation) + zero;
-    return fmt::format(
-        "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},"
-        "{},{},{},{}\n",
-        device.time_s, handle.x(), handle.y(), handle.z(), molecule.x(), molecule.y(), molecule.z(),
-        force_nN.x(), force_nN.y(), force_nN.z(), torque.x(), torque.y(), torque.z(), sent.x(),
-        sent.y(), sent.z(), tick.force_gain, touch.displacement_gain, touch.stiffness_N_per_m,
-        tick.hand_energy_J, touch.potential_kcal_per_mol, touch.active_freedom,
-        touch.period_s * 1e3, tick.clutched ? 1 : 0, handle_turn.x(), handle_turn.y(),
-        handle_turn.z(), molecule_turn.x(), molecule_turn.y(), molecule_turn.z());
+std::string trace_row(std::span<const ServoTick> ticks, bool relaxes) {
+    std::string row;
+    for (std::size_t i = 0; i < ticks.size(); ++i) {
+        const std::array<double, columns.size()> values = trace_values(ticks[i]);
+        for (std::size_t k = 0; k < count_columns(relaxes); ++k) {
+            if (i > 0 && is_common(columns[k])) continue;
+            if (!row.empty()) row += ',';
+            fmt::format_to(std::back_inserter(row), "{}", values[k]);
+        }
+    }
+    return row + "\n";
 }
 
-void Recording::add(const ServoTick& tick) {
+void Recording::add(std::span<const ServoTick> ticks) {
+    PALPA_ASSERT(ticks.size() == hands_);
     if (tick_++ % static_cast<std::uint64_t>(scene_.every) != 0) return;
-    rows_ += trace_row(tick);
+    rows_ += trace_row(ticks, scene_.has_statics());
     if (rows_.size() > flush_bytes) flush();
+}
+
+void Recording::add_journal(const std::string& text) {
+    PALPA_ASSERT(journal_);
+    journal_->write(text);
+}
+
+// The session names it as one of its own, for who replaces the recording.
+void Recording::add_input(const std::string& name, const std::string& content) {
+    write_text_file(folder_ / name, content);
+    const fs::path session = folder_ / "session.toml";
+    write_text_file(session,
+                    fmt::format("{}# Added while it ran: \"{}\"\n", read_text_file(session), name),
+                    Existing::Replace);
 }
 
 void Recording::finish(const Summary& summary) {

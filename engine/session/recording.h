@@ -1,13 +1,17 @@
-// A session on disk: a folder with trace.csv, summary.json, session.toml and the scene's inputs.
+// A session on disk: a folder with trace.csv, summary.json, session.toml and the scene's inputs;
+// one from a window has a journal.txt too (session/journal.h).
 #pragma once
 #include "core/files.h"
 #include "haptics/servo.h"
 #include "scene/description.h"
 #include "session/statistics.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <set>
+#include <span>
 #include <string>
 
 namespace palpa {
@@ -15,18 +19,38 @@ namespace palpa {
 // A hash of the scene, every field and the content of every file that it names. 16 hex digits.
 std::string scene_hash(const SceneDescription& scene);
 
-// The trace's first line, without its end. One column a value, the unit last in the name.
-std::string trace_header();
+// The trace's first line, without its end. One column a value, the unit last in the name. Further
+// hands have the columns of the first behind its own, but for time and period, with "_2", "_3", ...
+// at the end of the name.
+// Where molecules relax, its last columns are the error estimate and the age of the model.
+std::string trace_header(std::size_t hands = 1, bool relaxes = false);
 
 // One of its rows, with its end: every number in the shortest form that reads back to the same
-// bits.
-std::string trace_row(const ServoTick& tick);
+// bits. One tick of all hands.
+std::string trace_row(std::span<const ServoTick> ticks, bool relaxes = false);
+inline std::string trace_row(const ServoTick& tick) { return trace_row({&tick, 1}); }
 
 // The summary as a JSON object; scripts rely on its keys, which the README of tools lists.
 std::string format_summary(const SceneDescription& scene, const Summary& summary);
 
 // Throws LoadError where a Recording in the folder would, before anything long is done for it.
 void check_record_folder(const std::filesystem::path& folder, bool overwrites);
+
+// What files are called in a recording.
+class InputNames {
+public:
+    // Those of the scene, which have their names.
+    explicit InputNames(const SceneDescription& scene);
+
+    // "inputs/NAME" for one more.
+    std::string add(const std::filesystem::path& file);
+
+private:
+    std::set<std::string> taken_;
+};
+
+// What brings a recorded session back: the scene's own hand, or a journal.
+enum class RecordedBy { Hand, Journal };
 
 class Recording {
 public:
@@ -35,10 +59,19 @@ public:
     // another run records into it, or if it is not empty. A recording in it is replaced if
     // `overwrites`: the files that belong to one, and nothing else.
     Recording(const std::filesystem::path& folder, const SceneDescription& scene,
-              bool overwrites = false);
+              bool overwrites = false, std::size_t hands = 1, RecordedBy by = RecordedBy::Hand);
 
-    // Every `every`th tick becomes a row. What was written stays readable if the run is cut off.
-    void add(const ServoTick& tick);
+    // Every `every`th tick of all hands becomes a row. What was written stays readable if the run
+    // is cut off.
+    void add(std::span<const ServoTick> ticks);
+    void add(const ServoTick& tick) { add({&tick, 1}); }
+
+    // Of a recording by journal: what follows in journal.txt.
+    void add_journal(const std::string& text);
+
+    // One more input, that was read while the session ran. `name`: of InputNames. Throws LoadError
+    // where it cannot be written.
+    void add_input(const std::string& name, const std::string& content);
 
     // Writes what is left of the trace, and the summary.
     void finish(const Summary& summary);
@@ -48,8 +81,9 @@ private:
 
     std::filesystem::path folder_;
     SceneDescription scene_;
+    std::size_t hands_;
     std::optional<FolderLock> lock_;
-    std::optional<NewFile> trace_;
+    std::optional<NewFile> trace_, journal_;
     std::string rows_;
     std::uint64_t tick_ = 0;
 };

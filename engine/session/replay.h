@@ -2,9 +2,11 @@
 #pragma once
 #include "haptics/servo.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,10 +27,12 @@ public:
     // Reads trace.csv of a recording of so many ticks whose trace keeps one row of `every`. What is
     // behind the last whole line of one that was cut off does not count. Throws LoadError if there
     // is none, or if its columns are not those of this program.
-    TraceCheck(const std::filesystem::path& folder, std::uint64_t ticks, std::int64_t every);
+    TraceCheck(const std::filesystem::path& folder, std::uint64_t ticks, std::int64_t every,
+               std::size_t hands = 1);
 
     // Every tick of the run, in order; those behind the last row recorded do not count.
-    void add(const ServoTick& tick);
+    void add(std::span<const ServoTick> ticks);  // of all hands
+    void add(const ServoTick& tick) { add({&tick, 1}); }
 
     std::uint64_t recorded() const noexcept { return rows_.size(); }
     std::uint64_t compared() const noexcept { return compared_; }
@@ -46,6 +50,7 @@ private:
 
     std::string text_;
     std::vector<std::string_view> rows_, columns_;  // of `text_`
+    bool relaxes_ = false;                          // it has the columns of molecules that relax
     std::int64_t every_;
     std::uint64_t whole_;  // rows of a recording that was not cut off
     std::uint64_t tick_ = 0, compared_ = 0, different_ = 0, not_finite_ = 0;

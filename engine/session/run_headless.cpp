@@ -1,11 +1,16 @@
 #include "session/run_headless.h"
 
+#include "core/assertion.h"
 #include "core/load_error.h"
 #include "core/units.h"
 #include "haptics/hand.h"
 #include "haptics/plant.h"
 #include "molecule/coincident_atoms.h"
+#include "session/edit_player.h"
 #include "simulation/components.h"
+#include "simulation/edit.h"
+#include "simulation/held.h"
+#include "simulation/resources.h"
 #include "simulation/step.h"
 
 #include <fmt/format.h>
@@ -38,42 +43,43 @@ std::uint64_t count_ticks(const SceneDescription& scene) noexcept {
     return static_cast<std::uint64_t>(std::ceil(scene.seconds / servo_tick_s - 1e-9));
 }
 
-ServoSettings build_servo_settings(const SceneDescription& scene, const Simulation& simulation,
+ServoSettings build_servo_settings(const SceneDescription& scene, const World& world,
                                    const Vec3& half_workspace_m) {
     const CouplingDescription& c = scene.coupling;
-    ServoSettings settings{simulation.laws.force,
-                           {.clamp_newton = c.clamp_N, .is_full = simulation.is_guarded},
-                           static_cast<int>(scene.device.servo_delay_ticks)};
+    ServoSettings settings{
+        world.resource<Coupling>().laws.force,
+        {.clamp_newton = c.clamp_N, .is_full = world.resource<Coupling>().is_guarded},
+        static_cast<int>(scene.device.servo_delay_ticks)};
     settings.safety.starts_engaged = c.engage == Engage::AtOnce;
     // Friction is lost twice on turning round, and the rest has to show (haptics/safety.h).
     settings.safety.frozen_newton = 2 + 2 * scene.device.friction_N;
-    if (!simulation.is_guarded) return settings;
+    if (!world.resource<Coupling>().is_guarded) return settings;
     GuardedSettings& guarded = settings.guarded.emplace();
-    guarded.force_law = simulation.laws.force;
-    guarded.displacement_law = simulation.laws.displacement;
-    guarded.gain_shape =
-        c.gain_shape == GainShapeChoice::Tensor ? GainShape::Tensor : GainShape::Scalar;
+    guarded.force_law = world.resource<Coupling>().laws.force;
+    guarded.displacement_law = world.resource<Coupling>().laws.displacement;
+    guarded.gain_shape = c.gain_shape;
     guarded.workspace = build_workspace(c.workspace);
     guarded.half_workspace_m = half_workspace_m;
     guarded.damping_N_s_per_m =
         guarded_damping(c.damping_N_s_per_m, scene.device.inertia_kg, settings.delay_ticks);
     guarded.cap_N_per_m = guarded_cap(scene.device.viscosity_N_s_per_m, guarded.damping_N_s_per_m,
                                       settings.delay_ticks);
-    // Where the scene says what must be felt, no tick feels more than the cap. Of 60 loops in space
-    // with 50 to 400 pN none outruns its limits with this A_d, one does by 12.5 mJ with half of it.
+    // Where the scene says what must be felt, no tick feels more than the cap. Of 60 closed paths
+    // in space with 50 to 400 pN none outruns its limits with this A_d, one does by 12.5 mJ with
+    // half of it.
     if (c.feel_pN) {
         guarded.cap_N_per_m /= most_of_cap;
         guarded.least_A_d_per_newton = 0.2e9;
     }
     guarded.stop_newton = c.stop_nN * 1e-9;
-    guarded.late_s = guarded_lateness(guarded.cap_N_per_m, guarded.damping_N_s_per_m,
-                                      scene.device.inertia_kg, settings.delay_ticks);
+    guarded.horizon_s = guarded_horizon(guarded.cap_N_per_m, guarded.damping_N_s_per_m,
+                                        scene.device.inertia_kg, settings.delay_ticks);
     return settings;
 }
 
-ServoSettings build_servo_settings(const SceneDescription& scene, const Simulation& simulation,
+ServoSettings build_servo_settings(const SceneDescription& scene, const World& world,
                                    const DeviceSpec& device) {
-    ServoSettings settings = build_servo_settings(scene, simulation, device.half_workspace_m);
+    ServoSettings settings = build_servo_settings(scene, world, device.half_workspace_m);
     if (!device.is_real) return settings;
     settings.safety.is_full = true;
     settings.safety.starts_engaged = false;
@@ -89,54 +95,55 @@ void check_period(const DeviceSpec& device, double period_s) {
                                 1e3 * period_s, device.name, 1e3 * longest_real_period_s));
 }
 
-double gain_where(const ServoSettings& servo, const Simulation& simulation,
-                  const Vec3& force_newton, const Mat3& stiffness) noexcept {
+double gain_where(const ServoSettings& servo, const World& world, const Vec3& force_newton,
+                  const Mat3& stiffness) noexcept {
     if (servo.guarded) return guarded_gain(*servo.guarded, force_newton, stiffness).A_d;
-    return displacement_gain(simulation.laws.displacement, force_newton.norm());
+    return displacement_gain(world.resource<Coupling>().laws.displacement, force_newton.norm());
 }
 
-double gain_where(const ServoSettings& servo, const Simulation& simulation,
-                  const LineForce& line) noexcept {
+double gain_where(const ServoSettings& servo, const World& world, const LineForce& line) noexcept {
     Mat3 stiffness = Mat3::Zero();
     stiffness(0, 0) = line.stiffness * units::newton_per_metre_per_kcal_per_mol_angstrom2;
-    return gain_where(servo, simulation,
+    return gain_where(servo, world,
                       Vec3(line.force * units::newton_per_kcal_per_mol_angstrom, 0, 0), stiffness);
 }
 
-FeltStiffness stiffest_place(const SceneDescription& scene, const Simulation& simulation,
-                             const StageFunction& on_stage) {
-    const Grab& grab = *simulation.world.find<Grab>(simulation.hand);
-    const Guide& guide = *simulation.world.find<Guide>(grab.molecule);
-    const ServoSettings servo = build_servo_settings(scene, simulation);
+FeltStiffness stiffest_place(const SceneDescription& scene, const World& world,
+                             const StageFunction& on_stage, std::size_t slot) {
+    const Entity hand = find_hands(world).at(slot);
+    const double peak_nN = list_hands(scene).at(slot).hand.peak_nN;
+    const Grip& grip = grip_of(world, hand);
+    const ServoSettings servo = build_servo_settings(scene, world);
     FeltStiffness stiffest;
-    if (simulation.flexible && simulation.flexible->state.tether) {
-        const double k = simulation.flexible->state.tether->k *
-                         units::newton_per_metre_per_kcal_per_mol_angstrom2;
-        const double A_d = gain_where(servo, simulation, Vec3::Zero(), k * Mat3::Identity());
-        return {force_gain(simulation.laws.force, 0) * k / A_d, grabbed_distance(simulation)};
+    if (const Spring* const spring = spring_of(world, hand)) {
+        const double k = spring->k * units::newton_per_metre_per_kcal_per_mol_angstrom2;
+        const double A_d = gain_where(servo, world, Vec3::Zero(), k * Mat3::Identity());
+        return {force_gain(world.resource<Coupling>().laws.force, 0) * k / A_d,
+                grabbed_distance(world, hand)};
     }
     // False where the hand does not go: further in than its peak.
     const auto look_at = [&](double distance) {
-        const FieldSum field = field_on_grabbed_at(simulation, distance);
-        const Vec3 force = guide.projector * field.force * units::newton_per_kcal_per_mol_angstrom;
+        const FieldSum field = field_on_grabbed_at(world, distance, hand);
+        const Vec3 force = grip.projector * field.force * units::newton_per_kcal_per_mol_angstrom;
         const double F_m = force.norm();
-        const bool pulls_outward = guide.freedom == 1 && force.x() < 0;
-        if (F_m > scene.hand.peak_nN * 1e-9 && !pulls_outward) return false;
-        const Mat3 stiffness = guide.projector * field.stiffness * guide.projector *
+        const bool pulls_outward = grip.freedom == 1 && force.x() < 0;
+        if (F_m > peak_nN * 1e-9 && !pulls_outward) return false;
+        const Mat3 stiffness = grip.projector * field.stiffness * grip.projector *
                                units::newton_per_metre_per_kcal_per_mol_angstrom2;
-        const double A_d = gain_where(servo, simulation, force, stiffness);
-        const double K = largest_felt(simulation.laws.force, force, stiffness) / A_d;
+        const double A_d = gain_where(servo, world, force, stiffness);
+        const double K =
+            largest_felt(world.resource<Coupling>().laws.force, force, stiffness) / A_d;
         if (K > stiffest.newton_per_metre) stiffest = {K, distance};
         return true;
     };
-    if (guide.freedom == 1) {
+    if (grip.freedom == 1) {
         for (double distance = 2; distance < 12; distance += 0.002) look_at(distance);
         // Eq. 3 makes the rest place the stiffest, in a notch narrower than the scan.
-        if (const auto rest = equilibrium_distance(simulation)) look_at(*rest);
+        if (const auto rest = equilibrium_distance(world, hand)) look_at(*rest);
         return stiffest;
     }
     // In space from the start both ways; outward all gets soft soon.
-    const double start = grabbed_distance(simulation);
+    const double start = grabbed_distance(world, hand);
     for (double in = 0; in < 60 && look_at(start - in); in += 0.05) {
         if (on_stage) on_stage(fmt::format("looking for the stiffest place: {:.1f} Å in", in), {});
     }
@@ -172,9 +179,9 @@ double encoder_jump(const GuardedSettings& guarded, double step_m) noexcept {
     return guarded.cap_N_per_m * step_m + guarded.damping_N_s_per_m * m_per_s;
 }
 
-void warn_of_resolution(const SceneDescription& scene, const Simulation& simulation,
+void warn_of_resolution(const SceneDescription& scene, const World& world,
                         std::vector<std::string>& warnings) {
-    const ServoSettings servo = build_servo_settings(scene, simulation);
+    const ServoSettings servo = build_servo_settings(scene, world);
     if (!servo.guarded) return;
     const double step_mm = scene.device.encoder_step_mm;
     const double jump = encoder_jump(*servo.guarded, 1e-3 * step_mm);
@@ -199,14 +206,13 @@ void warn_of_resolution(const SceneDescription& scene, const Simulation& simulat
     }
 }
 
-}  // namespace
-
-std::vector<std::string> list_warnings(const SceneDescription& scene, const Simulation& simulation,
-                                       const HandScript& script, const StageFunction& on_stage) {
-    std::vector<std::string> warnings;
-    const FeltStiffness stiffest = stiffest_place(scene, simulation, on_stage);
-    const std::optional<HandModel> hand = hand_model(static_cast<Grip>(scene.hand.grip));
-    const double limit = calm_stiffness(scene, hand, simulation.period_s);
+// That a hand feels a spring too stiff for it, held or let go.
+void warn_of_stiffness(const SceneDescription& scene, const World& world, const HandScript& script,
+                       std::size_t slot, const StageFunction& on_stage,
+                       std::vector<std::string>& warnings) {
+    const FeltStiffness stiffest = stiffest_place(scene, world, on_stage, slot);
+    const std::optional<HandModel> hand = hand_model(list_hands(scene).at(slot).hand.grip);
+    const double limit = calm_stiffness(scene, hand, world.resource<Clock>().period_s);
     if (stiffest.newton_per_metre > limit) {
         warnings.push_back(
             fmt::format("this setting vibrates unless friction holds it: at {:.2f} Å the hand "
@@ -215,7 +221,8 @@ std::vector<std::string> list_warnings(const SceneDescription& scene, const Simu
                         stiffest.angstrom, stiffest.newton_per_metre, limit, scene.period_ms));
     }
     if (script.release_s) {
-        const double relaxed_limit = calm_stiffness(scene, relaxed(hand), simulation.period_s);
+        const double relaxed_limit =
+            calm_stiffness(scene, relaxed(hand), world.resource<Clock>().period_s);
         if (stiffest.newton_per_metre > relaxed_limit && stiffest.newton_per_metre <= limit) {
             warnings.push_back(fmt::format(
                 "once the hand lets go this setting vibrates unless friction holds it: the relaxed "
@@ -223,24 +230,18 @@ std::vector<std::string> list_warnings(const SceneDescription& scene, const Simu
                 relaxed_limit, scene.period_ms, stiffest.newton_per_metre));
         }
     }
-    warn_of_resolution(scene, simulation, warnings);
-    if (const auto closest = describe_coincident_atoms(
-            simulation.atoms.names, simulation.atoms.positions, nearest_single_precision)) {
-        warnings.push_back(fmt::format("atoms are on each other at the start: {}", *closest));
-    }
-    if (simulation.flexible && simulation.flexible->relaxed.end != RelaxEnd::Converged) {
-        const JointRelaxReport& relaxed = simulation.flexible->relaxed;
-        warnings.push_back(fmt::format(
-            "not at rest at the start: an rms force of {:.3g} kcal/mol per radian and Å is left "
-            "after {} steps (statics.relax_steps, statics.rest_kcal_per_mol; palpa relax)",
-            relaxed.rms_force, relaxed.steps));
-    }
-    if (simulation.is_guarded && scene.hand.peak_nN > scene.coupling.stop_nN) {
+}
+
+// That it wants more than the coupling lets it, or than the run has time for.
+void warn_of_stroke(const SceneDescription& scene, const World& world, const HandScript& script,
+                    std::size_t slot, std::vector<std::string>& warnings) {
+    const HandTables tables = list_hands(scene).at(slot);
+    if (world.resource<Coupling>().is_guarded && tables.hand.peak_nN > scene.coupling.stop_nN) {
         warnings.push_back(
-            fmt::format("the hand is to feel {:.6g} nN (hand.peak_nN), and the molecule is held "
+            fmt::format("the hand is to feel {:.6g} nN ({}.peak_nN), and the molecule is held "
                         "back from {:.6g} "
                         "nN on (coupling.stop_nN)",
-                        scene.hand.peak_nN, scene.coupling.stop_nN));
+                        tables.hand.peak_nN, tables.hand_key, scene.coupling.stop_nN));
     }
     const double last_move = script.path.empty() ? 0 : script.path.back().time_s;
     if (last_move > scene.seconds) {
@@ -248,6 +249,39 @@ std::vector<std::string> list_warnings(const SceneDescription& scene, const Simu
             fmt::format("the stroke takes {:.6g} s, the run only {:.6g} s (run.seconds)", last_move,
                         scene.seconds));
     }
+}
+
+}  // namespace
+
+std::vector<std::string> list_warnings(const SceneDescription& scene, const World& world,
+                                       const HandScript& script, const StageFunction& on_stage) {
+    std::vector<std::string> warnings;
+    warn_of_stiffness(scene, world, script, 0, on_stage, warnings);
+    warn_of_resolution(scene, world, warnings);
+    if (const auto closest = describe_coincident_atoms(world.resource<AtomTable>().names,
+                                                       world.resource<AtomTable>().positions,
+                                                       nearest_single_precision)) {
+        warnings.push_back(fmt::format("atoms are on each other at the start: {}", *closest));
+    }
+    const std::optional<JointRelaxReport>& relaxed = world.resource<StartReport>().joints_at_rest;
+    if (relaxed && relaxed->end != RelaxEnd::Converged) {
+        warnings.push_back(fmt::format(
+            "not at rest at the start: an rms force of {:.3g} kcal/mol per radian and Å is left "
+            "after {} steps (statics.relax_steps, statics.rest_kcal_per_mol; palpa relax)",
+            relaxed->rms_force, relaxed->steps));
+    }
+    warn_of_stroke(scene, world, script, 0, warnings);
+    return warnings;
+}
+
+std::vector<std::string> list_hand_warnings(const SceneDescription& scene, const World& world,
+                                            const HandScript& script, std::size_t slot,
+                                            const StageFunction& on_stage) {
+    std::vector<std::string> warnings;
+    warn_of_stiffness(scene, world, script, slot, on_stage, warnings);
+    warn_of_stroke(scene, world, script, slot, warnings);
+    for (std::string& warning : warnings)
+        warning = fmt::format("{} hand: {}", slot == 1 ? "second" : "further", warning);
     return warnings;
 }
 
@@ -278,13 +312,14 @@ void warn_of_outcome(Summary& summary) {
 // What was active, step by step.
 class ActivityLog {
 public:
-    void add(const SettleReport& settled, double took_us, const std::optional<double>& budget_us) {
+    void add(const RelaxStepReport& relaxed, double took_us,
+             const std::optional<double>& budget_us) {
         steps_ += 1;
-        sum_.active += static_cast<double>(settled.active);
+        sum_.active += static_cast<double>(relaxed.active);
         if (!budget_us || took_us <= *budget_us) within_ += 1;
-        if (!settled.is_chosen) return;
+        if (!relaxed.is_chosen) return;
         ++sum_.choices;
-        if (settled.total > 0) sum_.neglected_share += settled.neglected / settled.total;
+        if (relaxed.total > 0) sum_.neglected_share += relaxed.neglected / relaxed.total;
     }
 
     Activity activity() const {
@@ -300,70 +335,216 @@ private:
     double steps_ = 0, within_ = 0;
 };
 
-Summary run_headless(const SceneDescription& scene, Simulation& simulation, Device& device,
+// How far the force was from complete relaxation, in as much memory however long the run is.
+class RelaxationLog {
+public:
+    void add(const RelaxStepReport& relaxed) {
+        if (relaxed.model_age && relaxed.is_renewed) ++sum_.renewals;
+        if (relaxed.released > snap) {
+            ++sum_.snaps;
+            sum_.released += relaxed.released;
+        }
+        if (!relaxed.estimated_error_pN) return;
+        ++sum_.estimates;
+        ++counts_[bin_of(*relaxed.estimated_error_pN)];
+    }
+
+    RelaxationSummary summary() const {
+        RelaxationSummary result = sum_;
+        result.error_median_pN = quantile_of(0.5);
+        result.error_90_pN = quantile_of(0.9);
+        return result;
+    }
+
+private:
+    static constexpr double snap = 1;       // kcal/mol
+    static constexpr double least = 0.001;  // pN, of the first bin
+    static constexpr double width = 0.02;   // of a bin, of the logarithm
+
+    std::size_t bin_of(double pN) const {
+        const double bin = std::log(std::max(pN, least) / least) / width;
+        return std::min(counts_.size() - 1, static_cast<std::size_t>(bin));
+    }
+    double quantile_of(double share) const {
+        double left = share * static_cast<double>(sum_.estimates);
+        for (std::size_t bin = 0; bin < counts_.size(); ++bin) {
+            left -= static_cast<double>(counts_[bin]);
+            if (left <= 0) return least * std::exp(width * static_cast<double>(bin));
+        }
+        return 0;
+    }
+
+    RelaxationSummary sum_;
+    std::array<std::uint64_t, 1200> counts_{};  // up to 1e7 pN
+};
+
+// What the model of a flexible scene leaves out.
+std::vector<std::string> list_neglected(const SceneDescription& scene, const World& world) {
+    std::vector<std::string> neglected;
+    if (!has_mobile(world)) return neglected;
+    const StaticsDescription& s = scene.statics;
+    const auto coordinates = static_cast<std::int64_t>(model_of(world).coordinates);
+    if (s.cutoff_angstrom)
+        neglected.push_back(fmt::format("pairs beyond {} A", *s.cutoff_angstrom));
+    if (world.find_resource<AdaptiveState>() && s.active < coordinates)
+        neglected.push_back(fmt::format("motion of all but {} of {} degrees of freedom at a time",
+                                        s.active, coordinates));
+    if (const std::size_t held = world.resource<StartReport>().joints_held; held > 0)
+        neglected.push_back(fmt::format("motion of {} joints outside of the region", held));
+    neglected.emplace_back("solvent");
+    neglected.emplace_back("changes of bond lengths and angles");
+    return neglected;
+}
+
+// What a run gathers beside its recording.
+class RunLog {
+public:
+    RunLog(const SceneDescription& scene, const World& world, std::span<const LockstepHand> hands)
+        : scene_(scene), accuracy_(scene, hands.front().servo) {
+        for (std::size_t i = 0; i < hands.size(); ++i) statistics_.emplace_back(servo_tick_s);
+        // It goes by atoms' numbers, which edits change.
+        if (has_mobile(world) && scene.edits.empty()) unbinding_.emplace(world);
+    }
+
+    void add_step(const World& world) {
+        const StepReport& report = world.resource<StepReport>();
+        for (Statistics& each : statistics_) each.add_step(1e-6 * report.took_us, report.finite);
+        if (unbinding_) unbinding_->add(world);
+        if (!report.relaxed) {
+            accuracy_.add_answer(local_contact_of(world).model);
+            return;
+        }
+        accuracy_.add_step(*report.relaxed);
+        relaxation_.add(*report.relaxed);
+        activity_.add(*report.relaxed, report.took_us, scene_.statics.budget_us);
+    }
+
+    void add_ticks(std::span<const ServoTick> ticks) {
+        for (std::size_t i = 0; i < ticks.size(); ++i) statistics_[i].add(ticks[i]);
+        accuracy_.add(ticks.front());
+    }
+
+    Summary summary(const World& world, std::span<const LockstepHand> hands) const {
+        Summary summary = statistics_.front().summary();
+        summary.device = hands.front().device.spec().name;
+        for (std::size_t i = 1; i < hands.size(); ++i) {
+            summary.other_hands.push_back(statistics_[i].summary());
+            summary.other_hands.back().device = hands[i].device.spec().name;
+        }
+        summary.accuracy = accuracy_.report(summary.step_median_us);
+        if (unbinding_) {
+            // Where molecules make room for each other, one may well be on either side of another.
+            constexpr double on_top = 1;  // Å
+            summary.unbinding = unbinding_->unbinding();
+            summary.went_through = summary.unbinding->closest < on_top;
+        }
+        if (!has_mobile(world)) return summary;
+        const AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();
+        const ForceMemory& memory =
+            adaptive ? adaptive->statics.memory : world.resource<Solver>().statics.memory;
+        if (adaptive) summary.activity = activity_.activity();
+        summary.relaxation = relaxation_.summary();
+        summary.neglected = list_neglected(scene_, world);
+        summary.sums = memory.evaluations;
+        summary.sums_in_double = memory.fast_pairs.in_double;
+        return summary;
+    }
+
+private:
+    const SceneDescription& scene_;
+    std::vector<Statistics> statistics_;  // of each hand
+    ActivityLog activity_;
+    RelaxationLog relaxation_;
+    AccuracyLog accuracy_;
+    std::optional<UnbindingLog> unbinding_;
+};
+
+namespace {
+
+std::vector<LockstepHand> build_hands(const SceneDescription& scene, const World& world,
+                                      std::span<Device* const> devices) {
+    const std::vector<Entity> entities = find_hands(world);
+    PALPA_ASSERT(entities.size() >= devices.size());
+    std::vector<LockstepHand> hands;
+    for (std::size_t i = 0; i < devices.size(); ++i) {
+        check_period(devices[i]->spec(), world.resource<Clock>().period_s);
+        hands.push_back({*devices[i], build_servo_settings(scene, world, devices[i]->spec()),
+                         contact_of(world, entities[i]).answer});
+    }
+    return hands;
+}
+
+// What edits have made of the coupling.
+void renew_servos(const World& world, std::span<LockstepHand> hands) {
+    const SceneDescription& scene = world.resource<SceneFile>().scene;
+    for (LockstepHand& hand : hands) {
+        const std::uint32_t revision = hand.servo.guarded ? hand.servo.guarded->revision : 0;
+        hand.servo = build_servo_settings(scene, world, hand.device.spec());
+        if (hand.servo.guarded) hand.servo.guarded->revision = revision + 1;
+    }
+}
+
+std::vector<LocalContactModel> list_contacts(const World& world) {
+    std::vector<LocalContactModel> contacts;
+    world.each<Hand, Contact>(
+        [&](Entity, const Hand&, const Contact& contact) { contacts.push_back(contact.answer); });
+    return contacts;
+}
+
+}  // namespace
+
+Summary run_headless(const SceneDescription& scene, World& world, Device& device,
                      const std::vector<std::string>& warnings, Recording* recording,
                      const ProgressFunction& progress, const FrameClock& frames,
                      const TickFunction& watch, const EndFunction& is_over) {
+    Device* const devices[] = {&device};
+    HandTicksFunction watch_first;
+    if (watch) watch_first = [&](std::span<const ServoTick> ticks) { watch(ticks.front()); };
+    return run_headless(scene, world, devices, warnings, recording, progress, frames, watch_first,
+                        is_over);
+}
+
+Summary run_headless(const SceneDescription& scene, World& world, std::span<Device* const> devices,
+                     const std::vector<std::string>& warnings, Recording* recording,
+                     const ProgressFunction& progress, const FrameClock& frames,
+                     const HandTicksFunction& watch, const EndFunction& is_over) {
     const std::uint64_t ticks = count_ticks(scene);
     const auto ticks_per_step =
-        static_cast<std::uint64_t>(std::lround(simulation.period_s / servo_tick_s));
-    Statistics statistics(servo_tick_s);
-    ActivityLog activity;
-    check_period(device.spec(), simulation.period_s);
-    const ServoSettings servo = build_servo_settings(scene, simulation, device.spec());
-    FeelLog feel(scene, servo);
-    std::optional<JourneyLog> journey;
-    if (simulation.flexible) journey.emplace(simulation);
+        static_cast<std::uint64_t>(std::lround(world.resource<Clock>().period_s / servo_tick_s));
+    std::vector<LockstepHand> hands = build_hands(scene, world, devices);
+    RunLog log(scene, world, hands);
+    EditPlayer edits(scene);
+    EditHistory history;
 
-    const auto step = [&](const HandPose& hand, const TouchModel& felt) {
-        const auto begin = std::chrono::steady_clock::now();
-        const StepReport report = step_simulation(simulation, hand, felt);
-        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
-        statistics.add_step(took.count(), report.finite);
-        if (journey) journey->add(simulation);
-        if (!report.settled) {
-            feel.add_answer(report.touch);
-            return simulation.touch;
-        }
-        feel.add_step(*report.settled);
-        activity.add(*report.settled, 1e6 * took.count(), scene.statics.budget_us);
-        return simulation.touch;
-    };
     std::uint64_t done = 0, drawn = 0;
-    const auto on_tick = [&](const ServoTick& tick) {
+    const auto step = [&](std::span<const HandPose> poses, std::span<const ContactModel> felt) {
+        const double now_s = static_cast<double>(done - 1) * servo_tick_s;
+        const std::vector<EditDescription> due = edits.take_due(now_s);
+        for (const EditDescription& edit : due) history.apply(world, edit);
+        if (!due.empty()) renew_servos(world, hands);
+        step_world(world, {poses, felt});
+        log.add_step(world);
+        return list_contacts(world);
+    };
+    const auto on_ticks = [&](std::span<const ServoTick> now) {
         const double now_s = static_cast<double>(done) * servo_tick_s;
         if (frames.draw && now_s >= static_cast<double>(drawn) / frames.per_second - 1e-9) {
             frames.draw();
             ++drawn;
         }
-        statistics.add(tick);
-        feel.add(tick);
-        if (recording) recording->add(tick);
-        if (watch) watch(tick);
+        log.add_ticks(now);
+        if (recording) recording->add(now);
+        if (watch) watch(now);
         ++done;
         if (progress && done % ticks_between_progress == 0 && done < ticks) {
             progress(static_cast<double>(done) / static_cast<double>(ticks));
         }
     };
-    run_lockstep({ticks, ticks_per_step}, servo, device, simulation.touch, step, on_tick, is_over);
+    run_lockstep({ticks, ticks_per_step}, hands, step, on_ticks, is_over);
 
     if (progress) progress(1);
-    Summary summary = statistics.summary();
-    summary.device = device.spec().name;
+    Summary summary = log.summary(world, hands);
     summary.warnings = warnings;
-    summary.feel = feel.feel(summary.step_median_us);
-    if (journey && simulation.flexible) {
-        // Where molecules make room for each other, one may well be on either side of another.
-        constexpr double on_top = 1;  // Å
-        summary.journey = journey->journey();
-        summary.went_through = summary.journey->closest < on_top;
-        const Flexible& flexible = *simulation.flexible;
-        const ForceMemory& memory =
-            flexible.adaptive ? flexible.adaptive->statics.memory : flexible.statics.memory;
-        if (flexible.adaptive) summary.activity = activity.activity();
-        summary.sums = memory.evaluations;
-        summary.sums_in_double = memory.fast_pairs.in_double;
-    }
     warn_of_outcome(summary);
     if (recording) recording->finish(summary);
     return summary;

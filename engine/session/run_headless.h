@@ -1,6 +1,7 @@
 // A whole scene without a window: loaded, felt by a device in lockstep, summed up, recorded.
 #pragma once
 #include "core/stage.h"
+#include "ecs/world.h"
 #include "haptics/device.h"
 #include "haptics/hand.h"
 #include "haptics/servo.h"
@@ -9,11 +10,12 @@
 #include "session/recording.h"
 #include "session/statistics.h"
 #include "simulation/probe.h"
-#include "simulation/simulation.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -34,12 +36,12 @@ std::uint64_t count_ticks(const SceneDescription& scene) noexcept;
 
 // For an emulated device, whose safety chain is the whole one in guarded coupling alone.
 // `half_workspace_m`: of the device, for what carries a small one over a large scene.
-ServoSettings build_servo_settings(const SceneDescription& scene, const Simulation& simulation,
+ServoSettings build_servo_settings(const SceneDescription& scene, const World& world,
                                    const Vec3& half_workspace_m = Vec3::Constant(0.1));
 
 // For this device. The whole safety chain guards a real one in every mode, within its limits, and
 // it engages by quiet cycles and ramp.
-ServoSettings build_servo_settings(const SceneDescription& scene, const Simulation& simulation,
+ServoSettings build_servo_settings(const SceneDescription& scene, const World& world,
                                    const DeviceSpec& device);
 
 // Throws LoadError where this device must not be run with that period of the simulation: a real one
@@ -48,11 +50,10 @@ void check_period(const DeviceSpec& device, double period_s);
 
 // A_d of the scene's coupling, the paper's or guarded, where the molecule feels this force (N) and
 // stiffness (N/m).
-double gain_where(const ServoSettings& servo, const Simulation& simulation,
-                  const Vec3& force_newton, const Mat3& stiffness) noexcept;
+double gain_where(const ServoSettings& servo, const World& world, const Vec3& force_newton,
+                  const Mat3& stiffness) noexcept;
 // The same on a line.
-double gain_where(const ServoSettings& servo, const Simulation& simulation,
-                  const LineForce& line) noexcept;
+double gain_where(const ServoSettings& servo, const World& world, const LineForce& line) noexcept;
 
 // Where along the line the hand feels the stiffest spring, K = A_f k_e / A_d, up to the scene's
 // peak force: in space the largest eigenvalue of sym(J k_e)/A_d, J the Jacobian of the force law on
@@ -62,8 +63,9 @@ struct FeltStiffness {
     double angstrom = 0;
 };
 // `on_stage` hears how far the look has got, which takes minutes where a large molecule is rigid.
-FeltStiffness stiffest_place(const SceneDescription& scene, const Simulation& simulation,
-                             const StageFunction& on_stage = {});
+// `slot`: of the hand, 0 the first.
+FeltStiffness stiffest_place(const SceneDescription& scene, const World& world,
+                             const StageFunction& on_stage = {}, std::size_t slot = 0);
 
 // The stiffest spring (N/m) that this hand on the scene's device keeps calm at that period and the
 // scene's servo delay (haptics/plant.h); guarded, at the servo's own period and with its damping.
@@ -74,9 +76,14 @@ double calm_stiffness(const SceneDescription& scene, const std::optional<HandMod
 // servo delay keep calm (haptics/plant.h); guarded, a position sensor too coarse for stiffness and
 // damping, or gains that play rounding errors; atoms on each other, molecules that are not at rest,
 // a stroke longer than the run.
-std::vector<std::string> list_warnings(const SceneDescription& scene, const Simulation& simulation,
+std::vector<std::string> list_warnings(const SceneDescription& scene, const World& world,
                                        const HandScript& script,
                                        const StageFunction& on_stage = {});
+
+// What of that is of a further hand alone, `slot` 1 and on.
+std::vector<std::string> list_hand_warnings(const SceneDescription& scene, const World& world,
+                                            const HandScript& script, std::size_t slot,
+                                            const StageFunction& on_stage = {});
 
 // Adds to the summary's warnings what went wrong in it.
 void warn_of_outcome(Summary& summary);
@@ -85,9 +92,15 @@ void warn_of_outcome(Summary& summary);
 // every tick, may be null or empty, and there need not be frames. It ends after the scene's
 // seconds, or where `is_over`, asked after every tick, says so; the simulation ends where the run
 // leaves it.
-Summary run_headless(const SceneDescription& scene, Simulation& simulation, Device& device,
+Summary run_headless(const SceneDescription& scene, World& world, Device& device,
                      const std::vector<std::string>& warnings, Recording* recording,
                      const ProgressFunction& progress, const FrameClock& frames = {},
                      const TickFunction& watch = {}, const EndFunction& is_over = {});
+
+// The same with devices for the hands of the world, in their order; hands beyond these stand still.
+Summary run_headless(const SceneDescription& scene, World& world, std::span<Device* const> devices,
+                     const std::vector<std::string>& warnings, Recording* recording,
+                     const ProgressFunction& progress, const FrameClock& frames = {},
+                     const HandTicksFunction& watch = {}, const EndFunction& is_over = {});
 
 }  // namespace palpa

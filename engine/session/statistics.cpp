@@ -24,7 +24,8 @@ namespace {
 
 // What held the force back beside slew, clamp, and a hand that takes hold for the first time.
 SafetyStage trouble_of(const ServoTick& tick) {
-    if (tick.stage == SafetyStage::Hot || tick.stage > SafetyStage::Disengaged) return tick.stage;
+    if (tick.stage == SafetyStage::ThermalLimit || tick.stage > SafetyStage::Disengaged)
+        return tick.stage;
     return tick.reason;
 }
 
@@ -35,20 +36,28 @@ Statistics::Statistics(double tick_s) : tick_s_(tick_s), step_counts_(class_coun
         axis.resize(static_cast<std::size_t>(std::lround(ripple_window_s / tick_s)), 0.0);
 }
 
-void Statistics::add(const ServoTick& tick) {
-    const Vec3& place = tick.touch.molecule.place_angstrom;
+// Another start is of another molecule, perhaps, and not the hand's doing. One that is held still
+// may be none.
+void Statistics::add_place(const ContactModel& contact) {
+    const Vec3& place = contact.molecule.place_angstrom;
     const double distance = place.norm();
-    if (running_.ticks == 0) {
-        first_place_angstrom_ = place;
-        running_.closest_angstrom = distance;
-    }
-    const bool beyond = place.dot(first_place_angstrom_) < 0;
+    if (running_.ticks == 0) running_.closest_angstrom = distance;
+    if (running_.ticks == 0 || contact.start != start_) first_place_angstrom_ = place;
+    start_ = contact.start;
+    // What began that near was on no side.
+    constexpr double on_top = 1;  // Å
+    const bool beyond =
+        first_place_angstrom_.norm() > on_top && place.dot(first_place_angstrom_) < 0;
     running_.closest_angstrom = std::min(running_.closest_angstrom, distance);
     running_.went_through = running_.went_through || beyond;
     running_.last_angstrom = beyond ? -distance : distance;
+}
+
+void Statistics::add(const ServoTick& tick) {
+    if (running_.ticks == 0 || !tick.contact.is_still) add_place(tick.contact);
     running_.net_work_J = tick.hand_energy_J;
     running_.largest_felt_N = std::max(running_.largest_felt_N, tick.sent_newton.norm());
-    running_.is_on_axis = tick.touch.active_freedom <= 1;
+    running_.is_on_axis = tick.contact.active_freedom <= 1;
     if (running_.is_on_axis) {
         const double apart = tick.sent_newton.x();
         running_.largest_attraction_N = std::max(running_.largest_attraction_N, -apart);

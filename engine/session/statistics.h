@@ -1,9 +1,9 @@
 // What is worth knowing of a run, gathered tick by tick.
 #pragma once
 #include "haptics/servo.h"
-#include "session/feel.h"
-#include "session/journey.h"
+#include "session/accuracy_report.h"
 #include "session/ripple.h"
+#include "session/unbinding_path.h"
 
 #include <array>
 #include <cstdint>
@@ -21,6 +21,18 @@ struct Activity {
     double neglected_share = 0;
     std::uint64_t choices = 0;
     double within_budget = 1;  // share of the steps; 1 without a budget
+};
+
+// Of steps in which molecules relaxed. Errors are those of the force on the hand against complete
+// relaxation, as estimated.
+struct RelaxationSummary {
+    std::uint64_t estimates = 0;
+    double error_median_pN = 0, error_90_pN = 0;
+    std::uint64_t renewals = 0;  // linearisations
+    // Renewals that set more than 1 kcal/mol free, since a minimum had vanished; and how much these
+    // set free in all, kcal/mol.
+    std::uint64_t snaps = 0;
+    double released = 0;
 };
 
 struct Summary {
@@ -45,16 +57,20 @@ struct Summary {
     // Of the time in which something was wrong that held the force back, and the gravest of that.
     double safety_share = 0;
     SafetyStage gravest = SafetyStage::None;
-    bool is_safety_full = true;      // the whole chain guarded every tick
-    bool stopped = false;            // a force was not finite
-    std::uint64_t overruns = 0;      // servo ticks that came too late; none in lockstep
-    std::optional<Journey> journey;  // in space, where something moves by itself
+    bool is_safety_full = true;              // the whole chain guarded every tick
+    bool stopped = false;                    // a force was not finite
+    std::uint64_t overruns = 0;              // servo ticks that came too late; none in lockstep
+    std::optional<UnbindingPath> unbinding;  // in space, where something moves by itself
     std::optional<Activity> activity;
-    std::optional<Feel> feel;  // where the scene says what must be felt
+    std::optional<RelaxationSummary> relaxation;
+    std::vector<std::string> neglected;      // of the interactions and the motion of the molecules
+    std::optional<AccuracyReport> accuracy;  // where the scene says what must be felt
     std::vector<std::string> warnings;
+    // Second hand and on, in their order: of each its device and what it felt and did.
+    std::vector<Summary> other_hands;
 };
 
-// Takes the same memory however long the run is.
+// Of one hand; takes the same memory however long the run is.
 class Statistics {
 public:
     // `tick_s`: of the servo.
@@ -64,13 +80,16 @@ public:
     void add_step(double seconds, bool finite);
 
     Summary summary() const;
+    std::uint64_t ticks() const noexcept { return running_.ticks; }
 
 private:
+    void add_place(const ContactModel& contact);
     double quantile_us(double share) const;
 
     double tick_s_;
     Summary running_;
-    Vec3 first_place_angstrom_ = Vec3::Zero();
+    Vec3 first_place_angstrom_ = Vec3::Zero();  // since the last start
+    std::uint32_t start_ = 0;
     std::uint64_t clamped_ticks_ = 0, safety_ticks_ = 0;
     std::array<std::vector<double>, 3> recent_force_;  // by axis, N: a ring of the last 4 s
     std::vector<std::uint64_t> step_counts_;           // of step times, in classes 1 % wide

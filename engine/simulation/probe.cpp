@@ -1,6 +1,6 @@
 #include "simulation/probe.h"
 
-#include "simulation/components.h"
+#include "simulation/held.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,13 +11,23 @@
 namespace palpa {
 namespace {
 
-const Guide& grabbed_guide(const Simulation& simulation) noexcept {
-    const Grab* const grab = simulation.world.find<Grab>(simulation.hand);
-    return *simulation.world.find<Guide>(grab->molecule);
+// The first, where none is named.
+Entity named(const World& world, Entity hand) noexcept {
+    return hand == Entity{} ? first_hand(world) : hand;
 }
 
-Vec3 place_on_line(const Simulation& simulation, double distance) noexcept {
-    return grabbed_guide(simulation).line_origin + distance * Vec3::UnitX();
+const Grip& named_grip(const World& world, Entity hand) noexcept {
+    return grip_of(world, named(world, hand));
+}
+
+Vec3 place_on_line(const World& world, double distance, Entity hand) noexcept {
+    return named_grip(world, hand).line_origin + distance * Vec3::UnitX();
+}
+
+// From where the grabbed molecule is.
+Vec3 shift_to(const World& world, double distance, Entity hand) noexcept {
+    return named_grip(world, hand).anchor + place_on_line(world, distance, hand) -
+           grabbed_place(world, hand);
 }
 
 LineForce along_line(const FieldSum& field) noexcept {
@@ -30,31 +40,31 @@ struct Scan {
     double innermost, step;
 };
 
-Scan scan_of(const Simulation& simulation) {
-    return grabbed_guide(simulation).freedom == 1 ? Scan{1, 0.005} : Scan{-60, 0.05};
+Scan scan_of(const World& world, Entity hand) {
+    return named_grip(world, hand).freedom == 1 ? Scan{1, 0.005} : Scan{-60, 0.05};
 }
 
 // Forces weaker than this (kcal/mol/Å, 0.07 pN) far outside are no attraction.
 constexpr double negligible = 1e-3;
 
 // The distance between `inside` (force above `level`) and `outside` (below) where it passes.
-double bisect(const Simulation& simulation, double level, double inside, double outside) {
+double bisect(const World& world, double level, double inside, double outside, Entity hand) {
     while (outside - inside > 1e-12) {
         const double middle = 0.5 * (inside + outside);
-        const bool above = force_along_line_at(simulation, middle).force > level;
+        const bool above = force_along_line_at(world, middle, hand).force > level;
         (above ? inside : outside) = middle;
     }
     return 0.5 * (inside + outside);
 }
 
 // The shortest distance between an atom in the hand and one of the others.
-double distance_at(const Simulation& simulation, double distance) {
-    const Vec3 by =
-        simulation.anchor + place_on_line(simulation, distance) - grabbed_place(simulation);
+double distance_at(const World& world, double distance, Entity hand) {
+    const Vec3 by = shift_to(world, distance, hand);
     double nearest = std::numeric_limits<double>::infinity();
-    for (const Vec3& a : grabbed_points(simulation).positions) {
-        for (const Vec3& b : environment_points(simulation).positions) {
-            nearest = std::min(nearest, (a + by - b).squaredNorm());
+    for (const Vec3& a : held_points(world, named(world, hand)).positions) {
+        for (const AtomRange& range : environment_of(world, named(world, hand))) {
+            for (const Vec3& b : points_of(world.resource<AtomTable>(), range).positions)
+                nearest = std::min(nearest, (a + by - b).squaredNorm());
         }
     }
     return std::sqrt(nearest);
@@ -62,82 +72,62 @@ double distance_at(const Simulation& simulation, double distance) {
 
 }  // namespace
 
-bool moves_in_space(const Simulation& simulation) noexcept {
-    return grabbed_guide(simulation).freedom != 1;
+bool moves_in_space(const World& world, Entity hand) noexcept {
+    return named_grip(world, hand).freedom != 1;
 }
 
-Vec3 grabbed_place(const Simulation& simulation) noexcept {
-    if (simulation.flexible) return find_held(*simulation.flexible);
-    const Grab* const grab = simulation.world.find<Grab>(simulation.hand);
-    const Molecule* const grabbed = simulation.world.find<Molecule>(grab->molecule);
-    return simulation.atoms.positions[grabbed->reference_atom];
+Vec3 grabbed_place(const World& world, Entity hand) noexcept {
+    return held_place(world, named(world, hand));
 }
 
-void place_grabbed(Simulation& simulation, const MoleculePose& pose) noexcept {
-    const Grab* const grab = simulation.world.find<Grab>(simulation.hand);
-    const Molecule* const grabbed = simulation.world.find<Molecule>(grab->molecule);
-    Guide* const guide = simulation.world.find<Guide>(grab->molecule);
-    guide->place = pose.place_angstrom;
-    guide->orientation = pose.orientation;
-    const Vec3 reference = simulation.anchor + pose.place_angstrom;
-    if (simulation.flexible) {
-        move_held(*simulation.flexible, reference - find_held(*simulation.flexible));
-        copy_positions(*simulation.flexible, simulation.atoms.positions);
-        return;
-    }
-    const Mat3 turn = pose.orientation.toRotationMatrix();
-    for (std::size_t i = 0; i < simulation.grabbed_shape.size(); ++i) {
-        simulation.atoms.positions[grabbed->atoms.first + i] =
-            reference + turn * simulation.grabbed_shape[i];
-    }
+void place_grabbed(World& world, const MoleculePose& pose, Entity hand) noexcept {
+    place_held(world, named(world, hand), pose);
 }
 
-void place_grabbed(Simulation& simulation, const Vec3& place) noexcept {
-    place_grabbed(simulation, MoleculePose{place, grabbed_guide(simulation).orientation});
+void place_grabbed(World& world, const Vec3& place, Entity hand) noexcept {
+    place_grabbed(world, MoleculePose{place, named_grip(world, hand).pose.orientation}, hand);
 }
 
-void move_grabbed(Simulation& simulation, double distance) noexcept {
-    place_grabbed(simulation, place_on_line(simulation, distance));
+void move_grabbed(World& world, double distance, Entity hand) noexcept {
+    place_grabbed(world, place_on_line(world, distance, hand), hand);
 }
 
-double grabbed_distance(const Simulation& simulation) noexcept {
-    const Guide& guide = grabbed_guide(simulation);
-    return guide.place.x() - guide.line_origin.x();
+double grabbed_distance(const World& world, Entity hand) noexcept {
+    const Grip& grip = named_grip(world, hand);
+    return grip.pose.place_angstrom.x() - grip.line_origin.x();
 }
 
-FieldSum field_on_grabbed(const Simulation& simulation) noexcept {
-    return evaluate_pair_field(grabbed_points(simulation), environment_points(simulation),
-                               pair_rule(simulation));
+FieldSum field_on_grabbed(const World& world, Entity hand) {
+    return field_on_held(world, named(world, hand));
 }
 
-FieldSum field_on_grabbed_at(const Simulation& simulation, double distance) {
-    const Vec3 by =
-        simulation.anchor + place_on_line(simulation, distance) - grabbed_place(simulation);
-    FieldPoints moved = grabbed_points(simulation);
+FieldSum field_on_grabbed_at(const World& world, double distance, Entity hand) {
+    const Vec3 by = shift_to(world, distance, hand);
+    FieldPoints moved = held_points(world, named(world, hand));
     std::vector<Vec3> positions(moved.positions.begin(), moved.positions.end());
     for (Vec3& position : positions) position += by;
     moved.positions = positions;
-    return evaluate_pair_field(moved, environment_points(simulation), pair_rule(simulation));
+    return field_on(world, named(world, hand), moved);
 }
 
-LineForce force_along_line(const Simulation& simulation) noexcept {
-    return along_line(field_on_grabbed(simulation));
+LineForce force_along_line(const World& world, Entity hand) {
+    return along_line(field_on_grabbed(world, hand));
 }
 
-LineForce force_along_line_at(const Simulation& simulation, double distance) {
-    return along_line(field_on_grabbed_at(simulation, distance));
+LineForce force_along_line_at(const World& world, double distance, Entity hand) {
+    return along_line(field_on_grabbed_at(world, distance, hand));
 }
 
-std::optional<double> repulsion_distance(const Simulation& simulation, double force,
-                                         double outermost) {
-    if (force_along_line_at(simulation, outermost).force > force) return std::nullopt;
-    const Scan scan = scan_of(simulation);
+std::optional<double> repulsion_distance(const World& world, double force, double outermost,
+                                         Entity hand) {
+    if (force_along_line_at(world, outermost, hand).force > force) return std::nullopt;
+    const Scan scan = scan_of(world, hand);
     // At least, in Å, from one molecule to the other where the hand is at `outermost`.
-    const double apart = distance_at(simulation, outermost);
+    const double apart = distance_at(world, outermost, hand);
     double step = scan.step;
     for (double distance = outermost; distance > scan.innermost; distance -= step) {
-        if (force_along_line_at(simulation, distance).force > force) {
-            return bisect(simulation, force, distance, distance + step);
+        if (force_along_line_at(world, distance, hand).force > force) {
+            return bisect(world, force, distance, distance + step, hand);
         }
         // Where nothing is near, the force changes slowly with the way that is left.
         constexpr double near = 30, share = 0.05;
@@ -146,13 +136,13 @@ std::optional<double> repulsion_distance(const Simulation& simulation, double fo
     return std::nullopt;
 }
 
-std::optional<double> equilibrium_distance(const Simulation& simulation) {
-    const Scan scan = scan_of(simulation);
+std::optional<double> equilibrium_distance(const World& world, Entity hand) {
+    const Scan scan = scan_of(world, hand);
     bool attracted = false;
     for (double distance = 30; distance > scan.innermost; distance -= scan.step) {
-        const double force = force_along_line_at(simulation, distance).force;
+        const double force = force_along_line_at(world, distance, hand).force;
         if (force < -negligible) attracted = true;
-        if (attracted && force > 0) return bisect(simulation, 0, distance, distance + scan.step);
+        if (attracted && force > 0) return bisect(world, 0, distance, distance + scan.step, hand);
     }
     return std::nullopt;
 }

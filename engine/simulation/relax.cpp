@@ -1,8 +1,11 @@
 #include "simulation/relax.h"
 
+#include "math/minimiser.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace palpa {
@@ -13,15 +16,14 @@ constexpr double shortest_step = 1e-9;
 constexpr int most_evaluations = 1000;
 
 using Vec6 = Eigen::Matrix<double, 6, 1>;
-using Mat6 = Eigen::Matrix<double, 6, 6>;
 
-struct Pose {
+struct RigidPose {
     Vec3 centre = Vec3::Zero();
     Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
 };
 
 // The variables of a step: place of the centre, and turn about it times `length`, both in Å.
-Pose moved(const Pose& pose, const Vec6& step, double length) {
+RigidPose moved(const RigidPose& pose, const Vec6& step, double length) {
     const Vec3 turn = step.tail<3>() / length;
     const double angle = turn.norm();
     if (angle == 0) return {pose.centre + step.head<3>(), pose.turn};
@@ -29,81 +31,113 @@ Pose moved(const Pose& pose, const Vec6& step, double length) {
     return {pose.centre + step.head<3>(), (by * pose.turn).normalized()};
 }
 
-void place(const std::vector<Vec3>& shape, const Pose& pose, std::span<Vec3> positions) {
+void place(const std::vector<Vec3>& shape, const RigidPose& pose, std::span<Vec3> positions) {
     for (std::size_t i = 0; i < shape.size(); ++i) {
         positions[i] = pose.centre + pose.turn * shape[i];
     }
 }
 
-// Of the energy, in the step's variables.
-Vec6 gradient(const FieldSum& field, const Pose& pose, double length) {
-    Vec6 slope;
-    slope << -field.force, -field.torque_about(pose.centre) / length;
-    return slope;
-}
+// The energy over the step's variables. The positions are those of the trial.
+class RigidDescent {
+public:
+    RigidDescent(std::span<Vec3> positions, const Vec3& centre, const FieldPoints& group,
+                 const FieldPoints& environment, const PairRule& rule)
+        : positions_(positions), group_(group), environment_(environment), rule_(rule) {
+        group_.positions = positions;
+        double square = 0;
+        for (const Vec3& position : positions) {
+            shape_.push_back(position - centre);
+            square += shape_.back().squaredNorm() / static_cast<double>(positions.size());
+            radius_ = std::max(radius_, shape_.back().norm());
+        }
+        length_ = std::max(std::sqrt(square), 1e-3);
+        here_ = evaluate({centre});
+    }
 
-// The inverse of the curvature, corrected by what the gradient did over a step.
-void update_inverse(const Vec6& step, const Vec6& change, bool first, Mat6& inverse) {
-    const double along = step.dot(change);
-    if (along <= 1e-12 * change.squaredNorm()) return;  // not curved upward: nothing to learn
-    if (first) inverse = Mat6::Identity() * (along / change.squaredNorm());
-    const Mat6 left = Mat6::Identity() - step * change.transpose() / along;
-    inverse = (left * inverse * left.transpose() + step * step.transpose() / along).eval();
-}
+    double value() const { return here_.field.energy(); }
+    const Vec6& forces() const { return here_.forces; }
+    const Vec6& trial_forces() const { return trial_.forces; }
+    const Vec6& trial_move() const { return move_; }
+
+    // Both variables are lengths: nothing more is known.
+    static Vec6 precondition(const Vec6& forces) { return forces; }
+
+    Vec6 limit(const Vec6& direction) const {
+        const double reach =
+            direction.head<3>().norm() + direction.tail<3>().norm() / length_ * radius_;
+        return direction * std::min(1.0, longest_step / reach);
+    }
+
+    double try_move(const Vec6& direction, double length) {
+        move_ = length * direction;
+        const RigidPose pose = moved(here_.pose, move_, length_);
+        place(shape_, pose, positions_);
+        trial_ = evaluate(pose);
+        return trial_.field.energy();
+    }
+
+    bool accepts(double value, double linear_change) const {
+        return meets_armijo(here_.field.energy(), value, linear_change);
+    }
+
+    void accept() { here_ = trial_; }
+
+    bool is_at_rest(double force_tolerance) const {
+        return here_.forces.head<3>().norm() < force_tolerance &&
+               here_.forces.tail<3>().norm() < force_tolerance;
+    }
+
+    const RigidPose& pose() const { return here_.pose; }
+    const FieldSum& field() const { return here_.field; }
+    int evaluations() const { return evaluations_; }
+
+    void place_here() const { place(shape_, here_.pose, positions_); }
+
+private:
+    struct Point {
+        RigidPose pose;
+        FieldSum field;
+        Vec6 forces;
+    };
+
+    Point evaluate(const RigidPose& pose) {
+        ++evaluations_;
+        Point point{pose, evaluate_pair_field(group_, environment_, rule_), Vec6::Zero()};
+        point.forces << point.field.force, point.field.torque_about(pose.centre) / length_;
+        return point;
+    }
+
+    std::span<Vec3> positions_;
+    FieldPoints group_;
+    const FieldPoints& environment_;
+    const PairRule& rule_;
+    std::vector<Vec3> shape_;
+    double radius_ = 0, length_ = 0;
+    int evaluations_ = 0;
+    Point here_, trial_;
+    Vec6 move_;
+};
 
 }  // namespace
 
 RelaxReport relax_rigid(std::span<Vec3> positions, const Vec3& centre, FieldPoints group,
                         const FieldPoints& environment, const PairRule& rule,
                         double force_tolerance) {
-    group.positions = positions;
-    std::vector<Vec3> shape;
-    double square = 0, radius = 0;
-    for (const Vec3& position : positions) {
-        shape.push_back(position - centre);
-        square += shape.back().squaredNorm() / static_cast<double>(positions.size());
-        radius = std::max(radius, shape.back().norm());
+    constexpr LineSearch search{std::numeric_limits<int>::max(), Backtracking::Halving,
+                                shortest_step};
+    RigidDescent descent(positions, centre, group, environment, rule);
+    RelaxReport report{.energy_before = descent.value()};
+    InverseHessian<6> inverse;
+    while (!descent.is_at_rest(force_tolerance) && descent.evaluations() < most_evaluations) {
+        if (!step_along(descent, inverse, search)) break;
     }
-    const double length = std::max(std::sqrt(square), 1e-3);
-
-    Pose pose{centre};
-    FieldSum field = evaluate_pair_field(group, environment, rule);
-    Vec6 slope = gradient(field, pose, length);
-    RelaxReport report{.energy_before = field.energy(), .evaluations = 1};
-    Mat6 inverse = Mat6::Identity();
-    bool first = true;
-    const auto is_at_rest = [&] {
-        return slope.head<3>().norm() < force_tolerance && slope.tail<3>().norm() < force_tolerance;
-    };
-    while (!is_at_rest() && report.evaluations < most_evaluations) {
-        Vec6 step = -inverse * slope;
-        if (step.dot(slope) >= 0) step = -slope;
-        const double reach = step.head<3>().norm() + step.tail<3>().norm() / length * radius;
-        step *= std::min(1.0, longest_step / reach);
-
-        bool lower = false;
-        for (; !lower && step.norm() > shortest_step; step *= lower ? 1 : 0.5) {
-            const Pose trial = moved(pose, step, length);
-            place(shape, trial, positions);
-            const FieldSum there = evaluate_pair_field(group, environment, rule);
-            ++report.evaluations;
-            if (!(there.energy() <= field.energy() + 1e-4 * slope.dot(step))) continue;
-            lower = true;
-            const Vec6 new_slope = gradient(there, trial, length);
-            update_inverse(step, new_slope - slope, first, inverse);
-            first = false;
-            pose = trial;
-            field = there;
-            slope = new_slope;
-        }
-        if (!lower) break;
-    }
-    place(shape, pose, positions);
-    report.energy_after = field.energy();
-    report.displacement = (pose.centre - centre).norm();
-    report.angle = Eigen::AngleAxisd(pose.turn).angle();
-    report.force = field.force.norm();
-    report.torque = field.torque_about(pose.centre).norm();
+    descent.place_here();
+    report.energy_after = descent.value();
+    report.displacement = (descent.pose().centre - centre).norm();
+    report.angle = Eigen::AngleAxisd(descent.pose().turn).angle();
+    report.force = descent.field().force.norm();
+    report.torque = descent.field().torque_about(descent.pose().centre).norm();
+    report.evaluations = descent.evaluations();
     return report;
 }
 

@@ -1,90 +1,81 @@
-// Every step: hand pose to molecule, molecule to forces, forces to touch model.
 #include "simulation/step.h"
 
-#include "core/units.h"
 #include "simulation/components.h"
-#include "simulation/probe.h"
-#include "simulation/touch.h"
+#include "simulation/held.h"
+#include "simulation/observe.h"
+#include "simulation/systems/choose_active.h"
+#include "simulation/systems/follow_hands.h"
+#include "simulation/systems/measure.h"
+#include "simulation/systems/publish_contact.h"
+#include "simulation/systems/relax.h"
 
 #include <chrono>
-#include <cmath>
+#include <cstddef>
+#include <vector>
 
 namespace palpa {
 namespace {
 
-// Where the grabbed molecule goes, and the gain that decided it.
-struct Move {
-    MoleculePose to;
-    double displacement_gain = 0;
+using System = void (*)(World&, const StepInput&);
+
+// The step.
+constexpr System systems[] = {
+    follow_hands,     // device poses to poses of what is held, and ends of springs
+    choose_active,    // which joints and bases move
+    relax,            // these towards rest
+    publish_contact,  // a contact model for every hand
+    measure,          // what can be read
 };
 
-Move find_move(const Simulation& simulation, const HandPose& hand, const TouchModel& felt,
-               const Grab& grab, const Guide& guide) noexcept {
-    const double gain = displacement_gain(simulation.laws.displacement, felt.force_newton.norm());
-    const Vec3 handle_m = guide.projector * (hand.travel_m - grab.travel_m);
-    Move move{{guide.place + handle_m / gain * units::angstrom_per_metre, guide.orientation}, gain};
-    if (guide.freedom == 6) {
-        const Quat turned = hand.turn * grab.turn.conjugate();
-        move.to.orientation = (turned * guide.orientation).normalized();
-    }
-    return move;
+// What a step may change, as it was.
+struct Before {
+    std::vector<MoleculePose> grips;
+    MobileCoordinates mobile;
+};
+
+Before remember(const World& world) {
+    Before before{{}, save_mobile(world)};
+    world.each<Grip>([&](Entity, const Grip& grip) { before.grips.push_back(grip.pose); });
+    return before;
 }
 
-// Audits ask about what the servo told where the hand is, in the field of the step before.
-void note_told(Simulation& simulation, const HandPose& hand) noexcept {
-    if (!simulation.flexible || !simulation.flexible->adaptive) return;
-    FewActive& few = *simulation.flexible->adaptive;
-    few.told.reset();
-    if (!few.exactness || !hand.molecule) return;
-    const Touch& touch = simulation.touch;
-    few.told = evaluate_local(touch.model, touch.field, *hand.molecule).force_newton /
-               units::newton_per_kcal_per_mol_angstrom;
+void go_back(const Before& before, World& world) {
+    restore_mobile(before.mobile, world);
+    std::size_t next = 0;
+    world.each<Grip>([&](Entity hand, Grip& grip) {
+        const MoleculePose& pose = before.grips[next++];
+        if (is_mobile(grip)) {
+            grip.pose = pose;  // its place is one of those coordinates
+        } else {
+            place_held(world, hand, pose);
+        }
+    });
 }
 
 }  // namespace
 
-void take_hold(Simulation& simulation, const HandPose& hand) noexcept {
-    Grab* const grab = simulation.world.find<Grab>(simulation.hand);
-    grab->travel_m = hand.travel_m;
-    grab->turn = hand.turn;
+const StepReport& step_world(World& world, const StepInput& input) noexcept {
+    const auto begin = std::chrono::steady_clock::now();
+    StepReport& report = world.resource<StepReport>();
+    report = {};
+    const Before before = remember(world);
+    note_rendered_force(world, input);
+    for (const System system : systems) {
+        system(world, input);
+        if (report.finite) continue;
+        if (system != follow_hands) go_back(before, world);  // which has moved nothing then
+        break;
+    }
+    estimate_error(world);
+    const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begin;
+    report.took_us = input.took_us.value_or(took.count());
+    note_time(world);
+    return report;
 }
 
-StepReport step_simulation(Simulation& simulation, const HandPose& hand,
-                           const TouchModel& felt) noexcept {
-    const auto begin = std::chrono::steady_clock::now();
-    Grab* const grab = simulation.world.find<Grab>(simulation.hand);
-    const Guide* const guide = simulation.world.find<Guide>(grab->molecule);
-    const MoleculePose before{guide->place, guide->orientation};
-    const Move move =
-        hand.molecule ? Move{*hand.molecule} : find_move(simulation, hand, felt, *grab, *guide);
-    take_hold(simulation, hand);
-    StepReport report;
-    if (!move.to.place_angstrom.allFinite() || !move.to.orientation.coeffs().allFinite()) {
-        report.touch = felt;
-        report.finite = false;
-        return report;
-    }
-
-    report.move = (move.to.place_angstrom - before.place_angstrom).norm();
-    note_told(simulation, hand);
-    place_grabbed(simulation, move.to);
-    if (simulation.flexible) {
-        report.settled = step_flexible(*simulation.flexible);
-        copy_positions(*simulation.flexible, simulation.atoms.positions);
-        report.finite = report.settled->is_finite;
-    }
-    if (!report.finite) place_grabbed(simulation, before);
-    update_touch(hand, simulation);
-    if (!hand.molecule) simulation.touch.model.displacement_gain = move.displacement_gain;
-    report.touch = simulation.touch.model;
-    report.finite = report.finite && report.touch.force_newton.allFinite();
-    if (!report.finite) place_grabbed(simulation, before);
-    if (report.settled && simulation.flexible) {
-        const std::chrono::duration<double, std::micro> took =
-            std::chrono::steady_clock::now() - begin;
-        note_time(*simulation.flexible, *report.settled, took.count());
-    }
-    return report;
+const StepReport& step_world(World& world, const HandPose& hand,
+                             const ContactModel& felt) noexcept {
+    return step_world(world, {{&hand, 1}, {&felt, 1}});
 }
 
 }  // namespace palpa

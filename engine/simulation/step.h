@@ -1,29 +1,17 @@
-// One step of the simulation: hand pose in, touch model out.
+// One step of the simulation: hand poses in, contact models out.
 #pragma once
-#include "haptics/exchange.h"
-#include "simulation/simulation.h"
-
-#include <optional>
+#include "ecs/world.h"
+#include "simulation/resources.h"
+#include "simulation/systems/step_input.h"
 
 namespace palpa {
 
-// What a step found. A step that is not finite has moved nothing; its touch model says what was not
-// finite, so that the servo stops, unless it was the hand's pose or on the way to rest.
-struct [[nodiscard]] StepReport {
-    TouchModel touch;  // for the hand, one period later; with its field it is the simulation's
-    double move = 0;   // Å, how far the hand moved what it holds
-    std::optional<SettleReport> settled;  // what moved by itself
-    bool finite = true;
-};
+// Every system in its order (step.cpp has the list), for a world as load_world makes it; its
+// StepReport. A step that ends in something not finite leaves what moves as it was; where a contact
+// force is no number, its contact model says so, and the servo stops.
+const StepReport& step_world(World& world, const StepInput& input) noexcept;
 
-// `felt`: the touch model that the hand feels at this moment; its force decides how far the
-// molecule goes for the handle's travel, dx_m = dx_h / A_d(F_m), the paper's incremental coupling
-// with its one-step delay. A pose that tells the molecule's place puts it there.
-StepReport step_simulation(Simulation& simulation, const HandPose& hand,
-                           const TouchModel& felt) noexcept;
-
-// The hand takes hold of the molecule where both are: what the handle travelled since the last step
-// moves nothing.
-void take_hold(Simulation& simulation, const HandPose& hand) noexcept;
+// Of the first hand; others stand still.
+const StepReport& step_world(World& world, const HandPose& hand, const ContactModel& felt) noexcept;
 
 }  // namespace palpa

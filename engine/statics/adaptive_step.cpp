@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace palpa {
@@ -42,7 +43,7 @@ bool are_near(const AdaptiveStatics& statics, const TorsionState& state,
 bool is_list_outdated(const AdaptiveSettings& settings, const TorsionState& state,
                       const AdaptiveStatics& statics) {
     const ForceSettings& forces = settings.step.forces;
-    if (!has_end(forces.nonbonded)) return false;
+    if (!has_end(forces.nonbonded) || statics.is_whole) return false;
     const std::vector<Vec3>& listed =
         forces.fast ? statics.memory.fast_pairs.list.positions : statics.memory.list.positions;
     // A step must not leave the list's reach.
@@ -53,38 +54,41 @@ bool is_list_outdated(const AdaptiveSettings& settings, const TorsionState& stat
 bool are_tiles_outdated(const AdaptiveSettings& settings, const TorsionState& state,
                         const AdaptiveStatics& statics, double room) {
     const ForceSettings& forces = settings.step.forces;
-    return is_fast(forces) && has_end(forces.nonbonded) &&
+    return is_fast(forces) && has_end(forces.nonbonded) && !statics.is_whole &&
            !are_near(statics, state, statics.clustered, 0.5 * statics.tile_skin - room);
 }
 
-// The tether's part of the forces, where they are wanted on atoms.
+// The springs' part of the forces, where they are wanted on atoms. Returns their energy.
 template <class Visit>
-void for_tethered(const TorsionModel& model, const TorsionState& state, const Visit& visit) {
-    if (!state.tether) return;
-    const Tether& tether = *state.tether;
-    const Vec3 pull = tether.k * (tether.place - find_tethered(model, tether, state.positions));
-    double mass = 0;
-    for (const std::uint32_t atom : tether.atoms) mass += model.masses[atom];
-    for (const std::uint32_t atom : tether.atoms) visit(atom, model.masses[atom] / mass * pull);
+double visit_spring_forces(const TorsionModel& model, const TorsionState& state,
+                           const Visit& visit) {
+    double energy = 0;
+    for (const Spring& spring : state.springs) {
+        const SpringPull pull = find_spring_pull(model, spring, state.positions);
+        const Vec3 force = -pull.k * pull.stretch;
+        visit_pulled(model, spring,
+                     [&](std::uint32_t atom, double share) { visit(atom, share * force); });
+        energy += pull.energy;
+    }
+    return energy;
 }
 
-double tether_energy_of(const TorsionModel& model, const TorsionState& state) {
-    if (!state.tether) return 0;
-    const Vec3 away = find_tethered(model, *state.tether, state.positions) - state.tether->place;
-    return 0.5 * state.tether->k * away.squaredNorm();
-}
-
-// Forces between clusters into `forces`, the wrenches that they and the tether are, and the energy.
+// Forces between clusters into `forces`, the wrenches that they and the springs are, and the
+// energy.
 void update_across(const TorsionModel& model, const AdaptiveSettings& settings, TorsionState& state,
                    AdaptiveStatics& statics, std::vector<Vec3>& forces) {
-    for (const std::uint32_t i : statics.across.atoms) forces[i].setZero();
-    statics.across_terms = add_group_forces(model.topology, settings.step.forces.nonbonded,
-                                            statics.across, state.positions, forces);
+    for (const std::uint32_t i : statics.pulled) forces[i].setZero();
+    const ForceSettings& f = settings.step.forces;
+    if (statics.is_whole) {
+        statics.across_terms = add_model_forces(model, f, statics.memory, state.positions, forces);
+    } else {
+        statics.across_terms =
+            add_group_forces(model.topology, f.nonbonded, statics.across, state.positions, forces);
+        if (statics.across.was_in_double) ++statics.memory.fast_pairs.in_double;
+    }
     ++statics.memory.evaluations;
-    if (statics.across.was_in_double) ++statics.memory.fast_pairs.in_double;
     state.terms = statics.within_terms;
     state.terms += statics.across_terms;
-    state.tether_energy = tether_energy_of(model, state);
 
     std::vector<BodyState>& bodies = statics.moving.passes.bodies;
     for (std::size_t c = 0; c < bodies.size(); ++c) {
@@ -97,8 +101,8 @@ void update_across(const TorsionModel& model, const AdaptiveSettings& settings, 
         body.force += force;
         body.torque += (state.positions[atom] - body.centre).cross(force);
     };
-    for (const std::uint32_t i : statics.across.atoms) add(i, forces[i]);
-    for_tethered(model, state, add);
+    for (const std::uint32_t i : statics.pulled) add(i, forces[i]);
+    state.spring_energy = visit_spring_forces(model, state, add);
 }
 
 // A number for each atom: its cluster, and one for all that cannot move at all, since they are at
@@ -116,9 +120,25 @@ std::vector<std::uint32_t> find_groups(const TorsionModel& model, const Adaptive
     return groups;
 }
 
-// Clusters of what is chosen, from forces and energies of everything that the state holds.
-void rebuild_clusters(const TorsionModel& model, const AdaptiveSettings& settings,
-                      TorsionState& state, AdaptiveStatics& statics) {
+// By hand, of any molecule that is in one, Å.
+double find_hand_shift(const AdaptiveStatics& statics) {
+    double largest = 0;
+    for (std::size_t m = 0; m < statics.shifts.size(); ++m) {
+        if (statics.is_guided[m] != 0) largest = std::max(largest, statics.shifts[m]);
+    }
+    return largest;
+}
+
+// All that there is, so that no choice can be another one.
+bool is_everything_chosen(const TorsionModel& model, const SelectionLimits& limits,
+                          const AdaptiveStatics& statics) {
+    const auto all = static_cast<std::size_t>(model.coordinates);
+    return statics.choices > 0 && statics.selection.degrees_of_freedom == all &&
+           limits.degrees_of_freedom >= all && limits.neglected <= 0;
+}
+
+void build_clusters(const TorsionModel& model, const TorsionState& state,
+                    AdaptiveStatics& statics) {
     const std::vector<std::uint8_t>& is_active = statics.selection.is_active;
     statics.clusters = build_hybrid_tree(model.tree, is_active, state.positions);
     statics.moving = build_hybrid_state(statics.clusters, is_active, statics.whole.guides);
@@ -127,13 +147,27 @@ void rebuild_clusters(const TorsionModel& model, const AdaptiveSettings& setting
     statics.has_moved.assign(statics.clusters.clusters.size(), 0);
     statics.turns.assign(statics.clusters.clusters.size(), 0);
     statics.base_moves.assign(model.bases.size(), Vec6::Zero());
+    ++statics.rebuilds;
+}
 
+// What acts between the clusters.
+void build_across(const TorsionModel& model, const AdaptiveSettings& settings,
+                  const TorsionState& state, AdaptiveStatics& statics) {
     const ForceSettings& forces = settings.step.forces;
+    // What is taken out of a list would be out of date before the list is, and would leave out
+    // nothing.
+    const bool has_list = has_end(forces.nonbonded) || !is_fast(forces);
+    statics.is_whole = has_list && is_everything_chosen(model, settings.limits, statics);
+    if (statics.is_whole) {
+        statics.across = {};
+        statics.pulled.resize(model.masses.size());
+        std::iota(statics.pulled.begin(), statics.pulled.end(), 0);
+        return;
+    }
     const std::vector<std::uint32_t> groups = find_groups(model, statics);
     // A hand that goes fast has room for a few of its moves.
-    statics.tile_skin = std::min(
-        forces.skin, settings.tile_skin + 2 * settings.step.largest_move + 4 * statics.shift);
-    ++statics.rebuilds;
+    statics.tile_skin = std::min(forces.skin, settings.tile_skin + 2 * settings.step.largest_move +
+                                                  4 * find_hand_shift(statics));
     statics.clustered = state.positions;
     statics.across =
         is_fast(forces)
@@ -142,16 +176,29 @@ void rebuild_clusters(const TorsionModel& model, const AdaptiveSettings& setting
             : build_group_forces(model.topology,
                                  has_end(forces.nonbonded) ? &statics.memory.list : nullptr,
                                  groups);
+    statics.pulled = statics.across.atoms;
+}
+
+// Clusters of what is chosen, from forces and energies of everything that the state holds.
+void rebuild_clusters(const TorsionModel& model, const AdaptiveSettings& settings,
+                      TorsionState& state, AdaptiveStatics& statics) {
+    build_clusters(model, state, statics);
+    build_across(model, settings, state, statics);
     const EnergyTerms all = state.terms;
     statics.rounded_force = std::max(statics.rounded_force, find_rms(state.forces));
+    statics.within_terms = {};
     update_across(model, settings, state, statics, statics.across_forces);
+    if (statics.is_whole) {
+        std::ranges::fill(statics.within_forces, Vec3::Zero());
+        return;
+    }
     statics.within_terms = all;
     statics.within_terms -= statics.across_terms;
     state.terms = all;
     statics.within_forces = state.forces;
-    for (const std::uint32_t i : statics.across.atoms)
+    for (const std::uint32_t i : statics.pulled)
         statics.within_forces[i] -= statics.across_forces[i];
-    for_tethered(model, state, [&](std::uint32_t atom, const Vec3& force) {
+    (void)visit_spring_forces(model, state, [&](std::uint32_t atom, const Vec3& force) {
         statics.within_forces[atom] -= force;
     });
 }
@@ -161,15 +208,17 @@ void choose_joints(const TorsionModel& model, const AdaptiveSettings& settings, 
                    AdaptiveStatics& statics) {
     update_pivots(model, state);
     guide_pivots(model, state, statics.whole);
+    const bool is_settled = is_everything_chosen(model, settings.limits, statics);
     const auto update = statics.choices == 0 ? update_bodies : update_changed_bodies;
+    statics.steps_since_choice = 0;
+    ++statics.choices;
+    if (is_settled) return;
     update(model.tree, state.positions, state.forces, statics.whole);
     upward_pass(model.tree, statics.whole);
     const MetricWeights weights{settings.weight, settings.factors};
     update_metric(model.tree, statics.whole, weights, statics.metric);
     select_joints(model.tree, statics.metric, weights, settings.limits, statics.whole,
                   statics.selection);
-    statics.steps_since_choice = 0;
-    ++statics.choices;
 }
 
 // Farther out the digits that are left do not tell a shape.
@@ -206,6 +255,7 @@ bool is_renewal_due(const AdaptiveSettings& settings, const TorsionState& state,
                     const AdaptiveStatics& statics) {
     // What was rounded when forces were larger weighs too much after that.
     constexpr double much = 1000;  // kcal/mol
+    if (statics.is_whole) return false;
     return statics.choices % settings.renew_every == 0 ||
            std::abs(state.energy() - statics.renewed_energy) > much ||
            find_rms(state.forces) < 0.5 * statics.rounded_force;
@@ -378,6 +428,50 @@ void take_coordinates(const TorsionModel& model, const AdaptiveStatics& statics,
     }
 }
 
+// ---- hands -----------------------------------------------------------------------------------
+
+void take_in_hand(std::size_t molecule, AdaptiveStatics& statics) {
+    if (statics.is_guided[molecule] != 0) return;
+    // Until now it was at rest against others.
+    statics.is_guided[molecule] = 1;
+    statics.is_built = false;
+}
+
+template <class Visit>
+void visit_atoms_of(const TorsionModel& model, std::size_t molecule, const Visit& visit) {
+    for (std::uint32_t i = 0; i < model.masses.size(); ++i) {
+        if (model.tree.molecule_of[model.tree.bodies.body_of[i]] == molecule) visit(i);
+    }
+}
+
+// Where a base turns about, from the positions as they are now.
+Vec3 find_pivot(const TorsionModel& model, const TorsionState& state, std::size_t molecule) {
+    const MoleculeBase& base = model.bases[molecule];
+    if (base.freedom != BaseFreedom::Free) return state.positions[base.pivot];
+    Vec3 moment = Vec3::Zero();
+    visit_atoms_of(model, molecule,
+                   [&](std::uint32_t i) { moment += model.masses[i] * state.positions[i]; });
+    return moment / model.molecule_masses[molecule];
+}
+
+// How far a motion takes any atom of a molecule, Å.
+double find_farthest(const TorsionModel& model, const TorsionState& state, std::size_t molecule,
+                     const RigidMotion& motion) {
+    double farthest2 = 0;
+    visit_atoms_of(model, molecule, [&](std::uint32_t i) {
+        const Vec3& x = state.positions[i];
+        farthest2 = std::max(farthest2, (motion * x - x).squaredNorm());
+    });
+    return std::sqrt(farthest2);
+}
+
+template <class Visit>
+void visit_clusters_of(const AdaptiveStatics& statics, std::size_t molecule, const Visit& visit) {
+    for (std::uint32_t c = 0; c < statics.clusters.clusters.size(); ++c) {
+        if (statics.clusters.tree.molecule_of[c] == molecule) visit(c);
+    }
+}
+
 }  // namespace
 
 AdaptiveStatics build_adaptive_statics(const TorsionModel& model) {
@@ -386,6 +480,7 @@ AdaptiveStatics build_adaptive_statics(const TorsionModel& model) {
     statics.metric = build_acceleration_metric(model.tree);
     statics.selection = build_joint_selection(model.tree);
     statics.is_guided.assign(model.bases.size(), 0);
+    statics.shifts.assign(model.bases.size(), 0);
     for (std::vector<Vec3>* vectors : {&statics.across_forces, &statics.trial_forces,
                                        &statics.within_forces, &statics.positions}) {
         vectors->assign(model.reference.size(), Vec3::Zero());
@@ -395,12 +490,8 @@ AdaptiveStatics build_adaptive_statics(const TorsionModel& model) {
 
 void shift_base(const TorsionModel& model, std::size_t molecule, const Vec3& by,
                 TorsionState& state, AdaptiveStatics& statics) noexcept {
-    statics.shift = by.norm();
-    if (statics.is_guided[molecule] == 0) {
-        // Until now it was at rest against others.
-        statics.is_guided[molecule] = 1;
-        statics.is_built = false;
-    }
+    take_in_hand(molecule, statics);
+    statics.shifts[molecule] = by.norm();
     if (!statics.is_built) {
         shift_base(model, molecule, by, state);
         return;
@@ -408,18 +499,41 @@ void shift_base(const TorsionModel& model, std::size_t molecule, const Vec3& by,
     state.shifts[molecule] += by;
     std::optional<Vec3>& guided = statics.moving.passes.guides[molecule].point;
     if (guided) *guided += by;
-    for (std::uint32_t c = 0; c < statics.is_moved.size(); ++c) {
-        if (statics.clusters.tree.molecule_of[c] != molecule) continue;
+    visit_clusters_of(statics, molecule, [&](std::uint32_t c) {
         statics.moving.centres[c] += by;
         statics.is_moved[c] = statics.has_moved[c] = 1;
         update_positions(statics.clusters, statics.moving, c, state.positions);
+    });
+}
+
+void turn_base(const TorsionModel& model, std::size_t molecule, const Eigen::Quaterniond& turn,
+               const Vec3& by, TorsionState& state, AdaptiveStatics& statics) noexcept {
+    take_in_hand(molecule, statics);
+    const Vec3 pivot = find_pivot(model, state, molecule);
+    const Mat3 rotation = turn.toRotationMatrix();
+    const RigidMotion motion{rotation, pivot - rotation * pivot + by};
+    statics.shifts[molecule] = find_farthest(model, state, molecule, motion);
+    state.turns[molecule] = (turn * state.turns[molecule]).normalized();
+    state.shifts[molecule] = motion * state.shifts[molecule];
+    if (!statics.is_built) {
+        update_positions(model, state);
+        return;
     }
+    std::optional<Vec3>& guided = statics.moving.passes.guides[molecule].point;
+    if (guided) guided = motion * *guided;
+    visit_clusters_of(statics, molecule, [&](std::uint32_t c) {
+        HybridState& moving = statics.moving;
+        moving.centres[c] = motion * moving.centres[c];
+        moving.orientations[c] = (turn * moving.orientations[c]).normalized();
+        statics.is_moved[c] = statics.has_moved[c] = 1;
+        update_positions(statics.clusters, moving, c, state.positions);
+    });
 }
 
 bool update_adaptive_forces(const TorsionModel& model, const AdaptiveSettings& settings,
                             TorsionState& state, AdaptiveStatics& statics) {
     if (!statics.is_built || is_list_outdated(settings, state, statics) ||
-        are_tiles_outdated(settings, state, statics, 0))
+        are_tiles_outdated(settings, state, statics, 0) || !is_within_reach(state.positions))
         return renew(model, settings, state, statics);
     update_across(model, settings, state, statics, statics.across_forces);
     return std::isfinite(state.energy());
@@ -456,10 +570,10 @@ AdaptiveReport step_adaptive(const TorsionModel& model, const AdaptiveSettings& 
 
     const double before = state.energy();
     const EnergyTerms terms = state.terms, across_terms = statics.across_terms;
-    const double tether_energy = state.tether_energy;
+    const double spring_energy = state.spring_energy;
     update_across(model, settings, state, statics, statics.trial_forces);
     report.energy_change = state.energy() - before;
-    const double magnitude = across_terms.magnitude() + tether_energy;
+    const double magnitude = across_terms.magnitude() + spring_energy;
     const bool is_lower = is_energy_lower(settings.step.forces, magnitude, report.energy_change,
                                           [&] { return find_work(statics); });
     report.is_taken = std::isfinite(report.energy_change) && is_lower;
@@ -469,7 +583,7 @@ AdaptiveReport step_adaptive(const TorsionModel& model, const AdaptiveSettings& 
         go_back(statics);
         (void)place_moved(state, statics);
         state.terms = terms;
-        state.tether_energy = tether_energy;
+        state.spring_energy = spring_energy;
         statics.across_terms = across_terms;
         return result;
     }
@@ -487,9 +601,9 @@ void complete_forces(const TorsionModel& model, const AdaptiveStatics& statics,
         for (const std::uint32_t i : atoms_of(statics.clusters, c))
             state.forces[i] = turn * statics.within_forces[i];
     }
-    for (const std::uint32_t i : statics.across.atoms) state.forces[i] += statics.across_forces[i];
-    for_tethered(model, state,
-                 [&](std::uint32_t atom, const Vec3& force) { state.forces[atom] += force; });
+    for (const std::uint32_t i : statics.pulled) state.forces[i] += statics.across_forces[i];
+    (void)visit_spring_forces(
+        model, state, [&](std::uint32_t atom, const Vec3& force) { state.forces[atom] += force; });
 }
 
 Vec6 find_wrench_on(const AdaptiveStatics& statics, std::size_t molecule) noexcept {

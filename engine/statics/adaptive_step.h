@@ -53,10 +53,14 @@ struct AdaptiveStatics {
     HybridState moving;
     GroupForces across;
     std::vector<std::uint32_t> cluster_of;  // of each atom
+    // Where everything is active, but for fast pairs that end nowhere: not `across` but the whole
+    // force field acts between clusters, by the memory's lists, and nothing within them.
+    bool is_whole = false;
     // The caller's, of each molecule: whether its base is moved by hand, so that it is never at
-    // rest against others. shift_base sees to it.
+    // rest against others. shift_base and turn_base see to it.
     std::vector<std::uint8_t> is_guided;
-    std::vector<Vec3> across_forces;  // kcal/mol/Å; only of the atoms that `across` has
+    std::vector<std::uint32_t> pulled;  // atoms on which that acts
+    std::vector<Vec3> across_forces;    // kcal/mol/Å; only of these
     EnergyTerms across_terms;
     // What acts within them: forces with the axes of the cluster's frame.
     std::vector<Vec3> within_forces;
@@ -71,7 +75,8 @@ struct AdaptiveStatics {
     std::vector<std::uint8_t> has_moved;
     std::vector<Vec3> clustered;  // positions when clusters were built
     double tile_skin = 0;         // Å, that `across` was built with
-    double shift = 0;             // Å, the newest by hand
+    // Of each molecule: how far its farthest atom went when the hand moved it last, Å.
+    std::vector<double> shifts;
     std::vector<Vec3> trial_forces;
     std::vector<Vec3> positions;  // before it, of atoms in clusters that move
     HybridState start;            // before it: frames, wrenches and guides
@@ -90,12 +95,14 @@ struct [[nodiscard]] AdaptiveReport {
     bool is_chosen = false;  // joints were chosen in this step
 };
 
-// Moves a base by hand, as shift_base does.
+// Move a base by hand, as those of torsion_state.h do. Each hand may move its own.
 void shift_base(const TorsionModel& model, std::size_t molecule, const Vec3& by,
                 TorsionState& state, AdaptiveStatics& statics) noexcept;
+void turn_base(const TorsionModel& model, std::size_t molecule, const Eigen::Quaterniond& turn,
+               const Vec3& by, TorsionState& state, AdaptiveStatics& statics) noexcept;
 
 // Energy, and forces between clusters, where the state is now; before anything else after the state
-// or its tether were changed by hand. The energy is that of the state, `forces` of the state are
+// or its springs were changed by hand. The energy is that of the state, `forces` of the state are
 // not: see complete_forces. Joints are chosen if that is due. False where energies are not finite
 // or atoms farther out than 1e6 Å: then only positions are of use, until they are mended.
 [[nodiscard]] bool update_adaptive_forces(const TorsionModel& model,
@@ -103,7 +110,8 @@ void shift_base(const TorsionModel& model, std::size_t molecule, const Vec3& by,
                                           AdaptiveStatics& statics);
 
 // step_quasi_static for the joints and bases that are active. With everything active it is that, to
-// rounding.
+// rounding, and costs no more: where the limits have room for all there is nothing to choose again,
+// until they have not.
 AdaptiveReport step_adaptive(const TorsionModel& model, const AdaptiveSettings& settings,
                              TorsionState& state, AdaptiveStatics& statics);
 
@@ -111,7 +119,7 @@ AdaptiveReport step_adaptive(const TorsionModel& model, const AdaptiveSettings& 
 void complete_forces(const TorsionModel& model, const AdaptiveStatics& statics,
                      TorsionState& state) noexcept;
 
-// Force and torque about the origin that all others, and the tether, put on a molecule that is
+// Force and torque about the origin that all others, and springs, put on a molecule that is
 // guided or whose base is active.
 Vec6 find_wrench_on(const AdaptiveStatics& statics, std::size_t molecule) noexcept;
 

@@ -75,7 +75,8 @@ public:
     const Coordinates& trial_forces() const { return statics_.trial.coordinate_forces; }
 
     Coordinates precondition(const Coordinates& forces) {
-        if (settings_.method != RelaxMethod::InverseMass) {
+        if (settings_.precondition) return settings_.precondition(forces);
+        if (settings_.method == RelaxMethod::LimitedMemory) {
             return compliance_.array() * forces.array();
         }
         Coordinates accelerations;
@@ -107,7 +108,7 @@ public:
 
     // Whether there was a step that lowers the energy.
     bool step() {
-        if (settings_.method != RelaxMethod::InverseMass) {
+        if (settings_.method == RelaxMethod::LimitedMemory && !settings_.precondition) {
             compliance_ = find_compliance(model_, state_);
         }
         return step_downhill(*this, statics_.pairs);

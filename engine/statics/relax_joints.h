@@ -1,5 +1,6 @@
 // Flexible molecules to rest, all joints at once.
 #pragma once
+#include "core/choices.h"
 #include "statics/step_quasi_static.h"
 
 #include <cstddef>
@@ -7,12 +8,6 @@
 #include <functional>
 
 namespace palpa {
-
-enum class RelaxMethod : std::uint8_t {
-    QuasiStatic,    // the paper's step, again and again
-    LimitedMemory,  // BFGS with a limited memory, each coordinate as stiff as its atoms are far out
-    InverseMass,    // the same, coordinates coupled as they are by the mass matrix
-};
 
 struct RelaxSettings {
     RelaxMethod method = RelaxMethod::InverseMass;
@@ -22,6 +17,9 @@ struct RelaxSettings {
         0.01;                  // rms over the coordinates, kcal/mol/rad and kcal/mol/Å: the end
     std::size_t steps = 2000;  // at most
     bool keeps_pairs = false;  // curvature pairs of the call before still hold
+    // Multiplies forces along the coordinates by an inverse Hessian that the caller knows; empty:
+    // as the method has it.
+    std::function<Coordinates(const Coordinates&)> precondition = {};
 };
 
 enum class RelaxEnd : std::uint8_t {

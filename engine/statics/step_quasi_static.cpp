@@ -52,7 +52,7 @@ void put_on_bodies(const TorsionModel& model, const TorsionState& state,
 }
 
 double sum_of_terms(const TorsionState& state) noexcept {
-    return state.terms.magnitude() + state.tether_energy;
+    return state.terms.magnitude() + state.spring_energy;
 }
 
 }  // namespace

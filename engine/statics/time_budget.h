@@ -26,7 +26,7 @@ private:
     double budget_us_;
     std::vector<double> steps_us_;  // since the last choice
     double choice_us_ = 0;          // the last
-    // Fewer hardly cost less, and what gives way to nothing is soon pushed into others.
+    // Fewer hardly cost less, and what cannot relax is soon pushed into others.
     static constexpr double least_freedom = 8;
     double freedom_ = least_freedom;
 };

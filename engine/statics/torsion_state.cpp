@@ -14,40 +14,20 @@ RigidMotion motion_of_base(const TorsionState& state, std::size_t molecule) {
     return {state.turns[molecule].toRotationMatrix(), state.shifts[molecule]};
 }
 
+void rotate_base(std::size_t molecule, const Eigen::Quaterniond& rotation, const Vec3& pivot,
+                 TorsionState& state) {
+    state.turns[molecule] = (rotation * state.turns[molecule]).normalized();
+    state.shifts[molecule] = pivot + rotation * (state.shifts[molecule] - pivot);
+}
+
 // Turns a base about its pivot (rad, along the axis of `turn`), then displaces it.
 void move_base(std::size_t molecule, const Vec3& turn, const Vec3& by, TorsionState& state) {
     const double angle = turn.norm();
     if (angle > 0) {
         const Eigen::Quaterniond rotation(Eigen::AngleAxisd(angle, turn / angle));
-        const Vec3& pivot = state.pivots[molecule];
-        state.turns[molecule] = (rotation * state.turns[molecule]).normalized();
-        state.shifts[molecule] = pivot + rotation * (state.shifts[molecule] - pivot);
+        rotate_base(molecule, rotation, state.pivots[molecule], state);
     }
     state.shifts[molecule] += by;
-}
-
-double mass_of(const TorsionModel& model, const std::vector<std::uint32_t>& atoms) {
-    double mass = 0;
-    for (const std::uint32_t atom : atoms) mass += model.masses[atom];
-    return mass;
-}
-
-EnergyTerms add_model_forces(const TorsionModel& model, const ForceSettings& settings,
-                             ForceMemory& memory, TorsionState& state) {
-    const Topology& topology = model.topology;
-    if (settings.fast) {
-        return add_fast_forces(topology, model.fast, settings.nonbonded, settings.skin,
-                               state.positions, memory.fast_pairs, state.forces,
-                               PairResult::ForcesAndEnergies, settings.threads);
-    }
-    if (!has_end(settings.nonbonded))
-        return add_forces(topology, settings.nonbonded, state.positions, state.forces);
-    if (memory.list.positions.empty() || is_outdated(memory.list, state.positions)) {
-        memory.list = build_pair_list(topology.exclusions, settings.nonbonded.cutoff, settings.skin,
-                                      state.positions, {}, std::move(memory.list));
-    }
-    return add_forces(topology, settings.nonbonded, memory.list, state.positions, state.forces,
-                      settings.threads);
 }
 
 }  // namespace
@@ -108,19 +88,32 @@ bool is_fast(const ForceSettings& settings) noexcept {
            !(n.distance_dielectric && n.electrostatics == ElectrostaticCutoff::ForceSwitch);
 }
 
+EnergyTerms add_model_forces(const TorsionModel& model, const ForceSettings& settings,
+                             ForceMemory& memory, std::span<const Vec3> positions,
+                             std::span<Vec3> forces) {
+    const Topology& topology = model.topology;
+    if (settings.fast) {
+        return add_fast_forces(topology, model.fast, settings.nonbonded, settings.skin, positions,
+                               memory.fast_pairs, forces, PairResult::ForcesAndEnergies,
+                               settings.threads);
+    }
+    if (!has_end(settings.nonbonded))
+        return add_forces(topology, settings.nonbonded, positions, forces);
+    if (memory.list.positions.empty() || is_outdated(memory.list, positions)) {
+        memory.list = build_pair_list(topology.exclusions, settings.nonbonded.cutoff, settings.skin,
+                                      positions, {}, std::move(memory.list));
+    }
+    return add_forces(topology, settings.nonbonded, memory.list, positions, forces,
+                      settings.threads);
+}
+
 void update_forces(const TorsionModel& model, const ForceSettings& settings, ForceMemory& memory,
                    TorsionState& state) {
     std::ranges::fill(state.forces, Vec3::Zero());
-    state.terms = add_model_forces(model, settings, memory, state);
-    state.tether_energy = 0;
-    if (state.tether) {
-        const Vec3 away =
-            find_tethered(model, *state.tether, state.positions) - state.tether->place;
-        state.tether_energy = 0.5 * state.tether->k * away.squaredNorm();
-        const double mass = mass_of(model, state.tether->atoms);
-        for (const std::uint32_t atom : state.tether->atoms) {
-            state.forces[atom] -= model.masses[atom] / mass * state.tether->k * away;
-        }
+    state.terms = add_model_forces(model, settings, memory, state.positions, state.forces);
+    state.spring_energy = 0;
+    for (const Spring& spring : state.springs) {
+        state.spring_energy += add_spring_forces(model, spring, state.positions, state.forces);
     }
     ++memory.evaluations;
 }
@@ -177,18 +170,29 @@ void shift_base(const TorsionModel& model, std::size_t molecule, const Vec3& by,
     update_positions(model, state);
 }
 
-Vec3 find_tethered(const TorsionModel& model, const Tether& tether,
-                   std::span<const Vec3> positions) noexcept {
-    Vec3 sum = Vec3::Zero();
-    for (const std::uint32_t atom : tether.atoms) sum += model.masses[atom] * positions[atom];
-    return sum / mass_of(model, tether.atoms);
+void turn_base(const TorsionModel& model, std::size_t molecule, const Eigen::Quaterniond& turn,
+               const Vec3& by, TorsionState& state) noexcept {
+    rotate_base(molecule, turn, state.pivots[molecule], state);
+    state.shifts[molecule] += by;
+    update_positions(model, state);
+}
+
+Vec6 find_wrench_on(const TorsionModel& model, const TorsionState& state,
+                    std::size_t molecule) noexcept {
+    Vec6 wrench = Vec6::Zero();
+    for (std::size_t i = 0; i < state.forces.size(); ++i) {
+        if (model.tree.molecule_of[model.tree.bodies.body_of[i]] != molecule) continue;
+        wrench.head<3>() += state.positions[i].cross(state.forces[i]);
+        wrench.tail<3>() += state.forces[i];
+    }
+    return wrench;
 }
 
 void copy_coordinates(const TorsionState& from, TorsionState& to) noexcept {
     to.angles = from.angles;
     to.turns = from.turns;
     to.shifts = from.shifts;
-    to.tether = from.tether;
+    to.springs = from.springs;
     to.motions = from.motions;
     to.positions = from.positions;
     to.pivots = from.pivots;
@@ -197,7 +201,7 @@ void copy_coordinates(const TorsionState& from, TorsionState& to) noexcept {
 void take_over(TorsionState& from, TorsionState& to) noexcept {
     copy_coordinates(from, to);
     to.terms = from.terms;
-    to.tether_energy = from.tether_energy;
+    to.spring_energy = from.spring_energy;
     std::swap(to.forces, from.forces);
     std::swap(to.coordinate_forces, from.coordinate_forces);
 }

@@ -4,16 +4,15 @@
 #include "forces/pair_list.h"
 #include "math/rigid_motion.h"
 #include "math/spatial.h"
+#include "statics/springs.h"
 #include "statics/torsion_model.h"
 
 #include <cstddef>
-#include <optional>
-#include <span>
 #include <vector>
 
 namespace palpa {
 
-// How forces are summed. Everything but the fast pairs is in double, the slow twin.
+// How forces are summed. Everything but the fast pairs is in double, the reference implementation.
 struct ForceSettings {
     NonbondedSettings nonbonded;  // pairs are listed where both energies end at a cutoff
     bool fast = false;            // pairs in single precision (forces/fast_nonbonded.h)
@@ -23,14 +22,6 @@ struct ForceSettings {
 
 // Whether the kernel has them: not for what single precision cannot do.
 bool is_fast(const ForceSettings& settings) noexcept;
-
-// A spring from the centre of mass of some atoms to a place: the hand on them. E = k |x -
-// place|^2/2.
-struct Tether {
-    std::vector<std::uint32_t> atoms;
-    double k = 0;               // kcal/mol/Å^2
-    Vec3 place = Vec3::Zero();  // Å
-};
 
 // Lists of pairs from one evaluation to the next, whatever states they are of.
 struct ForceMemory {
@@ -44,7 +35,7 @@ struct TorsionState {
     std::vector<double> angles;             // of each body's joint, rad; 0 of bases
     std::vector<Eigen::Quaterniond> turns;  // of each molecule
     std::vector<Vec3> shifts;               // of each molecule, Å
-    std::optional<Tether> tether;
+    std::vector<Spring> springs;            // the caller's: of hands, and restraints
 
     // update_positions
     std::vector<RigidMotion> motions;  // of each body from its reference
@@ -53,14 +44,14 @@ struct TorsionState {
 
     // update_forces
     EnergyTerms terms;         // without those that are constant
-    double tether_energy = 0;  // kcal/mol
+    double spring_energy = 0;  // kcal/mol
     std::vector<Vec3> forces;  // kcal/mol/Å
 
     // update_coordinate_forces
     std::vector<Vec6> wrenches;     // of each body with all behind it, about the origin
     Coordinates coordinate_forces;  // kcal/mol/rad, kcal/mol/Å
 
-    double energy() const noexcept { return terms.total() + tether_energy; }
+    double energy() const noexcept { return terms.total() + spring_energy; }
 };
 
 // At the reference; nothing is evaluated yet but positions.
@@ -72,7 +63,13 @@ void update_positions(const TorsionModel& model, TorsionState& state) noexcept;
 // From the positions.
 void update_pivots(const TorsionModel& model, TorsionState& state) noexcept;
 
-// Energy and forces on atoms. Allocates where a list has to be built.
+// Adds the force field's forces on all atoms to `forces`, one entry per atom, and returns its
+// energies. Allocates where a list has to be built.
+EnergyTerms add_model_forces(const TorsionModel& model, const ForceSettings& settings,
+                             ForceMemory& memory, std::span<const Vec3> positions,
+                             std::span<Vec3> forces);
+
+// Energy and forces on atoms, those of springs too.
 void update_forces(const TorsionModel& model, const ForceSettings& settings, ForceMemory& memory,
                    TorsionState& state);
 
@@ -86,9 +83,15 @@ void add_move(const TorsionModel& model, const Coordinates& move, TorsionState& 
 void shift_base(const TorsionModel& model, std::size_t molecule, const Vec3& by,
                 TorsionState& state) noexcept;
 
-// The centre of mass of the tether's atoms, Å.
-Vec3 find_tethered(const TorsionModel& model, const Tether& tether,
-                   std::span<const Vec3> positions) noexcept;
+// Moves a base by hand: turns it about its pivot, then shifts it (Å). The whole molecule goes with
+// it.
+void turn_base(const TorsionModel& model, std::size_t molecule, const Eigen::Quaterniond& turn,
+               const Vec3& by, TorsionState& state) noexcept;
+
+// Force and torque about the origin on a molecule, from the forces on its atoms. What these do to
+// each other adds up to nothing.
+Vec6 find_wrench_on(const TorsionModel& model, const TorsionState& state,
+                    std::size_t molecule) noexcept;
 
 // Puts the coordinates and positions of `from` into `to`, nothing else.
 void copy_coordinates(const TorsionState& from, TorsionState& to) noexcept;

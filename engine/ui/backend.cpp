@@ -2,10 +2,11 @@
 
 #include "ui/layout.h"
 
-#include <backends/imgui_impl_glfw.h>
-#include <backends/imgui_impl_vulkan.h>
 #include <imgui.h>
+#include <imgui_impl_glfw.h>
+#include <imgui_impl_vulkan.h>
 #include <imgui_internal.h>
+#include <cmath>
 #include <filesystem>
 #include <system_error>
 
@@ -36,7 +37,8 @@ void add_font(float text_pixels) {
 }  // namespace
 
 void set_ui_style(float text_scale) {
-    add_font(usual_text * text_scale);
+    // In whole pixels, as windows are: else their content is a part of one too high for them.
+    add_font(std::round(usual_text * text_scale));
     ImGui::StyleColorsLight();
     ImGuiStyle& style = ImGui::GetStyle();
     style.WindowRounding = 6;
@@ -118,6 +120,10 @@ bool UiBackend::covers(double x, double y) const {
     return false;
 }
 
-bool UiBackend::wants_keys() const { return ImGui::GetIO().WantTextInput; }
+// Of this moment: what the library says of it is two pictures old.
+bool UiBackend::wants_keys() const {
+    const ImGuiContext& context = *ImGui::GetCurrentContext();
+    return context.ActiveId != 0 && context.ActiveId == context.InputTextState.ID;
+}
 
 }  // namespace palpa

@@ -1,7 +1,7 @@
 // Brings the overlay library onto a window and into a render pass.
 #pragma once
 #include "gpu/device.h"
-#include "platform/window.h"
+#include "window/window.h"
 
 #include <cstdint>
 

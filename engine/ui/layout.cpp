@@ -1,5 +1,7 @@
 #include "ui/layout.h"
 
+#include <imgui_internal.h>
+
 namespace palpa {
 
 void tip(const char* text) {
@@ -16,6 +18,21 @@ void same_line_if_it_fits(const char* text) {
     const float width = ImGui::CalcTextSize(text).x + 2 * style.FramePadding.x;
     const float right = ImGui::GetItemRectMax().x + style.ItemSpacing.x + width;
     if (right <= ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x) ImGui::SameLine();
+}
+
+void draw_shade() {
+    ImGui::SetNextWindowPos({0, 0});
+    ImGui::SetNextWindowSize(ImGui::GetIO().DisplaySize);
+    ImGui::SetNextWindowBgAlpha(0.35F);
+    ImGui::PushStyleColor(ImGuiCol_WindowBg, ImVec4(0, 0, 0, 1));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
+    ImGui::Begin("##shade", nullptr,
+                 fixed_panel | ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoScrollbar |
+                     ImGuiWindowFlags_NoFocusOnAppearing);
+    ImGui::BringWindowToDisplayFront(ImGui::GetCurrentWindow());
+    ImGui::End();
+    ImGui::PopStyleVar();
+    ImGui::PopStyleColor();
 }
 
 }  // namespace palpa

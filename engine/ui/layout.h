@@ -34,4 +34,8 @@ void tip(const char* text);
 // On the line of the item before where a button with this text has room there.
 void same_line_if_it_fits(const char* text);
 
+// A shade over everything, so that nothing behind it can be clicked; below what is brought to the
+// front after it.
+void draw_shade();
+
 }  // namespace palpa

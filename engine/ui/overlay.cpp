@@ -3,16 +3,23 @@
 #include "haptics/gains.h"
 #include "haptics/hand.h"
 #include "session/run_headless.h"
-#include "simulation/simulation.h"
+#include "simulation/coupling.h"
+#include "simulation/held.h"
+#include "simulation/load.h"
 #include "ui/layout.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
 #include <imgui_internal.h>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
+#include <numeric>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace palpa {
@@ -20,15 +27,53 @@ namespace {
 
 constexpr ImU32 task_colour = IM_COL32(20, 90, 190, 255);
 constexpr ImU32 done_colour = IM_COL32(20, 130, 70, 255);
-constexpr double least_kept_m = 0.5e-3;  // at the wall, that counts
+constexpr double least_overtravel_m = 0.5e-3;  // at the wall, that counts
+
+// Keys and what they do, twice beside each other.
+struct HelpTable {
+    static constexpr std::size_t columns = 4;
+    std::vector<std::array<std::string, columns>> rows;
+    std::array<float, columns> widths{};  // pixels, unbroken
+
+    static float gaps() { return 2 * columns * ImGui::GetStyle().CellPadding.x; }
+    float width() const { return std::accumulate(widths.begin(), widths.end(), gaps()); }
+    // Narrow columns stay; wide ones share what is left, and their words are broken.
+    void shrink(float widest) {
+        std::array<float*, columns> ascending{&widths[0], &widths[1], &widths[2], &widths[3]};
+        std::ranges::sort(ascending, {}, [](const float* width) { return *width; });
+        float left = widest - gaps();
+        for (std::size_t i = 0; i < columns; ++i) {
+            float& width = *ascending[i];
+            width = std::min(width, left / static_cast<float>(columns - i));
+            left -= width;
+        }
+    }
+};
+
+HelpTable lay_out_help() {
+    HelpTable table;
+    std::vector<HelpLine> lines = list_help();
+    const std::size_t half = (lines.size() + 1) / 2;
+    lines.resize(2 * half);
+    for (std::size_t i = 0; i < half; ++i) {
+        const HelpLine &left = lines[i], &right = lines[half + i];
+        table.rows.push_back({left.keys, left.does, right.keys, right.does});
+        for (std::size_t k = 0; k < HelpTable::columns; ++k) {
+            const float width = ImGui::CalcTextSize(table.rows.back()[k].c_str()).x;
+            table.widths[k] = std::max(table.widths[k], width);
+        }
+    }
+    for (float& width : table.widths) width += scaled(6);
+    return table;
+}
 
 }  // namespace
 
 double cm_per_angstrom(double displacement_gain) { return displacement_gain * 1e-8; }
 
-double felt_stiffness(const CouplingLaws& laws, const TouchModel& touch) {
-    return largest_felt(laws.force, touch.force_newton, touch.stiffness_matrix_N_per_m) /
-           displacement_gain(laws.displacement, touch.force_newton.norm());
+double felt_stiffness(const CouplingLaws& laws, const ContactModel& contact) {
+    return largest_felt(laws.force, contact.force_newton, contact.stiffness_matrix_N_per_m) /
+           displacement_gain(laws.displacement, contact.force_newton.norm());
 }
 
 Overlay::Overlay(const SceneDescription& scene)
@@ -44,13 +89,13 @@ Overlay::Overlay(const SceneDescription& scene)
 
 void Overlay::update_limit() {
     const auto delay_ticks = static_cast<int>(scene_.device.servo_delay_ticks);
-    stiffness_limit_ = is_guarded()
-                           ? guarded_cap(scene_.device.viscosity_N_s_per_m,
-                                         guarded_damping(settings_.coupling.damping_N_s_per_m,
-                                                         scene_.device.inertia_kg, delay_ticks),
-                                         delay_ticks)
-                           : calm_stiffness(scene_, hand_model(static_cast<Grip>(scene_.hand.grip)),
-                                            settings_.period_ms * 1e-3);
+    stiffness_limit_ =
+        is_guarded()
+            ? guarded_cap(scene_.device.viscosity_N_s_per_m,
+                          guarded_damping(settings_.coupling.damping_N_s_per_m,
+                                          scene_.device.inertia_kg, delay_ticks),
+                          delay_ticks)
+            : calm_stiffness(scene_, hand_model(scene_.hand.grip), settings_.period_ms * 1e-3);
 }
 
 void Overlay::add_tick(const ServoTick& tick) {
@@ -58,22 +103,26 @@ void Overlay::add_tick(const ServoTick& tick) {
     if (has_tick_ && reading.time_s == last_.time_s) return;  // paused: no time passed
     has_tick_ = true;
     last_ = reading;
-    if (tick.touch.active_freedom == 1) {
-        const double side = tick.touch.molecule.place_angstrom.x();
+    if (tick.contact.active_freedom == 1) {
+        const double side = tick.contact.molecule.place_angstrom.x();
         if (side_ == 0) side_ = side;
         went_through_ = side * side_ < 0;
+    } else {
+        side_ = 0;
+        went_through_ = false;
     }
     clamped_ = tick.clamped;
     stopped_ = tick.stopped;
     stage_ = tick.stage;
     reason_ = tick.reason;
     felt_N_per_m_ = tick.felt_N_per_m;
-    raised_ = tick.raised;
+    cap_ratio_ = tick.cap_ratio;
     hand_energy_J_ = tick.hand_energy_J;
-    kept_m_ = tick.kept_m.norm();
+    overtravel_m_ = tick.overtravel_m.norm();
     force_gain_ = tick.force_gain;
     history_.add(last_);
-    lesson_.update(last_, settings_.coupling.mode);
+    // Nothing that an empty hand could do.
+    if (!tick.contact.is_still) lesson_.update(last_, settings_.coupling.mode);
 }
 
 void Overlay::change_settings(const LiveSettings& settings, std::vector<Command>& commands) {
@@ -92,12 +141,17 @@ void Overlay::set_mode(CouplingMode mode, std::vector<Command>& commands) {
 }
 
 bool Overlay::perform(Action action, std::vector<Command>& commands) {
-    const auto go_back = [&](std::vector<LiveSettings>& from, std::vector<LiveSettings>& to) {
+    const auto go_back = [&](auto& from, auto& to, const EditAction& edit) {
         if (from.empty()) return;
-        to.push_back(settings_);
-        const LiveSettings settings = from.back();
+        const std::optional<LiveSettings> settings = from.back();
         from.pop_back();
-        change_settings(settings, commands);
+        if (settings) {
+            to.emplace_back(settings_);
+            change_settings(*settings, commands);
+        } else {
+            to.emplace_back();
+            commands.emplace_back(edit_now(edit));
+        }
     };
     switch (action) {
         case Action::PauseOrGo:
@@ -108,7 +162,9 @@ bool Overlay::perform(Action action, std::vector<Command>& commands) {
             wants_pause_ = true;
             commands.emplace_back(StepOnce{});
             return true;
-        case Action::Reset:
+        case Action::Reset:  // which knows no edits
+            std::erase(undo_, std::nullopt);
+            std::erase(redo_, std::nullopt);
             commands.emplace_back(Reset{});
             return true;
         case Action::Mode1:
@@ -122,10 +178,10 @@ bool Overlay::perform(Action action, std::vector<Command>& commands) {
             return true;
         }
         case Action::Undo:
-            go_back(undo_, redo_);
+            go_back(undo_, redo_, UndoEdit{});
             return true;
         case Action::Redo:
-            go_back(redo_, undo_);
+            go_back(redo_, undo_, RedoEdit{});
             return true;
         case Action::ToggleOverlay:
             shows_overlays_ = !shows_overlays_;
@@ -144,10 +200,22 @@ bool Overlay::perform(Action action, std::vector<Command>& commands) {
     }
 }
 
+void Overlay::note_edit() {
+    undo_.emplace_back();
+    redo_.clear();
+}
+
+void Overlay::forget_refused(const Readout& readout) {
+    for (; refused_edits_ < readout.refused_edits; ++refused_edits_) {
+        const auto last = std::find(undo_.rbegin(), undo_.rend(), std::nullopt);
+        if (last != undo_.rend()) undo_.erase(std::next(last).base());
+    }
+}
+
 bool Overlay::is_shaking(const Readout& readout) const {
     if (is_guarded()) return false;
     const CouplingLaws laws = build_coupling_laws(settings_.coupling);
-    return felt_stiffness(laws, readout.touch) > stiffness_limit_;
+    return felt_stiffness(laws, readout.contact) > stiffness_limit_;
 }
 
 ScreenArea Overlay::free_area(float width, float height) const {
@@ -170,12 +238,15 @@ ScreenArea Overlay::free_area(float width, float height) const {
 
 void Overlay::draw(const Readout& readout, const OverlayStatus& status,
                    std::vector<Command>& commands, std::vector<Action>& actions) {
+    forget_refused(readout);
     if (shows_overlays_) {
         draw_scene(readout, status, commands, actions);
         draw_right_panel(commands);
+        if (!status.hover.empty()) ImGui::SetTooltip("%s", status.hover.c_str());
     }
     if (shows_lesson_ && !lesson_.steps().empty()) draw_lesson();
     draw_warnings(readout, status);
+    if (status.recorded_s) draw_recording(*status.recorded_s);
     if (shows_help_) draw_help();
 }
 
@@ -235,8 +306,9 @@ void Overlay::draw_warnings(const Readout& readout, const OverlayStatus& status)
         if (left_s > 0) warnings.push_back(text());
     };
     if (stopped_) warnings.emplace_back("a force was not finite: no force until you reset (R)");
-    if (reason_ != SafetyStage::None && !stopped_) warnings.emplace_back(words(reason_));
-    if (stage_ >= SafetyStage::Hot && stage_ != reason_ && !stopped_)
+    const bool feels = readout.holds_something && !stopped_;
+    if (reason_ != SafetyStage::None && feels) warnings.emplace_back(words(reason_));
+    if (stage_ >= SafetyStage::ThermalLimit && stage_ != reason_ && feels)
         warnings.emplace_back(words(stage_));
     warn(shaking_for_s_, is_shaking(readout), [&] {
         return fmt::format(
@@ -250,19 +322,24 @@ void Overlay::draw_warnings(const Readout& readout, const OverlayStatus& status)
         return fmt::format("steps take longer than their period of {} ms: the force comes late",
                            settings_.period_ms);
     });
-    warn(at_wall_for_s_, is_guarded() && kept_m_ > least_kept_m, [&] {
+    warn(at_wall_for_s_, is_guarded() && overtravel_m_ > least_overtravel_m, [&] {
         return fmt::format(
             "at the wall: an atom is pushed with {:.3g} nN, and the molecule goes no further; draw "
             "the hand back {:.0f} mm to come off it",
-            settings_.coupling.stop_nN, std::ceil(1e3 * kept_m_));
+            settings_.coupling.stop_nN, std::ceil(1e3 * overtravel_m_));
     });
     if (went_through_) {
         warnings.emplace_back("the molecule was pushed through the other one: R brings it back");
     }
     if (!readout.problem.empty()) warnings.push_back(readout.problem);
+    if (!readout.edit_under_way.empty())
+        warnings.push_back(fmt::format("{}: being prepared", readout.edit_under_way));
     if (readout.paused) warnings.emplace_back("paused: P goes on");
     if (!status.notice.empty()) warnings.push_back(status.notice);
-    warnings.emplace_back(!status.has_mouse_hand
+    warnings.emplace_back(!readout.holds_something
+                              ? "nothing is in hand: click on an atom to take its molecule; H: all "
+                                "keys"
+                          : !status.has_mouse_hand
                               ? fmt::format("device: {}; H: all keys", status.device_name)
                           : status.holding ? "in hand: move the mouse; the wheel goes in and out"
                                            : "hold Space and move the mouse to pull the molecule, "
@@ -282,27 +359,45 @@ void Overlay::draw_warnings(const Readout& readout, const OverlayStatus& status)
     ImGui::End();
 }
 
+// A red mark and the time, in the lower right corner of what no panel covers.
+void Overlay::draw_recording(double seconds) const {
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    const ScreenArea area = free_area(screen.x, screen.y);
+    const auto whole = static_cast<int>(seconds);
+    const std::string text = fmt::format("recording {}:{:02}", whole / 60, whole % 60);
+    const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+    const float radius = 0.4F * size.y;
+    const ImVec2 corner{area.right - panel_edge() - size.x, area.bottom - panel_edge() - size.y};
+    ImDrawList& list = *ImGui::GetForegroundDrawList();
+    constexpr ImU32 red = IM_COL32(200, 20, 20, 255);
+    list.AddCircleFilled({corner.x - 2 * radius, corner.y + 0.5F * size.y}, radius, red);
+    list.AddText(corner, red, text.c_str());
+}
+
 void Overlay::draw_help() {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     const float edge = panel_edge();
+    HelpTable table = lay_out_help();
+    const float widest = screen.x - 2 * edge - ImGui::GetStyle().ScrollbarSize -
+                         2 * ImGui::GetStyle().WindowPadding.x;
     ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5F, 0.5F});
     ImGui::SetNextWindowSizeConstraints({0, 0}, {screen.x - 2 * edge, screen.y - 2 * edge});
     ImGui::SetNextWindowFocus();
     ImGui::SetNextWindowBgAlpha(1);
     ImGui::Begin("Keys and mouse", &shows_help_, fixed_panel | ImGuiWindowFlags_AlwaysAutoResize);
-    const std::vector<HelpLine> lines = list_help();
-    const std::size_t half = (lines.size() + 1) / 2;
-    if (ImGui::BeginTable("keys", 4, ImGuiTableFlags_SizingFixedFit)) {
-        const auto cell = [](const std::string& text) {
-            ImGui::TableNextColumn();
-            ImGui::TextUnformatted(text.c_str());
-        };
-        for (std::size_t i = 0; i < half; ++i) {
-            cell(lines[i].keys);
-            cell(lines[i].does + "   ");
-            if (half + i >= lines.size()) continue;
-            cell(lines[half + i].keys);
-            cell(lines[half + i].does);
+    const bool fits = table.width() <= widest;
+    if (!fits) table.shrink(widest);
+    constexpr ImGuiTableFlags tight = ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_NoPadOuterX;
+    if (ImGui::BeginTable("keys", HelpTable::columns, tight, {table.width(), 0})) {
+        for (const float width : table.widths)
+            ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, width);
+        for (const auto& row : table.rows) {
+            for (const std::string& cell : row) {
+                ImGui::TableNextColumn();
+                ImGui::PushTextWrapPos(fits ? -1.0F : 0.0F);
+                ImGui::TextUnformatted(cell.c_str());
+                ImGui::PopTextWrapPos();
+            }
         }
         ImGui::EndTable();
     }

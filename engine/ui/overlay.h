@@ -34,6 +34,8 @@ struct OverlayStatus {
     std::vector<DeviceOffer> devices;  // to choose from; none: there is no choice
     std::string device;                // the one in use, of these names
     bool sounds = false;               // the force is played as a tone
+    std::string hover;                 // what the mouse rests on, and what a click would take
+    std::optional<double> recorded_s;  // of a recording that is under way
 };
 
 class Overlay {
@@ -49,6 +51,9 @@ public:
 
     // Does what an action means for settings and overlays; false where it is the window's business.
     bool perform(Action action, std::vector<Command>& commands);
+
+    // An edit was sent, the next to be undone; one that turns out refused is forgotten again.
+    void note_edit();
 
     // The name of the device that the person has chosen since the last call.
     std::optional<std::string> take_device() { return std::exchange(device_, std::nullopt); }
@@ -71,10 +76,12 @@ public:
 private:
     void draw_scene(const Readout& readout, const OverlayStatus& status,
                     std::vector<Command>& commands, std::vector<Action>& actions);
-    void draw_buttons(const Readout& readout, std::vector<Action>& actions);
+    void draw_buttons(const Readout& readout, bool is_recording, std::vector<Action>& actions);
     void choose_mode(std::vector<Command>& commands);
     void draw_readings(const Readout& readout, const OverlayStatus& status,
                        std::vector<Action>& actions);
+    void draw_forces(const ContactModel& contact) const;
+    void draw_gain_readings(const ContactModel& contact) const;
     void draw_machine(const Readout& readout, const OverlayStatus& status);
     void choose_device(const OverlayStatus& status);
     void draw_comparison(const Readout& readout);
@@ -90,8 +97,10 @@ private:
     void draw_lesson();
     void draw_lesson_step(std::size_t count);
     void draw_warnings(const Readout& readout, const OverlayStatus& status);
+    void draw_recording(double seconds) const;
     void draw_help();
 
+    void forget_refused(const Readout& readout);
     // Of the slider just described: an edit that ends becomes one step of undo.
     void remember_edit(const LiveSettings& before);
     // One slider over a setting.
@@ -104,7 +113,9 @@ private:
 
     SceneDescription scene_;
     LiveSettings settings_, before_edit_;
-    std::vector<LiveSettings> undo_, redo_;
+    // Settings to go back to; nothing: an edit, whose way back the session knows.
+    std::vector<std::optional<LiveSettings>> undo_, redo_;
+    std::uint64_t refused_edits_ = 0;
     bool has_flexible_;           // molecules
     double stiffness_limit_ = 0;  // N/m that this hand keeps calm at the present period
     // How long each warning stays.
@@ -115,7 +126,7 @@ private:
     Reading last_;
     bool has_tick_ = false, clamped_ = false, stopped_ = false;
     SafetyStage stage_ = SafetyStage::None, reason_ = SafetyStage::None;
-    double felt_N_per_m_ = 0, raised_ = 1, hand_energy_J_ = 0, kept_m_ = 0;
+    double felt_N_per_m_ = 0, cap_ratio_ = 1, hand_energy_J_ = 0, overtravel_m_ = 0;
     double side_ = 0;  // of the counterpart, on one axis, where the molecule began
     bool went_through_ = false;
     bool wants_pause_ = false;
@@ -132,6 +143,6 @@ private:
 double cm_per_angstrom(double displacement_gain);
 
 // The stiffness that the hand feels at this moment (N/m), at most, in the paper's modes.
-double felt_stiffness(const CouplingLaws& laws, const TouchModel& touch);
+double felt_stiffness(const CouplingLaws& laws, const ContactModel& contact);
 
 }  // namespace palpa

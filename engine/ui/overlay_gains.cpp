@@ -1,6 +1,7 @@
 // The panel at the right: the laws of the coupling, and what happened.
 #include "haptics/gains.h"
 #include "session/run_headless.h"
+#include "simulation/coupling.h"
 #include "ui/layout.h"
 #include "ui/overlay.h"
 #include "ui/plot.h"

@@ -1,7 +1,9 @@
 // The panel at the left: what the scene is, the run, and what is measured.
 #include "haptics/gains.h"
 #include "haptics/hand.h"
-#include "simulation/simulation.h"
+#include "simulation/coupling.h"
+#include "simulation/held.h"
+#include "simulation/load.h"
 #include "ui/layout.h"
 #include "ui/overlay.h"
 
@@ -84,7 +86,7 @@ void Overlay::draw_scene(const Readout& readout, const OverlayStatus& status,
         if (!scene_.about.empty() && ImGui::CollapsingHeader("About")) {
             ImGui::TextWrapped("%s", scene_.about.c_str());
         }
-        draw_buttons(readout, actions);
+        draw_buttons(readout, status.recorded_s.has_value(), actions);
         choose_mode(commands);
         draw_readings(readout, status, actions);
         if (ImGui::CollapsingHeader("Machine")) draw_machine(readout, status);
@@ -92,7 +94,8 @@ void Overlay::draw_scene(const Readout& readout, const OverlayStatus& status,
     ImGui::End();
 }
 
-void Overlay::draw_buttons(const Readout& readout, std::vector<Action>& actions) {
+void Overlay::draw_buttons(const Readout& readout, bool is_recording,
+                           std::vector<Action>& actions) {
     button(readout.paused ? "Go on" : "Pause",
            "P. While paused nothing moves, and the hand feels nothing.", Action::PauseOrGo,
            actions);
@@ -107,6 +110,16 @@ void Overlay::draw_buttons(const Readout& readout, std::vector<Action>& actions)
            Action::Save, actions);
     same_line_if_it_fits("Picture");
     button("Picture", "F12. A screenshot.", Action::Screenshot, actions);
+    same_line_if_it_fits(is_recording ? "End recording" : "Record");
+    button(is_recording ? "End recording" : "Record",
+           "F9. Writes what happens to a new folder, from which palpa replay plays it again.",
+           Action::Record, actions);
+    same_line_if_it_fits("Add");
+    button("Add", "Insert. A molecule more: a residue, a copy, or from a file.", Action::Add,
+           actions);
+    same_line_if_it_fits("Remove");
+    button("Remove", "Delete. The molecule in hand goes; Ctrl+Z brings it back.", Action::Remove,
+           actions);
     same_line_if_it_fits("Keys");
     button("Keys", "H. All keys.", Action::ToggleHelp, actions);
 }
@@ -141,9 +154,25 @@ void Overlay::choose_mode(std::vector<Command>& commands) {
 void Overlay::draw_readings(const Readout& readout, const OverlayStatus& status,
                             std::vector<Action>& actions) {
     if (!begin_readings("readings")) return;
-    const CouplingLaws laws = build_coupling_laws(settings_.coupling);
-    const TouchModel& touch = readout.touch;
-    const bool on_axis = touch.active_freedom == 1;
+    draw_forces(readout.contact);
+    draw_gain_readings(readout.contact);
+    draw_comparison(readout);
+    reading(has_flexible_ ? "energy of all" : "energy",
+            fmt::format("{:.3f} kcal/mol", readout.contact.potential_kcal_per_mol),
+            has_flexible_ ? "Of all molecules, bonded terms too, kcal/mol"
+                          : "Of the molecule in hand with all others: Lennard-Jones and Coulomb, "
+                            "kcal/mol");
+    if (status.devices.empty()) {
+        reading("device", status.device_name, "what the force is sent to, 1000 times a second");
+    } else {
+        choose_device(status);
+    }
+    switch_sound(status, actions);
+    ImGui::EndTable();
+}
+
+void Overlay::draw_forces(const ContactModel& contact) const {
+    const bool on_axis = contact.active_freedom == 1;
     reading("separation", fmt::format("{:.3f} Å", last_.distance_angstrom),
             "Distance of the reference atoms, Å");
     reading("force, molecule",
@@ -161,12 +190,16 @@ void Overlay::draw_readings(const Readout& readout, const OverlayStatus& status,
             "scenes/hiv/results.md.");
     }
     if (!on_axis && scene_.grab.atom.empty()) {  // a spring turns nothing
-        reading("torque", fmt::format("{:.3g} nN Å", 1e19 * touch.torque_newton_metre.norm()),
+        reading("torque", fmt::format("{:.3g} nN Å", 1e19 * contact.torque_newton_metre.norm()),
                 "On the molecule in hand about its centre of mass. No motor plays it, so a "
                 "molecule that is turned between the way in and the way out can give the hand "
                 "energy.");
     }
-    const double felt = is_guarded() ? felt_N_per_m_ : felt_stiffness(laws, touch);
+}
+
+void Overlay::draw_gain_readings(const ContactModel& contact) const {
+    const CouplingLaws laws = build_coupling_laws(settings_.coupling);
+    const double felt = is_guarded() ? felt_N_per_m_ : felt_stiffness(laws, contact);
     reading("stiffness felt", fmt::format("{:.4g} of {:.4g} N/m", felt, stiffness_limit_),
             "K = (dF_h/dF_m) k / A_d, N/m. Guarded: of the cap, half of what the device keeps "
             "calm; A_d is raised until it holds. Else of the largest K that the hand keeps calm: "
@@ -179,33 +212,20 @@ void Overlay::draw_readings(const Readout& readout, const OverlayStatus& status,
             "Energy given to the hand so far, mJ: over a way there and back it should not be above "
             "0.");
     if (is_guarded()) {
-        reading("overtravel", fmt::format("{:.1f} mm", 1e3 * kept_m_),
+        reading("overtravel", fmt::format("{:.1f} mm", 1e3 * overtravel_m_),
                 fmt::format("The contact force reached {:.3g} nN (coupling.stop_nN), so the "
                             "molecule stopped. Move back by this much before it follows again.",
                             settings_.coupling.stop_nN)
                     .c_str());
     }
-    draw_comparison(readout);
-    reading(has_flexible_ ? "energy of all" : "energy",
-            fmt::format("{:.3f} kcal/mol", touch.potential_kcal_per_mol),
-            has_flexible_ ? "Of all molecules, bonded terms too, kcal/mol"
-                          : "Of the molecule in hand with all others: Lennard-Jones and Coulomb, "
-                            "kcal/mol");
-    if (status.devices.empty()) {
-        reading("device", status.device_name, "what the force is sent to, 1000 times a second");
-    } else {
-        choose_device(status);
-    }
-    switch_sound(status, actions);
-    ImGui::EndTable();
 }
 
 void Overlay::draw_machine(const Readout& readout, const OverlayStatus& status) {
     if (!begin_readings("machine")) return;
-    const int freedom = readout.touch.active_freedom;
+    const int freedom = readout.contact.active_freedom;
     reading("moving", fmt::format("{} degree{} of freedom", freedom, freedom == 1 ? "" : "s"),
             "Degrees of freedom that a step may move");
-    reading("hand", std::string(hand_names[scene_.hand.grip]),
+    reading("hand", std::string(grip_names[static_cast<std::size_t>(scene_.hand.grip)]),
             "The grip on the emulated handle; hand.grip of the scene");
     reading("step", fmt::format("{:.3f} ms of {} ms", readout.step_ms, settings_.period_ms),
             "Wall time of the last simulation step, and the declared period");
@@ -245,27 +265,29 @@ void Overlay::choose_device(const OverlayStatus& status) {
     ImGui::EndCombo();
 }
 
-// With all joints, on a copy; how far the pocket is from rest is another matter.
+// What is to be felt, and how wrong it is.
 void Overlay::draw_comparison(const Readout& readout) {
     const CouplingDescription& c = settings_.coupling;
     if (const auto range = c.feel_pN; range && is_guarded()) {
-        reading("to be felt",
-                fmt::format("{:.4g} to {:.4g} pN, A_d x {:.2f}", (*range)[0], (*range)[1], raised_),
-                "Molecular forces that are felt as 0.3 N or more and 2.7 N or less, and how much "
-                "A_d is raised at this moment so that the stiffness felt stays under its cap: by "
-                "so much less the molecule goes.");
+        reading(
+            "to be felt",
+            fmt::format("{:.4g} to {:.4g} pN, A_d x {:.2f}", (*range)[0], (*range)[1], cap_ratio_),
+            "Molecular forces that are felt as 0.3 N or more and 2.7 N or less, and how much "
+            "A_d is raised at this moment so that the stiffness felt stays under its cap: by "
+            "so much less the molecule goes.");
     }
-    if (const auto within_pN = c.feel_within_pN; within_pN && readout.effort.steps > 0) {
-        const std::string difference =
-            readout.error_pN ? fmt::format("{:.3g} pN", *readout.error_pN) : std::string("?");
-        reading("all joints",
-                fmt::format("differ by {}, {} of them move", difference, readout.effort.active),
-                fmt::format("How far nine of ten forces are, at most, from what all joints would "
-                            "give in the same steps, as found on a copy now and then; {:.4g} pN "
-                            "are asked for. It does not say how far the pocket is from rest.",
-                            *within_pN)
-                    .c_str());
-    }
+    if (!readout.error_pN) return;
+    std::string error = fmt::format("{:.3g} pN", *readout.error_pN);
+    if (const auto within_pN = c.feel_within_pN)
+        error += fmt::format(" of {:.4g} pN allowed", *within_pN);
+    if (readout.work_budget.steps > 0)
+        error += fmt::format(", {} joints move", readout.work_budget.active);
+    if (const double age = readout.contact.model_age_angstrom; std::isfinite(age))
+        error += fmt::format(", model {:.2f} Å old", age);
+    reading("error", error,
+            "By how much the force differs from what it were if all joints relaxed completely on "
+            "all pairs, as estimated; and how far the hand has gone from where the model of the "
+            "force was made.");
 }
 
 }  // namespace palpa

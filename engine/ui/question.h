@@ -1,6 +1,6 @@
 // A question over the picture that must be answered first.
 #pragma once
-#include "platform/window.h"
+#include "window/window.h"
 
 #include <functional>
 #include <optional>

@@ -9,6 +9,14 @@ constexpr std::array list = std::to_array<Shortcut>({
     {Key::P, false, Action::PauseOrGo, "P", "pause, go on"},
     {Key::Period, false, Action::StepOnce, ".", "one single step"},
     {Key::R, false, Action::Reset, "R", "molecules and view back to the start"},
+    {Key::Z, true, Action::Undo, "Ctrl+Z", "undo a change, or what was taken"},
+    {Key::Z, true, Action::Redo, "Ctrl+Shift+Z", "do it again", true},
+    {Key::Y, true, Action::Redo, "Ctrl+Y", "do it again"},
+    {Key::G, false, Action::LetGo, "G", "let go of what is in hand"},
+    {Key::X, false, Action::OtherHand, "X", "mouse and clicks: the other of two hands"},
+    {Key::Insert, false, Action::Add, "Insert", "add a molecule"},
+    {Key::Delete, false, Action::Remove, "Delete", "remove the molecule in hand"},
+    {Key::F9, false, Action::Record, "F9", "record the session; end the recording"},
     {Key::Digit1, false, Action::Mode1, "1", "variable force and displacement gain"},
     {Key::Digit2, false, Action::Mode2, "2", "variable force gain"},
     {Key::Digit3, false, Action::Mode3, "3", "variable displacement gain"},
@@ -16,8 +24,6 @@ constexpr std::array list = std::to_array<Shortcut>({
     {Key::Digit5, false, Action::Mode5, "5", "no force"},
     {Key::Digit6, false, Action::Guarded, "6", "guarded coupling"},
     {Key::S, true, Action::Save, "Ctrl+S", "save the scene as set, to a new file"},
-    {Key::Z, true, Action::Undo, "Ctrl+Z", "undo a change of the settings"},
-    {Key::Y, true, Action::Redo, "Ctrl+Y", "do it again"},
     {Key::V, false, Action::NextRepresentation, "V", "another representation"},
     {Key::C, false, Action::NextColouring, "C", "other colours"},
     {Key::F, false, Action::Focus, "F", "the molecule in hand alone; all again"},
@@ -41,14 +47,18 @@ constexpr std::array list = std::to_array<Shortcut>({
 });
 
 constexpr std::array gesture_list = std::to_array<Gesture>({
+    {"click on an atom", "take its molecule in hand"},
+    {"Shift+click", "hold its residue by a spring"},
+    {"Ctrl+click", "hold this atom by a spring"},
     {"hold Space, move the mouse", "take the molecule in hand and pull it"},
     {"hold Space, turn the wheel", "push it away from you, draw it near"},
-    {"arrows, Page up, Page down", "pull it with keys; with Shift slowly"},
+    {"arrows, Page up, Page down", "pull it, or what the second hand holds; with Shift slowly"},
     {"drag", "turn the view"},
     {"right drag, Shift+drag", "shift the view"},
     {"wheel", "nearer, farther"},
     {"double click on an atom", "look at it"},
     {"Ctrl+click on a slider", "type a number"},
+    {"drop a file on the window", "add the molecule in it"},
 });
 
 }  // namespace
@@ -57,11 +67,14 @@ std::span<const Shortcut> shortcuts() noexcept { return list; }
 
 std::span<const Gesture> gestures() noexcept { return gesture_list; }
 
-std::optional<Action> find_action(Key key, bool control) noexcept {
+std::optional<Action> find_action(Key key, bool control, bool shift) noexcept {
+    std::optional<Action> found;
     for (const Shortcut& shortcut : list) {
-        if (shortcut.key == key && shortcut.control == control) return shortcut.action;
+        if (shortcut.key != key || shortcut.control != control) continue;
+        if (shortcut.shift && shift) return shortcut.action;
+        if (!shortcut.shift) found = shortcut.action;
     }
-    return std::nullopt;
+    return found;
 }
 
 std::vector<HelpLine> list_help() {

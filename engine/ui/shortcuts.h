@@ -1,6 +1,6 @@
 // What a person may do with a key, in one list: the window obeys it, the help shows it.
 #pragma once
-#include "platform/window.h"
+#include "window/window.h"
 
 #include <optional>
 #include <span>
@@ -22,6 +22,11 @@ enum class Action {
     Guarded,
     Undo,
     Redo,
+    LetGo,
+    OtherHand,
+    Add,
+    Remove,
+    Record,
     NextRepresentation,
     NextColouring,
     Focus,
@@ -48,6 +53,7 @@ struct Shortcut {
     Action action;
     std::string_view name;  // as the help shows the key
     std::string_view does;
+    bool shift = false;  // with Shift; else it does not matter
 };
 
 // Keys that act when pressed.
@@ -59,7 +65,7 @@ struct Gesture {
 };
 std::span<const Gesture> gestures() noexcept;
 
-std::optional<Action> find_action(Key key, bool control) noexcept;
+std::optional<Action> find_action(Key key, bool control, bool shift = false) noexcept;
 
 // All of it, for the help: the keys of one action together.
 struct HelpLine {

@@ -1,6 +1,6 @@
 // What a person reads who takes part in a study: nothing else stands over the picture.
 #pragma once
-#include "session/study_course.h"
+#include "experiments/study_course.h"
 
 namespace palpa {
 

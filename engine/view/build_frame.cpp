@@ -1,10 +1,13 @@
 #include "view/build_frame.h"
 
 #include "simulation/components.h"
+#include "simulation/held.h"
 #include "simulation/probe.h"
-#include "simulation/touch.h"
+#include "simulation/resources.h"
+#include "simulation/systems/publish_contact.h"
 #include "view/elements.h"
 #include "view/hydrogen_bonds.h"
+#include "view/in_hand.h"
 #include "view/palette.h"
 #include "view/pocket.h"
 
@@ -27,33 +30,43 @@ const ElementLook& look_of(std::string_view element) {
     return found == element_looks.end() ? other_element : *found;
 }
 
-// The atoms in the hand: a molecule, the first of the table, or what of it is held by a spring.
-std::vector<bool> find_held_atoms(const Simulation& simulation) {
-    std::vector<bool> held(simulation.atoms.size(), false);
-    if (simulation.flexible && simulation.flexible->state.tether) {
-        for (const std::uint32_t atom : simulation.flexible->state.tether->atoms) held[atom] = true;
-    } else {
-        std::fill_n(held.begin(), grabbed_points(simulation).positions.size(), true);
-    }
-    return held;
+// How an atom is drawn: as everything, or as its molecule says.
+struct AtomLook {
+    Representation representation;
+    Colouring colouring;
+    bool visible = true;
+};
+
+std::vector<AtomLook> find_looks(const World& world, const ViewSettings& settings) {
+    std::vector<AtomLook> looks(world.resource<AtomTable>().size(),
+                                {settings.representation, settings.colouring});
+    world.each<Molecule, Appearance>([&](Entity, const Molecule& molecule,
+                                         const Appearance& appearance) {
+        const AtomLook look{appearance.representation.value_or(settings.representation),
+                            appearance.colouring.value_or(settings.colouring), appearance.visible};
+        std::fill_n(looks.begin() + molecule.atoms.first, molecule.atoms.count, look);
+    });
+    return looks;
 }
 
 // One colour an atom.
-std::vector<glm::vec3> build_colours(const Simulation& simulation, Colouring colouring) {
-    const AtomTable& atoms = simulation.atoms;
-    const std::vector<bool> held = find_held_atoms(simulation);
+std::vector<glm::vec3> build_colours(const World& world, std::span<const AtomLook> looks) {
+    const AtomTable& atoms = world.resource<AtomTable>();
+    const std::vector<bool> held = find_held_atoms(world);
     std::size_t chain = 0;
-    bool is_first = true;  // of those that are not held
+    const AtomName* before = nullptr;  // the last that is not held
     std::vector<glm::vec3> colours;
     for (std::size_t i = 0; i < atoms.size(); ++i) {
-        const bool is_next = i > 0 && atoms.names[i].segment != atoms.names[i - 1].segment;
-        if (!held[i] && !std::exchange(is_first, false) && is_next) ++chain;
+        if (!held[i]) {
+            if (before && before->segment != atoms.names[i].segment) ++chain;
+            before = &atoms.names[i];
+        }
         const std::string_view element = element_of(atoms, i);
         colours.push_back(look_of(element).colour);
         if (element != "C") continue;
         if (held[i]) {
             colours.back() = grabbed_carbon;
-        } else if (colouring == Colouring::Chain) {
+        } else if (looks[i].colouring == Colouring::Chain) {
             colours.back() = chain_carbons[chain % chain_carbons.size()];
         }
     }
@@ -83,25 +96,37 @@ Thickness thickness_of(Representation representation, std::string_view element, 
     return {ball_share * size, stick_radius};
 }
 
+// Draws the backbones of what is shown as a pocket. Which atoms of that stand for themselves; empty
+// where there is none.
+std::vector<bool> add_pockets(const World& world, std::span<const glm::vec3> colours,
+                              std::span<const AtomLook> looks, FrameScene& frame) {
+    const auto is_pocket = [](const AtomLook& look) {
+        return look.visible && look.representation == Representation::Pocket;
+    };
+    if (std::ranges::none_of(looks, is_pocket)) return {};
+    std::vector<ResidueSpan> residues = find_residues(world);
+    std::erase_if(residues,
+                  [&](const ResidueSpan& residue) { return !is_pocket(looks[residue.first]); });
+    add_backbones(world.resource<AtomTable>(), residues, colours, frame);
+    return find_pocket(world, residues);
+}
+
 // `bonded`: the hydrogens of these are drawn, whatever the representation leaves out.
-void add_shapes(const Simulation& simulation, std::span<const glm::vec3> colours,
-                Representation representation, std::span<const HydrogenBond> bonded,
+void add_shapes(const World& world, std::span<const glm::vec3> colours,
+                std::span<const AtomLook> looks, std::span<const HydrogenBond> bonded,
                 FrameScene& frame) {
-    const AtomTable& atoms = simulation.atoms;
-    const std::size_t grabbed = grabbed_points(simulation).positions.size();
-    std::vector<bool> stands;  // for itself; empty: every atom
-    if (representation == Representation::Pocket) {
-        const std::vector<Residue> residues = find_residues(simulation);
-        stands = find_pocket(simulation, residues);
-        add_backbones(atoms, residues, colours, frame);
-    }
+    const AtomTable& atoms = world.resource<AtomTable>();
+    const std::vector<bool> held = find_in_hand(world);
+    const std::vector<bool> stands = add_pockets(world, colours, looks, frame);
     std::vector<bool> takes_part(atoms.size(), false);
     for (const HydrogenBond& bond : bonded) takes_part[bond.hydrogen] = true;
     std::vector<float> sticks;
     for (std::size_t i = 0; i < atoms.size(); ++i) {
-        auto [atom, stick] = thickness_of(representation, element_of(atoms, i), i < grabbed);
+        const Representation shown_as = looks[i].representation;
+        auto [atom, stick] = thickness_of(shown_as, element_of(atoms, i), held[i]);
         if (atom == 0 && takes_part[i]) atom = stick = thin_radius;
-        if (i >= grabbed && !stands.empty() && !stands[i]) atom = stick = 0;
+        const bool is_pocket = shown_as == Representation::Pocket && !held[i];
+        if (!looks[i].visible || (is_pocket && !stands[i])) atom = stick = 0;
         sticks.push_back(stick);
         if (atom == 0) continue;
         frame.spheres.push_back(
@@ -115,16 +140,16 @@ void add_shapes(const Simulation& simulation, std::span<const glm::vec3> colours
     }
 }
 
-void add_signs(const Simulation& simulation, const TouchModel& touch, FrameScene& frame,
+void add_signs(const World& world, Entity hand, const ContactModel& contact, FrameScene& frame,
                std::vector<ViewLabel>& labels) {
-    const Grab& grab = *simulation.world.find<Grab>(simulation.hand);
-    const AtomRange& atoms = simulation.world.find<Molecule>(grab.molecule)->atoms;
-    const HeldMolecule held{atoms.first + atoms.count, as_float(grabbed_place(simulation)),
-                            as_float(centre_of_mass(simulation.atoms, atoms))};
+    if (!world.find<Grip>(hand)) return;
+    const AtomRange atoms = held_range(world, hand);
+    const HeldMolecule held{atoms, as_float(held_place(world, hand)),
+                            as_float(centre_of_mass(world.resource<AtomTable>(), atoms))};
     constexpr double nN = 1e9, angstrom_nN = 1e19;
-    add_force(as_float(nN * touch.force_newton), held, frame, labels);
-    if (!moves_in_space(simulation)) return;
-    add_torque(as_float(angstrom_nN * touch.torque_newton_metre), held, frame, labels);
+    add_force(as_float(nN * contact.force_newton), held, frame, labels);
+    if (!moves_in_space(world, hand)) return;
+    add_torque(as_float(angstrom_nN * contact.torque_newton_metre), held, frame, labels);
 }
 
 }  // namespace
@@ -133,22 +158,33 @@ glm::vec3 as_float(const Vec3& v) {
     return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
 }
 
-FrameScene build_frame(const Simulation& simulation, const TouchModel& touch,
+FrameScene build_frame(const World& world, std::span<const ContactModel> contacts,
                        const ViewSettings& settings, std::vector<ViewLabel>* labels) {
     FrameScene frame;
     std::vector<ViewLabel> words;
-    const std::vector<glm::vec3> colours = build_colours(simulation, settings.colouring);
+    const std::vector<AtomLook> looks = find_looks(world, settings);
+    const std::vector<glm::vec3> colours = build_colours(world, looks);
     std::vector<HydrogenBond> bonds;
-    if (settings.hydrogen_bonds) bonds = find_hydrogen_bonds(simulation);
-    add_shapes(simulation, colours, settings.representation, bonds, frame);
-    add_hydrogen_bonds(simulation.atoms, bonds, frame, words);
-    if (settings.force_arrow) add_signs(simulation, touch, frame, words);
+    if (settings.hydrogen_bonds) bonds = find_hydrogen_bonds(world);
+    std::erase_if(bonds, [&](const HydrogenBond& bond) {
+        return !looks[bond.hydrogen].visible || !looks[bond.acceptor].visible;
+    });
+    add_shapes(world, colours, looks, bonds, frame);
+    add_hydrogen_bonds(world.resource<AtomTable>(), bonds, frame, words);
+    const std::vector<Entity> hands = find_hands(world);
+    for (std::size_t i = 0; settings.force_arrow && i < contacts.size(); ++i)
+        add_signs(world, hands[i], contacts[i], frame, words);
     if (labels) *labels = std::move(words);
     return frame;
 }
 
-FrameScene build_frame(const Simulation& simulation, const ViewSettings& settings) {
-    return build_frame(simulation, build_touch(simulation, {}).model, settings);
+FrameScene build_frame(const World& world, const ViewSettings& settings) {
+    std::vector<ContactModel> contacts;
+    for (const Entity hand : find_hands(world)) {
+        const bool holds = world.find<Grip>(hand) != nullptr;
+        contacts.push_back(holds ? build_local_contact(world, hand, {}).model : ContactModel{});
+    }
+    return build_frame(world, contacts, settings);
 }
 
 std::vector<SphereShape> shapes_of(const FrameScene& frame, const AtomRange& atoms) {

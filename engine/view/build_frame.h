@@ -1,11 +1,12 @@
 // What one picture of a simulation shows. The only place where doubles become floats.
 #pragma once
+#include "ecs/world.h"
 #include "haptics/exchange.h"
 #include "render/frame_scene.h"
 #include "scene/description.h"
-#include "simulation/simulation.h"
 #include "view/signs.h"
 
+#include <span>
 #include <vector>
 
 namespace palpa {
@@ -19,13 +20,14 @@ struct ViewSettings {
     friend bool operator==(const ViewSettings&, const ViewSettings&) = default;
 };
 
-// Atoms as spheres, bonds as sticks, in Å as they stand, and the signs of view/signs.h; `labels`
-// are the words beside these, for whoever can write. The camera is the caller's
-// (view/orbit_camera.h).
-FrameScene build_frame(const Simulation& simulation, const TouchModel& touch,
+// Atoms as spheres, bonds as sticks, in Å as they stand, each molecule as the settings say or as
+// its Appearance does, and the signs of view/signs.h for what hands hold, with the
+// force of `contacts`, of the hands in their order; `labels` are
+// the words beside these, for whoever can write. The camera is the caller's (view/orbit_camera.h).
+FrameScene build_frame(const World& world, std::span<const ContactModel> contacts,
                        const ViewSettings& settings, std::vector<ViewLabel>* labels = nullptr);
-// The same with the force as it is now, for which the pairs are summed again.
-FrameScene build_frame(const Simulation& simulation, const ViewSettings& settings);
+// The same with the forces as they are now, for which the pairs are summed again.
+FrameScene build_frame(const World& world, const ViewSettings& settings);
 
 // The atoms of a range among a frame's spheres.
 std::vector<SphereShape> shapes_of(const FrameScene& frame, const AtomRange& atoms);

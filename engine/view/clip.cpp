@@ -6,10 +6,12 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <functional>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <optional>
-#include <set>
-#include <tuple>
+#include <unordered_map>
 #include <vector>
 
 namespace palpa {
@@ -21,14 +23,14 @@ constexpr std::size_t cells = 96;  // either way, over what the molecule covers
 // How far away the molecule in hand is at most, for the places of the picture that it covers.
 class Silhouette {
 public:
-    Silhouette(std::uint32_t grabbed_atoms, const OrbitCamera& camera, const FrameScene& frame)
+    Silhouette(const AtomRange& held, const OrbitCamera& camera, const FrameScene& frame)
         : right_(rightward(camera)),
           up_(upward(camera)),
           back_(backward(camera)),
           eye_(camera.target + camera.distance * back_) {
         std::vector<Place> places;
         for (const SphereShape& sphere : frame.spheres) {
-            if (sphere.pick >= grabbed_atoms) continue;
+            if (!has_atom(held, sphere.pick)) continue;
             const std::optional<Place> place = find_place(sphere.centre);
             if (!place) continue;
             places.push_back(*place);
@@ -103,62 +105,93 @@ private:
     std::vector<float> farthest_;  // by rows of cells; 0 where it covers nothing
 };
 
-// Places of a frame, told apart to the bit: a bond ends where its atom is.
-class Places {
-public:
-    void add(const glm::vec3& place) { places_.insert(key(place)); }
-    bool has(const glm::vec3& place) const { return places_.contains(key(place)); }
-
-private:
-    using Key = std::tuple<float, float, float>;
-    static Key key(const glm::vec3& p) { return {p.x, p.y, p.z}; }
-    std::set<Key> places_;
+// What is where an atom is.
+struct Spot {
+    bool is_hiding = false, is_bonded = false;    // to the molecule in hand, by a hydrogen bond
+    bool has_stick = false, keeps_stick = false;  // of others
 };
 
-// Atoms to which the dashes of a hydrogen bond lead.
-Places find_bonded(const FrameScene& frame) {
-    constexpr float gap = 0.2F;  // Å, at most from an atom to its dash
-    std::vector<glm::vec3> ends;
-    for (const ConeShape& cone : frame.cones) {
-        if (cone.pick == hydrogen_bond_pick) ends.insert(ends.end(), {cone.a, cone.b});
+struct PlaceHash {
+    std::size_t operator()(const glm::vec3& place) const noexcept {
+        constexpr std::size_t prime = 1'000'003;
+        const std::hash<float> hash;
+        return (hash(place.x) * prime + hash(place.y)) * prime + hash(place.z);
     }
-    Places bonded;
+};
+
+// By places that are the same bit for bit: a bond ends where its atom is.
+using Spots = std::unordered_map<glm::vec3, Spot, PlaceHash>;
+
+// The ends of all dashes of hydrogen bonds.
+class Dashes {
+public:
+    explicit Dashes(const FrameScene& frame) {
+        for (const ConeShape& cone : frame.cones) {
+            if (cone.pick != hydrogen_bond_pick) continue;
+            for (const glm::vec3& end : {cone.a, cone.b}) {
+                ends_.push_back(end);
+                low_ = glm::min(low_, end);
+                high_ = glm::max(high_, end);
+            }
+        }
+    }
+
+    bool lead_to(const SphereShape& atom) const {
+        constexpr float gap = 0.2F;  // Å, at most
+        const float reach = atom.radius + gap;
+        if (glm::clamp(atom.centre, low_ - reach, high_ + reach) != atom.centre) return false;
+        return std::ranges::any_of(
+            ends_, [&](const glm::vec3& end) { return glm::distance(end, atom.centre) < reach; });
+    }
+
+private:
+    std::vector<glm::vec3> ends_;
+    glm::vec3 low_{std::numeric_limits<float>::max()}, high_{std::numeric_limits<float>::lowest()};
+};
+
+Spots find_spots(const Silhouette& silhouette, const FrameScene& frame) {
+    const Dashes dashes(frame);
+    Spots spots;
+    spots.reserve(frame.spheres.size());
     for (const SphereShape& sphere : frame.spheres) {
-        const auto is_at = [&](const glm::vec3& end) {
-            return glm::distance(end, sphere.centre) < sphere.radius + gap;
-        };
-        if (std::ranges::any_of(ends, is_at)) bonded.add(sphere.centre);
+        Spot& spot = spots[sphere.centre];
+        spot.is_hiding = silhouette.is_hiding(sphere.centre);
+        spot.is_bonded = spot.is_bonded || dashes.lead_to(sphere);
     }
-    return bonded;
+    return spots;
 }
 
 }  // namespace
 
-void clip_in_front(std::uint32_t grabbed_atoms, const OrbitCamera& camera, FrameScene& frame) {
-    const Silhouette silhouette(grabbed_atoms, camera, frame);
+void clip_in_front(const AtomRange& held, const OrbitCamera& camera, FrameScene& frame) {
+    const Silhouette silhouette(held, camera, frame);
     const auto is_of_others = [&](std::uint32_t pick) {
-        return pick >= grabbed_atoms && pick < first_sign_pick;
+        return !has_atom(held, pick) && pick < first_sign_pick;
     };
-    const Places bonded = find_bonded(frame);
-    const auto is_in_view = [&](const glm::vec3& a, const glm::vec3& b) {
-        return (!silhouette.is_hiding(a) && !silhouette.is_hiding(b)) || bonded.has(a) ||
-               bonded.has(b);
+    Spots spots = find_spots(silhouette, frame);
+    const auto find = [&](const glm::vec3& place) {
+        const auto found = spots.find(place);
+        return found == spots.end() ? nullptr : &found->second;
     };
-    Places ends, kept;  // of bonds, and of those that are left
-    for (const ConeShape& cone : frame.cones) {
-        if (!is_of_others(cone.pick)) continue;
-        for (const glm::vec3& end : {cone.a, cone.b}) {
-            ends.add(end);
-            if (is_in_view(cone.a, cone.b)) kept.add(end);
-        }
-    }
+    const auto is_hiding = [&](const glm::vec3& place, const Spot* spot) {
+        return spot ? spot->is_hiding : silhouette.is_hiding(place);
+    };
     std::erase_if(frame.cones, [&](const ConeShape& cone) {
-        return is_of_others(cone.pick) && !is_in_view(cone.a, cone.b);
+        if (!is_of_others(cone.pick)) return false;
+        Spot *const a = find(cone.a), *const b = find(cone.b);
+        const bool hides = is_hiding(cone.a, a) || is_hiding(cone.b, b);
+        const bool is_left = !hides || (a && a->is_bonded) || (b && b->is_bonded);
+        for (Spot* const end : {a, b}) {
+            if (!end) continue;  // of a backbone's tube
+            end->has_stick = true;
+            end->keeps_stick = end->keeps_stick || is_left;
+        }
+        return !is_left;
     });
     std::erase_if(frame.spheres, [&](const SphereShape& sphere) {
         if (!is_of_others(sphere.pick)) return false;
-        return ends.has(sphere.centre) ? !kept.has(sphere.centre)
-                                       : silhouette.is_hiding(sphere.centre);
+        const Spot& spot = spots.at(sphere.centre);
+        return spot.has_stick ? !spot.keeps_stick : spot.is_hiding;
     });
 }
 

@@ -1,6 +1,7 @@
 #include "view/first_view.h"
 
 #include "simulation/components.h"
+#include "simulation/held.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,17 +11,17 @@
 
 namespace palpa {
 
-ViewSettings first_settings(const ViewDescription& view, const Simulation& simulation) {
+ViewSettings first_settings(const ViewDescription& view, const World& world) {
     constexpr std::size_t many = 300;
-    const bool hides = environment_points(simulation).positions.size() > many;
+    const bool hides = count_environment(world, first_hand(world)) > many;
     return {.representation = view.representation.value_or(hides ? Representation::Pocket
                                                                  : Representation::BallAndStick),
             .colouring = view.colouring};
 }
 
-AtomRange framed_atoms(const ViewDescription& view, Simulation& simulation) {
+AtomRange framed_atoms(const ViewDescription& view, const World& world) {
     AtomRange framed;
-    simulation.world.each<Molecule>([&](Entity, const Molecule& molecule) {
+    world.each<Molecule>([&](Entity, const Molecule& molecule) {
         if (molecule.name == view.look_at) framed = molecule.atoms;
     });
     return framed;

@@ -1,9 +1,9 @@
 // How a scene is seen at first: what its [view] says, and what shows it best where that says
 // nothing.
 #pragma once
+#include "ecs/world.h"
 #include "molecule/atoms.h"
 #include "scene/description.h"
-#include "simulation/simulation.h"
 #include "view/build_frame.h"
 #include "view/orbit_camera.h"
 
@@ -12,10 +12,10 @@
 namespace palpa {
 
 // Unless the scene says, balls and sticks, but `pocket` where others would hide the molecule.
-ViewSettings first_settings(const ViewDescription& view, const Simulation& simulation);
+ViewSettings first_settings(const ViewDescription& view, const World& world);
 
 // The atoms that the picture is to frame: a molecule's, or none where it is to frame everything.
-AtomRange framed_atoms(const ViewDescription& view, Simulation& simulation);
+AtomRange framed_atoms(const ViewDescription& view, const World& world);
 
 // Sees those atoms of a frame, or everything, as the scene says.
 OrbitCamera first_camera(const ViewDescription& view, const FrameScene& frame,

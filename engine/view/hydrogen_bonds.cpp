@@ -1,6 +1,8 @@
 #include "view/hydrogen_bonds.h"
 
+#include "simulation/resources.h"
 #include "view/elements.h"
+#include "view/in_hand.h"
 
 #include <algorithm>
 #include <cmath>
@@ -45,17 +47,17 @@ std::vector<Role> find_roles(const AtomTable& atoms) {
 
 }  // namespace
 
-std::vector<HydrogenBond> find_hydrogen_bonds(const Simulation& simulation) {
-    const AtomTable& atoms = simulation.atoms;
+std::vector<HydrogenBond> find_hydrogen_bonds(const World& world) {
+    const AtomTable& atoms = world.resource<AtomTable>();
     const std::vector<Role> roles = find_roles(atoms);
-    const std::size_t grabbed = grabbed_points(simulation).positions.size();
+    const std::vector<bool> held = find_in_hand(world);
     const auto takes_part = [&](std::size_t i) {
         return roles[i].accepts || roles[i].donor != no_donor;
     };
     // Those around, along x: only a slice of them can be near enough.
     std::vector<std::uint32_t> around;
-    for (std::size_t i = grabbed; i < atoms.size(); ++i) {
-        if (takes_part(i)) around.push_back(static_cast<std::uint32_t>(i));
+    for (std::size_t i = 0; i < atoms.size(); ++i) {
+        if (!held[i] && takes_part(i)) around.push_back(static_cast<std::uint32_t>(i));
     }
     const auto x_of = [&](std::uint32_t i) { return atoms.positions[i].x(); };
     std::ranges::sort(around, {}, x_of);
@@ -70,8 +72,8 @@ std::vector<HydrogenBond> find_hydrogen_bonds(const Simulation& simulation) {
         if (to_acceptor.dot(to_donor) > cosine_of_bend * length * to_donor.norm()) return;
         found.push_back({hydrogen, acceptor, length});
     };
-    for (std::uint32_t i = 0; i < grabbed; ++i) {
-        if (!takes_part(i)) continue;
+    for (std::uint32_t i = 0; i < atoms.size(); ++i) {
+        if (!held[i] || !takes_part(i)) continue;
         auto other = std::ranges::lower_bound(around, x_of(i) - longest, {}, x_of);
         for (; other != around.end() && x_of(*other) < x_of(i) + longest; ++other) {
             try_bond(i, *other);

@@ -1,6 +1,10 @@
 #include "view/pocket.h"
 
+#include "simulation/components.h"
+#include "simulation/held.h"
+#include "simulation/resources.h"
 #include "view/build_frame.h"
+#include "view/in_hand.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -16,15 +20,17 @@ constexpr float tube_radius = 0.30F;  // Å
 constexpr int pieces_a_residue = 6;
 
 // Which atoms of others are near to the grabbed molecule.
-std::vector<bool> find_near(const Simulation& simulation) {
-    const std::vector<Vec3>& places = simulation.atoms.positions;
-    const std::size_t grabbed = grabbed_points(simulation).positions.size();
-    std::vector<std::size_t> in_hand(grabbed);
-    for (std::size_t i = 0; i < grabbed; ++i) in_hand[i] = i;
+std::vector<bool> find_near(const World& world) {
+    const std::vector<Vec3>& places = world.resource<AtomTable>().positions;
+    const std::vector<bool> held = find_in_hand(world);
+    std::vector<std::size_t> in_hand;
+    for (std::size_t i = 0; i < held.size(); ++i)
+        if (held[i]) in_hand.push_back(i);
     const auto x_of = [&](std::size_t i) { return places[i].x(); };
     std::ranges::sort(in_hand, {}, x_of);
     std::vector<bool> near(places.size(), false);
-    for (std::size_t i = grabbed; i < places.size(); ++i) {
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        if (held[i]) continue;
         auto other = std::ranges::lower_bound(in_hand, x_of(i) - near_by, {}, x_of);
         for (; other != in_hand.end() && x_of(*other) < x_of(i) + near_by; ++other) {
             if ((places[*other] - places[i]).squaredNorm() < near_by * near_by) {
@@ -34,6 +40,23 @@ std::vector<bool> find_near(const Simulation& simulation) {
         }
     }
     return near;
+}
+
+// Of one molecule: another one beside it may have the same names.
+void add_residues(const AtomTable& atoms, AtomRange range, std::vector<ResidueSpan>& residues) {
+    const std::size_t end = range.first + range.count;
+    for (std::size_t first = range.first; first < end;) {
+        ResidueSpan residue{first, first + 1, 0};
+        while (residue.end < end && is_same_residue(atoms.names[residue.end], atoms.names[first]))
+            ++residue.end;
+        residue.alpha = residue.end;
+        for (std::size_t i = first; i < residue.end; ++i) {
+            const bool is_calcium = residue.end - first == 1;
+            if (atoms.names[i].atom == "CA" && !is_calcium) residue.alpha = i;
+        }
+        residues.push_back(residue);
+        first = residue.end;
+    }
 }
 
 void add_tube(std::span<const std::size_t> alphas, std::span<const Vec3> places,
@@ -69,30 +92,20 @@ void add_tube(std::span<const std::size_t> alphas, std::span<const Vec3> places,
 
 }  // namespace
 
-std::vector<Residue> find_residues(const Simulation& simulation) {
-    const AtomTable& atoms = simulation.atoms;
-    std::vector<Residue> residues;
-    for (std::size_t i = grabbed_points(simulation).positions.size(); i < atoms.size();) {
-        Residue residue{i, i + 1, 0};
-        while (residue.end < atoms.size() &&
-               is_same_residue(atoms.names[residue.end], atoms.names[i])) {
-            ++residue.end;
-        }
-        residue.alpha = residue.end;
-        for (std::size_t k = i; k < residue.end; ++k) {
-            const bool is_calcium = residue.end - i == 1;
-            if (atoms.names[k].atom == "CA" && !is_calcium) residue.alpha = k;
-        }
-        residues.push_back(residue);
-        i = residue.end;
-    }
+std::vector<ResidueSpan> find_residues(const World& world) {
+    const AtomTable& atoms = world.resource<AtomTable>();
+    const Grip* const grip = world.find<Grip>(first_hand(world));
+    std::vector<ResidueSpan> residues;
+    world.each<Molecule>([&](Entity entity, const Molecule& molecule) {
+        if (!grip || entity != grip->molecule) add_residues(atoms, molecule.atoms, residues);
+    });
     return residues;
 }
 
-std::vector<bool> find_pocket(const Simulation& simulation, std::span<const Residue> residues) {
-    const std::vector<bool> near = find_near(simulation);
-    std::vector<bool> shown(simulation.atoms.size(), false);
-    for (const Residue& residue : residues) {
+std::vector<bool> find_pocket(const World& world, std::span<const ResidueSpan> residues) {
+    const std::vector<bool> near = find_near(world);
+    std::vector<bool> shown(world.resource<AtomTable>().size(), false);
+    for (const ResidueSpan& residue : residues) {
         const auto begin = near.begin();
         const bool stands = residue.alpha == residue.end ||
                             std::any_of(begin + static_cast<std::ptrdiff_t>(residue.first),
@@ -103,14 +116,14 @@ std::vector<bool> find_pocket(const Simulation& simulation, std::span<const Resi
     return shown;
 }
 
-void add_backbones(const AtomTable& atoms, std::span<const Residue> residues,
+void add_backbones(const AtomTable& atoms, std::span<const ResidueSpan> residues,
                    std::span<const glm::vec3> colours, FrameScene& frame) {
     std::vector<std::size_t> alphas;
     const auto finish = [&] {
         if (alphas.size() > 1) add_tube(alphas, atoms.positions, colours, frame);
         alphas.clear();
     };
-    for (const Residue& residue : residues) {
+    for (const ResidueSpan& residue : residues) {
         if (residue.alpha == residue.end) continue;
         if (!alphas.empty()) {
             const std::size_t last = alphas.back();

@@ -44,7 +44,7 @@ float way_out(const Ray& ray, const HeldMolecule& held, const FrameScene& frame)
     constexpr float widest_bond_gap = 1.5F;  // Å
     std::vector<Stretch> stretches;
     for (const SphereShape& sphere : frame.spheres) {
-        if (sphere.pick >= held.grabbed_atoms) continue;
+        if (!has_atom(held.atoms, sphere.pick)) continue;
         const Stretch stretch = inside(ray, sphere);
         if (!stretch.is_empty() && stretch.end > 0) stretches.push_back(stretch);
     }
@@ -61,7 +61,7 @@ float way_out(const Ray& ray, const HeldMolecule& held, const FrameScene& frame)
 float free_way(const Ray& ray, float start, const HeldMolecule& held, const FrameScene& frame) {
     float free = std::numeric_limits<float>::infinity();
     for (const SphereShape& sphere : frame.spheres) {
-        if (sphere.pick < held.grabbed_atoms || sphere.pick >= first_sign_pick) continue;
+        if (has_atom(held.atoms, sphere.pick) || sphere.pick >= first_sign_pick) continue;
         const Stretch stretch = inside(ray, sphere);
         if (!stretch.is_empty() && stretch.end > start) {
             free = std::min(free, std::max(stretch.begin - start, 0.0F));
@@ -75,7 +75,7 @@ float decade_of(const HeldMolecule& held, const FrameScene& frame) {
     constexpr float share = 0.12F, least = 0.8F, most = 2.4F;  // of the molecule's radius; Å
     float radius = 0;
     for (const SphereShape& sphere : frame.spheres) {
-        if (sphere.pick >= held.grabbed_atoms) continue;
+        if (!has_atom(held.atoms, sphere.pick)) continue;
         radius = std::max(radius, glm::distance(sphere.centre, held.centre));
     }
     return std::clamp(share * radius, least, most);

@@ -31,9 +31,9 @@ inline constexpr double least_shown_nN = 1e-3, most_shown_nN = 1e3;
 // The arc of a torque is 60° longer for every decade above this, up to 330°.
 inline constexpr double least_shown_angstrom_nN = 1e-3;
 
-// What is in the hand and pulled at: its atoms are the spheres picked below `grabbed_atoms`.
+// What is in the hand and pulled at: spheres are picked by the numbers of its atoms.
 struct HeldMolecule {
-    std::uint32_t grabbed_atoms = 0;
+    AtomRange atoms;
     glm::vec3 place{0};   // Å, where the hand has it
     glm::vec3 centre{0};  // Å, of its mass
 };

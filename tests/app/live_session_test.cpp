@@ -5,7 +5,11 @@
 #include "devices/emulated_omni.h"
 #include "devices/mouse_handle.h"
 #include "haptics/hand.h"
+#include "scene/read_scene.h"
 #include "simulation/step.h"
+#include "tests/app/virtual_clock.h"
+#include "tests/support/paths.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/support/water_scene.h"
 
 #include <algorithm>
@@ -13,6 +17,7 @@
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <thread>
 #include <vector>
@@ -29,7 +34,7 @@ public:
 
     const DeviceSpec& spec() const noexcept override { return omni_.spec(); }
     DeviceReading read() noexcept override { return omni_.read(); }
-    void show(const TouchModel& touch) noexcept override { omni_.show(touch); }
+    void show(const ContactModel& contact) noexcept override { omni_.show(contact); }
     void write(const Vec3& force_newton) noexcept override {
         omni_.write(force_newton);
         const DeviceReading reading = omni_.read();
@@ -59,7 +64,7 @@ struct Live {
 
     static EmulatedOmniSettings make_settings(HandOrders* orders) {
         EmulatedOmniSettings settings;
-        settings.hand = hand_model(Grip::Medium);
+        settings.hand = hand_model(HandGrip::Medium);
         settings.orders = orders;
         settings.driver = HandDriver::Mouse;
         settings.half_workspace_m = Vec3::Constant(0.5);
@@ -68,7 +73,7 @@ struct Live {
 
     static EmulatedOmniSettings make_settings(const std::vector<HandWaypoint>& path) {
         EmulatedOmniSettings settings;
-        settings.hand = hand_model(Grip::Medium);
+        settings.hand = hand_model(HandGrip::Medium);
         settings.script.path = path;
         return settings;
     }
@@ -97,7 +102,7 @@ struct Live {
             return device.cycles() > from + static_cast<std::uint64_t>(rounds);
         });
     }
-    double distance() const { return frame.readout.touch.molecule.place_angstrom.x(); }
+    double distance() const { return frame.readout.contact.molecule.place_angstrom.x(); }
 
     HandOrders orders;
     CountedOmni device;
@@ -106,7 +111,197 @@ struct Live {
     ServoTick last;
 };
 
+// A hand that brings the molecule in until half a newton is felt, rests, takes what it is told to
+// take, rests, goes outward for the molecule on the other side, and rests. Real as devices are: the
+// whole chain acts.
+class TakingHand final : public Device {
+public:
+    enum class Part { Settling, Approach, Resting, Taken, Away, Over };
+
+    TakingHand(const std::vector<EditAction>& edits, test::VirtualClock& clock)
+        : edits_(edits), clock_(clock) {
+        spec_.name = "fake Omni";
+        spec_.peak_force_newton = 3.3;
+        spec_.continuous_force_newton = 0.88;
+        spec_.half_workspace_m = Vec3::Constant(0.5);
+    }
+
+    const DeviceSpec& spec() const noexcept override { return spec_; }
+
+    DeviceReading read() noexcept override {
+        constexpr double m_per_s = 0.05, encoder_step_m = 55e-6;
+        constexpr int settled_ticks = 3000, rest_ticks = 400, away_ticks = 1000;
+        ++ticks_;
+        ++part_ticks_;
+        switch (part_) {
+            case Part::Settling:
+                if (ticks_ > settled_ticks) go_to(Part::Approach);
+                break;
+            case Part::Approach:
+                x_m_ -= m_per_s * servo_tick_s;
+                if (written_newton_.norm() > 0.5) go_to(Part::Resting);
+                break;
+            case Part::Resting:
+                if (part_ticks_ < rest_ticks) break;
+                before_newton = written_newton_;
+                for (const EditAction& edit : edits_)
+                    session.load()->send(EditDescription{0, 0, edit, {"not done"}});
+                go_to(Part::Taken);
+                break;
+            case Part::Taken:
+                if (part_ticks_ == 2 * rest_ticks) after_newton = written_newton_;
+                if (part_ticks_ > 2 * rest_ticks) go_to(Part::Away);
+                break;
+            case Part::Away:
+                if (part_ticks_ < away_ticks) {
+                    x_m_ -= m_per_s * servo_tick_s;
+                } else if (part_ticks_ > away_ticks + rest_ticks) {
+                    go_to(Part::Over);
+                    clock_.leave_servo_alone();
+                    is_over = true;
+                    is_over.notify_all();
+                }
+                break;
+            case Part::Over:
+                break;
+        }
+        DeviceReading reading;
+        reading.time_s = ticks_ * servo_tick_s;
+        reading.position_m = Vec3(x_m_, 0, ticks_ % 2 == 0 ? 0 : encoder_step_m);
+        reading.valid = true;
+        return reading;
+    }
+
+    void write(const Vec3& force_newton) noexcept override {
+        const double change = (force_newton - written_newton_).norm();
+        written_newton_ = force_newton;
+        if (part_ >= Part::Taken && part_ < Part::Over)
+            largest_change_newton = std::max(largest_change_newton, change);
+    }
+
+    std::atomic<LiveSession*> session{nullptr};
+    std::atomic<bool> is_over{false};
+    // The test's once it is over.
+    Vec3 before_newton = Vec3::Zero(), after_newton = Vec3::Zero();
+    double largest_change_newton = 0;  // from one tick to the next, since the edits
+
+private:
+    void go_to(Part part) {
+        part_ = part;
+        part_ticks_ = 0;
+    }
+
+    const std::vector<EditAction> edits_;
+    test::VirtualClock& clock_;
+    DeviceSpec spec_;
+    Part part_ = Part::Settling;
+    int ticks_ = 0, part_ticks_ = 0;
+    double x_m_ = 0;
+    Vec3 written_newton_ = Vec3::Zero();
+};
+
+// The hand's course with these edits, and the frame at its end.
+LiveFrame run_course(TakingHand& hand, test::VirtualClock& clock) {
+    LiveFrame frame;
+    LiveSession session(test::water_scene({"mode=guarded", "period_ms=14"}), {}, hand, nullptr,
+                        &clock);
+    hand.session = &session;
+    hand.is_over.wait(false);
+    while (session.read_frame(frame)) continue;
+    session.send(ViewSettings{.force_arrow = false, .hydrogen_bonds = false});
+    while (!session.read_frame(frame) || frame.picture.cones.size() > 4)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return frame;
+}
+
+Vec3 place_of(const LiveFrame& frame, const std::string& molecule) {
+    for (const AtomDirectory::Entry& entry : frame.atoms->molecules) {
+        if (entry.molecule != molecule) continue;
+        const glm::vec3 place = shapes_of(frame.picture, entry.atoms).front().centre;
+        return {place.x, place.y, place.z};
+    }
+    return Vec3::Constant(1e9);
+}
+
 }  // namespace
+
+TEST_CASE("another molecule is taken while a force is felt, which glides, and it follows",
+          "[app][threads]") {
+    test::VirtualClock clock;
+    TakingHand hand({TakeEdit{"fixed"}}, clock);
+    const LiveFrame frame = run_course(hand, clock);
+
+    CHECK(frame.readout.problem.empty());
+    // Drawn to the other water before; now that one is drawn to the first.
+    CHECK(hand.before_newton.x() < -0.4);
+    CHECK(hand.after_newton.x() > 0.4);
+    CHECK(hand.largest_change_newton < 0.05);  // the chain would let 0.5 pass
+    CHECK(place_of(frame, "fixed").x() < -1);
+    CHECK(frame.hands[0].grabbed_angstrom.x() == Approx(place_of(frame, "fixed").x()).margin(1e-4));
+    CHECK(frame.hands[0].grabbed_angstrom.tail<2>().norm() < 0.5);
+}
+
+TEST_CASE("undo in the window gives back what was held, without a jump", "[app][threads]") {
+    test::VirtualClock clock;
+    TakingHand hand({TakeEdit{"fixed"}, UndoEdit{}}, clock);
+    const LiveFrame frame = run_course(hand, clock);
+
+    CHECK(frame.readout.problem.empty());
+    CHECK(hand.after_newton.x() == Approx(hand.before_newton.x()).margin(0.1));
+    CHECK(hand.largest_change_newton < 0.05);
+    CHECK(place_of(frame, "fixed").norm() < 1e-6);
+    // It went on inward, to the wall.
+    CHECK(frame.hands[0].grabbed_angstrom.x() == Approx(place_of(frame, "moved").x()).margin(1e-4));
+    CHECK(frame.hands[0].grabbed_angstrom.x() < 2.9);
+}
+
+TEST_CASE("a hand that lets go feels nothing and moves nothing", "[app][threads]") {
+    test::VirtualClock clock;
+    TakingHand hand({LetGoEdit{}}, clock);
+    const LiveFrame frame = run_course(hand, clock);
+
+    CHECK(frame.readout.problem.empty());
+    CHECK_FALSE(frame.readout.holds_something);
+    CHECK(frame.hands[0].held.count == 0);
+    CHECK(hand.after_newton.norm() == 0);
+    CHECK(hand.largest_change_newton < 0.51);
+    CHECK(place_of(frame, "moved").x() > 3);
+}
+
+TEST_CASE("an edit that cannot be made says why and changes nothing", "[app][threads]") {
+    test::VirtualClock clock;
+    TakingHand hand({TakeEdit{"third"}}, clock);
+    const LiveFrame frame = run_course(hand, clock);
+
+    CHECK(frame.readout.problem ==
+          "not done: there is no molecule 'third'; there are fixed, moved");
+    CHECK(frame.readout.refused_edits == 1);
+    CHECK(hand.after_newton.x() == Approx(hand.before_newton.x()).margin(0.1));
+    CHECK(frame.readout.holds_something);
+}
+
+TEST_CASE("a reset forgets edits, and another start is never one of before", "[app][threads]") {
+    Live live;
+    REQUIRE(live.wait_for_steps(2));
+    const auto send = [&](EditAction action) {
+        live.session.send(EditDescription{0, 0, std::move(action), {"not done"}});
+    };
+    const auto start = [&] { return live.frame.readout.contact.start; };
+    std::uint32_t last = start();
+    for (const char* const name : {"fixed", "moved", "fixed"}) {
+        send(TakeEdit{name});
+        REQUIRE(live.wait_until([&](const LiveFrame&) { return start() != last; }));
+        CHECK(start() > last);
+        last = start();
+    }
+    live.session.send(Reset{});
+    REQUIRE(live.wait_until([&](const LiveFrame&) { return start() != last; }));
+    CHECK(start() > last);
+    send(UndoEdit{});
+    CHECK(live.wait_until([](const LiveFrame& f) {
+        return f.readout.problem == "not done: nothing is there to be undone";
+    }));
+}
 
 TEST_CASE("the mouse's hand draws the molecule near, and the hand feels it", "[app][threads]") {
     Live live({"mode=2"});
@@ -118,7 +313,7 @@ TEST_CASE("the mouse's hand draws the molecule near, and the hand feels it", "[a
 
     CHECK(live.wait_until([&](const LiveFrame&) { return live.distance() < 3.5; }));
     CHECK(live.wait_until([&](const LiveFrame&) { return live.last.sent_newton.x() < -0.5; }));
-    CHECK(live.frame.grabbed_angstrom.x() - live.distance() == Approx(0).margin(1e-9));
+    CHECK(live.frame.hands[0].grabbed_angstrom.x() - live.distance() == Approx(0).margin(1e-9));
 }
 
 TEST_CASE("another device takes hold of the molecule where it is", "[app][threads]") {
@@ -145,7 +340,7 @@ TEST_CASE("another device takes hold of the molecule where it is", "[app][thread
         }
         time_s = tick.reading.time_s;
         is_other = is_other || time_s < 0.5;
-        if (!is_other || (mode == "mode=2" && !tick.touch.is_still)) continue;
+        if (!is_other || (mode == "mode=2" && !tick.contact.is_still)) continue;
         strongest = std::max(strongest, tick.sent_newton.norm());
         ++without_force;
     }
@@ -190,7 +385,7 @@ TEST_CASE("while paused nothing moves and going on nothing jumps", "[app][thread
     REQUIRE(live.wait_for_rounds(50));
     // The ticks of one period, and not one more.
     CHECK(live.device.time_s() ==
-          Approx(time_s + live.frame.readout.touch.period_s).margin(0.1 * servo_tick_s));
+          Approx(time_s + live.frame.readout.contact.period_s).margin(0.1 * servo_tick_s));
     CHECK(live.frame.readout.paused);
     CHECK(live.distance() == Approx(there).margin(0.02));
 
@@ -233,7 +428,7 @@ TEST_CASE("a push on the wall stays outside of it, and a reset brings the start 
     const double begin = live.last.reading.time_s;
     REQUIRE(live.wait_until([&](const LiveFrame& f) {
         closest = std::min(closest, live.distance());
-        strongest = std::max(strongest, f.readout.touch.force_newton.norm());
+        strongest = std::max(strongest, f.readout.contact.force_newton.norm());
         return live.last.reading.time_s > begin + 2;
     }));
     CHECK(closest > 2.2);
@@ -264,7 +459,7 @@ TEST_CASE("settings, view and reset reach the running scene", "[app][threads]") 
     live.session.send(
         ViewSettings{.representation = Representation::SpaceFilling, .force_arrow = false});
     REQUIRE(live.wait_until([](const LiveFrame& f) {
-        return f.readout.touch.period_s == 0.005 && f.readout.touch.displacement_gain == 1e9 &&
+        return f.readout.contact.period_s == 0.005 && f.readout.contact.displacement_gain == 1e9 &&
                f.picture.cones.empty();
     }));
 
@@ -272,6 +467,72 @@ TEST_CASE("settings, view and reset reach the running scene", "[app][threads]") 
     REQUIRE(live.wait_until([&](const LiveFrame&) { return live.distance() < 5.5; }));
     live.session.send(Reset{});
     CHECK(live.wait_until([&](const LiveFrame&) { return live.distance() > 6.5; }));
-    CHECK(live.frame.readout.touch.displacement_gain == 1e9);  // the settings stay
+    CHECK(live.frame.readout.contact.displacement_gain == 1e9);  // the settings stay
     CHECK(live.frame.readout.problem.empty());
+}
+
+TEST_CASE("what is added is in the next frame, drawn or not, and what can be added with it",
+          "[app][threads]") {
+    Live live;
+    REQUIRE(live.wait_for_steps(1));
+    CHECK(live.frame.places.size() == 6);
+    REQUIRE(live.frame.atoms->force_field);
+    CHECK(live.frame.atoms->force_field->residues.contains("TIP3"));
+    live.session.send(edit_now(AppearanceEdit{"fixed", {}, {}, false}));
+    live.session.send(edit_now(AddEdit{"TIP3", "", "w2", {1, 8, 2}}));
+
+    REQUIRE(live.wait_until([](const LiveFrame& f) { return f.atoms->names.size() == 9; }));
+
+    const AtomDirectory::Entry* const added = find_molecule(*live.frame.atoms, "w2");
+    REQUIRE(added);
+    CHECK(added->atoms.first == 6);
+    CHECK(added->reference_atom == 6);
+    REQUIRE(live.frame.places.size() == 9);
+    CHECK(live.frame.picture.spheres.size() == 6);
+    CHECK(live.frame.places[6] == glm::vec3(1, 8, 2));
+    CHECK(live.frame.places[0] == glm::vec3(0, 0, 0));
+    live.session.send(edit_now(RemoveEdit{"fixed"}));
+    REQUIRE(live.wait_until([](const LiveFrame& f) { return f.atoms->names.size() == 6; }));
+    CHECK_FALSE(find_molecule(*live.frame.atoms, "fixed"));
+    CHECK(find_molecule(*live.frame.atoms, "w2")->reference_atom == 3);
+    CHECK(live.frame.places.size() == 6);
+}
+
+TEST_CASE("what the force field lacks of something added is named in the readout",
+          "[app][threads]") {
+    const test::TemporaryFolder folder;
+    const std::filesystem::path file = folder.path() / "water";
+    std::filesystem::copy(test::in_project("scenes/water"), file);
+    folder.add_file("water/more.str",
+                    "* More\n*\nread rtf card append\n* More\n*\n36 1\n"
+                    "RESI OXY 0.0\nATOM O1 OT 0.0\nATOM O2 OT 0.0\nBOND O1 O2\nEND\n");
+    const SceneDescription scene = read_scene(
+        file, std::vector<std::string>{R"(force_field.files=["tip3p.str", "more.str"])"});
+    HandOrders orders;
+    CountedOmni device(Live::make_settings(&orders));
+    LiveSession session(scene, {}, device, &orders);
+    LiveFrame frame;
+    const auto wait_for_refused = [&](std::uint64_t count) {
+        const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+        while (std::chrono::steady_clock::now() < end) {
+            if (session.read_frame(frame) && frame.readout.refused_edits == count) return true;
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        }
+        return false;
+    };
+
+    session.send(edit_now(AddEdit{"OXY", "", "new", {0, 9, 0}}));
+    REQUIRE(wait_for_refused(1));
+    CHECK_THAT(frame.readout.problem, Catch::Contains("residue OXY: no bond parameters for OT OT"));
+    session.send(edit_now(AddEdit{"NONE", "", "new", {0, 9, 0}}));
+    REQUIRE(wait_for_refused(2));
+    CHECK_THAT(frame.readout.problem,
+               Catch::StartsWith("not done: ") && Catch::Contains("no residue 'NONE'"));
+    CHECK(frame.atoms->names.size() == 6);
+    session.send(edit_now(AddEdit{"TIP3", "", "new", {0, 9, 0}}));
+    const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    while (frame.atoms->names.size() < 9 && std::chrono::steady_clock::now() < end)
+        (void)session.read_frame(frame);
+    CHECK(frame.atoms->names.size() == 9);
+    CHECK(frame.readout.problem.empty());
 }

@@ -5,10 +5,10 @@
 #include "devices/emulated_omni.h"
 #include "devices/mouse_handle.h"
 #include "devices/played_handle.h"
-#include "devices/two_hands.h"
 #include "haptics/safety.h"
 #include "session/run_headless.h"
-#include "simulation/simulation.h"
+#include "simulation/held.h"
+#include "simulation/load.h"
 #include "tests/app/virtual_clock.h"
 #include "tests/support/water_scene.h"
 
@@ -69,7 +69,7 @@ std::vector<Fault> list_faults() {
          [](const Setting& s) { s.clock.delay_ticks(microseconds(18'900)); }},
         {"dead simulation", 200, SafetyStage::Stale,
          [](const Setting& s) { s.clock.leave_servo_alone(); }},
-        {"warm motors", 100, SafetyStage::Warm,
+        {"warm motors", 100, SafetyStage::CoolDown,
          [](const Setting& s) { s.reading.trouble = DeviceTrouble::WarmMotors; }},
         {"refused", 1, SafetyStage::Refused,
          [](const Setting& s) { s.reading.trouble = DeviceTrouble::ForceRefused; }},
@@ -211,14 +211,12 @@ TEST_CASE("the paper's chain alone is for devices that are not real", "[app][thr
     EmulatedOmni emulated{EmulatedOmniSettings{}};
     MouseHandle mouse{MouseHandleSettings{}};
     const PlayedHandle played{PlayedHandleSettings{}};
-    TwoHands both(std::make_unique<EmulatedOmni>(EmulatedOmniSettings{}), real);
-    const Simulation simulation = load_simulation(scene);
+    const World world = load_world(scene);
     const auto has_whole_chain = [&](const Device& device) {
-        return build_servo_settings(scene, simulation, device.spec()).safety.is_full;
+        return build_servo_settings(scene, world, device.spec()).safety.is_full;
     };
 
     CHECK(has_whole_chain(real));
-    CHECK(has_whole_chain(both));
     CHECK_FALSE(has_whole_chain(emulated));
     CHECK_FALSE(has_whole_chain(mouse));
     CHECK_FALSE(has_whole_chain(played));
@@ -241,8 +239,8 @@ TEST_CASE("a real device with motors refuses periods above a second", "[app][thr
                       Catch::Contains("at most 1000 ms with a device that has motors"));
     CHECK_NOTHROW(start(good, real));
     CHECK_THROWS_AS(start(slow, emulated)->change_device(real, nullptr), LoadError);
-    Simulation simulation = load_simulation(slow);
-    CHECK_THROWS_AS(run_headless(slow, simulation, real, {}, nullptr, {}), LoadError);
+    World world = load_world(slow);
+    CHECK_THROWS_AS(run_headless(slow, world, real, {}, nullptr, {}), LoadError);
 }
 
 TEST_CASE("a period that a real device refuses is not set while it runs", "[app][threads]") {
@@ -260,5 +258,5 @@ TEST_CASE("a period that a real device refuses is not set while it runs", "[app]
     }
 
     CHECK_THAT(frame.readout.problem, Catch::Contains("at most 1000 ms"));
-    CHECK(frame.readout.touch.period_s == scene.period_ms * 1e-3);
+    CHECK(frame.readout.contact.period_s == scene.period_ms * 1e-3);
 }

@@ -3,7 +3,6 @@
 #include "tests/support/load_error_of.h"
 #include "tests/support/temporary_folder.h"
 
-#include <sys/stat.h>
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
@@ -43,19 +42,12 @@ TEST_CASE("a file that cannot be read is named with the reason", "[core][files]"
                StartsWith(folder.path().string() + ": is a folder"));
 }
 
-TEST_CASE("a file that is too large, or no regular one, is refused at once", "[core][files]") {
+TEST_CASE("a file that is too large is refused at once", "[core][files]") {
     const test::TemporaryFolder folder;
     const fs::path sparse = folder.add_file("sparse", "");
     fs::resize_file(sparse, std::uintmax_t{40} << 30);
     CHECK(load_error_of([&] { read_text_file(sparse); }) ==
           sparse.string() + ": is 40.0 GiB large; expected at most 1.0 GiB");
-
-    const fs::path pipe = folder.path() / "pipe";
-    REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
-    for (const fs::path& path : {pipe, fs::path("/dev/zero")}) {
-        CHECK(load_error_of([&] { read_text_file(path); }) ==
-              path.string() + ": is no regular file, one was expected");
-    }
 }
 
 TEST_CASE("what is there is replaced only where that is said", "[core][files]") {
@@ -74,22 +66,6 @@ TEST_CASE("what is there is replaced only where that is said", "[core][files]") 
     CHECK(read_text_file(path) == "new");
 }
 
-TEST_CASE("a link is replaced and not written through", "[core][files]") {
-    const test::TemporaryFolder folder;
-    const fs::path target = folder.add_file("target", "old"), link = folder.path() / "link";
-    fs::create_symlink(target, link);
-
-    CHECK_THROWS_AS(write_text_file(link, "new"), LoadError);
-    CHECK_THROWS_AS(NewFile(link), LoadError);
-    CHECK_THROWS_AS(check_output(link, "old", true), LoadError);
-    CHECK_FALSE(has_mark(link, "old"));
-    CHECK(fs::is_symlink(link));
-
-    write_text_file(link, "new", Existing::Replace);
-    CHECK_FALSE(fs::is_symlink(link));
-    CHECK(read_text_file(target) == "old");
-}
-
 TEST_CASE("before long work it is known whether its output can be written", "[core][files]") {
     const test::TemporaryFolder folder;
     const fs::path ours = folder.add_file("ours", "# mark\n"),
@@ -102,8 +78,21 @@ TEST_CASE("before long work it is known whether its output can be written", "[co
     CHECK_THROWS_AS(check_output(other, "# mark", true), LoadError);
     CHECK_THROWS_AS(check_output(folder.path(), "# mark", true), LoadError);
     CHECK_THROWS_AS(check_output(folder.path() / "no" / "x", "# mark", true), LoadError);
-    CHECK(check_output("/dev/null", "# mark", false) == Existing::Replace);
     CHECK(files_in(folder.path()) == 2);
+}
+
+TEST_CASE("a folder is listed in the order of names", "[core][files]") {
+    const test::TemporaryFolder folder;
+    for (const char* const name : {"b", "c", "a"}) folder.add_file(name, "");
+    const fs::path inner = folder.path() / "aa";
+    fs::create_directory(inner);
+
+    CHECK(list_folder(folder.path()) ==
+          std::vector{folder.path() / "a", inner, folder.path() / "b", folder.path() / "c"});
+    CHECK(list_folder(folder.path(), 2).size() == 2);
+    CHECK(list_folder(inner).empty());
+    CHECK(list_folder(folder.path() / "absent").empty());
+    CHECK(list_folder(folder.path() / "a").empty());
 }
 
 TEST_CASE("a folder is locked for one at a time", "[core][files]") {
@@ -179,11 +168,4 @@ TEST_CASE("several files are all written, or none of them", "[core][files]") {
         CHECK(read_text_file(first) == "old");
         CHECK(files_in(folder.path()) == 2);
     }
-}
-
-TEST_CASE("a device is written into, and stays a device", "[core][files]") {
-    palpa::write_text_file("/dev/null", "text");
-    CHECK(std::filesystem::is_character_file("/dev/null"));
-    CHECK_THROWS_AS(palpa::write_text_file("/dev/full", "text"), palpa::LoadError);
-    CHECK(std::filesystem::is_character_file("/dev/full"));
 }

@@ -374,7 +374,7 @@ struct ServoRun {
     ServoSettings settings;
     ServoState state;
     Exchange exchange;
-    TouchModel model;
+    ContactModel model;
     std::uint64_t ticks = 0;
 
     ServoRun() {
@@ -385,12 +385,12 @@ struct ServoRun {
 
     void ask_for(const Vec3& force_newton) {
         model.force_newton = force_newton / 1e9;
-        exchange.touch.post({model});
+        exchange.contact.post({model});
     }
 
     template <class Rig>
     ServoTick tick(Rig& rig) {
-        if (ticks % 10 == 0) exchange.touch.post({model});  // or it would be stale
+        if (ticks % 10 == 0) exchange.contact.post({model});  // or it would be stale
         const DeviceReading reading = rig.device().read();
         const ServoTick done =
             step_servo(settings, state, exchange, reading, static_cast<double>(++ticks) * 1e-3);

@@ -41,7 +41,7 @@ void plug_in_touch(const fs::path& root) {
     fs::create_directories(root / "sys/class/tty/tty0");
 }
 
-constexpr std::array touch{UsbId{0x2988, 0x0302}};
+constexpr std::array contact{UsbId{0x2988, 0x0302}};
 
 }  // namespace
 
@@ -50,7 +50,7 @@ TEST_CASE("a USB device is found with its serial and hidraw nodes", "[devices][n
     plug_in_touch(folder.path());
     write_line(folder.path() / "dev/ttyACM3", "");
 
-    const auto found = find_usb_devices(folder.path(), touch);
+    const auto found = find_usb_devices(folder.path(), contact);
 
     REQUIRE(found.size() == 1);
     CHECK(found[0].where == "USB 2988:0302 (Touch)");
@@ -79,6 +79,6 @@ TEST_CASE("a FireWire device is found by its maker's name", "[devices][nodes]") 
 }
 
 TEST_CASE("where the system shows nothing nothing is found", "[devices][nodes]") {
-    CHECK(find_usb_devices("/nowhere", touch).empty());
+    CHECK(find_usb_devices("/nowhere", contact).empty());
     CHECK(find_firewire_devices("/nowhere", "sensable").empty());
 }

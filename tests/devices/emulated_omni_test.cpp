@@ -99,7 +99,8 @@ TEST_CASE("stops keep the handle in the workspace of 160 x 120 x 70 mm", "[devic
 }
 
 TEST_CASE("a hand pulls the handle along its path", "[devices][omni]") {
-    const auto grip = GENERATE(Grip::Light, Grip::Slack, Grip::Medium, Grip::Firm, Grip::FirmGrip);
+    const auto grip = GENERATE(HandGrip::Light, HandGrip::Slack, HandGrip::Medium, HandGrip::Firm,
+                               HandGrip::FirmGrip);
     EmulatedOmniSettings settings = bare();
     settings.hand = hand_model(grip);
     settings.script.path = {{0.2, 0.04}, {2.2, -0.03}};
@@ -128,7 +129,7 @@ TEST_CASE("a kick moves a free handle by its impulse", "[devices][omni]") {
 
 TEST_CASE("the same settings give the same motion to the last bit", "[devices][omni]") {
     EmulatedOmniSettings settings;
-    settings.hand = hand_model(Grip::Medium);
+    settings.hand = hand_model(HandGrip::Medium);
     settings.script.path = {{0.1, 0.06}, {0.6, -0.3}};
     EmulatedOmni a(settings), b(settings);
 
@@ -164,7 +165,7 @@ TEST_CASE("a live hand takes the handle where the mouse is, in three dimensions"
           "[devices][omni]") {
     HandOrders orders;
     EmulatedOmniSettings settings = bare();
-    settings.hand = hand_model(Grip::Medium);
+    settings.hand = hand_model(HandGrip::Medium);
     settings.orders = &orders;
     settings.driver = HandDriver::Mouse;
     settings.half_workspace_m = Vec3::Constant(0.5);
@@ -192,7 +193,7 @@ TEST_CASE("however far the mouse is, a live hand pulls less than the clamp, and 
           "[devices][omni]") {
     HandOrders orders;
     EmulatedOmniSettings settings = bare();
-    settings.hand = hand_model(Grip::Medium);
+    settings.hand = hand_model(HandGrip::Medium);
     settings.orders = &orders;
     settings.driver = HandDriver::Mouse;
     settings.half_workspace_m = Vec3::Constant(0.5);
@@ -222,7 +223,7 @@ TEST_CASE("a frozen hand stands still with its device, but for the ticks that ar
           "[devices][omni]") {
     HandOrders orders;
     EmulatedOmniSettings settings = bare();
-    settings.hand = hand_model(Grip::Medium);
+    settings.hand = hand_model(HandGrip::Medium);
     settings.script.path = {{0, 0.01}, {1, -0.02}};
     settings.orders = &orders;
     EmulatedOmni omni(settings);
@@ -252,7 +253,7 @@ TEST_CASE("a frozen hand stands still with its device, but for the ticks that ar
 TEST_CASE("a hand that lets go wants no place any more, its mass and damping stay",
           "[devices][omni]") {
     EmulatedOmniSettings settings = bare();
-    settings.hand = hand_model(Grip::Medium);
+    settings.hand = hand_model(HandGrip::Medium);
     settings.script.path = {{0, 0}, {0.2, 0.02}};
     settings.script.release_s = 0.1;
     EmulatedOmni omni(settings);
@@ -272,7 +273,7 @@ TEST_CASE("a hand that lets go wants no place any more, its mass and damping sta
 TEST_CASE("a hand that lets go behind a grip follows the handle, and pulls it nowhere",
           "[devices][omni]") {
     EmulatedOmniSettings settings = bare();
-    settings.hand = hand_model(Grip::FirmGrip);
+    settings.hand = hand_model(HandGrip::FirmGrip);
     settings.script.path = {{0, 0.03}};
     settings.script.release_s = 0.1;
     EmulatedOmni omni(settings);
@@ -287,7 +288,7 @@ TEST_CASE("a hand that lets go behind a grip follows the handle, and pulls it no
 TEST_CASE("an operator's hand wants the place it is told at once, as a script's does",
           "[devices][omni]") {
     EmulatedOmniSettings settings = bare();
-    settings.hand = hand_model(Grip::Medium);
+    settings.hand = hand_model(HandGrip::Medium);
     settings.script.path = {{0, 0}, {0.3, 0.05}};
     EmulatedOmni scripted(settings);
     HandOrders orders;

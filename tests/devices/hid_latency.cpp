@@ -5,9 +5,10 @@
 #include "devices/hid_device.h"
 #include "devices/sony_pad.h"
 #include "devices/space_mouse.h"
+#include "experiments/latency.h"
 #include "tests/support/hid_reports.h"
 #include "tests/support/pid_stick.h"
-#include "tools/latency.h"
+#include "tools/commands/latency.h"
 
 #include <fmt/format.h>
 #include <chrono>

@@ -153,11 +153,11 @@ TEST_CASE("a frozen mouse handle goes on for as many ticks as it is granted", "[
 }
 
 TEST_CASE("the grip of a scene is the mouse's spring and damper", "[devices][mouse]") {
-    const MouseHandleSettings firm = mouse_handle_of(hand_model(Grip::Firm));
+    const MouseHandleSettings firm = mouse_handle_of(hand_model(HandGrip::Firm));
     CHECK(firm.stiffness_N_per_m == 500);
     CHECK(firm.damping_N_s_per_m == 10);
-    CHECK(mouse_handle_of(hand_model(Grip::FirmGrip)).stiffness_N_per_m == Approx(1000.0 / 3));
-    CHECK(mouse_handle_of(hand_model(Grip::None)).stiffness_N_per_m == K);
+    CHECK(mouse_handle_of(hand_model(HandGrip::FirmGrip)).stiffness_N_per_m == Approx(1000.0 / 3));
+    CHECK(mouse_handle_of(hand_model(HandGrip::None)).stiffness_N_per_m == K);
 }
 
 TEST_CASE("a mouse that pulls for a minute has no warm motors", "[devices]") {

@@ -54,7 +54,7 @@ TEST_CASE("a spring's rest is found to what can be noticed", "[devices][operator
 
         INFO("seed " << seed << ": " << found.distance << " Å after " << found.seconds << " s");
         CHECK(found.is_done);
-        // The threshold, noise on it, and 1 mm of drift and lateness.
+        // The threshold, noise on it, and 1 mm of drift and prediction horizon.
         CHECK(std::abs(found.distance - 2.7) <
               0.13 / spring_N_per_angstrom + 0.001 / handle_m_per_angstrom);
     }

@@ -1,4 +1,5 @@
 #include "ecs/world.h"
+#include "simulation/resources.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

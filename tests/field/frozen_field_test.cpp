@@ -100,7 +100,8 @@ Nearness find_nearness(const PointSet& group, const PointSet& environment, const
 
 }  // namespace
 
-TEST_CASE("a frozen field agrees with the twin on every kind of processor", "[field][frozen]") {
+TEST_CASE("a frozen field agrees with the reference on every kind of processor",
+          "[field][frozen]") {
     std::mt19937 random(11);
     const Vec3 corner(100, -50, 20);  // of the molecule in its frame
     const PointSet environment = random_points(random, 10, 10, GENERATE(1, 10, 23), corner);
@@ -193,15 +194,17 @@ TEST_CASE("single precision does until two points are nearer than its limit", "[
     const FrozenField field =
         build_frozen_field(group.view(), environment.view(), {coulomb_constant});
     const FrozenSum sum = evaluate_frozen_field(field, group.positions);
-    const FieldSum twin = evaluate_pair_field(group.view(), environment.view(), {coulomb_constant});
+    const FieldSum reference =
+        evaluate_pair_field(group.view(), environment.view(), {coulomb_constant});
 
-    // Beyond it differs, by no more than single precision; below it is the twin's.
-    const bool is_twin = distance < nearest_single_precision;
-    CHECK(((sum.force - twin.force).norm() == 0) == is_twin);
-    CHECK((sum.force - twin.force).norm() < 2e-6 * twin.force.norm());
+    // Beyond it differs, by no more than single precision; below it is the reference's.
+    const bool is_reference = distance < nearest_single_precision;
+    CHECK(((sum.force - reference.force).norm() == 0) == is_reference);
+    CHECK((sum.force - reference.force).norm() < 2e-6 * reference.force.norm());
 }
 
-TEST_CASE("where single precision does not do, a frozen field is the twin's", "[field][frozen]") {
+TEST_CASE("where single precision does not do, a frozen field is the reference's",
+          "[field][frozen]") {
     std::mt19937 random(13);
     const PointSet environment = random_points(random, 3, 3, 3, Vec3::Zero());
     PointSet group = random_points(random, 2, 2, 2, Vec3(0, 0, 9));
@@ -224,4 +227,124 @@ TEST_CASE("where single precision does not do, a frozen field is the twin's", "[
     // At one place a pair has no force; the other numbers are another way to the same.
     if (near.clearance > -1.9)
         CHECK(sum.largest_force == Approx(near.largest_force).epsilon(1e-12));
+}
+
+namespace {
+
+// A group between others, all of which follow three coordinates, each in its own way.
+struct Followed {
+    PointSet group, environment;
+    std::vector<Mat3> group_moves, environment_moves;
+    std::vector<ReplacedPair> replaced;
+
+    explicit Followed(std::mt19937& random) {
+        group = random_points(random, 3, 3, 2, Vec3(20, 30, -10));
+        environment = random_points(random, 7, 6, 5, Vec3(22, 28, -4.5));
+        std::uniform_real_distribution<double> uniform(-0.6, 0.6);
+        const auto matrix = [&] {
+            return Mat3(Mat3::NullaryExpr([&] { return uniform(random); }));
+        };
+        for (std::size_t i = 0; i < group.positions.size(); ++i)
+            group_moves.push_back(Mat3::Identity() + matrix());
+        for (std::size_t j = 0; j < environment.positions.size(); ++j)
+            environment_moves.push_back(matrix());
+        replaced.push_back({.a = 1, .b = 2, .epsilon = 0.3, .rmin = 2.9});
+    }
+
+    PairRule rule() const { return {coulomb_constant, replaced}; }
+    FrozenField field() const {
+        return build_frozen_field(group.view(), environment.view(), rule());
+    }
+    FieldSum at(const Vec3& by, std::vector<Vec3>* of_group = nullptr) const {
+        PointSet own = group, others = environment;
+        for (std::size_t i = 0; i < own.positions.size(); ++i)
+            own.positions[i] += group_moves[i] * by;
+        for (std::size_t j = 0; j < others.positions.size(); ++j)
+            others.positions[j] += environment_moves[j] * by;
+        if (of_group) *of_group = own.positions;
+        return evaluate_pair_field(own.view(), others.view(), rule());
+    }
+    double energy(const Vec3& by) const { return at(by).energy(); }
+};
+
+}  // namespace
+
+TEST_CASE("points that follow have the energy's slope and curvature along the coordinates",
+          "[field][frozen][following]") {
+    std::mt19937 random(29);
+    const Followed c(random);
+    const FrozenField field = c.field();
+    const FollowingPoints points = build_following_points(c.group_moves, c.environment_moves);
+    FollowingMemory memory = build_following_memory(field);
+    for (const Vec3& by : {Vec3(0, 0, 0), Vec3(0.1, -0.2, 0.15), Vec3(-0.3, 0.1, 0)}) {
+        const FollowingSum there =
+            evaluate_following_field(field, c.group.positions, points, by, memory);
+
+        constexpr double h = 1e-3;
+        Vec3 along;
+        Mat3 slope;
+        for (int i = 0; i < 3; ++i) {
+            const Vec3 a = h * Vec3::Unit(i);
+            along[i] = -(c.energy(by + a) - c.energy(by - a)) / (2 * h);
+            for (int k = 0; k < 3; ++k) {
+                const Vec3 b = h * Vec3::Unit(k);
+                slope(i, k) = (c.energy(by + a + b) - c.energy(by + a - b) - c.energy(by - a + b) +
+                               c.energy(by - a - b)) /
+                              (4 * h * h);
+            }
+        }
+        CHECK((there.along - along).norm() < 1e-4 * along.norm());
+        CHECK((there.slope - slope).norm() < 1e-3 * slope.norm());
+        const FieldSum expected = c.at(by);
+        CHECK((there.sum.force - expected.force).norm() < 1e-5 * expected.force.norm());
+        CHECK((there.sum.torque - expected.torque).norm() < 1e-5 * expected.torque.norm());
+        CHECK((there.sum.stiffness - expected.stiffness).norm() < 1e-5 * expected.stiffness.norm());
+    }
+}
+
+TEST_CASE("a group that goes as one between points that stay is a frozen field's to the bit",
+          "[field][frozen][following]") {
+    std::mt19937 random(30);
+    Followed c(random);
+    const FrozenField field = c.field();
+    c.group_moves.assign(c.group_moves.size(), Mat3::Identity());
+    c.environment_moves.assign(c.environment_moves.size(), Mat3::Zero());
+    const FollowingPoints points = build_following_points(c.group_moves, c.environment_moves);
+    FollowingMemory memory = build_following_memory(field);
+
+    const FollowingSum following =
+        evaluate_following_field(field, c.group.positions, points, Vec3::Zero(), memory);
+    const FrozenSum frozen = evaluate_frozen_field(field, c.group.positions);
+
+    CHECK(following.sum.force == frozen.force);
+    CHECK(following.sum.stiffness == frozen.stiffness);
+    CHECK(following.sum.clearance == frozen.clearance);
+    CHECK(following.sum.largest_force == frozen.largest_force);
+    CHECK((following.along - frozen.force).norm() < 1e-5 * frozen.force.norm());
+    CHECK((following.slope - frozen.stiffness).norm() < 1e-5 * frozen.stiffness.norm());
+}
+
+TEST_CASE("points too near for single precision follow by the reference",
+          "[field][frozen][following]") {
+    std::mt19937 random(31);
+    Followed c(random);
+    const Vec3 by(0.05, 0, 0.02);
+    std::vector<Vec3> places;
+    (void)c.at(by, &places);
+    c.environment.positions[0] =
+        places[0] - c.environment_moves[0] * by + Vec3(0.3 * nearest_single_precision, 0, 0);
+    const FrozenField field = c.field();
+    const FollowingPoints points = build_following_points(c.group_moves, c.environment_moves);
+    FollowingMemory memory = build_following_memory(field);
+
+    const FollowingSum there =
+        evaluate_following_field(field, c.group.positions, points, by, memory);
+
+    const FieldSum expected = c.at(by);
+    CHECK((there.sum.force - expected.force).norm() < 1e-9 * expected.force.norm());
+    CHECK((there.sum.torque - expected.torque).norm() < 1e-9 * expected.torque.norm());
+    CHECK((there.sum.stiffness - expected.stiffness).norm() < 1e-9 * expected.stiffness.norm());
+    const Vec3 D = (c.group_moves[0] - c.environment_moves[0]).transpose() * there.sum.force;
+    CHECK((there.along - D).norm() < 1e-3 * D.norm());
+    CHECK(there.sum.clearance < -1);
 }

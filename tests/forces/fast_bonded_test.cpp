@@ -1,4 +1,4 @@
-// Bonded terms many at a time against their twin, on every kind of processor.
+// Bonded terms many at a time against their reference, on every kind of processor.
 #include "forces/fast_bonded.h"
 
 #include "field/processor.h"
@@ -20,12 +20,13 @@ using namespace palpa;
 
 namespace {
 
-double worst_of(std::span<const Vec3> forces, std::span<const Vec3> twin) {
+double worst_of(std::span<const Vec3> forces, std::span<const Vec3> reference) {
     double square = 0, worst = 0;
-    for (const Vec3& force : twin) square += force.squaredNorm();
-    const double rms = std::sqrt(square / static_cast<double>(twin.size()));
-    for (std::size_t i = 0; i < twin.size(); ++i)
-        worst = std::max(worst, (forces[i] - twin[i]).norm() / std::max(rms, twin[i].norm()));
+    for (const Vec3& force : reference) square += force.squaredNorm();
+    const double rms = std::sqrt(square / static_cast<double>(reference.size()));
+    for (std::size_t i = 0; i < reference.size(); ++i)
+        worst =
+            std::max(worst, (forces[i] - reference[i]).norm() / std::max(rms, reference[i].norm()));
     return worst;
 }
 
@@ -36,14 +37,15 @@ double magnitude_of(const Topology& topology) {
     return sum;
 }
 
-void check_against_twin(const Topology& topology, std::span<const Vec3> positions) {
+void check_against_reference(const Topology& topology, std::span<const Vec3> positions) {
     const FastBonded bonded = build_fast_bonded(topology);
-    std::vector<Vec3> twin(topology.size(), Vec3::Zero());
-    const double bond = add_bond_forces(topology.bonds, positions, twin);
-    const double angle = add_angle_forces(topology.angles, positions, twin);
-    const double urey_bradley = add_urey_bradley_forces(topology.urey_bradleys, positions, twin);
-    const double dihedral = add_dihedral_forces(topology.dihedrals, positions, twin);
-    const double improper = add_improper_forces(topology.impropers, positions, twin);
+    std::vector<Vec3> reference(topology.size(), Vec3::Zero());
+    const double bond = add_bond_forces(topology.bonds, positions, reference);
+    const double angle = add_angle_forces(topology.angles, positions, reference);
+    const double urey_bradley =
+        add_urey_bradley_forces(topology.urey_bradleys, positions, reference);
+    const double dihedral = add_dihedral_forces(topology.dihedrals, positions, reference);
+    const double improper = add_improper_forces(topology.impropers, positions, reference);
     for (const std::string& kind : list_processor_kinds()) {
         INFO(kind);
         use_processor_kind(kind);
@@ -57,14 +59,15 @@ void check_against_twin(const Topology& topology, std::span<const Vec3> position
         CHECK(energy.dihedral ==
               Approx(dihedral).epsilon(0).margin(1e-12 * magnitude_of(topology)));
         CHECK(energy.improper == Approx(improper).epsilon(1e-12).margin(1e-12));
-        CHECK(worst_of(forces, twin) <= 1e-12);
+        CHECK(worst_of(forces, reference) <= 1e-12);
     }
     use_processor_kind(list_processor_kinds().front());
 }
 
 }  // namespace
 
-TEST_CASE("a peptide's bonded terms are the twin's, at rest and torn apart", "[forces][bonded]") {
+TEST_CASE("a peptide's bonded terms are the reference's, at rest and torn apart",
+          "[forces][bonded]") {
     const std::string name = GENERATE("ala_dipeptide", "tetra_aera_c36m");
     const std::string path = test::test_data(name);
     const test::ReferenceCase reference = test::read_reference_case(path + ".ff.json");
@@ -77,10 +80,10 @@ TEST_CASE("a peptide's bonded terms are the twin's, at rest and torn apart", "[f
         place += Vec3(x, y, z);
     }
 
-    check_against_twin(reference.topology, positions);
+    check_against_reference(reference.topology, positions);
 }
 
-TEST_CASE("dihedrals of any multiplicity and phase are the twin's, from either end",
+TEST_CASE("dihedrals of any multiplicity and phase are the reference's, from either end",
           "[forces][bonded]") {
     Topology topology;
     topology.charge.assign(4, 0);
@@ -93,10 +96,10 @@ TEST_CASE("dihedrals of any multiplicity and phase are the twin's, from either e
     CHECK(build_fast_bonded(topology).dihedrals.atoms.size() == 2);
     std::mt19937 random(3);
     for (int round = 0; round < 50; ++round)
-        check_against_twin(topology, test::random_positions(random, 4, 1.5, 0.8));
+        check_against_reference(topology, test::random_positions(random, 4, 1.5, 0.8));
 }
 
-TEST_CASE("dihedrals with three atoms almost in line are the twin's, at either end or both",
+TEST_CASE("dihedrals with three atoms almost in line are the reference's, at either end or both",
           "[forces][bonded]") {
     // How far off the line a and d are, Å: normals beside torsion_guard, 0.005 Å^2.
     const double of_a = GENERATE(1e-5, 1e-3, 0.002, 0.01, 1.0), of_d = GENERATE(1e-4, 0.002, 1.0);
@@ -108,7 +111,7 @@ TEST_CASE("dihedrals with three atoms almost in line are the twin's, at either e
     const std::vector<Vec3> positions{
         {-1.5, of_a, 0}, {0, 0, 0}, {1.5, 0, 0}, {3, 0.6 * of_d, 0.8 * of_d}};
 
-    check_against_twin(topology, positions);
+    check_against_reference(topology, positions);
 }
 
 TEST_CASE("more terms than a block holds count once each", "[forces][bonded]") {
@@ -123,5 +126,5 @@ TEST_CASE("more terms than a block holds count once each", "[forces][bonded]") {
     }
     topology.angles.pop_back();  // its first and last atom are one
 
-    check_against_twin(topology, positions);
+    check_against_reference(topology, positions);
 }

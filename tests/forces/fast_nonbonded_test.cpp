@@ -1,4 +1,4 @@
-// Single precision against its twin in double: every scheme, every kind of processor.
+// Single precision against its reference in double: every scheme, every kind of processor.
 #include "forces/fast_nonbonded.h"
 
 #include "field/processor.h"
@@ -48,7 +48,7 @@ std::vector<NonbondedSettings> all_schemes() {
     return schemes;
 }
 
-// The twin's sums, and what their errors are measured by.
+// The reference's sums, and what their errors are measured by.
 struct Expected {
     NonbondedEnergy energy, magnitude;
     std::vector<Vec3> forces;
@@ -229,14 +229,14 @@ Topology build_salt(std::size_t count) {
 
 }  // namespace
 
-TEST_CASE("single precision agrees with the twin and the held forces of small cases",
+TEST_CASE("single precision agrees with the reference and the held forces of small cases",
           "[forces][fast]") {
     const fs::path folder(test::test_data(""));
     check_case(folder, "ala_dipeptide", "frames");
     check_case(folder, "tetra_aera_c36m", "frames");
 }
 
-TEST_CASE("single precision agrees with the twin and the held forces of every case",
+TEST_CASE("single precision agrees with the reference and the held forces of every case",
           "[forces][fast][slow]") {
     const auto folder = test::find_shared_data("reference");
     if (!folder) return;
@@ -334,7 +334,7 @@ TEST_CASE("what is near of a list is found again before it is outdated", "[force
     CHECK(pairs.near.tiles.skin == 0.6);
 }
 
-TEST_CASE("what single precision cannot do is the twin's to the bit", "[forces][fast]") {
+TEST_CASE("what single precision cannot do is the reference's to the bit", "[forces][fast]") {
     const Topology topology = build_salt(30);
     std::mt19937 random(6);
     std::vector<Vec3> positions = test::random_positions(random, 30, 9, 2.5);
@@ -351,10 +351,10 @@ TEST_CASE("what single precision cannot do is the twin's to the bit", "[forces][
     std::vector<Vec3> forces(30, Vec3::Zero()), expected(30, Vec3::Zero());
     const NonbondedEnergy energy = add_fast_nonbonded_forces(
         topology, atoms, settings, skin, positions, pairs, forces, PairResult::ForcesAndEnergies);
-    const NonbondedEnergy twin = add_nonbonded_forces(topology, settings, positions, expected);
+    const NonbondedEnergy reference = add_nonbonded_forces(topology, settings, positions, expected);
 
-    CHECK(energy.van_der_waals == twin.van_der_waals);
-    CHECK(energy.electrostatic == twin.electrostatic);
+    CHECK(energy.van_der_waals == reference.van_der_waals);
+    CHECK(energy.electrostatic == reference.electrostatic);
     CHECK(forces == expected);
     CHECK(pairs.in_double == 1);
 }

@@ -149,7 +149,7 @@ TEST_CASE("a shaken peptide goes down to rest, never up", "[forces][minimise]") 
         CHECK(steps[i] == i);
         CHECK(energies[i] <= energies[i - 1]);
     }
-    // At rest by the slow twin too, which looks at all pairs.
+    // At rest by the reference implementation too, which looks at all pairs.
     std::vector<Vec3> forces(positions.size(), Vec3::Zero());
     const EnergyTerms energy = add_forces(topology, settings.nonbonded, positions, forces);
     CHECK(energy.total() == Approx(report.after.total()).epsilon(1e-11));

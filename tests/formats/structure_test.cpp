@@ -90,7 +90,7 @@ void check_round_trip(const Structure& structure) {
 
 std::string unpacked(const std::filesystem::path& path) {
     std::string text;
-    const gzFile file = gzopen(path.c_str(), "rb");
+    const gzFile file = gzopen(path.string().c_str(), "rb");
     REQUIRE(file);
     std::array<char, 65536> block{};
     for (int size = 0; (size = gzread(file, block.data(), block.size())) > 0;) {

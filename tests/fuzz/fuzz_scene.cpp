@@ -41,6 +41,16 @@ public:
     void enter_table(const Field& /*field*/) override {}
     void leave_table() override {}
     void list_tables(const Field& /*field*/, std::vector<std::string>& /*names*/) override {}
+    void list_entries(const Field& /*field*/, std::size_t& /*count*/) override {}
+    void enter_entry(const Field& /*field*/, std::size_t /*index*/, TextPlace& place) override {
+        PALPA_EXPECT(!place.file.empty());
+    }
+    std::vector<std::size_t> one_of(std::span<const std::string_view> keys,
+                                    std::size_t chosen) override {
+        PALPA_EXPECT(chosen < keys.size());
+        return {chosen};
+    }
+    bool is_there(const Field& /*field*/, bool there) override { return there; }
     void real(const Field& field, double& value) override {
         PALPA_EXPECT(std::isfinite(value) && value >= field.lowest && value <= field.highest);
     }
@@ -55,7 +65,10 @@ public:
         for (double& number : value) real(field, number);
     }
     void flag(const Field& /*field*/, bool& /*value*/) override {}
-    void texts(const Field& /*field*/, std::vector<std::string>& /*value*/) override {}
+    void texts(const Field& field, std::vector<std::string>& value) override {
+        PALPA_EXPECT(field.highest == 0 || (static_cast<double>(value.size()) >= field.lowest &&
+                                            static_cast<double>(value.size()) <= field.highest));
+    }
     void integer(const Field& field, std::int64_t& value) override {
         auto real_value = static_cast<double>(value);
         real(field, real_value);
@@ -83,6 +96,10 @@ public:
             for (const double number : place) PALPA_EXPECT(std::isfinite(number));
             for (const double number : turn) PALPA_EXPECT(std::isfinite(number));
         }
+    }
+    void mark(const Field& /*field*/) override {}
+    void coupling_settings(const Field& /*field*/, std::vector<std::string>& value) override {
+        PALPA_EXPECT(!value.empty());
     }
 };
 

@@ -2,10 +2,13 @@
 
 #include "core/units.h"
 #include "field/pair_field.h"
+#include "math/spatial.h"
 
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <vector>
 
@@ -34,70 +37,74 @@ struct Pair {
     }
     double force(double x) const { return newton * at(x).force.x(); }
 
-    Touch touch(double x) const {
-        Touch touch;
-        touch.model.molecule.place_angstrom = Vec3(x, 0, 0);
-        touch.model.projector = Vec3::UnitX().asDiagonal();
-        touch.model.force_newton = Vec3(force(x), 0, 0);
-        touch.model.period_s = 0.014;
-        touch.field.group = {Vec3(x, 0, 0)};
-        touch.field.centre = Vec3(x, 0, 0);
-        touch.field.frozen = build_frozen_field(group(touch.field.group), environment(), {coulomb});
-        touch.field.there = evaluate_frozen_field(touch.field.frozen, touch.field.group);
-        touch.field.has_atoms = true;
-        return touch;
+    LocalContactModel contact(double x) const {
+        LocalContactModel contact;
+        contact.model.molecule.place_angstrom = Vec3(x, 0, 0);
+        contact.model.projector = Vec3::UnitX().asDiagonal();
+        contact.model.force_newton = Vec3(force(x), 0, 0);
+        contact.model.period_s = 0.014;
+        contact.field.group = {Vec3(x, 0, 0)};
+        contact.field.centre = Vec3(x, 0, 0);
+        contact.field.frozen =
+            build_frozen_field(group(contact.field.group), environment(), {coulomb});
+        contact.field.there = evaluate_frozen_field(contact.field.frozen, contact.field.group);
+        contact.field.has_atoms = true;
+        return contact;
     }
 };
 
 struct Guarded {
     GuardedSettings settings;
     GuardedState state;
-    Touch touch;
+    LocalContactModel contact;
 
-    explicit Guarded(const Touch& first) : touch(first) { take_touch(touch, state); }
+    explicit Guarded(const LocalContactModel& first) : contact(first) {
+        take_local_contact(contact, state);
+    }
     GuardedTick move(const Vec3& by) {
-        return step_guarded(settings, touch, Vec3::Zero(), {by}, false, state);
+        return step_guarded(settings, contact, Vec3::Zero(), {by}, false, state);
     }
     void update(const Pair& pair) {
-        touch = pair.touch(x());
-        take_touch(touch, state);
+        contact = pair.contact(x());
+        take_local_contact(contact, state);
     }
     double x() const { return state.molecule.place_angstrom.x(); }
 };
 
 }  // namespace
 
-TEST_CASE("the local field is the touch model's at its place, and knows the way from there",
+TEST_CASE("the local field is the contact model's at its place, and knows the way from there",
           "[haptics][guarded]") {
     const Pair pair;
-    Touch touch = pair.touch(4);
-    touch.model.confirmed = GENERATE(0.0, 0.5, 1.0);
-    touch.model.force_newton.x() += 1e-10;  // that the field does not know of
+    LocalContactModel contact = pair.contact(4);
+    contact.model.prediction_gain = GENERATE(0.0, 0.5, 1.0);
+    contact.model.force_newton.x() += 1e-10;  // that the field does not know of
 
     const auto at = [&](double x) {
-        return evaluate_local(touch.model, touch.field, {Vec3(x, 0, 0)});
+        return evaluate_local(contact.model, contact.field, {Vec3(x, 0, 0)});
     };
 
-    CHECK(at(4).force_newton.x() == Approx(touch.model.force_newton.x()));
+    CHECK(at(4).force_newton.x() == Approx(contact.model.force_newton.x()));
     const double way = pair.force(3.6) - pair.force(4);
-    CHECK(at(3.6).force_newton.x() ==
-          Approx(touch.model.force_newton.x() + touch.model.confirmed * way).epsilon(1e-5));
+    CHECK(
+        at(3.6).force_newton.x() ==
+        Approx(contact.model.force_newton.x() + contact.model.prediction_gain * way).epsilon(1e-5));
     const double slope = -(pair.force(3.601) - pair.force(3.599)) / (0.002 * 1e-10);
     CHECK(at(3.6).stiffness_N_per_m(0, 0) ==
-          Approx(touch.model.confirmed * slope).epsilon(1e-4).margin(1e-12));
+          Approx(contact.model.prediction_gain * slope).epsilon(1e-4).margin(1e-12));
     CHECK(at(4.5).clearance_angstrom == Approx(4.5 - 3.8).margin(1e-5));
     CHECK(at(3.6).clearance_angstrom == 0);
     CHECK(at(3.6).largest_newton == Approx(std::abs(pair.force(3.6))).epsilon(1e-5));
 }
 
 TEST_CASE("without atoms the local field is the tangent", "[haptics][guarded]") {
-    Touch touch;
-    touch.model.molecule.place_angstrom = Vec3(1, 2, 3);
-    touch.model.force_newton = Vec3(1e-9, 0, 0);
-    touch.model.stiffness_matrix_N_per_m = 10 * Mat3::Identity();
-    touch.model.clearance_angstrom = 0.5;
+    LocalContactModel contact;
+    contact.model.molecule.place_angstrom = Vec3(1, 2, 3);
+    contact.model.force_newton = Vec3(1e-9, 0, 0);
+    contact.model.stiffness_matrix_N_per_m = 10 * Mat3::Identity();
+    contact.model.clearance_angstrom = 0.5;
 
-    const LocalForce there = evaluate_local(touch.model, touch.field, {Vec3(1, 2.2, 3)});
+    const LocalForce there = evaluate_local(contact.model, contact.field, {Vec3(1, 2.2, 3)});
 
     CHECK((there.force_newton - Vec3(1e-9, -10 * 0.2e-10, 0)).norm() < 1e-20);
     CHECK(there.clearance_angstrom == Approx(0.3));
@@ -105,9 +112,9 @@ TEST_CASE("without atoms the local field is the tangent", "[haptics][guarded]") 
 
 TEST_CASE("a handle that rests after it drove feels a finite force", "[haptics][guarded]") {
     // The force drove it, limits cut off what it went, and now nothing is wanted.
-    Guarded guarded(Pair().touch(3.4));
+    Guarded guarded(Pair().contact(3.4));
     guarded.state.handle_m_per_s = Vec3(-0.01, 0, 0);  // as it attracts
-    guarded.state.debt_J = 1e-3;
+    guarded.state.energy_balance_J = 1e-3;
 
     const GuardedTick tick = guarded.move(Vec3::Zero());
 
@@ -129,22 +136,143 @@ TEST_CASE("A_d is no less than so much for each newton that is felt", "[haptics]
     CHECK(guarded_gain(settings, force, Mat3::Zero()).A_d == Approx(std::max(1.0, share) * law));
 }
 
-TEST_CASE("a new touch model does not make the force jump", "[haptics][guarded]") {
+TEST_CASE("a new contact model does not make the force jump", "[haptics][guarded]") {
     const Pair pair;
-    Guarded guarded(pair.touch(3.9));
+    Guarded guarded(pair.contact(3.9));
     for (int i = 0; i < 13; ++i) (void)guarded.move(Vec3(-1e-4, 0, 0));
     const double before = guarded.move(Vec3::Zero()).force_newton.x();
-    Touch next = pair.touch(guarded.x());
+    LocalContactModel next = pair.contact(guarded.x());
     const double news = 0.5e-9;
     next.model.force_newton.x() += news;
-    guarded.touch = next;
-    take_touch(next, guarded.state);
+    guarded.contact = next;
+    take_local_contact(next, guarded.state);
 
     const double first = guarded.move(Vec3::Zero()).force_newton.x();
     CHECK(std::abs(first - before) < 0.3 * news);
     double last = first;
     for (int i = 0; i < 14; ++i) last = guarded.move(Vec3::Zero()).force_newton.x();
     CHECK(last == Approx(next.model.force_newton.x()).margin(0.03 * news));
+}
+
+namespace {
+
+// The field of a pair, and a stiffness of its own for the force.
+LocalContactModel relaxed_contact(const Pair& pair, double x, double stiffness, double reach) {
+    LocalContactModel contact = pair.contact(x);
+    contact.model.relaxed.emplace();
+    contact.model.relaxed->matrix(3, 3) = stiffness;
+    contact.model.relaxed->reach_angstrom = reach;
+    return contact;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "where everything follows, the force goes by the relaxed stiffness, all else by the field",
+    "[haptics][guarded][relaxed]") {
+    const Pair pair;
+    const LocalContactModel frozen = pair.contact(3.7),
+                            relaxed = relaxed_contact(pair, 3.7, 0.4, 0.3);
+    const MoleculePose place{Vec3(3.6, 0, 0)};
+
+    const LocalForce one = evaluate_local(frozen.model, frozen.field, place),
+                     other = evaluate_local(relaxed.model, relaxed.field, place);
+
+    CHECK(other.force_newton.x() == Approx(pair.force(3.7) + 0.4 * 0.1e-10));
+    CHECK(other.slope_N_per_m(0, 0) == 0.4);
+    CHECK(one.slope_N_per_m == one.stiffness_N_per_m);
+    CHECK(other.stiffness_N_per_m == one.stiffness_N_per_m);
+    CHECK(other.clearance_angstrom == one.clearance_angstrom);
+    CHECK(other.largest_newton == one.largest_newton);
+    REQUIRE(one.stiffness_N_per_m(0, 0) > 1);
+}
+
+TEST_CASE("a handle that turns what everything follows feels the relaxed force and torque",
+          "[haptics][guarded][relaxed]") {
+    // Two springs of a rigid body, apart from each other: a potential of turn and place.
+    LocalContactModel contact;
+    ContactModel& model = contact.model;
+    model.turns_with_handle = true;
+    model.molecule.place_angstrom = Vec3(1, 2, 3);
+    contact.field.pivot = Vec3(5, 0, 0);
+    contact.field.centre = Vec3(6, 1, 0);
+    const std::array<Vec3, 2> arms{Vec3(2, 1, 0.5), Vec3(-1, 2, 1)};
+    const std::array<double, 2> springs{3, 7};  // N/m
+    constexpr double metre = units::metre_per_angstrom;
+    model.relaxed.emplace();
+    for (std::size_t i = 0; i < 2; ++i) {
+        Eigen::Matrix<double, 3, 6> moves;  // of its end, per turn and place
+        moves << -metre * cross_matrix(arms[i]), Mat3::Identity();
+        model.relaxed->matrix += springs[i] * moves.transpose() * moves;
+    }
+    const Vec3 turn(2e-5, -1e-5, 3e-5), by(1e-4, 2e-4, -1e-4);
+
+    const LocalForce there =
+        evaluate_local(model, contact.field, {model.molecule.place_angstrom + by, turn_of(turn)});
+
+    Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
+    for (std::size_t i = 0; i < 2; ++i) {
+        const Vec3 end = turn_of(turn) * arms[i];
+        const Vec3 pull = -springs[i] * metre * (end + by - arms[i]);
+        force += pull;
+        torque += metre * (end - turn_of(turn) * Vec3(1, 1, 0)).cross(pull);
+    }
+    CHECK((there.force_newton - force).norm() < 1e-3 * force.norm());
+    CHECK((there.torque_newton_metre - torque).norm() < 1e-3 * torque.norm());
+}
+
+TEST_CASE("a molecule that everything follows goes no farther than its model reaches, and back",
+          "[haptics][guarded][relaxed]") {
+    Guarded guarded(relaxed_contact(Pair(), 3.8, 0, 0.1));
+    guarded.settings.displacement_law = ConstantDisplacementLaw{0.25e9};
+    const double inward = GENERATE(1.0, -1.0);
+    for (int i = 0; i < 1000; ++i) (void)guarded.move(Vec3(-inward * 1e-3, 0, 0));
+    const double out = std::abs(guarded.x() - 3.8);
+    CHECK(out <= 0.1 + guarded.state.at_place.clearance_angstrom + 1e-9);
+    CHECK(out > 0.09);
+    for (int i = 0; i < 100; ++i) (void)guarded.move(Vec3(inward * 1e-3, 0, 0));
+    CHECK(std::abs(guarded.x() - 3.8) < out - 0.01);
+}
+
+TEST_CASE("where everything follows, a new model's force comes in over 30 ms, gently",
+          "[haptics][guarded][relaxed]") {
+    const Pair pair;
+    const double news = GENERATE(0.02e-9, 0.5e-9, -3e-9);
+    Guarded guarded(relaxed_contact(pair, 3.9, 0, 0.3));
+    for (int i = 0; i < 50; ++i) (void)guarded.move(Vec3::Zero());
+    double now = guarded.move(Vec3::Zero()).hand_newton.x();
+    const double before = now;
+    // Every tick, as at T_s = 1 ms.
+    double largest = 0, after_ten = 0;
+    for (int i = 0; i < 1000; ++i) {
+        guarded.contact = relaxed_contact(pair, guarded.x(), 0, 0.3);
+        guarded.contact.model.force_newton.x() += news;
+        take_local_contact(guarded.contact, guarded.state);
+        const double next = guarded.move(Vec3::Zero()).hand_newton.x();
+        largest = std::max(largest, std::abs(next - now));
+        now = next;
+        if (i == 9) after_ten = now;
+    }
+    const double wanted = hand_force(guarded.settings.force_law, pair.force(3.9) + news);
+    CHECK(largest < 0.03);
+    CHECK(now == Approx(wanted).margin(1e-6));
+    CHECK(std::abs(after_ten - before) < 0.8 * std::abs(wanted - before));
+}
+
+TEST_CASE("what is blended counts in the energy books", "[haptics][guarded][relaxed]") {
+    Guarded guarded(relaxed_contact(Pair(), 3.9, 0, 0.3));
+    guarded.settings.damping_N_s_per_m = 0;
+    guarded.contact.model.force_newton.x() -= 0.2e-9;
+    take_local_contact(guarded.contact, guarded.state);
+    REQUIRE(guarded.state.blend_residual_newton.x() > 0.1e-9);
+    // As the rest of the old force pulls: work on the hand.
+    const double by = 1e-4;
+    const GuardedTick tick = guarded.move(Vec3(by, 0, 0));
+    const double with = hand_force(guarded.settings.force_law, tick.force_newton.x());
+    const double without =
+        hand_force(guarded.settings.force_law, guarded.state.at_place.force_newton.x());
+    REQUIRE(tick.clipped_m.isZero());
+    CHECK(guarded.state.energy_balance_J == Approx(by * (with - without)));
 }
 
 TEST_CASE("how much A_d is raised for the cap is told", "[haptics][guarded]") {
@@ -158,7 +286,7 @@ TEST_CASE("how much A_d is raised for the cap is told", "[haptics][guarded]") {
     const GuardedGain gain = guarded_gain(settings, Vec3(1e-9, 0, 0), Mat3(springs.asDiagonal()));
 
     // A gain of 2e9 makes k N/m into 8 k N/m at the handle: 25 N/m are the cap's 200.
-    CHECK(gain.raised == Approx(std::max(1.0, springs.maxCoeff() / 25)));
+    CHECK(gain.cap_ratio == Approx(std::max(1.0, springs.maxCoeff() / 25)));
     CHECK(gain.felt_N_per_m == Approx(std::min(200.0, 8 * springs.maxCoeff())));
 }
 
@@ -169,7 +297,7 @@ TEST_CASE("laws that are exchanged while they are felt make no jump", "[haptics]
                                      PrintedForceLaw::find_calibrated({}).value()};
     for (const ForceLaw& from : laws) {
         for (const ForceLaw& to : laws) {
-            Guarded guarded(pair.touch(3.5));
+            Guarded guarded(pair.contact(3.5));
             guarded.settings.force_law = from;
             double before = 0;
             for (int i = 0; i < 20; ++i) before = guarded.move(Vec3::Zero()).hand_newton.x();
@@ -189,16 +317,65 @@ TEST_CASE("laws that are exchanged while they are felt make no jump", "[haptics]
     }
 }
 
+TEST_CASE("a law that is exchanged again while the force glides makes no jump either",
+          "[haptics][guarded]") {
+    const Pair pair;
+    Guarded guarded(pair.contact(3.5));
+    guarded.settings.force_law = ConstantForceLaw{0};
+    guarded.settings.displacement_law = ConstantDisplacementLaw{1e9};
+    for (int i = 0; i < 20; ++i) (void)guarded.move(Vec3::Zero());
+    guarded.settings.force_law = ConstantForceLaw{0.64e9};
+    const double wanted = hand_force(guarded.settings.force_law, pair.force(3.5));
+    double now = 0, farthest = 0, largest = 0;
+    for (int i = 0; i < 1000; ++i) {
+        if (i < 50) ++guarded.settings.revision;
+        const double next = guarded.move(Vec3::Zero()).hand_newton.x();
+        largest = std::max(largest, std::abs(next - now));
+        farthest = std::max(farthest, next / wanted);
+        now = next;
+    }
+    CHECK(largest < 0.02 * std::abs(wanted));
+    CHECK(farthest < 1 + 1e-9);
+    CHECK(now == Approx(wanted).epsilon(1e-3));
+}
+
+TEST_CASE("a hand that takes another molecule feels no jump", "[haptics][guarded]") {
+    const Pair pair;
+    Guarded guarded(pair.contact(4));
+    // Against the wall, so that the stop keeps travel: that is felt too.
+    for (int i = 0; i < 3000; ++i) {
+        if (i % 14 == 0) guarded.update(pair);
+        (void)guarded.move(Vec3(-1e-4, 0, 0));
+    }
+    const double before = guarded.move(Vec3::Zero()).hand_newton.x();
+    REQUIRE(guarded.state.overtravel_m.norm() > 0.05);
+
+    LocalContactModel other = pair.contact(4.2);
+    other.model.start = 1;
+    guarded.contact = other;
+    take_local_contact(other, guarded.state);
+    const double wanted = hand_force(guarded.settings.force_law, pair.force(4.2));
+    double now = before, largest = 0;
+    for (int i = 0; i < 1500; ++i) {
+        const double next = guarded.move(Vec3::Zero()).hand_newton.x();
+        largest = std::max(largest, std::abs(next - now));
+        now = next;
+    }
+    CHECK(largest < 0.02 * std::abs(wanted - before));
+    CHECK(now == Approx(wanted).epsilon(1e-3));
+    CHECK(guarded.x() == Approx(4.2));
+}
+
 TEST_CASE("no atom is pushed harder than the stop allows, and what was held back comes back first",
           "[haptics][guarded]") {
     const Pair pair;
-    Guarded guarded(pair.touch(4));
+    Guarded guarded(pair.contact(4));
     double hardest = 0, held = 0;
     for (int i = 0; i < 3000; ++i) {
         if (i % 14 == 0) guarded.update(pair);
         (void)guarded.move(Vec3(-1e-4, 0, 0));
         hardest = std::max(hardest, pair.force(guarded.x()));
-        held = guarded.state.kept_m.norm();
+        held = guarded.state.overtravel_m.norm();
     }
     const double innermost = guarded.x();
     CHECK(hardest <= 10e-9);
@@ -222,13 +399,13 @@ TEST_CASE("no atom is pushed harder than the stop allows, and what was held back
 TEST_CASE("a step goes no farther than clearance and period allow, and stays on its line",
           "[haptics][guarded]") {
     const Pair pair;
-    Guarded guarded(pair.touch(8));
+    Guarded guarded(pair.contact(8));
     double start = 8;
     for (int i = 0; i < 420; ++i) {
         const double before = guarded.x(), clearance = std::max(0.0, before - 3.8);
         const GuardedTick tick = guarded.move(Vec3(-5e-3, 1e-3, -2e-3));
         CHECK(before - guarded.x() <= 0.02 + 0.1 * clearance + 1e-5);
-        CHECK(tick.dropped_m.x() <= 0);
+        CHECK(tick.clipped_m.x() <= 0);
         CHECK(guarded.state.molecule.place_angstrom.tail<2>().norm() == 0);
         if (i % 14 != 13) continue;
         // From one model to the next, and what was saved up at its beginning.
@@ -242,7 +419,7 @@ TEST_CASE("a step goes no farther than clearance and period allow, and stays on 
 TEST_CASE("the felt stiffness stays under the cap", "[haptics][guarded]") {
     const Pair pair;
     const double x = GENERATE(3.2, 3.4, 3.6, 3.8, 4.2, 6.0);
-    Guarded guarded(pair.touch(x));
+    Guarded guarded(pair.contact(x));
     const GuardedTick tick = guarded.move(Vec3::Zero());
     // By differences of hand force and place.
     const auto hand = [&](double at) {
@@ -257,12 +434,12 @@ TEST_CASE("the felt stiffness stays under the cap", "[haptics][guarded]") {
 
 TEST_CASE("on a tangent the molecule goes no farther than its model may be trusted",
           "[haptics][guarded]") {
-    Touch touch;
-    touch.model.projector = Vec3::UnitX().asDiagonal();
-    touch.model.gives_way = GENERATE(false, true);
-    touch.model.period_s = 0.1;
-    touch.model.clearance_angstrom = 1;
-    Guarded guarded(touch);
+    LocalContactModel contact;
+    contact.model.projector = Vec3::UnitX().asDiagonal();
+    contact.model.is_compliant = GENERATE(false, true);
+    contact.model.period_s = 0.1;
+    contact.model.clearance_angstrom = 1;
+    Guarded guarded(contact);
     for (int i = 0; i < 100; ++i) (void)guarded.move(Vec3(-5e-3, 0, 0));
 
     // 0.2 Å and a sixth of the clearance, and what was saved up.
@@ -271,18 +448,18 @@ TEST_CASE("on a tangent the molecule goes no farther than its model may be trust
 
 TEST_CASE("a start anew forgets a force that was no number", "[haptics][guarded]") {
     const Pair pair;
-    Guarded guarded(pair.touch(4));
-    Touch bad = pair.touch(4);
+    Guarded guarded(pair.contact(4));
+    LocalContactModel bad = pair.contact(4);
     bad.model.force_newton.x() = std::numeric_limits<double>::quiet_NaN();
-    guarded.touch = bad;
-    take_touch(bad, guarded.state);
+    guarded.contact = bad;
+    take_local_contact(bad, guarded.state);
     CHECK_FALSE(guarded.move(Vec3::Zero()).hand_newton.allFinite());
 
-    Touch anew = pair.touch(4);
+    LocalContactModel anew = pair.contact(4);
     anew.model.start = 1;
     ++guarded.settings.revision;
-    guarded.touch = anew;
-    take_touch(anew, guarded.state);
+    guarded.contact = anew;
+    take_local_contact(anew, guarded.state);
 
     double felt = 0;
     for (int i = 0; i < 1500; ++i) felt = guarded.move(Vec3::Zero()).hand_newton.x();
@@ -293,12 +470,12 @@ TEST_CASE("what carries a workspace carries nothing where a force is felt", "[ha
     const Pair pair;
     const WorkspaceMap map = GENERATE(WorkspaceMap(BubbleMap{}), WorkspaceMap(DriftMap{}));
     const auto carried = [&](double from) {
-        Guarded guarded(pair.touch(from));
+        Guarded guarded(pair.contact(from));
         guarded.settings.workspace = map;
         guarded.settings.displacement_law = ConstantDisplacementLaw{1e9};
         for (int i = 0; i < 20; ++i) {
             const Vec3 moved(i % 2 == 0 ? 1e-5 : -1e-5, 0, 0);
-            (void)step_guarded(guarded.settings, guarded.touch, Vec3(0.09, 0, 0), {moved}, false,
+            (void)step_guarded(guarded.settings, guarded.contact, Vec3(0.09, 0, 0), {moved}, false,
                                guarded.state);
         }
         return std::abs(guarded.x() - from);
@@ -324,9 +501,9 @@ TEST_CASE("the cap is what a device keeps calm, and what the damping pays for",
 TEST_CASE("a molecule that stands still is not moved, and is let go where it stands",
           "[haptics][guarded]") {
     const Pair pair;
-    Guarded guarded(pair.touch(5));
-    guarded.touch.model.is_still = true;
-    take_touch(guarded.touch, guarded.state);
+    Guarded guarded(pair.contact(5));
+    guarded.contact.model.is_still = true;
+    take_local_contact(guarded.contact, guarded.state);
     for (int i = 0; i < 50; ++i) {
         CHECK(guarded.move(Vec3(-1e-3, 0, 0)).hand_newton.norm() == 0);
     }
@@ -336,11 +513,11 @@ TEST_CASE("a molecule that stands still is not moved, and is let go where it sta
 TEST_CASE("clutched, a hand feels nothing of the molecule, and finds it where it was",
           "[haptics][guarded]") {
     const Pair pair;
-    Guarded guarded(pair.touch(3.4));
+    Guarded guarded(pair.contact(3.4));
     guarded.settings.damping_N_s_per_m = 0;
     const auto carry = [&](double by_m, bool is_clutched) {
         const Vec3 by(by_m, 0, 0);
-        return step_guarded(guarded.settings, guarded.touch, Vec3::Zero(), {by}, is_clutched,
+        return step_guarded(guarded.settings, guarded.contact, Vec3::Zero(), {by}, is_clutched,
                             guarded.state);
     };
     const double before = carry(0, false).hand_newton.x(), place = guarded.x();
@@ -365,11 +542,12 @@ TEST_CASE("clutched, a hand feels nothing of the molecule, and finds it where it
 
 TEST_CASE("what the stop has kept is gone once the hand clutches", "[haptics][guarded]") {
     const Pair pair;
-    Guarded guarded(pair.touch(3.4));
+    Guarded guarded(pair.contact(3.4));
     guarded.settings.stop_newton = 1.5 * std::abs(pair.force(3.4));
     for (int i = 0; i < 200; ++i) guarded.move(Vec3(-1e-3, 0, 0));
-    REQUIRE(guarded.state.kept_m.norm() > 0.05);
+    REQUIRE(guarded.state.overtravel_m.norm() > 0.05);
     for (int i = 0; i < 100; ++i)
-        (void)step_guarded(guarded.settings, guarded.touch, Vec3::Zero(), {}, true, guarded.state);
-    CHECK(guarded.state.kept_m.norm() == 0);
+        (void)step_guarded(guarded.settings, guarded.contact, Vec3::Zero(), {}, true,
+                           guarded.state);
+    CHECK(guarded.state.overtravel_m.norm() == 0);
 }

@@ -29,8 +29,8 @@ TEST_CASE("a hand rests before its first waypoint and after its last", "[haptics
 }
 
 TEST_CASE("a grip and the hand behind it are springs in a row", "[haptics][hand]") {
-    CHECK(static_stiffness(*hand_model(Grip::Medium)) == 200);
+    CHECK(static_stiffness(*hand_model(HandGrip::Medium)) == 200);
     // 500 and 1000 N/m in a row
-    CHECK(static_stiffness(*hand_model(Grip::FirmGrip)) == Approx(1000.0 / 3));
-    CHECK_FALSE(hand_model(Grip::None).has_value());
+    CHECK(static_stiffness(*hand_model(HandGrip::FirmGrip)) == Approx(1000.0 / 3));
+    CHECK_FALSE(hand_model(HandGrip::None).has_value());
 }

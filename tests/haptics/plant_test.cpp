@@ -23,7 +23,8 @@ TEST_CASE("a free handle under a held force moves as the closed form says", "[ha
 }
 
 TEST_CASE("a held handle comes to rest where springs balance", "[haptics][plant]") {
-    const auto grip = GENERATE(Grip::Light, Grip::Slack, Grip::Medium, Grip::Firm, Grip::FirmGrip);
+    const auto grip = GENERATE(HandGrip::Light, HandGrip::Slack, HandGrip::Medium, HandGrip::Firm,
+                               HandGrip::FirmGrip);
     const HandModel hand = *hand_model(grip);
     const SampledPlant plant = sample_plant(build_plant({}, hand), 0.05);
     const double force = 0.7, target = 0.02;

@@ -31,7 +31,7 @@ struct WallRun {
 
     std::vector<Row> run(int ticks) const {
         EmulatedOmniSettings device;
-        device.hand = hand_model(Grip::Medium);
+        device.hand = hand_model(HandGrip::Medium);
         device.script.path = {{0, 0}, {0.4, 0.02}};
         EmulatedOmni omni(device);
         FaultyDevice faulty(omni, faults);
@@ -79,8 +79,8 @@ int last_force(const std::vector<WallRun::Row>& rows) {
 
 TEST_CASE("no hand on the emulated device that holds still is taken for a frozen reading",
           "[haptics][safety]") {
-    const Grip grip =
-        GENERATE(Grip::None, Grip::Light, Grip::Slack, Grip::Medium, Grip::Firm, Grip::FirmGrip);
+    const HandGrip grip = GENERATE(HandGrip::None, HandGrip::Light, HandGrip::Slack,
+                                   HandGrip::Medium, HandGrip::Firm, HandGrip::FirmGrip);
     const double place_m = GENERATE(0.0, 0.079);  // in the middle, at the stop
     const unsigned seed = GENERATE(1U, 2U);
     EmulatedOmniSettings device;
@@ -88,8 +88,8 @@ TEST_CASE("no hand on the emulated device that holds still is taken for a frozen
     device.script.path = {{0, place_m}};
     EmulatedOmni omni(device);
     SafetySettings settings;
-    settings.hot_newton = 3;         // or the force would soon stay below the threshold
-    settings.farthest_jump_m = 0.1;  // a handle that nobody holds is thrown about
+    settings.thermal_limit_newton = 3;  // or the force would soon stay below the threshold
+    settings.farthest_jump_m = 0.1;     // a handle that nobody holds is thrown about
     SafetyState state;
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> component(-3, 3);
@@ -113,7 +113,7 @@ TEST_CASE("no hand on the emulated device that holds still is taken for a frozen
         input.now_s = i * servo_tick_s;
         input.reading = omni.read();
         const SafetyResult result = guard_force(settings, state, input);
-        tripped = tripped || result.stage > SafetyStage::Hot;
+        tripped = tripped || result.stage > SafetyStage::ThermalLimit;
         largest = std::max(largest, result.newton.norm());
         omni.write(result.newton);
     }

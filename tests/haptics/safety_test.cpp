@@ -256,7 +256,7 @@ TEST_CASE("an old model fades the force, to zero at 0.2 s or two periods", "[hap
     }));
     CAPTURE(period_s);
     Guard guard;
-    guard.settings.hot_newton = infinite;
+    guard.settings.thermal_limit_newton = infinite;
     guard.input.period_s = period_s;
     guard.tick(2, 100);
     guard.input.model_age_s = stale_s - 1e-6;
@@ -337,7 +337,7 @@ TEST_CASE("some ticks of 19 ms are none of a slow loop", "[haptics][safety]") {
 TEST_CASE("what fades keeps to the slew at long ticks", "[haptics][safety]") {
     const int cause = GENERATE(0, 1, 2);
     const SafetyStage stage =
-        std::vector{SafetyStage::Ending, SafetyStage::Stale, SafetyStage::Warm}[cause];
+        std::vector{SafetyStage::Ending, SafetyStage::Stale, SafetyStage::CoolDown}[cause];
     Guard guard;
     guard.tick(3, 20);
     if (cause == 0) guard.input.is_ending = true;
@@ -370,7 +370,7 @@ TEST_CASE("three newtons are felt for 2.7 s, then 0.88 N for as long as wanted",
     CHECK(at(hot_s + 0.5) == Approx(3 - 0.5 * 2.12).margin(0.015));
     CHECK(at(hot_s + 1.01) == Approx(0.88));
     CHECK(*std::min_element(sent.begin() + 2, sent.end()) == Approx(0.88));
-    CHECK(guard.tick(3).stage == SafetyStage::Hot);
+    CHECK(guard.tick(3).stage == SafetyStage::ThermalLimit);
     CHECK(guard.tick(0.5).stage == SafetyStage::None);  // it does not act on less
 
     // At rest the mean falls from 0.7744 to 0.8 of it in 30 s ln(1 / 0.8) = 6.69 s.
@@ -473,7 +473,7 @@ TEST_CASE("a position that withstands a force that alternates is that of no devi
     const int half_ms = GENERATE(15, 20, 40, 49, 100);
     CAPTURE(half_ms);
     Guard guard;
-    guard.settings.hot_newton = infinite;
+    guard.settings.thermal_limit_newton = infinite;
     guard.tick(0, 100);
     const Vec3 held = guard.input.reading.position_m;
     int ticks = 0;
@@ -668,12 +668,12 @@ TEST_CASE("motors that are warm by their own word rest, and then stay below what
     (void)guard.tick(0, 8000);  // 30 s * ln(1 / 0.8) is 6.7 s
     const SafetyResult cooled = guard.tick(2, 1100);
 
-    CHECK(half.stage == SafetyStage::Warm);
+    CHECK(half.stage == SafetyStage::CoolDown);
     CHECK(half.newton.x() == Approx(1).margin(0.05));
     CHECK(gone.newton == zero);
-    CHECK(gone.reason == SafetyStage::Warm);
-    CHECK(back.newton.x() == Approx(guard.settings.hot_newton));
-    CHECK(back.stage == SafetyStage::Hot);
+    CHECK(gone.reason == SafetyStage::CoolDown);
+    CHECK(back.newton.x() == Approx(guard.settings.thermal_limit_newton));
+    CHECK(back.stage == SafetyStage::ThermalLimit);
     CHECK(cooled.newton.x() == Approx(2));
 }
 
@@ -710,7 +710,7 @@ TEST_CASE("a device's limits are taken over, but none above what a scene allows"
     limit_to(device, strong);
 
     CHECK(weak.clamp_newton == 1.5);
-    CHECK(weak.hot_newton == 0.4);
+    CHECK(weak.thermal_limit_newton == 0.4);
     CHECK(strong.clamp_newton == SafetySettings{}.clamp_newton);
     CHECK(weak.frozen_s == SafetySettings{}.frozen_s);
     CHECK(without_motors.clamp_newton == SafetySettings{}.clamp_newton);

@@ -6,15 +6,18 @@
 #include "formats/structure.h"
 #include "scene/read_scene.h"
 #include "session/run_headless.h"
+#include "simulation/held.h"
+#include "simulation/load.h"
+#include "simulation/mechanics.h"
 #include "simulation/probe.h"
-#include "simulation/simulation.h"
 #include "simulation/step.h"
+#include "simulation/systems/follow_hands.h"
 #include "tests/hard/ways_of_stepping.h"
+#include "tests/support/emulated_hand.h"
 #include "tests/support/load_error_of.h"
 #include "tests/support/paths.h"
 #include "tests/support/replaced.h"
 #include "tests/support/temporary_folder.h"
-#include "tools/hands.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -38,6 +41,14 @@ const std::filesystem::path protease = test::in_project("scenes/hiv/flexible.tom
 // Å, from the molecule in the hand to the other one.
 const Vec3 onto_the_other(-11, -2, -1);
 
+// Those of single steppers, and that which follows hands alone.
+std::vector<WayOfStepping> ways_of_scenes() {
+    std::vector<WayOfStepping> ways = all_ways_of_stepping();
+    ways.push_back(
+        {"second order", test::fast_forces(), {"statics.method=second-order"}, true, {}});
+    return ways;
+}
+
 SceneDescription scene_in(const std::filesystem::path& path, const WayOfStepping& way,
                           std::vector<std::string> settings) {
     settings.insert(settings.end(), way.settings.begin(), way.settings.end());
@@ -51,9 +62,9 @@ public:
             const std::vector<std::string>& settings = {})
         : scene_(scene_in(path, way, settings)),
           way_(way),
-          simulation_(load_simulation(scene_)),
-          felt_(simulation_.touch.model),
-          first_energy_(flexible().state.energy()) {}
+          world_(load_world(scene_)),
+          felt_(local_contact_of(world_).model),
+          first_energy_(find_energy(world())) {}
     Watched(const Watched&) = delete;
     Watched& operator=(const Watched&) = delete;
     ~Watched() = default;
@@ -61,19 +72,22 @@ public:
     // Moves what the hand holds.
     StepReport move(const Vec3& by) {
         handle_m_ += by * scene_.coupling.A_d / units::angstrom_per_metre;
-        const Vec3 held = find_held(flexible());
-        const TorsionState before = flexible().state;
-        const StepReport report = step_simulation(simulation_, hand_pose(), felt_);
+        const Vec3 held = held_place(world(), first_hand(world()));
+        const TorsionState before = world().resource<TorsionState>();
+        const double energy = find_energy(world());
+        const StepReport& report = step_world(world_, hand_pose(), felt_);
         look_at(report);
         if (report.finite) {
-            CHECK(((find_held(flexible()) - held) - by).norm() <= 1e-9 * (1 + by.norm()));
-            look_at_energies(*report.settled, before, by);
+            CHECK(((held_place(world(), first_hand(world())) - held) - by).norm() <=
+                  1e-9 * (1 + by.norm()));
+            look_at_energies(*report.relaxed, before, energy, by);
         } else {
-            CHECK((find_held(flexible()) - held).norm() == 0);
+            CHECK((held_place(world(), first_hand(world())) - held).norm() == 0);
             // To rounding: they are had from the coordinates again.
-            CHECK(find_largest_move(flexible().state.positions, before.positions) <= 1e-9);
+            CHECK(find_largest_move(world().resource<TorsionState>().positions, before.positions) <=
+                  1e-9);
         }
-        felt_ = report.touch;
+        felt_ = local_contact_of(world()).model;
         return report;
     }
 
@@ -83,16 +97,17 @@ public:
 
     // Over the whole run.
     void look_back() const {
-        const double gained = flexible().state.energy() - first_energy_;
+        const double gained = find_energy(world()) - first_energy_;
         if (gained > hand_work_)
-            CHECK(gained - hand_work_ <= rounding_of(flexible().state) + rounding_);
-        test::check_shape(flexible().model, simulation_.atoms.positions);
+            CHECK(gained - hand_work_ <= rounding_of(world().resource<TorsionState>()) + rounding_);
+        test::check_shape(model_of(world()), world_.resource<AtomTable>().positions);
     }
 
     const SceneDescription& scene() const { return scene_; }
-    const Simulation& simulation() const { return simulation_; }
-    const Flexible& flexible() const { return *simulation_.flexible; }
-    std::size_t sums_in_double() const { return flexible().statics.memory.fast_pairs.in_double; }
+    const World& world() const { return world_; }
+    std::size_t sums_in_double() const {
+        return world().resource<Solver>().statics.memory.fast_pairs.in_double;
+    }
 
 private:
     HandPose hand_pose() const {
@@ -102,56 +117,57 @@ private:
     }
 
     double rounding_of(const TorsionState& state) const {
-        return test::rounding_of(way_.forces) * test::sum_of_terms(flexible().model, state);
+        return test::rounding_of(way_.forces) * test::sum_of_terms(model_of(world()), state);
     }
 
     void look_at(const StepReport& report) const {
-        REQUIRE(report.settled);
-        CHECK(report.finite == report.settled->is_finite);
-        CHECK(test::is_finite(flexible().state));
-        CHECK(simulation_.atoms.positions == flexible().state.positions);
-        CHECK(report.touch.force_newton.allFinite());
-        CHECK(report.touch.torque_newton_metre.allFinite());
-        CHECK(std::isfinite(report.touch.stiffness_N_per_m));
-        CHECK(std::isfinite(report.touch.potential_kcal_per_mol));
+        REQUIRE(report.relaxed);
+        CHECK(report.finite == report.relaxed->is_finite);
+        CHECK(test::is_finite(world().resource<TorsionState>()));
+        CHECK(world_.resource<AtomTable>().positions == world().resource<TorsionState>().positions);
+        CHECK(local_contact_of(world()).model.force_newton.allFinite());
+        CHECK(local_contact_of(world()).model.torque_newton_metre.allFinite());
+        CHECK(std::isfinite(local_contact_of(world()).model.stiffness_N_per_m));
+        CHECK(std::isfinite(local_contact_of(world()).model.potential_kcal_per_mol));
     }
 
-    void look_at_energies(const SettleReport& settled, const TorsionState& before, const Vec3& by) {
-        const double now = flexible().state.energy();
+    void look_at_energies(const RelaxStepReport& relaxed, const TorsionState& before, double energy,
+                          const Vec3& by) {
+        const double now = find_energy(world());
         TorsionState moved = before;
-        if (moved.tether) {
-            moved.tether->place += by;
+        if (!moved.springs.empty()) {
+            moved.springs.front().place += by;
         } else {
-            shift_base(flexible().model, flexible().grabbed, by, moved);
+            shift_base(model_of(world()), held_part(world()).base, by, moved);
         }
         // What was rounded in a clash stays until all is summed anew, some steps later.
         const double own = rounding_of(moved);
         largest_rounding_ = std::max(largest_rounding_, own);
-        if (settled.energy_change > 0)
-            CHECK(settled.energy_change <= (way_.is_renewed ? largest_rounding_ : own));
+        if (relaxed.energy_change > 0)
+            CHECK(relaxed.energy_change <= (way_.is_renewed ? largest_rounding_ : own));
         // Sums of numbers so large; the clash that the hand made has come down since.
-        const double scale = std::abs(settled.hand_work) + std::abs(settled.energy_change) +
-                             std::abs(before.energy());
-        CHECK(std::abs(now - before.energy() - settled.hand_work - settled.energy_change) <=
-              1e-12 * scale);
-        hand_work_ += settled.hand_work;
+        const double scale =
+            std::abs(relaxed.hand_work) + std::abs(relaxed.energy_change) + std::abs(energy);
+        CHECK(std::abs(now - energy - relaxed.hand_work - relaxed.energy_change) <= 1e-12 * scale);
+        hand_work_ += relaxed.hand_work;
         rounding_ += 1e-12 * scale;
         constexpr std::size_t few = 500;  // atoms
-        if (moved.positions.size() > few) return;
-        // What the hand did, by the twin in double.
-        const double work = test::exact_energy(flexible().model, moved) -
-                            test::exact_energy(flexible().model, before);
+        // By second order everything follows while the hand goes, so that no state is between.
+        if (moved.positions.size() > few || !way_.start) return;
+        // What the hand did, by the reference in double.
+        const double work = test::exact_energy(model_of(world()), moved) -
+                            test::exact_energy(model_of(world()), before);
         const double most = rounding_of(moved) + rounding_of(before);
-        CHECK(std::abs(settled.hand_work - work) <= (way_.is_renewed ? 4 : 1) * most);
-        test::check_no_rise(flexible().model, moved, flexible().state,
+        CHECK(std::abs(relaxed.hand_work - work) <= (way_.is_renewed ? 4 : 1) * most);
+        test::check_no_rise(model_of(world()), moved, world().resource<TorsionState>(),
                             test::rounding_of(way_.forces));
-        rounding_ += std::max(0.0, settled.energy_change);
+        rounding_ += std::max(0.0, relaxed.energy_change);
     }
 
     SceneDescription scene_;
     const WayOfStepping& way_;
-    Simulation simulation_;
-    TouchModel felt_;
+    World world_;
+    ContactModel felt_;
     Vec3 handle_m_ = Vec3::Zero();
     double first_energy_;
     double largest_rounding_ = 0;          // so far, kcal/mol
@@ -165,11 +181,11 @@ std::string all_of(const std::vector<std::string>& warnings) {
 }
 
 Summary run(const SceneDescription& scene) {
-    Simulation simulation = load_simulation(scene);
-    const EmulatedOmniSettings settings = build_emulated_omni(scene, simulation);
+    World world = load_world(scene);
+    const EmulatedOmniSettings settings = test::build_played_omni(scene, world);
     EmulatedOmni device(settings);
-    return run_headless(scene, simulation, device,
-                        list_warnings(scene, simulation, settings.script), nullptr, {});
+    return run_headless(scene, world, device, list_warnings(scene, world, settings.script), nullptr,
+                        {});
 }
 
 const std::vector<std::string> by_spring{"molecules.held.motion=free", "grab.atom=\"4 CB\""};
@@ -180,7 +196,7 @@ TEST_CASE("a hand that jumps onto, through and far beyond the other molecule", "
     std::vector<std::string> settings;
     if (GENERATE(false, true)) settings = by_spring;
     const auto jump = GENERATE(as<Vec3>{}, onto_the_other, Vec3(-30, 0, 0), Vec3(-30, -5.5, -2.7));
-    for (const WayOfStepping& way : all_ways_of_stepping()) {
+    for (const WayOfStepping& way : ways_of_scenes()) {
         INFO(way.name);
         Watched watched(peptides, way, settings);
 
@@ -195,7 +211,7 @@ TEST_CASE("a hand that jumps onto, through and far beyond the other molecule", "
 TEST_CASE("a molecule rammed through the other one by 1.2 Å a step", "[hard]") {
     std::vector<std::string> settings{"hand.start_offset_angstrom=[0, -2, -1]"};
     if (GENERATE(false, true)) settings.insert(settings.end(), by_spring.begin(), by_spring.end());
-    for (const WayOfStepping& way : all_ways_of_stepping()) {
+    for (const WayOfStepping& way : ways_of_scenes()) {
         INFO(way.name);
         Watched watched(peptides, way, settings);
 
@@ -206,10 +222,10 @@ TEST_CASE("a molecule rammed through the other one by 1.2 Å a step", "[hard]") 
 }
 
 TEST_CASE("a molecule that starts in the other one, and is warned of", "[hard]") {
-    for (const WayOfStepping& way : all_ways_of_stepping()) {
+    for (const WayOfStepping& way : ways_of_scenes()) {
         INFO(way.name);
         Watched watched(peptides, way, {"hand.start_offset_angstrom=[-11, -2, -1]"});
-        CHECK_THAT(all_of(list_warnings(watched.scene(), watched.simulation(), {})),
+        CHECK_THAT(all_of(list_warnings(watched.scene(), watched.world(), {})),
                    Contains("atoms are on each other at the start: PEP") && Contains(" Å apart"));
 
         watched.rest(30);
@@ -226,18 +242,18 @@ TEST_CASE("molecules that lie on each other in the file come apart, or are told 
     const test::TemporaryFolder folder;
     const std::string file =
         folder.add_file("both.crd", format_crd(structure, "one in the other")).string();
-    for (const WayOfStepping& way : all_ways_of_stepping()) {
+    for (const WayOfStepping& way : ways_of_scenes()) {
         INFO(way.name);
         Watched watched(peptides, way,
                         {"molecules.resting.structure=" + file, "molecules.held.structure=" + file,
                          "statics.relax_steps=100", std::string(allow_outside)});
-        const Flexible& flexible = watched.flexible();
-        const std::string warnings =
-            all_of(list_warnings(watched.scene(), watched.simulation(), {}));
-        CHECK(flexible.relaxed.energy_after <= flexible.relaxed.energy_before);
-        if (flexible.relaxed.end != RelaxEnd::Converged)
+        const World& world = watched.world();
+        const std::string warnings = all_of(list_warnings(watched.scene(), watched.world(), {}));
+        CHECK(world.resource<StartReport>().joints_at_rest.value().energy_after <=
+              world.resource<StartReport>().joints_at_rest.value().energy_before);
+        if (world.resource<StartReport>().joints_at_rest.value().end != RelaxEnd::Converged)
             CHECK_THAT(warnings, Contains("not at rest at the start"));
-        if (flexible.state.energy() > 1e6)
+        if (world.resource<TorsionState>().energy() > 1e6)
             CHECK_THAT(warnings, Contains("atoms are on each other at the start"));
 
         watched.rest(20);
@@ -252,29 +268,29 @@ TEST_CASE("charges whose energies are no numbers are refused in words", "[hard]"
             .add_file("both.psf", test::replaced(read_text_file(peptides / "both.psf"),
                                                  " -0.300000", " 1.000e200"))
             .string();
-    for (const WayOfStepping& way : all_ways_of_stepping()) {
+    for (const WayOfStepping& way : ways_of_scenes()) {
         INFO(way.name);
         const SceneDescription scene =
             scene_in(peptides, way,
                      {"molecules.resting.topology=" + file, "molecules.held.topology=" + file,
                       std::string(allow_outside)});
 
-        CHECK_THAT(test::load_error_of([&] { load_simulation(scene); }),
+        CHECK_THAT(test::load_error_of([&] { load_world(scene); }),
                    Contains("scene.toml:") && Contains("the energy at the start is not finite; "
                                                        "expected atoms apart from each other"));
     }
 }
 
 TEST_CASE("a scene in which nothing can move but by the hand", "[hard]") {
-    for (const WayOfStepping& way : all_ways_of_stepping()) {
+    for (const WayOfStepping& way : ways_of_scenes()) {
         INFO(way.name);
         // Of the flexible one no residue is as near as that.
         Watched watched(peptides, way, {"molecules.held.shape=rigid", "joints.within_angstrom=0"});
-        REQUIRE(watched.flexible().joints_held > 0);
-        REQUIRE(watched.flexible().model.coordinates == 0);
+        REQUIRE(watched.world().resource<StartReport>().joints_held > 0);
+        REQUIRE(model_of(watched.world()).coordinates == 0);
 
         for (int i = 0; i < 10; ++i)
-            CHECK(watched.move(0.1 * onto_the_other).settled->energy_change == 0);
+            CHECK(watched.move(0.1 * onto_the_other).relaxed->energy_change == 0);
         watched.look_back();
     }
 }
@@ -285,31 +301,31 @@ TEST_CASE("a hand thrown out of the world and back", "[hard]") {
     if (GENERATE(false, true)) settings.emplace_back("statics.cutoff_angstrom=9");
     const double far = GENERATE(1e4, 1e7, 1e12, 1e100, 1e160, 1e300);
     INFO(far << " Å");
-    for (const WayOfStepping& way : all_ways_of_stepping()) {
+    for (const WayOfStepping& way : ways_of_scenes()) {
         INFO(way.name);
         SceneDescription scene = scene_in(peptides, way, settings);
-        Simulation simulation = load_simulation(scene);
-        const Flexible& flexible = *simulation.flexible;
-        TouchModel felt = simulation.touch.model;
+        World world = load_world(scene);
+        ContactModel felt = local_contact_of(world).model;
         HandPose pose;
         pose.travel_m = Vec3(far, -far, 0) * scene.coupling.A_d / units::angstrom_per_metre;
-        const std::vector<Vec3> before = simulation.atoms.positions;
+        const std::vector<Vec3> before = world.resource<AtomTable>().positions;
 
-        const StepReport report = step_simulation(simulation, pose, felt);
+        const StepReport& report = step_world(world, pose, felt);
 
-        CHECK(test::is_finite(flexible.state));
-        CHECK(report.touch.force_newton.allFinite());
+        CHECK(test::is_finite(world.resource<TorsionState>()));
+        CHECK(local_contact_of(world).model.force_newton.allFinite());
         if (!report.finite)
-            CHECK(find_largest_move(simulation.atoms.positions, before) <=
+            CHECK(find_largest_move(world.resource<AtomTable>().positions, before) <=
                   (way.is_renewed ? 1e-9 : 0));
         // And on from there.
-        take_hold(simulation, {});
-        CHECK(step_simulation(simulation, {}, felt).finite);
-        CHECK(test::is_finite(flexible.state));
+        take_hold(world, first_hand(world), {});
+        CHECK(step_world(world, {}, felt).finite);
+        CHECK(test::is_finite(world.resource<TorsionState>()));
     }
 }
 
 TEST_CASE("a run that rams one molecule through the other says so in words", "[hard]") {
+    // By second order molecules make room, so that nothing goes through.
     for (const WayOfStepping& way : all_ways_of_stepping()) {
         INFO(way.name);
         const SceneDescription scene =
@@ -331,10 +347,10 @@ TEST_CASE("a run that rams one molecule through the other says so in words", "[h
 }
 
 TEST_CASE("TL-3 started in the wall of the protease", "[hard][slow]") {
-    for (const WayOfStepping& way : all_ways_of_stepping()) {
+    for (const WayOfStepping& way : ways_of_scenes()) {
         INFO(way.name);
         Watched watched(protease, way, {"hand.start_offset_angstrom=[0, 6, 2]"});
-        CHECK_THAT(all_of(list_warnings(watched.scene(), watched.simulation(), {})),
+        CHECK_THAT(all_of(list_warnings(watched.scene(), watched.world(), {})),
                    Contains("atoms are on each other at the start"));
 
         watched.rest(way.forces.fast ? 20 : 4);
@@ -343,12 +359,12 @@ TEST_CASE("TL-3 started in the wall of the protease", "[hard][slow]") {
 }
 
 TEST_CASE("TL-3 rammed through the protease by a handle at 0.5 m/s", "[hard][slow]") {
-    for (const WayOfStepping& way : all_ways_of_stepping()) {
+    for (const WayOfStepping& way : ways_of_scenes()) {
         INFO(way.name);
         Watched watched(protease, way);
         // Of each period.
-        const double angstrom = 0.5 * watched.simulation().period_s / watched.scene().coupling.A_d *
-                                units::angstrom_per_metre;
+        const double angstrom = 0.5 * watched.world().resource<Clock>().period_s /
+                                watched.scene().coupling.A_d * units::angstrom_per_metre;
         CHECK(angstrom == Approx(1.2).epsilon(0.01));
 
         for (int i = 0; i < (way.forces.fast ? 30 : 6); ++i)
@@ -359,7 +375,7 @@ TEST_CASE("TL-3 rammed through the protease by a handle at 0.5 m/s", "[hard][slo
 }
 
 TEST_CASE("TL-3 in a hand that jumps by 30 Å and back", "[hard][slow]") {
-    for (const WayOfStepping& way : all_ways_of_stepping()) {
+    for (const WayOfStepping& way : ways_of_scenes()) {
         INFO(way.name);
         Watched watched(protease, way);
 

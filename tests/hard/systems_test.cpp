@@ -156,7 +156,7 @@ TEST_CASE("a spring that pulls along an axis, or at a pivot, has no lever to tur
     // The pivot, and an atom of the last axis; both are on the line.
     const std::uint32_t atom = GENERATE(0U, 6U);
     REQUIRE(c.positions[atom].tail<2>().norm() == 0);
-    start.tether = Tether{{atom}, 1000, c.positions[atom] + Vec3(20, 0, 0)};
+    start.springs = {{{atom}, 1000, c.positions[atom] + Vec3(20, 0, 0)}};
 
     test::check_all_ways(model, start, 50, [&](const Outcome& outcome, const TorsionState& state) {
         CHECK(outcome.is_finite);

@@ -105,8 +105,16 @@ ForceSettings fast_forces() {
 
 const std::vector<WayOfStepping>& all_ways_of_stepping() {
     static const std::vector<WayOfStepping> ways{
-        {"all joints, pairs in double", {}, {"statics.pairs=double"}, false, full_steps},
-        {"all joints, fast pairs", fast_forces(), {"statics.pairs=fast"}, false, full_steps},
+        {"all joints, pairs in double",
+         {},
+         {"statics.method=quasi-static", "statics.pairs=double"},
+         false,
+         full_steps},
+        {"all joints, fast pairs",
+         fast_forces(),
+         {"statics.method=quasi-static", "statics.pairs=fast"},
+         false,
+         full_steps},
         {"few joints, pairs in double",
          {},
          {"statics.pairs=double", "statics.active=8"},
@@ -137,7 +145,7 @@ double sum_of_terms(const TorsionModel& model, const TorsionState& state) {
     const EnergyTerms& terms = exact.terms;
     const Topology& topology = model.topology;
     double sum = terms.bond + terms.angle + terms.urey_bradley + terms.improper +
-                 std::abs(terms.cmap) + exact.tether_energy;
+                 std::abs(terms.cmap) + exact.spring_energy;
     for (const Dihedral& dihedral : topology.dihedrals) sum += 2 * std::abs(dihedral.k);
     double largest = 0;
     const auto add = [&](const LennardJonesTable& table, std::uint32_t a, std::uint32_t b) {

@@ -29,7 +29,7 @@ ForceSettings fast_forces();
 // By which the energy may rise, of its terms without signs.
 double rounding_of(const ForceSettings& forces);
 
-// Energies in double, by the twin of every faster way.
+// Energies in double, by the reference of every faster way.
 double exact_energy(const TorsionModel& model, const TorsionState& state);
 // All its terms without their signs: of pairs repulsion, attraction and electrostatics, each. The
 // largest pair counts twice, as field/pair_kernel.h says.

@@ -36,3 +36,11 @@ TEST_CASE("of two motions the inner one goes first", "[math]") {
     CHECK(((outer * inner) * x - (inner * outer) * x).norm() > 0.1);
     CHECK((RigidMotion{} * x - x).norm() == 0);
 }
+
+TEST_CASE("a motion and its inverse bring every point back", "[math]") {
+    const RigidMotion motion = turn_about({1, -4, 2}, Vec3(1, 2, -2) / 3, 2.1);
+    const Vec3 x(1, 2, 3);
+
+    CHECK((motion.inverse() * (motion * x) - x).norm() < 1e-14);
+    CHECK((motion * (motion.inverse() * x) - x).norm() < 1e-14);
+}

@@ -174,7 +174,8 @@ TEST_CASE("a heavy atom that its line has upon another one is staggered the othe
 }
 
 TEST_CASE(
-    "what hangs on nothing that has a place is told, the rest is finite however the given "
+    "atoms without a placed neighbour are reported, the others have finite places however the "
+    "given "
     "atoms lie",
     "[prepare][positions]") {
     // A CH2, an NH and a CH3 between neighbours in line, and at one place.

@@ -51,6 +51,17 @@ StructureWriter histidine() {
     return writer;
 }
 
+// Without hydrogens, its side chain in the plane z = 0.
+StructureWriter aspartate() {
+    StructureWriter writer;
+    writer.backbone("ASP", "A", 1, 0);
+    writer.atom("ASP", "A", 1, "CB", {1.2, 2.3, 0}, "C");
+    writer.atom("ASP", "A", 1, "CG", {2.6, 2.9, 0}, "C");
+    writer.atom("ASP", "A", 1, "OD1", {3.6, 2.2, 0}, "O");
+    writer.atom("ASP", "A", 1, "OD2", {2.7, 4.1, 0}, "O");
+    return writer;
+}
+
 std::string_view state_of(const StructureWriter& writer) {
     return choose_histidine(writer.structure(), find_residues(writer.structure())[0]).residue;
 }
@@ -102,15 +113,10 @@ TEST_CASE("ends, oxygens and hydrogens get CHARMM's names", "[prepare]") {
     CHECK(named.generate.segments[0].first.empty());
 }
 
-TEST_CASE("two hydrogens on one carbon are told apart by the IC table", "[prepare]") {
+TEST_CASE("the IC table names the two hydrogens of a carbon", "[prepare]") {
     // Across the plane of CA, CB, CG: HB1 is where the dihedral CG-CA-CB-HB1 is +119 degrees.
     for (const double side : {1.0, -1.0}) {
-        StructureWriter writer;
-        writer.backbone("ASP", "A", 1, 0);
-        writer.atom("ASP", "A", 1, "CB", {1.2, 2.3, 0}, "C");
-        writer.atom("ASP", "A", 1, "CG", {2.6, 2.9, 0}, "C");
-        writer.atom("ASP", "A", 1, "OD1", {3.6, 2.2, 0}, "O");
-        writer.atom("ASP", "A", 1, "OD2", {2.7, 4.1, 0}, "O");
+        StructureWriter writer = aspartate();
         writer.atom("ASP", "A", 1, "HB2", {0.7, 2.7, side * 0.9}, "H");
         writer.atom("ASP", "A", 1, "HB3", {0.7, 2.7, -side * 0.9}, "H");
         const Named named = name_all(writer.structure());
@@ -166,12 +172,7 @@ TEST_CASE("caps of other programs become patches of the residue beside them", "[
 }
 
 TEST_CASE("hydrogens in the file, or a user, decide about protons", "[prepare]") {
-    StructureWriter writer;
-    writer.backbone("ASP", "A", 1, 0);
-    writer.atom("ASP", "A", 1, "CB", {1.2, 2.3, 0}, "C");
-    writer.atom("ASP", "A", 1, "CG", {2.6, 2.9, 0}, "C");
-    writer.atom("ASP", "A", 1, "OD1", {3.6, 2.2, 0}, "O");
-    writer.atom("ASP", "A", 1, "OD2", {2.7, 4.1, 0}, "O");
+    StructureWriter writer = aspartate();
     PrepareSettings asked;
     asked.protonation = {{{"A", "1"}, "ASPP"}};
     CHECK(name_all(writer.structure()).generate.patches.empty());
@@ -255,7 +256,7 @@ TEST_CASE("segments of many equal ligands have names that fit a PDB file", "[pre
     CHECK(atoms.contains("L120"));
 }
 
-TEST_CASE("what cannot become a system is told all at once", "[prepare]") {
+TEST_CASE("all that keeps a structure from becoming a system is in one message", "[prepare]") {
     StructureWriter writer;
     writer.backbone("ALA", "A", 1, 0);
     writer.atom("UNL", "B", 1, "X1", {9, 9, 9}, "C");

@@ -143,7 +143,7 @@ TEST_CASE("a water between an anion and a cation is turned to its lowest energy"
     CHECK(found - best < 0.01);
 }
 
-TEST_CASE("turning the groups of 1TW7 lowers its energy by what is told, the same way each time",
+TEST_CASE("turning the groups of 1TW7 lowers its energy as reported, the same way each time",
           "[prepare][orient][native]") {
     const auto file = find_shared_data("data/hiv/1tw7_charmm_allH.pdb");
     if (!file) return;

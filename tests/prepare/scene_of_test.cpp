@@ -1,7 +1,10 @@
 #include "prepare/scene_of.h"
 
+#include "scene/read_scene.h"
 #include "tests/prepare/small_system.h"
+#include "tests/support/temporary_folder.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <string>
 #include <vector>
@@ -91,4 +94,28 @@ TEST_CASE("the hand leads along the way, and what was measured is in the file",
                Contains("feel_pN = [120, 3600]") && !Contains("force_law"));
     CHECK_THAT(section(tuned, "run"), Contains("# measured\nperiod_ms = 7\n"));
     CHECK_THAT(section(tuned, "statics"), Contains("relax_steps = 0"));
+}
+
+TEST_CASE("names with odd letters read as they were written", "[prepare][scene]") {
+    const test::TemporaryFolder folder;
+    for (const char* const name : {"system.prm", "relaxed.crd", "system.psf"}) {
+        folder.add_file(name, "");
+    }
+    const std::string odd = "\" \\ \t\x1b\x7f \u0085 \u200b \u00c5 \u6c34";
+    Complex complex;
+    complex.segments[1].name = odd;
+    const HandChoice hand = choose_hand(complex.structure, complex.segments, "");
+    REQUIRE(hand.segment == odd);
+
+    const SceneDescription read =
+        parse_scene(format_scene(complex.structure, complex.segments, hand, Vec3::UnitX(),
+                                 {"title " + odd, "about " + odd, "made by " + odd}, {}),
+                    folder.path() / "scene.toml");
+
+    CHECK(read.title == "title " + odd);
+    CHECK(read.about == "about " + odd);
+    CHECK(read.made_by == "made by " + odd);
+    CHECK(read.grab.molecule == odd);
+    CHECK(std::ranges::count(read.molecules, odd, &MoleculeDescription::name) == 1);
+    CHECK(std::ranges::count(read.molecules, odd, &MoleculeDescription::segment) == 1);
 }

@@ -80,7 +80,7 @@ TEST_CASE("a scene says what it says, and defaults for the rest", "[scene][read]
     CHECK(scene.molecules[1].motion == Motion::AlongX);
     CHECK(scene.grab.molecule == "moved");
     CHECK(scene.grab.measured_from == "fixed");
-    CHECK(scene.hand.grip == 3);
+    CHECK(scene.hand.grip == HandGrip::Medium);
     CHECK_FALSE(scene.hand.start_angstrom.has_value());
     CHECK(scene.coupling.mode == CouplingMode::Guarded);
     CHECK(scene.device.servo_delay_ticks == 1);
@@ -103,7 +103,7 @@ period_ms = 20
 )",
                                                file);
 
-    CHECK(hand_names[scene.hand.grip] == "firm-grip");
+    CHECK(grip_names[static_cast<std::size_t>(scene.hand.grip)] == "firm-grip");
     CHECK(scene.hand.stroke == Stroke::Path);
     CHECK(scene.hand.start_angstrom == 7.0);
     REQUIRE(scene.hand.path.size() == 2);
@@ -179,6 +179,8 @@ TEST_CASE("a value of the wrong type is told with what it is and should be", "[s
         {"[hand]\ngrip = 2", 18, 8, "'hand.grip' is 2; expected one of none, light"},
         {"[hand]\ngrip = \"frim\"", 18, 8, "expected one of none, light, slack, medium, firm"},
         {"[hand]\ngrip = \"fir\"", 18, 8, "did you mean 'firm'?"},
+        {"[statics]\nweights = \"near-hand\"", 18, 11,
+         "'statics.weights': near-hand is now hand-proximity"},
         {"[coupling]\nmode = 6", 18, 8, "'coupling.mode' is 6; expected one of 1, 2, 3, 4, 5"},
         {"[coupling]\nmode = 2.0", 18, 8, "expected one of 1, 2, 3, 4, 5"},
         {"[hand]\npath = 3", 18, 8, "expected a list of points"},
@@ -458,7 +460,7 @@ TEST_CASE("a setting's value is TOML or a bare word", "[scene][settings]") {
     CHECK(with({"title=two words, with a comma"}).title == "two words, with a comma");
     CHECK(with({"title=\"quoted # text\""}).title == "quoted # text");
     CHECK(with({"title=\"a=b\""}).title == "a=b");
-    CHECK(hand_names[with({"grip=firm-grip"}).hand.grip] == "firm-grip");
+    CHECK(grip_names[static_cast<std::size_t>(with({"grip=firm-grip"}).hand.grip)] == "firm-grip");
     CHECK(with({"start_angstrom=2.5"}).hand.start_angstrom == 2.5);
     CHECK(with({"path=[[0, 1], [2, 3.5]]", "stroke=path"}).hand.path[1] ==
           PathPoint{2, {3.5, 0, 0}});
@@ -569,7 +571,8 @@ TEST_CASE("joints, rest and a spring are read, and are as documented otherwise",
     CHECK_FALSE((plain.joints.methyl || plain.joints.amide || plain.joints.amide_nh2 ||
                  plain.joints.guanidinium_nh2));
     CHECK_FALSE(plain.joints.within_angstrom.has_value());
-    CHECK(plain.statics.method == StaticsMethod::QuasiStatic);
+    CHECK_FALSE(plain.statics.method);
+    CHECK(method_of(plain.statics) == RelaxMethod::SecondOrder);
     CHECK(plain.statics.pairs == PairPrecision::Fast);
     CHECK_FALSE(plain.statics.cutoff_angstrom.has_value());
     CHECK(plain.grab.atom.empty());
@@ -610,7 +613,7 @@ relax_steps = 0
     CHECK(scene.joints.springs == std::vector<std::string>{"A 3 SG 40 SG"});
     CHECK(scene.joints.within_angstrom == 8.0);
     CHECK(scene.joints.around == "fixed");
-    CHECK(scene.statics.method == StaticsMethod::InverseMass);
+    CHECK(scene.statics.method == RelaxMethod::InverseMass);
     CHECK(scene.statics.steps == 6);
     CHECK(scene.statics.largest_move_angstrom == 0.3);
     CHECK(scene.statics.pairs == PairPrecision::Double);

@@ -55,7 +55,7 @@ TEST_CASE("odd values survive being written and read, to the last bit", "[scene]
     scene.joints.turn = {"A 1 \"C\" N", ""};
     scene.statics.cutoff_angstrom = 0.1 + 12;
     scene.molecules[1].name = "x";
-    scene.hand.grip = 5;
+    scene.hand.grip = HandGrip::FirmGrip;
     scene.hand.stroke = Stroke::Path;
     scene.hand.start_angstrom = std::numeric_limits<double>::denorm_min();
     scene.hand.release_s = 1e-3;
@@ -123,6 +123,7 @@ TEST_CASE("every field is written, under its full key", "[scene][write]") {
     scene.lesson = {{"STEP", "text", "task", LessonQuantity::Force, 1.0, 2.0, 0.5}};
     scene.hand.release_s = 4;
     scene.joints.within_angstrom = 8;
+    scene.statics.method = RelaxMethod::LimitedMemory;
     scene.statics.cutoff_angstrom = 12;
     scene.statics.budget_us = 1000;
     scene.coupling.feel_pN = {0.1 + 0.2, 3000};
@@ -138,6 +139,8 @@ TEST_CASE("every field is written, under its full key", "[scene][write]") {
     CHECK(parsed(formatted(ranged)).coupling.feel_pN == ranged.coupling.feel_pN);
     for (const FieldNote& field : list_fields()) {
         INFO(field.key);
+        // Those of edits and of a second hand: edits_test, second_hand_test.
+        if (field.key.starts_with("edits.") || field.key.starts_with("second.")) continue;
         const std::size_t dot = field.key.rfind('.');
         const std::string last = field.key.substr(dot == std::string::npos ? 0 : dot + 1);
         CHECK(("\n" + text).find("\n" + last + " = ") != std::string::npos);

@@ -1,5 +1,8 @@
 // Guarded coupling with a molecule that moves in space, knocked and pushed from every side.
 #include "haptics/device.h"
+#include "simulation/held.h"
+#include "simulation/load.h"
+#include "simulation/step.h"
 #include "tests/support/guarded_loop.h"
 
 #include <fmt/format.h>
@@ -51,27 +54,27 @@ InSpace run_in_space(const GuardedCase& c, const Vec3& x) {
     const SceneDescription scene =
         water_scene({"mode=guarded", "stroke=hold", "period_ms=" + std::to_string(c.period_ms),
                      "molecules.moved.motion=translate"});
-    Simulation simulation = load_simulation(scene);
-    const Vec3 start = simulation.touch.model.molecule.place_angstrom;
+    World world = load_world(scene);
+    const Vec3 start = local_contact_of(world).model.molecule.place_angstrom;
     TurnedOmni omni(c, x);
     InSpace result;
     std::array<std::vector<double>, 3> sent;
-    const auto step = [&](const HandPose& hand, const TouchModel& felt) {
-        (void)step_simulation(simulation, hand, felt);
-        return simulation.touch;
+    const auto step = [&](const HandPose& hand, const ContactModel& felt) {
+        (void)step_world(world, hand, felt);
+        return local_contact_of(world);
     };
     const auto on_tick = [&](const ServoTick& tick) {
-        result.off_angstrom = (tick.touch.molecule.place_angstrom - start).norm();
-        result.largest_nN = std::max(result.largest_nN, 1e9 * tick.touch.force_newton.norm());
+        result.off_angstrom = (tick.contact.molecule.place_angstrom - start).norm();
+        result.largest_nN = std::max(result.largest_nN, 1e9 * tick.contact.force_newton.norm());
         result.energy_J = tick.hand_energy_J;
         result.stage = std::max(result.stage, tick.stage);
         for (std::size_t axis = 0; axis < sent.size(); ++axis)
             sent[axis].push_back(tick.sent_newton(static_cast<Eigen::Index>(axis)));
     };
-    ServoSettings servo = build_servo_settings(scene, simulation);
-    servo.safety.hot_newton = c.hot_newton;
+    ServoSettings servo = build_servo_settings(scene, world);
+    servo.safety.thermal_limit_newton = c.thermal_limit_newton;
     const auto ticks = static_cast<std::uint64_t>(c.seconds * servo_rate_hz);
-    run_lockstep({ticks, c.period_ms}, servo, omni, simulation.touch, step, on_tick);
+    run_lockstep({ticks, c.period_ms}, servo, omni, local_contact_of(world), step, on_tick);
     for (const std::vector<double>& axis : sent) {
         const std::span<const double> end(
             axis.end() - std::min<std::ptrdiff_t>(std::ssize(axis), 4000), axis.end());
@@ -95,7 +98,7 @@ std::string words_of(const GuardedCase& c, const Vec3& x) {
 
 TEST_CASE("guarded in space, a hand knocked from any side stays at rest without a ripple",
           "[session][coupling]") {
-    for (const Grip grip : {Grip::None, Grip::Medium})
+    for (const HandGrip grip : {HandGrip::None, HandGrip::Medium})
         for (const std::uint64_t period_ms : {14, 83})
             for (const double friction : {0.0, 0.26})
                 for (const Vec3& x : directions) {
@@ -115,9 +118,9 @@ TEST_CASE("guarded in space, no push goes through the wall or gives the hand ene
     for (const double stroke_s : {0.5, 2.0})
         for (const std::uint64_t period_ms : {1, 14, 83})
             for (const Vec3& x : directions) {
-                GuardedCase c = stroke(Grip::Firm, 0, period_ms, stroke_s, -0.09, 0.5);
+                GuardedCase c = stroke(HandGrip::Firm, 0, period_ms, stroke_s, -0.09, 0.5);
                 // What slid behind the other water is pulled back with all force, for long.
-                c.hot_newton = std::numeric_limits<double>::infinity();
+                c.thermal_limit_newton = std::numeric_limits<double>::infinity();
                 INFO(words_of(c, x) << ", " << stroke_s << " s");
 
                 const InSpace result = run_in_space(c, x);

@@ -1,5 +1,8 @@
 // What guarded coupling must keep to on the dimer: six hands, four periods, with the device's
 // friction and without. Each bar and its number come from a study of this loop in another program.
+#include "simulation/held.h"
+#include "simulation/load.h"
+#include "simulation/step.h"
 #include "tests/support/guarded_loop.h"
 #include "tests/support/water_run.h"
 
@@ -18,9 +21,10 @@ using namespace palpa::test;
 
 namespace {
 
-constexpr std::array grips{Grip::None,   Grip::Light, Grip::Slack,
-                           Grip::Medium, Grip::Firm,  Grip::FirmGrip};
-constexpr std::array hands{Grip::Light, Grip::Slack, Grip::Medium, Grip::Firm, Grip::FirmGrip};
+constexpr std::array grips{HandGrip::None,   HandGrip::Light, HandGrip::Slack,
+                           HandGrip::Medium, HandGrip::Firm,  HandGrip::FirmGrip};
+constexpr std::array hands{HandGrip::Light, HandGrip::Slack, HandGrip::Medium, HandGrip::Firm,
+                           HandGrip::FirmGrip};
 constexpr std::array<std::uint64_t, 4> periods_ms{1, 5, 14, 83};
 constexpr std::array frictions_newton{0.0, 0.26};
 
@@ -67,13 +71,13 @@ DueFunction lossy(unsigned seed) {
 // At rest, and in strokes of 3 s and 1 s.
 void check_unsteady(DueFunction (*draw)(unsigned seed)) {
     for (const double friction : frictions_newton)
-        for (const Grip grip : grips) {
+        for (const HandGrip grip : grips) {
             GuardedCase c = held(grip, friction, 14);
             c.draw = draw(1);
             check_held(c);
         }
     for (const double stroke_s : {3.0, 1.0})
-        for (const Grip grip : hands) {
+        for (const HandGrip grip : hands) {
             INFO(stroke_s << " s");
             const double depth = depth_to_peak({.grip = grip}, stroke_s);
             for (const double friction : frictions_newton) {
@@ -86,7 +90,7 @@ void check_unsteady(DueFunction (*draw)(unsigned seed)) {
 
 // In and out to 3 nN, each hand at every period.
 void check_strokes(double stroke_s) {
-    for (const Grip grip : hands) {
+    for (const HandGrip grip : hands) {
         const double depth = depth_to_peak({.grip = grip}, stroke_s);
         for (const std::uint64_t period_ms : periods_ms)
             for (const double friction : frictions_newton)
@@ -98,14 +102,14 @@ void check_strokes(double stroke_s) {
 }  // namespace
 
 TEST_CASE("guarded, a knocked hand stays at rest without a ripple", "[session][coupling]") {
-    for (const Grip grip : grips)
+    for (const HandGrip grip : grips)
         for (const std::uint64_t period_ms : periods_ms)
             for (const double friction : frictions_newton)
                 check_held(held(grip, friction, period_ms));
 }
 
 TEST_CASE("guarded, ten times the force gain leaves rest without a ripple", "[session][coupling]") {
-    for (const Grip grip : {Grip::None, Grip::Light, Grip::Medium, Grip::Firm})
+    for (const HandGrip grip : {HandGrip::None, HandGrip::Light, HandGrip::Medium, HandGrip::Firm})
         for (const std::uint64_t period_ms : periods_ms)
             for (const double friction : frictions_newton) {
                 GuardedCase c = held(grip, friction, period_ms);
@@ -129,7 +133,7 @@ TEST_CASE("guarded, no hand is too quick for the wall", "[session][coupling]") {
         for (const double friction : frictions_newton)
             // At eight places and moments within a period.
             for (int phase = 0; phase < 8; ++phase) {
-                GuardedCase c{Grip::Firm, friction, period_ms, 10 + 0.15 * phase};
+                GuardedCase c{HandGrip::Firm, friction, period_ms, 10 + 0.15 * phase};
                 const double out = 0.3 + 0.003 * phase, stroke_s = 0.09 / mean_m_per_s;
                 c.script.path = {{out, 0},
                                  {out + stroke_s, -0.09},
@@ -152,7 +156,7 @@ TEST_CASE("guarded, no push goes through the wall", "[session][coupling]") {
     for (const std::uint64_t period_ms : periods_ms)
         for (const double friction : frictions_newton) {
             const GuardedCase c =
-                stroke(Grip::Firm, friction, period_ms, stroke_s, 0.095 + too_far_m, 0.5);
+                stroke(HandGrip::Firm, friction, period_ms, stroke_s, 0.095 + too_far_m, 0.5);
             INFO(words_of(c) << ", " << too_far_m << " m too far in " << stroke_s << " s");
 
             const Measured measured = run_guarded(c);
@@ -170,10 +174,10 @@ TEST_CASE("guarded, a molecule drifts by 0.1 Å at most each time it goes in and
     const double stroke_s = GENERATE(2.0, 0.7);
     for (const std::uint64_t period_ms : periods_ms)
         for (const double friction : frictions_newton) {
-            GuardedCase c{Grip::Firm, friction, period_ms};
+            GuardedCase c{HandGrip::Firm, friction, period_ms};
             c.hand = HandModel{0.3, 500, 2e4};  // hardly gives way
             // What ten strokes without a rest heat is not what is asked here.
-            c.hot_newton = std::numeric_limits<double>::infinity();
+            c.thermal_limit_newton = std::numeric_limits<double>::infinity();
             double time = 0.2;
             c.script.path = {{time, 0}};
             for (int cycle = 0; cycle < cycles; ++cycle) {
@@ -192,7 +196,7 @@ TEST_CASE("guarded, a molecule drifts by 0.1 Å at most each time it goes in and
 
 TEST_CASE("guarded, a target on a spring is felt as it gives way", "[session][coupling]") {
     const double spring_N_per_m = GENERATE(20.0, 100.0);
-    for (const Grip grip : hands) {
+    for (const HandGrip grip : hands) {
         const double depth = depth_to_peak({.grip = grip, .spring_N_per_m = spring_N_per_m}, 3);
         for (const double friction : frictions_newton) {
             GuardedCase c = stroke(grip, friction, 14, 3, depth);
@@ -223,7 +227,7 @@ TEST_CASE("guarded, steps that are lost change nothing of that", "[session][coup
 
 TEST_CASE("the loop of varying periods is the other loop where they do not vary",
           "[session][coupling]") {
-    GuardedCase c = stroke(Grip::Medium, 0.26, 14, 1, 0.1);
+    GuardedCase c = stroke(HandGrip::Medium, 0.26, 14, 1, 0.1);
     const Measured steady = run_guarded(c);
     c.draw = [] { return Due{14, false}; };
     const Measured drawn = run_guarded(c);
@@ -268,8 +272,8 @@ public:
     DeviceReading read() noexcept override {
         return {static_cast<double>(tick_) * servo_tick_s, Vec3(x_m_, 0, 0), 0, true};
     }
-    void show(const TouchModel& touch) noexcept override {
-        place_angstrom_ = touch.molecule.place_angstrom.x();
+    void show(const ContactModel& contact) noexcept override {
+        place_angstrom_ = contact.molecule.place_angstrom.x();
     }
     void write(const Vec3& force_newton) noexcept override {
         constexpr double step_m = 5e-6, well_angstrom = 3.2, start_angstrom = 7, low_newton = 0.21;
@@ -303,20 +307,20 @@ TEST_CASE("guarded, no way into the well and out of it with warm motors gives en
     const bool gets_hot = GENERATE(true, false);
     const SceneDescription scene =
         water_scene({"mode=guarded", "start_angstrom=7", "period_ms=14"});
-    Simulation simulation = load_simulation(scene);
-    ServoSettings servo = build_servo_settings(scene, simulation);
-    servo.safety.hot_newton = gets_hot ? 0.2 : 0.9;
+    World world = load_world(scene);
+    ServoSettings servo = build_servo_settings(scene, world);
+    servo.safety.thermal_limit_newton = gets_hot ? 0.2 : 0.9;
     servo.safety.heat_s = gets_hot ? 100 : 1e9;
     if (!gets_hot) servo.safety.clamp_newton = 0.2;  // on the way in as well: nothing to find
     LedHandle handle;
-    const auto step = [&](const HandPose& hand, const TouchModel& felt) {
-        (void)step_simulation(simulation, hand, felt);
-        return simulation.touch;
+    const auto step = [&](const HandPose& hand, const ContactModel& felt) {
+        (void)step_world(world, hand, felt);
+        return local_contact_of(world);
     };
     double work_J = 0;
 
     run_lockstep(
-        {200'000, 14}, servo, handle, simulation.touch, step,
+        {200'000, 14}, servo, handle, local_contact_of(world), step,
         [&](const ServoTick& tick) { work_J = tick.hand_energy_J; },
         [&] { return handle.is_home(); });
 

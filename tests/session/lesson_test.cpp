@@ -4,6 +4,8 @@
 #include "devices/emulated_omni.h"
 #include "session/lockstep.h"
 #include "session/run_headless.h"
+#include "simulation/held.h"
+#include "simulation/load.h"
 #include "simulation/step.h"
 #include "tests/support/water_run.h"
 
@@ -26,14 +28,14 @@ constexpr CouplingMode mode_2 = CouplingMode::VariableForceConstantDisplacement;
 // Plays the water scene as the operator's path has it, and follows the lesson from `mode`.
 Lesson play_water(const std::vector<std::string>& settings, Lesson lesson) {
     const SceneDescription scene = test::water_scene(settings);
-    Simulation simulation = load_simulation(scene);
-    EmulatedOmni device(build_emulated_omni(scene, simulation));
-    const auto step = [&](const HandPose& hand, const TouchModel& felt) {
-        (void)step_simulation(simulation, hand, felt);
-        return simulation.touch;
+    World world = load_world(scene);
+    EmulatedOmni device(test::build_played_omni(scene, world));
+    const auto step = [&](const HandPose& hand, const ContactModel& felt) {
+        (void)step_world(world, hand, felt);
+        return local_contact_of(world);
     };
     run_lockstep({static_cast<std::uint64_t>(scene.seconds * servo_rate_hz), 1},
-                 build_servo_settings(scene, simulation), device, simulation.touch.model, step,
+                 build_servo_settings(scene, world), device, local_contact_of(world).model, step,
                  [&](const ServoTick& tick) {
                      lesson.update(read_tick(tick), scene.coupling.mode);
                      lesson.go_on();
@@ -115,14 +117,14 @@ TEST_CASE("a step can ask for what the hand feels, and for a mode as the keys co
 TEST_CASE("on one axis what drives apart is positive, in three dimensions a force is a norm",
           "[session][lesson]") {
     ServoTick tick;
-    tick.touch.molecule.place_angstrom = {-3, 0, 0};  // on the other side of its counterpart
-    tick.touch.force_newton = {-2e-9, 0, 0};
+    tick.contact.molecule.place_angstrom = {-3, 0, 0};  // on the other side of its counterpart
+    tick.contact.force_newton = {-2e-9, 0, 0};
     tick.sent_newton = {0.5, 0, 0};
-    tick.touch.active_freedom = 1;
+    tick.contact.active_freedom = 1;
     CHECK(read_tick(tick).distance_angstrom == 3);
     CHECK(read_tick(tick).molecular_nN == Approx(2));
     CHECK(read_tick(tick).hand_N == -0.5);
-    tick.touch.active_freedom = 3;
+    tick.contact.active_freedom = 3;
     CHECK(read_tick(tick).hand_N == 0.5);
 }
 

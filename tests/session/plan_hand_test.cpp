@@ -1,5 +1,6 @@
 #include "session/plan_hand.h"
 
+#include "simulation/load.h"
 #include "simulation/probe.h"
 #include "tests/support/water_run.h"
 
@@ -14,7 +15,7 @@ namespace {
 
 HandScript plan(const std::vector<std::string>& settings) {
     const SceneDescription scene = test::water_scene(settings);
-    return plan_hand(scene, load_simulation(scene), omni_half_workspace_m.x());
+    return plan_hand(scene, load_world(scene), omni_half_workspace_m.x());
 }
 
 }  // namespace
@@ -39,8 +40,8 @@ TEST_CASE("without friction or delay a slow stroke peaks at the force it was pla
         test::run_water({"mode=" + mode, "peak_nN=" + std::to_string(peak_nN), "friction_N=0",
                          "encoder_step_mm=0", "stroke_s=6", "seconds=15"});
 
-    const Simulation simulation = load_simulation(test::water_scene());
-    const double planned = repulsion_distance(simulation, peak_nN / 0.0694770, 7).value();
+    const World world = load_world(test::water_scene());
+    const double planned = repulsion_distance(world, peak_nN / 0.0694770, 7).value();
     CHECK(summary.closest_angstrom == Approx(planned).margin(0.005));
 }
 
@@ -71,10 +72,10 @@ TEST_CASE("a force that the molecules never reach is an error at the peak's key"
 
 TEST_CASE("a stroke with a peak is refused where the hand holds a spring", "[session][hand]") {
     SceneDescription scene = test::water_scene({"hand.stroke=in-out"});
-    const Simulation simulation = load_simulation(scene);
+    const World world = load_world(scene);
     scene.grab.atom = "OH2";
 
-    CHECK_THROWS_WITH(plan_hand(scene, simulation, omni_half_workspace_m.x()),
+    CHECK_THROWS_WITH(plan_hand(scene, world, omni_half_workspace_m.x()),
                       Contains("--set hand.stroke=in-out: ") && Contains("\"path\" or \"hold\""));
 }
 
@@ -100,10 +101,10 @@ TEST_CASE("a hand that leads brings the water where its path says, whatever the 
     const SceneDescription scene =
         test::water_scene({"mode=" + mode, "hand.stroke=lead", "hand.start_angstrom=7",
                            "hand.path=[[0.5, 0], [6, -4], [6.5, -4], [12, 1]]", "run.seconds=30"});
-    Simulation simulation = load_simulation(scene);
-    const double begin = grabbed_distance(simulation);
-    EmulatedOmni device(build_emulated_omni(scene, simulation));
-    const Summary summary = run_headless(scene, simulation, device, {}, nullptr, {});
+    World world = load_world(scene);
+    const double begin = grabbed_distance(world);
+    EmulatedOmni device(test::build_played_omni(scene, world));
+    const Summary summary = run_headless(scene, world, device, {}, nullptr, {});
 
     CHECK(summary.closest_angstrom == Approx(begin - 4).margin(0.1));
     CHECK(summary.last_angstrom == Approx(begin + 1).margin(0.05));

@@ -128,3 +128,21 @@ TEST_CASE("a trace without a line or with other columns is refused", "[session][
     CHECK_THROWS_WITH(check_of("time_s,other\n", {}, 1, 1),
                       Contains("trace.csv:1: has other columns"));
 }
+
+TEST_CASE("a trace of two hands is held against the ticks of both", "[session][replay]") {
+    const std::vector<ServoTick> ticks = some_ticks(2);
+    std::vector<ServoTick> changed = ticks;
+    changed[1].sent_newton.x() += 0.5;
+    const test::TemporaryFolder folder;
+    folder.add_file("trace.csv", trace_header(2) + "\n" + trace_row(ticks));
+
+    TraceCheck same(folder.path(), 1, 1, 2), other(folder.path(), 1, 1, 2);
+    same.add(ticks);
+    other.add(changed);
+
+    CHECK(same.different() == 0);
+    REQUIRE(other.first());
+    CHECK(other.first()->column == "device_force_x_N_2");
+    CHECK(other.largest_newton() == Approx(0.5));
+    CHECK_THROWS_AS(TraceCheck(folder.path(), 1, 1), LoadError);
+}

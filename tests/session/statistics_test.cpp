@@ -11,7 +11,7 @@ namespace {
 ServoTick tick_of(double force, double distance) {
     ServoTick tick;
     tick.sent_newton.x() = force;
-    tick.touch.molecule.place_angstrom.x() = distance;
+    tick.contact.molecule.place_angstrom.x() = distance;
     return tick;
 }
 
@@ -41,7 +41,7 @@ TEST_CASE("in space a felt force is a norm, which neither attracts nor repels",
     Statistics statistics(1e-3);
     ServoTick tick = tick_of(1.2, 3);
     tick.sent_newton = {1.2, -0.5, 0};
-    tick.touch.active_freedom = 6;
+    tick.contact.active_freedom = 6;
     statistics.add(tick);
 
     const Summary summary = statistics.summary();
@@ -67,12 +67,34 @@ TEST_CASE("what was clamped, and what was wrong, is a share of all ticks",
     CHECK(Statistics(1e-3).summary().clamped_share == 0);
 }
 
+TEST_CASE("what is taken on the other side was not pushed through", "[session][statistics]") {
+    Statistics statistics(1e-3);
+    const auto add = [&](double distance, std::uint32_t start, bool is_still) {
+        ServoTick tick;
+        tick.contact.molecule.place_angstrom.x() = distance;
+        tick.contact.start = start;
+        tick.contact.is_still = is_still;
+        statistics.add(tick);
+    };
+    add(5, 0, false);
+    add(-4, 1, false);
+    add(0, 2, true);
+    CHECK_FALSE(statistics.summary().went_through);
+    CHECK(statistics.summary().closest_angstrom == 4);
+    add(-1e-8, 3, false);  // measured from where it was
+    add(3, 3, false);
+    CHECK_FALSE(statistics.summary().went_through);
+    add(-3, 4, false);
+    add(1, 4, false);
+    CHECK(statistics.summary().went_through);
+}
+
 TEST_CASE("in space a molecule is as far as it is, and beyond where it was turned from",
           "[session][statistics]") {
     Statistics statistics(1e-3);
     for (const Vec3& place : {Vec3(3, 4, 0), Vec3(0, 0, -2), Vec3(0, 1, 0)}) {
         ServoTick tick;
-        tick.touch.molecule.place_angstrom = place;
+        tick.contact.molecule.place_angstrom = place;
         statistics.add(tick);
     }
 

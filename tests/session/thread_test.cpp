@@ -2,6 +2,8 @@
 // lockstep, with the exchange as their only meeting point.
 #include "devices/emulated_omni.h"
 #include "haptics/servo.h"
+#include "simulation/held.h"
+#include "simulation/load.h"
 #include "simulation/step.h"
 #include "tests/support/water_run.h"
 
@@ -13,12 +15,12 @@ using namespace palpa;
 
 TEST_CASE("the water scene runs on two threads without a race", "[session][thread]") {
     const SceneDescription scene = test::water_scene({"stroke_s=0.5"});
-    Simulation simulation = load_simulation(scene);
-    EmulatedOmni device(build_emulated_omni(scene, simulation));
-    const ServoSettings settings = build_servo_settings(scene, simulation);
+    World world = load_world(scene);
+    EmulatedOmni device(test::build_played_omni(scene, world));
+    const ServoSettings settings = build_servo_settings(scene, world);
     Exchange exchange;
-    TouchModel felt = simulation.touch.model;
-    exchange.touch.post(felt);
+    ContactModel felt = local_contact_of(world).model;
+    exchange.contact.post(felt);
     std::atomic<bool> done = false;
     std::atomic<int> steps = 0;
     bool finite = true;
@@ -27,10 +29,10 @@ TEST_CASE("the water scene runs on two threads without a race", "[session][threa
         HandPose hand;
         while (!done) {
             if (!exchange.hand.read(hand)) continue;
-            const StepReport report = step_simulation(simulation, hand, felt);
+            const StepReport& report = step_world(world, hand, felt);
             finite = finite && report.finite;
-            felt = report.touch;
-            exchange.touch.post(felt);
+            felt = local_contact_of(world).model;
+            exchange.contact.post(felt);
             ++steps;
         }
     });

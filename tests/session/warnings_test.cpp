@@ -2,7 +2,9 @@
 #include "core/load_error.h"
 #include "core/units.h"
 #include "haptics/gains.h"
+#include "simulation/load.h"
 #include "simulation/probe.h"
+#include "simulation/resources.h"
 #include "tests/support/water_run.h"
 
 #include <catch2/catch.hpp>
@@ -38,23 +40,23 @@ TEST_CASE("a setting is called shaking where it shakes, and only there", "[sessi
 
 TEST_CASE("the stiffness felt is the paper's", "[session][coupling]") {
     const SceneDescription scene = test::water_scene({"mode=2"});
-    const Simulation simulation = load_simulation(scene);
+    const World world = load_world(scene);
     const auto felt_at = [&](double distance) {
-        const LineForce line = force_along_line_at(simulation, distance);
-        return hand_force_slope(simulation.laws.force,
+        const LineForce line = force_along_line_at(world, distance);
+        return hand_force_slope(world.resource<Coupling>().laws.force,
                                 line.force * units::newton_per_kcal_per_mol_angstrom) *
                line.stiffness * units::newton_per_metre_per_kcal_per_mol_angstrom2 / 0.25e9;
     };
 
-    CHECK_THAT(felt_at(equilibrium_distance(simulation).value()), WithinRel(646, 1e-3));
-    CHECK_THAT(stiffest_place(scene, simulation).newton_per_metre, WithinRel(663, 1e-3));
-    CHECK_THAT(stiffest_place(scene, simulation).angstrom, WithinRel(2.760, 1e-3));
+    CHECK_THAT(felt_at(equilibrium_distance(world).value()), WithinRel(646, 1e-3));
+    CHECK_THAT(stiffest_place(scene, world).newton_per_metre, WithinRel(663, 1e-3));
+    CHECK_THAT(stiffest_place(scene, world).angstrom, WithinRel(2.760, 1e-3));
     const double wall =
-        repulsion_distance(simulation, 3e-9 / units::newton_per_kcal_per_mol_angstrom, 7).value();
+        repulsion_distance(world, 3e-9 / units::newton_per_kcal_per_mol_angstrom, 7).value();
     CHECK_THAT(felt_at(wall), WithinRel(264, 2e-3));
     // Eq. 3 falls to A_dmin where nothing pulls: fifty times stiffer.
     const SceneDescription notched = test::water_scene({"mode=1"});
-    CHECK_THAT(stiffest_place(notched, load_simulation(notched)).newton_per_metre,
+    CHECK_THAT(stiffest_place(notched, load_world(notched)).newton_per_metre,
                WithinRel(32'300, 2e-3));
 }
 

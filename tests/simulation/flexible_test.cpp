@@ -1,4 +1,4 @@
-#include "simulation/flexible.h"
+#include "simulation/mechanics.h"
 
 #include "charmm/generate.h"
 #include "core/files.h"
@@ -8,12 +8,18 @@
 #include "formats/structure.h"
 #include "scene/read_scene.h"
 #include "simulation/components.h"
+#include "simulation/held.h"
+#include "simulation/load.h"
 #include "simulation/probe.h"
+#include "simulation/resources.h"
 #include "simulation/step.h"
+#include "simulation/systems/follow_hands.h"
+#include "tests/support/held_scene.h"
 #include "tests/support/load_error_of.h"
 #include "tests/support/native_case.h"
 #include "tests/support/paths.h"
 #include "tests/support/replaced.h"
+#include "tests/support/step_once.h"
 #include "tests/support/temporary_folder.h"
 
 #include <fmt/format.h>
@@ -41,8 +47,8 @@ constexpr std::uint32_t peptide_atoms = 62;
 // The tetrapeptide AERA twice, 11 Å apart.
 const std::filesystem::path peptides = test::test_data("two_peptides");
 
-Simulation load_peptides(const std::vector<std::string>& settings = {}) {
-    return load_simulation(read_scene(peptides, settings));
+World load_peptides(const std::vector<std::string>& settings = {}) {
+    return load_world(read_scene(peptides, settings));
 }
 
 Structure read_peptides() { return read_structure(peptides / "both.crd"); }
@@ -81,15 +87,11 @@ HandPose hand_at(const Vec3& angstrom) {
     return hand;
 }
 
-std::size_t reference_of(const Simulation& simulation) {
-    const Grab& grab = *simulation.world.find<Grab>(simulation.hand);
-    return simulation.world.find<Molecule>(grab.molecule)->reference_atom;
+std::size_t reference_of(const World& world) {
+    return world.find<Molecule>(grip_of(world, first_hand(world)).molecule)->reference_atom;
 }
 
-Vec3 place_of(const Simulation& simulation) {
-    const Grab& grab = *simulation.world.find<Grab>(simulation.hand);
-    return simulation.world.find<Guide>(grab.molecule)->place;
-}
+Vec3 place_of(const World& world) { return grip_of(world, first_hand(world)).pose.place_angstrom; }
 
 const std::vector<std::string> methods{"quasi-static", "limited-memory", "inverse-mass"};
 const std::vector<std::string> by_spring{"molecules.held.motion=free", "grab.atom=\"4 CB\"",
@@ -98,76 +100,77 @@ const std::vector<std::string> by_spring{"molecules.held.motion=free", "grab.ato
 }  // namespace
 
 TEST_CASE("flexible molecules are at rest when the scene begins", "[simulation][flexible]") {
-    const Simulation simulation = load_peptides();
-    REQUIRE(simulation.flexible);
-    const Flexible& flexible = *simulation.flexible;
+    const World world = load_peptides();
+    REQUIRE(has_mobile(world));
 
     // Of each: ammonium and psi; phi, psi and chi 1 to 3; phi, psi and chi 1 to 5; phi, and psi of
     // the carboxylate.
     constexpr std::size_t of_each = 2 + 5 + 7 + 2;
-    CHECK(flexible.joints == 2 * of_each);
-    CHECK(flexible.joints_held == 0);
-    CHECK(flexible.model.coordinates == static_cast<Eigen::Index>(flexible.joints));
-    CHECK(flexible.relaxed.end == RelaxEnd::Converged);
-    CHECK(flexible.relaxed.rms_force <= 0.05);
-    CHECK(flexible.relaxed.energy_after < flexible.relaxed.energy_before);
-    CHECK(simulation.atoms.positions == flexible.state.positions);
-    CHECK(find_held(flexible) == simulation.atoms.positions[reference_of(simulation)]);
+    CHECK(world.resource<StartReport>().joints == 2 * of_each);
+    CHECK(world.resource<StartReport>().joints_held == 0);
+    CHECK(model_of(world).coordinates ==
+          static_cast<Eigen::Index>(world.resource<StartReport>().joints));
+    CHECK(world.resource<StartReport>().joints_at_rest.value().end == RelaxEnd::Converged);
+    CHECK(world.resource<StartReport>().joints_at_rest.value().rms_force <= 0.05);
+    CHECK(world.resource<StartReport>().joints_at_rest.value().energy_after <
+          world.resource<StartReport>().joints_at_rest.value().energy_before);
+    CHECK(world.resource<AtomTable>().positions == world.resource<TorsionState>().positions);
+    CHECK(held_place(world, first_hand(world)) ==
+          world.resource<AtomTable>().positions[reference_of(world)]);
     // The hand's own molecule came to rest as well; then the hand took its base.
-    CHECK(simulation.touch.model.force_newton.norm() < 50e-12);
+    CHECK(local_contact_of(world).model.force_newton.norm() < 50e-12);
 }
 
 TEST_CASE("the system of a scene has its atoms in the order of the table, and all terms",
           "[simulation][load]") {
     const SceneSystem system = load_system(read_scene(peptides, {}));
-    const Simulation simulation = load_peptides({"statics.relax_steps=0"});
+    const World world = load_peptides({"statics.relax_steps=0"});
 
-    REQUIRE(simulation.flexible);
+    REQUIRE(has_mobile(world));
     REQUIRE(system.connectivity.names.size() == std::size_t{2} * peptide_atoms);
-    CHECK(system.connectivity.names[0].segment == simulation.atoms.names[0].segment);
-    CHECK(system.connectivity.mass == simulation.atoms.mass);
-    CHECK(system.topology.charge == simulation.atoms.charge);
-    CHECK(system.positions == simulation.flexible->model.reference);
+    CHECK(system.connectivity.names[0].segment == world.resource<AtomTable>().names[0].segment);
+    CHECK(system.connectivity.mass == world.resource<AtomTable>().mass);
+    CHECK(system.topology.charge == world.resource<AtomTable>().charge);
+    CHECK(system.positions == model_of(world).reference);
     // What is rigid in the scene is there too.
     CHECK(system.topology.bonds.size() == connectivity_of(read_peptides()).bonds.size());
-    CHECK(system.topology.bonds.size() > simulation.flexible->model.topology.bonds.size());
+    CHECK(system.topology.bonds.size() > model_of(world).topology.bonds.size());
 }
 
 TEST_CASE("without joints to turn and bases to move a scene stays rigid",
           "[simulation][flexible]") {
-    const Simulation simulation =
+    const World world =
         load_peptides({"molecules.held.shape=rigid", "molecules.resting.shape=rigid"});
 
-    CHECK_FALSE(simulation.flexible);
-    CHECK(simulation.relaxed);
+    CHECK_FALSE(has_mobile(world));
+    CHECK(world.resource<StartReport>().rigid);
 }
 
 TEST_CASE("while the hand rests the energy falls with every step", "[simulation][flexible]") {
     const std::string method = GENERATE(from_range(methods));
     INFO(method);
-    Simulation simulation =
+    World world =
         load_peptides({"statics.method=" + method, "hand.start_offset_angstrom=[-1.5, 0, 0]"});
-    const Flexible& flexible = *simulation.flexible;
-    TouchModel felt = simulation.touch.model;
-    double energy = flexible.safe.energy(), fallen = 0;
+    ContactModel felt = local_contact_of(world).model;
+    double energy = world.resource<TorsionState>().energy(), fallen = 0;
 
     for (int i = 0; i < 25; ++i) {
-        const Vec3 held = find_held(flexible);
-        const StepReport report = step_simulation(simulation, {}, felt);
-        REQUIRE(report.settled);
-        const SettleReport& settled = *report.settled;
+        const Vec3 held = held_place(world, first_hand(world));
+        const StepReport& report = step_world(world, {}, felt);
+        REQUIRE(report.relaxed);
+        const RelaxStepReport& relaxed = *report.relaxed;
 
         CHECK(report.finite);
         // What the start did to the energy shows in the first step.
-        if (i > 0) CHECK(std::abs(settled.hand_work) < 1e-9);
-        CHECK(settled.energy_change <= 0);
-        CHECK(flexible.state.energy() - energy ==
-              Approx(settled.hand_work + settled.energy_change).margin(1e-9));
-        CHECK(settled.evaluations > 0);
-        CHECK((find_held(flexible) - held).norm() < 1e-12);
-        energy = flexible.state.energy();
-        fallen -= settled.energy_change;
-        felt = report.touch;
+        if (i > 0) CHECK(std::abs(relaxed.hand_work) < 1e-9);
+        CHECK(relaxed.energy_change <= 0);
+        CHECK(world.resource<TorsionState>().energy() - energy ==
+              Approx(relaxed.hand_work + relaxed.energy_change).margin(1e-9));
+        CHECK(relaxed.evaluations > 0);
+        CHECK((held_place(world, first_hand(world)) - held).norm() < 1e-12);
+        energy = world.resource<TorsionState>().energy();
+        fallen -= relaxed.energy_change;
+        felt = local_contact_of(world).model;
     }
     CHECK(fallen > 0.01);
 }
@@ -178,120 +181,151 @@ TEST_CASE("work of the hand and what is given up add to the change of energy",
     INFO(method);
     std::vector<std::string> settings{"statics.method=" + method};
     if (GENERATE(false, true)) settings.insert(settings.end(), by_spring.begin(), by_spring.end());
-    Simulation simulation = load_peptides(settings);
-    const Flexible& flexible = *simulation.flexible;
-    TouchModel felt = simulation.touch.model;
-    const double start = flexible.state.energy();
+    World world = load_peptides(settings);
+    ContactModel felt = local_contact_of(world).model;
+    const double start = world.resource<TorsionState>().energy();
     double sum = 0;
 
     for (int i = 1; i <= 20; ++i) {
-        const StepReport report =
-            step_simulation(simulation, hand_at(Vec3(-0.1 * i, 0.03 * i, 0)), felt);
-        CHECK(report.settled->energy_change <= 0);
-        sum += report.settled->hand_work + report.settled->energy_change;
-        CHECK(flexible.state.energy() == Approx(start + sum).margin(1e-8));
-        felt = report.touch;
+        const StepReport& report = step_world(world, hand_at(Vec3(-0.1 * i, 0.03 * i, 0)), felt);
+        CHECK(report.relaxed->energy_change <= 0);
+        sum += report.relaxed->hand_work + report.relaxed->energy_change;
+        CHECK(world.resource<TorsionState>().energy() == Approx(start + sum).margin(1e-8));
+        felt = local_contact_of(world).model;
     }
     CHECK(std::abs(sum) > 0.1);
 }
 
 TEST_CASE("what the hand moves is the base, and nobody else", "[simulation][flexible]") {
-    Simulation simulation = load_peptides();
-    Flexible& flexible = *simulation.flexible;
-    const std::vector<Vec3> before = simulation.atoms.positions;
-    const Vec3 place = place_of(simulation), held = find_held(flexible);
+    World world = load_peptides();
+    const std::vector<Vec3> before = world.resource<AtomTable>().positions;
+    const Vec3 place = place_of(world), held = held_place(world, first_hand(world));
     const Vec3 by(-0.2, 0.1, 0.05);
 
-    move_held(flexible, by);
+    const AtomRange in_hand = held_range(world, first_hand(world));
+    REQUIRE(in_hand.count == peptide_atoms);
+    move_held(world, by);
     for (std::size_t i = 0; i < before.size(); ++i) {
-        const Vec3 moved = flexible.state.positions[i] - before[i];
-        CHECK((moved - (i < peptide_atoms ? by : Vec3(Vec3::Zero()))).norm() < 1e-13);
+        const Vec3 moved = world.resource<TorsionState>().positions[i] - before[i];
+        CHECK((moved - (has_atom(in_hand, i) ? by : Vec3(Vec3::Zero()))).norm() < 1e-13);
     }
-    move_held(flexible, -by);
+    move_held(world, -by);
 
-    const StepReport report = step_simulation(simulation, hand_at(by), simulation.touch.model);
-    CHECK(report.move == Approx(by.norm()));
-    CHECK((place_of(simulation) - place - by).norm() < 1e-12);
-    CHECK((find_held(flexible) - held - by).norm() < 1e-12);
+    const StepReport& report = step_world(world, hand_at(by), local_contact_of(world).model);
+    CHECK(report.moves.front().angstrom == Approx(by.norm()));
+    CHECK((place_of(world) - place - by).norm() < 1e-12);
+    CHECK((held_place(world, first_hand(world)) - held - by).norm() < 1e-12);
     // The base of the other one is fixed: so is its reference atom.
-    const Grab& grab = *simulation.world.find<Grab>(simulation.hand);
-    const std::size_t fixed = simulation.world.find<Molecule>(grab.measured_from)->reference_atom;
-    CHECK((simulation.atoms.positions[fixed] - before[fixed]).norm() < 1e-12);
+    const Grip& grip = grip_of(world, first_hand(world));
+    const std::size_t fixed = world.find<Molecule>(grip.measured_from)->reference_atom;
+    CHECK((world.resource<AtomTable>().positions[fixed] - before[fixed]).norm() < 1e-12);
+}
+
+TEST_CASE("wherever what is held stands in the table, each atom feels the same",
+          "[simulation][flexible]") {
+    std::vector<std::string> settings{"statics.pairs=double", "statics.relax_steps=0",
+                                      "hand.start_offset_angstrom=[-1, 0.5, 0]"};
+    if (GENERATE(false, true)) settings.emplace_back("statics.cutoff_angstrom=9");
+    const SceneDescription scene = read_scene(peptides, settings);
+    const World first = load_world(test::with_held_at(0, scene)),
+                last = load_world(test::with_held_at(1, scene));
+    const TorsionState& expected = last.resource<TorsionState>();
+    const TorsionState& found = first.resource<TorsionState>();
+    REQUIRE(first.resource<AtomTable>().names[0].segment == "PEPB");
+    REQUIRE(last.resource<AtomTable>().names[0].segment == "PEPA");
+
+    double largest = 0;
+    for (const Vec3& force : expected.forces) largest = std::max(largest, force.norm());
+    for (const char* const name : {"held", "resting"}) {
+        const std::uint32_t from = test::range_called(first, name).first,
+                            to = test::range_called(last, name).first;
+        for (std::uint32_t i = 0; i < peptide_atoms; ++i) {
+            REQUIRE(found.positions[from + i] == expected.positions[to + i]);
+            CHECK((found.forces[from + i] - expected.forces[to + i]).norm() < 1e-12 * largest);
+        }
+    }
+    CHECK(found.energy() == Approx(expected.energy()).epsilon(1e-12));
+    const Vec6 pull = find_pull_on_held(last, first_hand(last));
+    REQUIRE(pull.tail<3>().norm() > 1e-3 * largest);
+    CHECK((find_pull_on_held(first, first_hand(first)) - pull).norm() < 1e-9 * pull.norm());
 }
 
 TEST_CASE("a molecule that turns by itself does so about its reference atom",
           "[simulation][flexible]") {
     const std::string method = GENERATE(from_range(methods));
     INFO(method);
-    Simulation simulation = load_peptides(
+    World world = load_peptides(
         {"statics.method=" + method, "molecules.held.motion=translate-and-turn",
          "molecules.held.shape=rigid", "molecules.resting.shape=rigid", "statics.steps=20"});
-    const Flexible& flexible = *simulation.flexible;
-    CHECK(flexible.joints == 0);
-    REQUIRE(flexible.model.coordinates == 3);
-    TouchModel felt = simulation.touch.model;
+    CHECK(world.resource<StartReport>().joints == 0);
+    REQUIRE(model_of(world).coordinates == 3);
+    ContactModel felt = local_contact_of(world).model;
     CHECK(felt.active_freedom == 6);
 
     // The other end of the molecule comes too close, and gives way.
     for (int i = 1; i <= 10; ++i) {
-        const StepReport report = step_simulation(simulation, hand_at({-0.3 * i, 0, 0}), felt);
-        CHECK((find_held(flexible) - simulation.anchor - place_of(simulation)).norm() < 1e-12);
-        CHECK(report.settled->energy_change <= 0);
-        felt = report.touch;
+        const StepReport& report = step_world(world, hand_at({-0.3 * i, 0, 0}), felt);
+        CHECK((held_place(world, first_hand(world)) - grip_of(world, first_hand(world)).anchor -
+               place_of(world))
+                  .norm() < 1e-12);
+        CHECK(report.relaxed->energy_change <= 0);
+        felt = local_contact_of(world).model;
     }
-    CHECK(Eigen::AngleAxisd(flexible.state.turns[flexible.grabbed]).angle() > 0.01);
-    CHECK(flexible.state.turns[1 - flexible.grabbed].isApprox(Eigen::Quaterniond::Identity()));
+    CHECK(Eigen::AngleAxisd(world.resource<TorsionState>().turns[held_part(world).base]).angle() >
+          0.01);
+    CHECK(world.resource<TorsionState>().turns[1 - held_part(world).base].isApprox(
+        Eigen::Quaterniond::Identity()));
 }
 
 TEST_CASE("a spring pulls at the hand with k times its stretch", "[simulation][flexible]") {
     std::vector<std::string> settings = by_spring;
     const bool is_residue = GENERATE(false, true);
     if (is_residue) settings[1] = "grab.atom=\"4\"";
-    Simulation simulation = load_peptides(settings);
-    const Flexible& flexible = *simulation.flexible;
+    World world = load_peptides(settings);
     // By hand, of residue 4 or its CB.
     const auto tethered = [&] {
         Vec3 sum = Vec3::Zero();
         double mass = 0;
-        for (std::size_t i = 0; i < peptide_atoms; ++i) {
-            const AtomName& name = simulation.atoms.names[i];
+        for (std::size_t i = 0; i < world.resource<AtomTable>().size(); ++i) {
+            const AtomName& name = world.resource<AtomTable>().names[i];
+            if (name.segment != "PEPB") continue;
             if (name.number != "4" || (!is_residue && name.atom != "CB")) continue;
-            sum += simulation.atoms.mass[i] * simulation.atoms.positions[i];
-            mass += simulation.atoms.mass[i];
+            sum += world.resource<AtomTable>().mass[i] * world.resource<AtomTable>().positions[i];
+            mass += world.resource<AtomTable>().mass[i];
         }
         return Vec3(sum / mass);
     };
-    CHECK(flexible.state.tether->atoms.size() == (is_residue ? 11 : 1));
-    CHECK((find_held(flexible) - tethered()).norm() < 1e-12);
+    CHECK(spring_of(world, first_hand(world))->atoms.size() == (is_residue ? 11 : 1));
+    CHECK((held_place(world, first_hand(world)) - tethered()).norm() < 1e-12);
     const Vec3 start = tethered();
-    TouchModel felt = simulation.touch.model;
+    ContactModel felt = local_contact_of(world).model;
     CHECK(felt.force_newton.norm() < 1e-20);
-    CHECK(felt.active_freedom == 3 + static_cast<int>(flexible.joints) + 6);
+    CHECK(felt.active_freedom == 3 + static_cast<int>(world.resource<StartReport>().joints) + 6);
 
     for (int i = 1; i <= 15; ++i) {
-        felt = step_simulation(simulation, hand_at({0.2 * i, 0, 0}), felt).touch;
+        felt = test::step_once(world, hand_at({0.2 * i, 0, 0}), felt);
         const Vec3 stretch = tethered() - (start + Vec3(0.2 * i, 0, 0));
         CHECK((felt.force_newton - 7 * stretch * units::newton_per_kcal_per_mol_angstrom).norm() <
               1e-9 * felt.force_newton.norm());
         CHECK(felt.force_newton.x() < 0);
     }
     CHECK(felt.stiffness_N_per_m == Approx(7 * units::newton_per_metre_per_kcal_per_mol_angstrom2));
-    CHECK(felt.potential_kcal_per_mol == Approx(flexible.state.energy()));
+    CHECK(felt.potential_kcal_per_mol == Approx(world.resource<TorsionState>().energy()));
     // It follows.
     CHECK((tethered() - start).x() > 0.1);
 }
 
 TEST_CASE("joints outside of a region are held, and counted", "[simulation][flexible]") {
-    const Simulation everywhere = load_peptides();
+    const World everywhere = load_peptides();
     const std::string around = GENERATE("", "resting");
-    const Simulation simulation =
+    const World world =
         load_peptides({"joints.within_angstrom=5", fmt::format("joints.around=\"{}\"", around)});
-    const Flexible& flexible = *simulation.flexible;
 
-    CHECK(flexible.joints_held > 0);
-    CHECK(flexible.joints > 0);
-    CHECK(flexible.joints + flexible.joints_held == everywhere.flexible->joints);
-    CHECK(flexible.model.tree.bodies.joints() == flexible.joints);
+    CHECK(world.resource<StartReport>().joints_held > 0);
+    CHECK(world.resource<StartReport>().joints > 0);
+    CHECK(world.resource<StartReport>().joints + world.resource<StartReport>().joints_held ==
+          everywhere.resource<StartReport>().joints);
+    CHECK(model_of(world).tree.bodies.joints() == world.resource<StartReport>().joints);
     // Residues with an atom near one of that molecule in the file; its own all are.
     const Structure file = read_peptides();
     std::set<std::string> near;
@@ -303,27 +337,28 @@ TEST_CASE("joints outside of a region are held, and counted", "[simulation][flex
         }
     }
     const auto name_of = [&](std::uint32_t atom) {
-        return simulation.atoms.names[atom].segment + simulation.atoms.names[atom].number;
+        return world.resource<AtomTable>().names[atom].segment +
+               world.resource<AtomTable>().names[atom].number;
     };
     std::size_t joints = 0;
-    for (const Simulation* const each : {&everywhere, &simulation}) {
-        const TorsionBodies& bodies = each->flexible->model.tree.bodies;
+    for (const World* const each : {&everywhere, &world}) {
+        const TorsionBodies& bodies = model_of(*each).tree.bodies;
         for (const Body& body : bodies.bodies) {
             if (body.parent == no_body) continue;
             const bool is_near =
                 near.contains(name_of(body.axis[0])) && near.contains(name_of(body.axis[1]));
-            if (each == &simulation) CHECK(is_near);
+            if (each == &world) CHECK(is_near);
             if (each == &everywhere) joints += is_near ? 1 : 0;
         }
     }
-    CHECK(joints == flexible.joints);
+    CHECK(joints == world.resource<StartReport>().joints);
 }
 
 TEST_CASE("only joints of flexible molecules turn, and those that the scene names",
           "[simulation][flexible]") {
     const auto joints_with = [](std::vector<std::string> settings) {
         settings.emplace_back("statics.relax_steps=0");
-        return load_peptides(settings).flexible->joints;
+        return load_peptides(settings).resource<StartReport>().joints;
     };
     const std::size_t one = joints_with({"molecules.resting.shape=rigid"});
 
@@ -344,55 +379,113 @@ TEST_CASE("only joints of flexible molecules turn, and those that the scene name
 TEST_CASE("runs repeat to the bit", "[simulation][flexible]") {
     const std::string pairs = GENERATE("double", "fast");
     const auto run = [&] {
-        Simulation simulation = load_peptides(
+        World world = load_peptides(
             {"statics.pairs=" + pairs, "statics.method=inverse-mass", "statics.steps=4"});
-        TouchModel felt = simulation.touch.model;
+        ContactModel felt = local_contact_of(world).model;
         for (int i = 1; i <= 10; ++i) {
-            felt = step_simulation(simulation, hand_at({-0.1 * i, 0, 0}), felt).touch;
+            felt = test::step_once(world, hand_at({-0.1 * i, 0, 0}), felt);
         }
-        return simulation.atoms.positions;
+        return world.resource<AtomTable>().positions;
     };
 
     const std::vector<Vec3> first = run();
     CHECK(first == run());
 }
 
+TEST_CASE("residues of two molecules with the same names are not one, where few joints may turn",
+          "[simulation][flexible]") {
+    // The other one's residues go on where the first's end, in a segment of the same name.
+    const auto count_joints = [](double within, bool has_same_names) {
+        World world = load_peptides({"statics.relax_steps=0"});
+        SceneDescription& scene = world.resource<SceneFile>().scene;
+        scene.joints.within_angstrom = within;
+        scene.joints.around = "held";
+        BondedTerms& terms = world.resource<BondedTerms>();
+        Connectivity connectivity = *terms.connectivity;
+        if (has_same_names) {
+            const AtomRange other = held_range(world, first_hand(world));
+            REQUIRE(connectivity.names.front().number == "1");
+            const AtomName last = connectivity.names[other.first - 1];
+            for (std::uint32_t i = other.first; i < other.first + other.count; ++i) {
+                AtomName& name = connectivity.names[i];
+                name.segment = last.segment;
+                name.number = std::to_string(std::stoi(name.number) + std::stoi(last.number) - 1);
+                if (name.number == last.number) name.residue = last.residue;
+            }
+        }
+        terms.connectivity = std::make_shared<const Connectivity>(std::move(connectivity));
+        rebuild_mechanics(world);
+        return model_of(world).tree.bodies.joints();
+    };
+    std::set<std::size_t> counts;
+    for (const double within : {2.0, 4.0, 6.0, 8.0, 10.0, 12.0, 14.0, 17.0}) {
+        INFO(within << " Å");
+        const std::size_t joints = count_joints(within, false);
+        CHECK(count_joints(within, true) == joints);
+        counts.insert(joints);
+    }
+    CHECK(counts.size() > 2);
+}
+
 TEST_CASE("a hand that is nowhere changes nothing", "[simulation][flexible]") {
     std::vector<std::string> settings;
     if (GENERATE(false, true)) settings = by_spring;
-    Simulation simulation = load_peptides(settings);
-    TouchModel felt = simulation.touch.model;
-    felt = step_simulation(simulation, hand_at({-0.1, 0, 0}), felt).touch;
-    const TorsionState before = simulation.flexible->state;
-    const std::vector<Vec3> positions = simulation.atoms.positions;
-    const Vec3 place = place_of(simulation), held = find_held(*simulation.flexible);
+    World world = load_peptides(settings);
+    ContactModel felt = local_contact_of(world).model;
+    felt = test::step_once(world, hand_at({-0.1, 0, 0}), felt);
+    const TorsionState before = world.resource<TorsionState>();
+    const std::vector<Vec3> positions = world.resource<AtomTable>().positions;
+    const Vec3 place = place_of(world), held = held_place(world, first_hand(world));
 
-    const StepReport report = step_simulation(
-        simulation, hand_at({0, std::numeric_limits<double>::quiet_NaN(), 0}), felt);
+    const StepReport report =
+        step_world(world, hand_at({0, std::numeric_limits<double>::quiet_NaN(), 0}), felt);
 
     CHECK_FALSE(report.finite);
-    CHECK(report.touch.force_newton == felt.force_newton);
-    CHECK(simulation.atoms.positions == positions);
-    CHECK(simulation.flexible->state.positions == before.positions);
-    CHECK(simulation.flexible->state.angles == before.angles);
-    CHECK(find_held(*simulation.flexible) == held);
-    CHECK(place_of(simulation) == place);
+    CHECK(local_contact_of(world).model.force_newton == felt.force_newton);
+    CHECK(world.resource<AtomTable>().positions == positions);
+    CHECK(world.resource<TorsionState>().positions == before.positions);
+    CHECK(world.resource<TorsionState>().angles == before.angles);
+    CHECK(held_place(world, first_hand(world)) == held);
+    CHECK(place_of(world) == place);
     // And it can go on.
-    take_hold(simulation, hand_at({0, 0, 0}));
-    CHECK(step_simulation(simulation, hand_at({0.1, 0, 0}), felt).finite);
+    take_hold(world, first_hand(world), hand_at({0, 0, 0}));
+    CHECK(step_world(world, hand_at({0.1, 0, 0}), felt).finite);
 }
 
-TEST_CASE("coordinates that are no numbers are not stepped into", "[simulation][flexible]") {
-    Simulation simulation = load_peptides();
-    Flexible& flexible = *simulation.flexible;
-    const TorsionState safe = flexible.safe;
-    move_held(flexible, Vec3(std::numeric_limits<double>::quiet_NaN(), 0, 0));
+TEST_CASE("a step that is not finite leaves everything as it was", "[simulation][flexible]") {
+    std::vector<std::string> settings = by_spring;
+    if (GENERATE(false, true)) settings.emplace_back("statics.active=4");
+    World world = load_peptides(settings);
+    const ContactModel felt =
+        test::step_once(world, hand_at({-0.1, 0, 0}), local_contact_of(world).model);
+    TorsionState& state = world.resource<TorsionState>();
+    const TorsionState before = state;
+    const std::vector<Vec3> positions = world.resource<AtomTable>().positions;
+    const Vec3 place = place_of(world);
 
-    const SettleReport report = step_flexible(flexible);
+    state.springs.front().k = std::numeric_limits<double>::quiet_NaN();
+    CHECK_FALSE(step_world(world, hand_at({-0.2, 0, 0}), felt).finite);
+    state.springs.front().k = before.springs.front().k;
 
-    CHECK_FALSE(report.is_finite);
-    CHECK(flexible.state.positions == safe.positions);
-    CHECK(flexible.state.energy() == safe.energy());
+    CHECK(state.angles == before.angles);
+    CHECK(state.shifts == before.shifts);
+    CHECK(state.springs.front().place == before.springs.front().place);
+    CHECK(find_largest_move(state.positions, before.positions) < 1e-9);
+    CHECK(find_largest_move(world.resource<AtomTable>().positions, positions) < 1e-9);
+    CHECK((place_of(world) - place).norm() < 1e-12);
+    CHECK(local_contact_of(world).model.force_newton == felt.force_newton);
+    CHECK(step_world(world, hand_at({-0.3, 0, 0}), felt).finite);
+    CHECK(std::isfinite(state.energy()));
+}
+
+TEST_CASE("a hand that is farther away than any molecule moves nothing", "[simulation][flexible]") {
+    World world = load_peptides();
+    const std::vector<Vec3> positions = world.resource<AtomTable>().positions;
+    HandPose far_out;
+    far_out.molecule = {Vec3(1e200, 0, 0), Quat::Identity()};
+
+    CHECK_FALSE(step_world(world, far_out, {}).finite);
+    CHECK(find_largest_move(world.resource<AtomTable>().positions, positions) < 1e-9);
 }
 
 TEST_CASE("a scene is told which of its joints, atoms and springs are not there",
@@ -427,7 +520,7 @@ TEST_CASE("a scene is told which of its joints, atoms and springs are not there"
     const std::filesystem::path file = broken.folder().add_file("scene.toml", text);
     const auto line = 1 + std::count(text.data(), text.data() + text.find(row.line), '\n');
 
-    const std::string error = load_error_of([&] { load_simulation(broken.scene()); });
+    const std::string error = load_error_of([&] { load_world(broken.scene()); });
 
     CHECK_THAT(error, Catch::StartsWith(fmt::format("{}:{}:", file.string(), line)));
     CHECK_THAT(error, Contains(row.what));
@@ -444,7 +537,7 @@ TEST_CASE("molecules that are bonded across segments cannot move apart",
     connectivity.names = structure.names;
     const ChangedPeptides broken(structure, connectivity);
 
-    const std::string error = load_error_of([&] { load_simulation(broken.scene()); });
+    const std::string error = load_error_of([&] { load_world(broken.scene()); });
 
     CHECK_THAT(error, Contains("both.psf:"));
     CHECK_THAT(error, Contains("PEPB ARG 3 C and TAIL ALA 4 N are bonded, across segments"));
@@ -469,34 +562,33 @@ TEST_CASE("a hand holds one molecule, not two under one name", "[simulation][fle
     const ChangedPeptides broken(structure, connectivity);
 
     CHECK_THAT(
-        load_error_of([&] { load_simulation(broken.scene()); }),
+        load_error_of([&] { load_world(broken.scene()); }),
         Contains("scene.toml:18:") && Contains("'held' is not all bonded together; expected"));
     // A spring may hold one of them.
-    CHECK(load_simulation(broken.scene(by_spring)).flexible->model.bases.size() == 3);
+    CHECK(model_of(load_world(broken.scene(by_spring))).bases.size() == 3);
 }
 
 TEST_CASE("few active joints leave the force that is felt at first as it is",
           "[simulation][flexible]") {
-    const Simulation all = load_peptides();
-    const Simulation few = load_peptides({"statics.active=2"});
+    const World all = load_peptides();
+    const World few = load_peptides({"statics.active=2"});
 
-    const Vec6 expected = find_pull_on_held(*all.flexible),
-               found = find_pull_on_held(*few.flexible);
+    const Vec6 expected = find_pull_on_held(all, first_hand(all)),
+               found = find_pull_on_held(few, first_hand(few));
 
-    CHECK(find_active_freedom(*few.flexible) <= 2);
+    CHECK(find_active_freedom(few) <= 2);
     CHECK((found - expected).norm() < 1e-4 * expected.norm());
 }
 
 TEST_CASE("a joint counts the less the more atoms it moves, and the farther it is from the hand",
           "[simulation][flexible]") {
-    const std::string weights = GENERATE("light", "near-hand");
-    Simulation simulation =
+    const std::string weights = GENERATE("inverse-moved-atoms", "hand-proximity");
+    World world =
         load_peptides({"statics.active=8", "statics.weights=" + weights, "statics.choose_every=1"});
-    (void)step_simulation(simulation, hand_at(Vec3(0.6, 0, 0)), simulation.touch.model);
-    (void)step_simulation(simulation, hand_at(Vec3(1.2, 0, 0)), simulation.touch.model);
-    const Flexible& flexible = *simulation.flexible;
-    const std::vector<double>& factors = flexible.adaptive->settings.factors;
-    const std::vector<Body>& bodies = flexible.model.tree.bodies.bodies;
+    (void)step_world(world, hand_at(Vec3(0.6, 0, 0)), local_contact_of(world).model);
+    (void)step_world(world, hand_at(Vec3(1.2, 0, 0)), local_contact_of(world).model);
+    const std::vector<double>& factors = world.resource<AdaptiveState>().settings.factors;
+    const std::vector<Body>& bodies = model_of(world).tree.bodies.bodies;
     const std::vector<std::array<std::uint32_t, 2>> bonds = connectivity_of(read_peptides()).bonds;
     // All that is bonded to k once the bond to j is cut: what the joint j -> k turns.
     const auto count_behind = [&](std::uint32_t j, std::uint32_t k) {
@@ -515,19 +607,21 @@ TEST_CASE("a joint counts the less the more atoms it moves, and the farther it i
 
     std::vector<std::pair<double, double>> by_distance;  // Å from the middle of what is held
     for (std::size_t b = 0; b < bodies.size(); ++b) {
-        if (flexible.model.tree.bodies.is_base(b)) continue;
+        if (model_of(world).tree.bodies.is_base(b)) continue;
         const auto [j, k] = bodies[b].axis;
         const double n = count_behind(j, k);
         INFO("joint " << j << " -> " << k << ", " << n << " atoms");
         // 1/2.3 of 8 atoms, 1/25 of 30: by the third power at last.
         const double light = 1 / ((1 + n / 20) * (1 + n * n / 100));
         const double nearness = factors[b] / light;
-        if (weights == "light") {
+        if (weights == "inverse-moved-atoms") {
             CHECK(nearness == Approx(1));
             continue;
         }
-        by_distance.emplace_back(
-            (flexible.state.positions[k] - flexible.adaptive->near_to->centre).norm(), nearness);
+        by_distance.emplace_back((world.resource<TorsionState>().positions[k] -
+                                  world.resource<AdaptiveState>().near_to.front().centre)
+                                     .norm(),
+                                 nearness);
     }
     std::ranges::sort(by_distance);
     for (std::size_t i = 1; i < by_distance.size(); ++i) {
@@ -538,7 +632,7 @@ TEST_CASE("a joint counts the less the more atoms it moves, and the farther it i
         if (distance > by_distance[i - 1].first + 0.1)
             CHECK((nearness < before || before > 1 - 1e-9));
     }
-    if (weights == "near-hand") {
+    if (weights == "hand-proximity") {
         CHECK(by_distance.front().second == Approx(1));
         CHECK(by_distance.back().second < 0.1);
     }
@@ -546,16 +640,15 @@ TEST_CASE("a joint counts the less the more atoms it moves, and the farther it i
 
 TEST_CASE("a time budget that nothing has strained leaves joints to be chosen as often as asked",
           "[simulation][flexible]") {
-    Simulation simulation =
+    World world =
         load_peptides({"statics.active=8", "statics.choose_every=12", "statics.budget_us=1000000"});
-    Flexible& flexible = *simulation.flexible;
-    REQUIRE(flexible.adaptive->budget);
-    move_held(flexible, Vec3(0.1, 0, 0));
+    REQUIRE(world.resource<AdaptiveState>().budget);
+    move_held(world, Vec3(0.1, 0, 0));
     int choices = 0;
-    for (int i = 0; i < 8; ++i) choices += step_flexible(flexible).is_chosen ? 1 : 0;
+    for (int i = 0; i < 8; ++i) choices += relax_step(world).is_chosen ? 1 : 0;
 
     // Three of the paper's steps are in each: there is a choice in every fourth.
     CHECK(choices >= 1);
 
-    CHECK(flexible.adaptive->settings.choose_every == 12);
+    CHECK(world.resource<AdaptiveState>().settings.choose_every == 12);
 }

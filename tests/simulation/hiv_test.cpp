@@ -6,18 +6,22 @@
 #include "field/pair_field.h"
 #include "scene/read_scene.h"
 #include "simulation/components.h"
+#include "simulation/held.h"
+#include "simulation/load.h"
 #include "simulation/probe.h"
 #include "simulation/relax.h"
-#include "simulation/simulation.h"
 #include "simulation/step.h"
-#include "simulation/touch.h"
+#include "simulation/systems/publish_contact.h"
+#include "tests/support/held_scene.h"
 #include "tests/support/paths.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -46,17 +50,18 @@ std::vector<double> numbers(std::string_view row) {
 
 // The inhibitor as the file has it, before it was relaxed.
 struct Shipped {
-    Simulation simulation = load_simulation(hiv_scene());
+    World world;
     std::vector<Vec3> places;
     Vec3 centre = Vec3::Zero();
 
-    Shipped() {
+    explicit Shipped(const SceneDescription& scene) : world(load_world(scene)) {
         const std::string text = read_text_file(test::in_project("scenes/hiv/system.crd"));
         double mass = 0;
+        const AtomRange held = held_range(world, first_hand(world));
         for (const std::string_view line : split_lines(text)) {
             const std::vector<std::string_view> words = split_words(line);
             if (words.size() != 10 || words[7] != "TL3C") continue;
-            const double m = simulation.atoms.mass.at(places.size());
+            const double m = world.resource<AtomTable>().mass.at(held.first + places.size());
             places.emplace_back(*find_real(words[4]), *find_real(words[5]), *find_real(words[6]));
             centre += m * places.back();
             mass += m;
@@ -65,18 +70,19 @@ struct Shipped {
     }
 
     FieldSum field(const std::vector<Vec3>& moved) const {
-        FieldPoints group = grabbed_points(simulation);
+        FieldPoints group = held_points(world, first_hand(world));
         group.positions = moved;
-        return evaluate_pair_field(group, environment_points(simulation), pair_rule(simulation));
+        return field_on(world, first_hand(world), group);
     }
 };
 
 }  // namespace
 
 TEST_CASE("energy, force and torque on TL-3 are those of an independent sum", "[simulation][hiv]") {
-    const Shipped shipped;
+    const std::size_t number = GENERATE(0, 1, 2);
+    const Shipped shipped(test::with_held_at(number, hiv_scene()));
     REQUIRE(shipped.places.size() == 130);
-    REQUIRE(environment_points(shipped.simulation).positions.size() == 3145);
+    REQUIRE(count_environment(shipped.world, first_hand(shipped.world)) == 3145);
     const std::string text = read_text_file(test::test_data("hiv_poses.csv"));
     const std::vector<std::string_view> rows = split_lines(text);
     REQUIRE(rows.size() == 5);
@@ -105,76 +111,92 @@ TEST_CASE("energy, force and torque on TL-3 are those of an independent sum", "[
 }
 
 TEST_CASE("loading brings TL-3 to rest in all six degrees of freedom", "[simulation][hiv]") {
-    const Simulation simulation = load_simulation(hiv_scene());
-    const RelaxReport& report = simulation.relaxed.value();
+    const World world = load_world(hiv_scene());
+    const RelaxReport& report = world.resource<StartReport>().rigid.value();
 
     CHECK(report.force * pN < 20);
     CHECK(report.energy_after < report.energy_before);
     CHECK(report.displacement < 0.5);
-    const TouchModel touch = build_touch(simulation, {}).model;
-    CHECK(touch.force_newton.norm() < 20e-12);
-    CHECK(touch.torque_newton_metre.norm() < 20e-12 * 10e-10);  // 20 pN at its ends
-    CHECK(touch.active_freedom == 3);
+    const ContactModel contact = build_local_contact(world, first_hand(world), {}).model;
+    CHECK(contact.force_newton.norm() < 20e-12);
+    CHECK(contact.torque_newton_metre.norm() < 20e-12 * 10e-10);  // 20 pN at its ends
+    CHECK(contact.active_freedom == 3);
     // At rest every direction pulls back, and the stiffness told is the largest.
-    const FieldSum field = field_on_grabbed(simulation);
+    const FieldSum field = field_on_grabbed(world);
     const Vec3 stiffness = Eigen::SelfAdjointEigenSolver<Mat3>(field.stiffness).eigenvalues() *
                            units::newton_per_metre_per_kcal_per_mol_angstrom2;
     CHECK(stiffness.minCoeff() > 0);
-    CHECK(touch.stiffness_N_per_m == Approx(stiffness.maxCoeff()));
+    CHECK(contact.stiffness_N_per_m == Approx(stiffness.maxCoeff()));
     // The same again, to the last bit.
-    CHECK(load_simulation(hiv_scene()).atoms.positions == simulation.atoms.positions);
+    CHECK(load_world(hiv_scene()).resource<AtomTable>().positions ==
+          world.resource<AtomTable>().positions);
+}
+
+TEST_CASE("TL-3 comes to the same rest wherever it stands in the table", "[simulation][hiv]") {
+    const std::size_t number = GENERATE(0, 1);
+    const World last = load_world(hiv_scene()),
+                world = load_world(test::with_held_at(number, hiv_scene()));
+    const std::span<const Vec3> expected = held_points(last, first_hand(last)).positions,
+                                found = held_points(world, first_hand(world)).positions;
+
+    REQUIRE(held_range(world, first_hand(world)).first < held_range(last, first_hand(last)).first);
+    REQUIRE(found.size() == expected.size());
+    for (std::size_t i = 0; i < found.size(); ++i) CHECK((found[i] - expected[i]).norm() < 1e-4);
 }
 
 TEST_CASE("a rigid body finds back to its rest from a little beside it", "[simulation][hiv]") {
-    const Simulation simulation = load_simulation(hiv_scene());
-    const FieldPoints group = grabbed_points(simulation);
+    const World world = load_world(hiv_scene());
+    const FieldPoints group = held_points(world, first_hand(world));
     std::vector<Vec3> places(group.positions.begin(), group.positions.end());
     const std::vector<Vec3> rest = places;
     const Vec3 centre = places[0];
     const Eigen::AngleAxisd turn(0.02, Vec3(1, 2, -1).normalized());
     for (Vec3& place : places) place = centre + turn * (place - centre) + Vec3(0.05, -0.05, 0.03);
 
-    const RelaxReport report = relax_rigid(places, centre, group, environment_points(simulation),
-                                           pair_rule(simulation), 0.01 / pN);
+    const GatheredPoints environment(world.resource<AtomTable>(), test::atoms_around(world));
+    const RelaxReport report =
+        relax_rigid(places, centre, group, environment.view(), pair_rule(world), 0.01 / pN);
 
     CHECK(report.force * pN < 0.01);
     for (std::size_t i = 0; i < places.size(); ++i) CHECK((places[i] - rest[i]).norm() < 1e-3);
 }
 
 TEST_CASE("the hand moves TL-3 in space without turning it", "[simulation][hiv]") {
-    Simulation simulation = load_simulation(hiv_scene({"A_d=1e9"}));
-    const std::vector<Vec3> before = simulation.atoms.positions;
-    TouchModel felt = build_touch(simulation, {}).model;
+    World world = load_world(hiv_scene({"A_d=1e9"}));
+    const std::vector<Vec3> before = world.resource<AtomTable>().positions;
+    ContactModel felt = build_local_contact(world, first_hand(world), {}).model;
     const Vec3 rest = felt.molecule.place_angstrom;
     const double energy = felt.potential_kcal_per_mol;
 
     // 10 mm / 1e9 = 0.1 Å.
     const Vec3 travel(0.010, -0.005, 0.002);
-    const StepReport report = step_simulation(simulation, {0, travel}, felt);
+    const AtomRange held = held_range(world, first_hand(world));
+    const StepReport& report = step_world(world, {0, travel}, felt);
 
     CHECK(report.finite);
-    CHECK((report.touch.molecule.place_angstrom - rest - 10 * travel).norm() < 1e-12);
-    CHECK(report.move == Approx(10 * travel.norm()));
+    CHECK((local_contact_of(world).model.molecule.place_angstrom - rest - 10 * travel).norm() <
+          1e-12);
+    CHECK(report.moves.front().angstrom == Approx(10 * travel.norm()));
     for (std::size_t i = 0; i < before.size(); ++i) {
-        const Vec3 moved = simulation.atoms.positions[i] - before[i];
-        CHECK((moved - (i < 130 ? Vec3(10 * travel) : Vec3(Vec3::Zero()))).norm() < 1e-12);
+        const Vec3 moved = world.resource<AtomTable>().positions[i] - before[i];
+        CHECK((moved - (has_atom(held, i) ? Vec3(10 * travel) : Vec3(Vec3::Zero()))).norm() <
+              1e-12);
     }
     // Whatever way it is moved, it is pushed back.
-    CHECK(report.touch.force_newton.dot(travel) < 0);
-    CHECK(report.touch.potential_kcal_per_mol > energy);
+    CHECK(local_contact_of(world).model.force_newton.dot(travel) < 0);
+    CHECK(local_contact_of(world).model.potential_kcal_per_mol > energy);
 }
 
 TEST_CASE("a step is finite wherever the hand pushes TL-3, through the protein too",
           "[simulation][hiv]") {
-    Simulation simulation = load_simulation(hiv_scene({"A_d=1e9"}));
-    TouchModel felt = build_touch(simulation, {}).model;
+    World world = load_world(hiv_scene({"A_d=1e9"}));
+    ContactModel felt = build_local_contact(world, first_hand(world), {}).model;
 
     for (int step = 0; step < 60; ++step) {
         const double angle = 0.7 * step, far = 0.05 * step;
-        const StepReport report = step_simulation(
-            simulation, {0, far * Vec3(std::cos(angle), std::sin(angle), std::sin(2 * angle))},
-            felt);
-        felt = report.touch;
+        const StepReport& report = step_world(
+            world, {0, far * Vec3(std::cos(angle), std::sin(angle), std::sin(2 * angle))}, felt);
+        felt = local_contact_of(world).model;
         REQUIRE(report.finite);
         REQUIRE(std::isfinite(felt.potential_kcal_per_mol));
         REQUIRE(std::isfinite(felt.stiffness_N_per_m));
@@ -182,12 +204,12 @@ TEST_CASE("a step is finite wherever the hand pushes TL-3, through the protein t
 }
 
 TEST_CASE("a start beside the place of rest is measured from it", "[simulation][hiv]") {
-    const Simulation inside = load_simulation(hiv_scene());
-    const Simulation outside =
-        load_simulation(hiv_scene({"hand.start_offset_angstrom=[30, 1, -2]"}));
+    const World inside = load_world(hiv_scene());
+    const World outside = load_world(hiv_scene({"hand.start_offset_angstrom=[30, 1, -2]"}));
 
-    const Vec3 moved = build_touch(outside, {}).model.molecule.place_angstrom -
-                       build_touch(inside, {}).model.molecule.place_angstrom;
+    const Vec3 moved =
+        build_local_contact(outside, first_hand(outside), {}).model.molecule.place_angstrom -
+        build_local_contact(inside, first_hand(inside), {}).model.molecule.place_angstrom;
 
     CHECK((moved - Vec3(30, 1, -2)).norm() < 1e-12);
     CHECK(grabbed_distance(inside) == 0);

@@ -1,7 +1,9 @@
+#include "simulation/load.h"
 #include "core/load_error.h"
 #include "simulation/components.h"
+#include "simulation/coupling.h"
+#include "simulation/held.h"
 #include "simulation/probe.h"
-#include "simulation/simulation.h"
 #include "tests/support/paths.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/water_scene.h"
@@ -16,9 +18,8 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-double distance(const Simulation& simulation) {
-    const Grab& grab = *simulation.world.find<Grab>(simulation.hand);
-    return simulation.world.find<Guide>(grab.molecule)->place.x();
+double distance(const World& world) {
+    return grip_of(world, first_hand(world)).pose.place_angstrom.x();
 }
 
 // What loading says of a scene whose parameter file lacks the line that begins with `without`.
@@ -33,7 +34,7 @@ std::string error_without(const std::string& without) {
     }
     target.close();
     try {
-        load_simulation(read_scene(folder));
+        load_world(read_scene(folder));
     } catch (const LoadError& error) {
         return error.what();
     }
@@ -43,45 +44,47 @@ std::string error_without(const std::string& without) {
 }  // namespace
 
 TEST_CASE("the water scene becomes two molecules and a hand", "[simulation][load]") {
-    Simulation simulation = load_simulation(test::water_scene());
-    int molecules = 0, guided = 0;
+    World world = load_world(test::water_scene());
+    int molecules = 0, hands = 0;
 
-    simulation.world.each<Molecule>([&](Entity, Molecule& molecule) {
+    world.each<Molecule>([&](Entity, Molecule& molecule) {
         CHECK(molecule.atoms.count == 3);
-        CHECK(simulation.atoms.names[molecule.reference_atom].atom == "OH2");
+        CHECK(world.resource<AtomTable>().names[molecule.reference_atom].atom == "OH2");
         ++molecules;
     });
-    simulation.world.each<Molecule, Guide>([&](Entity, Molecule& molecule, Guide&) {
-        CHECK(molecule.name == "moved");
-        ++guided;
+    world.each<Hand, Grip>([&](Entity, const Hand&, const Grip& grip) {
+        CHECK(world.find<Molecule>(grip.molecule)->name == "moved");
+        CHECK(world.find<Molecule>(grip.measured_from)->name == "fixed");
+        ++hands;
     });
 
     CHECK(molecules == 2);
-    CHECK(guided == 1);
-    CHECK(simulation.atoms.size() == 6);
-    CHECK(simulation.atoms.mass[0] == 15.9994);
-    CHECK(simulation.atoms.charge[0] + simulation.atoms.charge[1] + simulation.atoms.charge[2] ==
+    CHECK(hands == 1);
+    CHECK(world.resource<AtomTable>().size() == 6);
+    CHECK(world.resource<AtomTable>().mass[0] == 15.9994);
+    CHECK(world.resource<AtomTable>().charge[0] + world.resource<AtomTable>().charge[1] +
+              world.resource<AtomTable>().charge[2] ==
           Approx(0).margin(1e-15));
-    CHECK(distance(simulation) == 7);
+    CHECK(distance(world) == 7);
 }
 
 TEST_CASE("a stroke that holds starts where nothing is felt", "[simulation][load]") {
-    const Simulation simulation = load_simulation(test::water_scene({"stroke=hold"}));
+    const World world = load_world(test::water_scene({"stroke=hold"}));
 
-    CHECK(distance(simulation) == Approx(2.767).margin(0.001));
-    CHECK(std::abs(force_along_line(simulation).force) < 1e-8);
+    CHECK(distance(world) == Approx(2.767).margin(0.001));
+    CHECK(std::abs(force_along_line(world).force) < 1e-8);
 }
 
 TEST_CASE("a start in the scene goes before any other", "[simulation][load]") {
-    CHECK(distance(load_simulation(
-              test::water_scene({"stroke=hold", "hand.start_angstrom=3.5"}))) == 3.5);
-    CHECK(distance(load_simulation(test::water_scene({"hand.start_angstrom=9"}))) == 9);
+    CHECK(distance(load_world(test::water_scene({"stroke=hold", "hand.start_angstrom=3.5"}))) ==
+          3.5);
+    CHECK(distance(load_world(test::water_scene({"hand.start_angstrom=9"}))) == 9);
 }
 
 TEST_CASE("parameter files that lack something are told with file and line", "[simulation][load]") {
     CHECK_THAT(error_without("OT "), Contains("tip3p.str:17: atom type 'OT' has no NONBONDED"));
     CHECK_THAT(error_without("MASS -1 OT"), Contains("unknown atom type 'OT': no MASS line"));
-    CHECK_THAT(error_without("ATOM H2"), Contains("dimer.crd:11") && Contains("has no atom 'H2'"));
+    CHECK_THAT(error_without("ATOM H2"), Contains("dimer.crd:8") && Contains("has no atom 'H2'"));
     CHECK_THAT(error_without("RESI"), Contains("an ATOM line outside of a residue"));
 }
 

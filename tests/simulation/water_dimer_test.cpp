@@ -4,8 +4,9 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "field/pair_field.h"
+#include "simulation/held.h"
+#include "simulation/load.h"
 #include "simulation/probe.h"
-#include "simulation/simulation.h"
 #include "tests/support/paths.h"
 #include "tests/support/water_scene.h"
 
@@ -63,8 +64,8 @@ TEST_CASE("every reference pose of two waters has OpenMM's energies and forces",
     const std::string variant = GENERATE("charmm", "standard");
     // The scene's parameters, the reference's Coulomb constant.
     constexpr double reference_coulomb = 138.935457644382 / 4.184 * 10;  // kcal Å/mol/e²
-    const Simulation simulation = load_simulation(test::water_scene());
-    const FieldPoints water = grabbed_points(simulation);
+    const World world = load_world(test::water_scene());
+    const FieldPoints water = held_points(world, first_hand(world));
     std::vector<double> sqrt_epsilon(water.sqrt_epsilon.begin(), water.sqrt_epsilon.end());
     std::vector<double> half_rmin(water.half_rmin.begin(), water.half_rmin.end());
     if (variant == "standard") {  // the reference took these with six digits, as sigma and epsilon
@@ -97,10 +98,10 @@ TEST_CASE("every reference pose of two waters has OpenMM's energies and forces",
 
 TEST_CASE("the scene's line has the depth, rest, stiffness and attraction of the strongest bond",
           "[simulation][water]") {
-    const Simulation simulation = load_simulation(test::water_scene());
+    const World world = load_world(test::water_scene());
 
-    const double r_eq = equilibrium_distance(simulation).value();
-    const LineForce rest = force_along_line_at(simulation, r_eq);
+    const double r_eq = equilibrium_distance(world).value();
+    const LineForce rest = force_along_line_at(world, r_eq);
     CHECK_THAT(rest.energy, WithinAbs(-6.594, 0.005));
     CHECK_THAT(r_eq, WithinAbs(2.767, 0.002));
     CHECK_THAT(rest.stiffness * N_per_m, WithinAbs(29.3, 0.2));
@@ -108,7 +109,7 @@ TEST_CASE("the scene's line has the depth, rest, stiffness and attraction of the
 
     double strongest = 0, where = 0;
     for (double r = r_eq; r < 8; r += 0.002) {
-        const double attraction = -force_along_line_at(simulation, r).force * nN;
+        const double attraction = -force_along_line_at(world, r).force * nN;
         if (attraction > strongest) {
             strongest = attraction;
             where = r;
@@ -117,13 +118,13 @@ TEST_CASE("the scene's line has the depth, rest, stiffness and attraction of the
     CHECK_THAT(strongest, WithinAbs(0.322, 0.002));
     CHECK_THAT(where, WithinAbs(3.10, 0.01));
 
-    CHECK_THAT(repulsion_distance(simulation, 3 / nN, 7).value(), WithinAbs(2.473, 0.001));
-    CHECK_THAT(repulsion_distance(simulation, 10 / nN, 7).value(), WithinAbs(2.325, 0.001));
-    CHECK_THAT(force_along_line_at(simulation, 6.24).force * nN, WithinAbs(-0.020, 0.0005));
+    CHECK_THAT(repulsion_distance(world, 3 / nN, 7).value(), WithinAbs(2.473, 0.001));
+    CHECK_THAT(repulsion_distance(world, 10 / nN, 7).value(), WithinAbs(2.325, 0.001));
+    CHECK_THAT(force_along_line_at(world, 6.24).force * nN, WithinAbs(-0.020, 0.0005));
 }
 
 TEST_CASE("the line's force is as steep inward as the table says", "[simulation][water]") {
-    const Simulation simulation = load_simulation(test::water_scene());
+    const World world = load_world(test::water_scene());
     const auto [r, F_nN] = GENERATE(table<double, double>({{2.6, 0.954},
                                                            {2.4, 5.453},
                                                            {2.2, 28.366},
@@ -131,19 +132,19 @@ TEST_CASE("the line's force is as steep inward as the table says", "[simulation]
                                                            {1.8, 2508.019},
                                                            {1.6, 75002.016}}));
 
-    CHECK_THAT(force_along_line_at(simulation, r).force * nN, WithinRel(F_nN, 1e-3));
+    CHECK_THAT(force_along_line_at(world, r).force * nN, WithinRel(F_nN, 1e-3));
 }
 
 TEST_CASE(
     "the force along the line is finite wherever the hand pushes, through the other water too",
     "[simulation][water]") {
-    const Simulation simulation = load_simulation(test::water_scene());
+    const World world = load_world(test::water_scene());
 
     for (double r = -3; r < 3; r += 1e-3) {
-        const LineForce line = force_along_line_at(simulation, r);
+        const LineForce line = force_along_line_at(world, r);
         REQUIRE(std::isfinite(line.energy));
         REQUIRE(std::isfinite(line.force));
         REQUIRE(std::isfinite(line.stiffness));
     }
-    CHECK(std::isfinite(force_along_line_at(simulation, 0).force));
+    CHECK(std::isfinite(force_along_line_at(world, 0).force));
 }

@@ -17,20 +17,6 @@ namespace {
 
 using enum BaseFreedom;
 
-// Two peptides near each other.
-struct PeptidePair {
-    TorsionModel model;
-    TorsionState state;
-};
-
-PeptidePair peptide_pair(std::array<BaseFreedom, 2> bases) {
-    PeptidePair result{
-        test::model_of(test::with_copy(test::tetrapeptide(), {12, 5, -2}), {bases[0], bases[1]}),
-        {}};
-    result.state = test::state_after(result.model, 0.03, 21);
-    return result;
-}
-
 AdaptiveSettings settings_of(std::size_t active, bool fast, bool ends) {
     AdaptiveSettings settings;
     settings.limits.degrees_of_freedom = active;
@@ -59,6 +45,20 @@ void part_atoms(const TorsionModel& model, TorsionState& state) {
     }
 }
 
+// What two hands do to the first two molecules between two steps: one is moved, the other moved and
+// turned.
+struct TwoHands {
+    Vec3 first, second;
+    Eigen::Quaterniond turn;
+};
+
+TwoHands hands_at(int step) {
+    const double back = step < 20 ? 1 : -2;
+    return {
+        Vec3(0.03, 0.02, 0) * back, Vec3(-0.02, 0, 0.01) * back,
+        Eigen::Quaterniond(Eigen::AngleAxisd(0.004 * back, Vec3(1, -2, 0.5 * step).normalized()))};
+}
+
 constexpr std::size_t everything = std::numeric_limits<std::size_t>::max();
 
 }  // namespace
@@ -66,9 +66,10 @@ constexpr std::size_t everything = std::numeric_limits<std::size_t>::max();
 TEST_CASE("with everything active an adaptive step is a quasi-static one", "[statics][adaptive]") {
     const auto bases =
         GENERATE(std::array{Held, Free}, std::array{Turning, Free}, std::array{Turning, Held});
-    auto [model, state] = peptide_pair(bases);
+    const bool ends = GENERATE(false, true);
+    auto [model, state] = test::peptide_pair(bases);
     TorsionState other = state;
-    const AdaptiveSettings settings = settings_of(everything, false, false);
+    const AdaptiveSettings settings = settings_of(everything, false, ends);
     AdaptiveStatics adaptive = build_adaptive_statics(model);
     QuasiStatics plain = build_quasi_statics(model);
     update_forces(model, settings.step.forces, plain.memory, other);
@@ -86,6 +87,62 @@ TEST_CASE("with everything active an adaptive step is a quasi-static one", "[sta
 
     CHECK(find_largest_move(state.positions, other.positions) < 1e-6);
     CHECK(state.energy() == Approx(other.energy()).margin(1e-6));
+    // Sums and lists of pairs are those of the other; one sum is that of the first choice.
+    CHECK(adaptive.rebuilds == 1);
+    CHECK(adaptive.memory.evaluations == plain.memory.evaluations + 1);
+    REQUIRE(adaptive.memory.list.positions.empty() == !ends);
+    CHECK(find_largest_move(adaptive.memory.list.positions, plain.memory.list.positions) < 1e-6);
+}
+
+TEST_CASE("how many joints may be active changes between steps", "[statics][adaptive]") {
+    const bool fast = GENERATE(false, true), ends = GENERATE(false, true);
+    auto [model, state] = test::peptide_pair({Turning, Free});
+    AdaptiveSettings settings = settings_of(everything, fast, ends);
+    settings.choose_every = 2;
+    if (fast) part_atoms(model, state);
+    AdaptiveStatics statics = build_adaptive_statics(model);
+    const auto all = static_cast<std::size_t>(model.coordinates);
+
+    for (int i = 0; i < 72; ++i) {
+        const bool is_everything = i / 12 % 2 == 0;
+        settings.limits.degrees_of_freedom = is_everything ? all : 7;
+        if (i % 3 == 0) {
+            shift_base(model, 0, {0.03, i < 40 ? 0.02 : -0.05, 0}, state, statics);
+            REQUIRE(update_adaptive_forces(model, settings, state, statics));
+        }
+        REQUIRE(step_adaptive(model, settings, state, statics).step.is_finite);
+        INFO("step " << i);
+        if (i % 12 > 2) {
+            if (is_everything) CHECK(find_active_freedom(model, statics) == all);
+            if (!is_everything) CHECK(find_active_freedom(model, statics) <= 7);
+        }
+        const AdaptiveDeviation deviation = find_deviation(model, settings, state, statics);
+        CHECK(deviation.position < 1e-9);
+        CHECK(deviation.force < (fast ? 2e-5 : 1e-9));
+    }
+}
+
+TEST_CASE("atoms out of all reach are told, with everything active and without",
+          "[statics][adaptive]") {
+    const std::size_t active = GENERATE(std::size_t{5}, everything);
+    const bool fast = GENERATE(false, true), ends = GENERATE(false, true);
+    auto [model, state] = test::peptide_pair({Turning, Free});
+    const AdaptiveSettings settings = settings_of(active, fast, ends);
+    AdaptiveStatics statics = build_adaptive_statics(model);
+    shift_base(model, 0, {0, 0, 0}, state, statics);
+    REQUIRE(update_adaptive_forces(model, settings, state, statics));
+    const double energy = state.energy();
+    const double away = GENERATE(2e6, 1e300, std::numeric_limits<double>::quiet_NaN());
+
+    const Vec3 start = state.shifts[0];
+    shift_base(model, 0, {away, 0, 0}, state, statics);
+    CHECK_FALSE(update_adaptive_forces(model, settings, state, statics));
+
+    // Mended by the caller.
+    state.shifts[0] = start;
+    update_positions(model, state);
+    CHECK(update_adaptive_forces(model, settings, state, statics));
+    CHECK(state.energy() == Approx(energy).epsilon(1e-5));
 }
 
 TEST_CASE("work where something moves agrees with work on everything", "[statics][adaptive]") {
@@ -93,11 +150,11 @@ TEST_CASE("work where something moves agrees with work on everything", "[statics
         GENERATE(std::array{Held, Free}, std::array{Turning, Free}, std::array{Turning, Held});
     const std::size_t active = GENERATE(std::size_t{0}, std::size_t{3}, std::size_t{9}, everything);
     const bool fast = GENERATE(false, true), ends = GENERATE(false, true);
-    auto [model, state] = peptide_pair(bases);
+    auto [model, state] = test::peptide_pair(bases);
     const AdaptiveSettings settings = settings_of(active, fast, ends);
     AdaptiveStatics statics = build_adaptive_statics(model);
     if (fast) part_atoms(model, state);
-    if (bases[0] == Held) state.tether = Tether{{50, 51, 52}, 20, state.positions[51]};
+    if (bases[0] == Held) state.springs = {{{50, 51, 52}, 20, state.positions[51]}};
     CHECK(update_adaptive_forces(model, settings, state, statics));
     double largest = std::abs(state.energy());
     std::vector<Vec3> copied = state.positions;
@@ -106,7 +163,7 @@ TEST_CASE("work where something moves agrees with work on everything", "[statics
     for (int i = 0; i < 60; ++i) {
         if (i % 3 == 0) {
             const Vec3 by(0.02, i < 30 ? 0.01 : -0.04, 0);
-            if (state.tether) state.tether->place += by;
+            for (Spring& spring : state.springs) spring.place += by;
             if (bases[0] == Turning) shift_base(model, 0, by, state, statics);
             CHECK(update_adaptive_forces(model, settings, state, statics));
         }
@@ -140,7 +197,7 @@ TEST_CASE("work where something moves agrees with work on everything", "[statics
 }
 
 TEST_CASE("a base and a joint that are not chosen keep their places", "[statics][adaptive]") {
-    auto [model, state] = peptide_pair({Held, Free});
+    auto [model, state] = test::peptide_pair({Held, Free});
     const TorsionState start = state;
     const AdaptiveSettings settings = settings_of(2, false, false);
     AdaptiveStatics statics = build_adaptive_statics(model);
@@ -158,7 +215,7 @@ TEST_CASE("a base and a joint that are not chosen keep their places", "[statics]
 }
 
 TEST_CASE("an adaptive step has the wrench of the others on a molecule", "[statics][adaptive]") {
-    auto [model, state] = peptide_pair({Turning, Held});
+    auto [model, state] = test::peptide_pair({Turning, Held});
     const AdaptiveSettings settings = settings_of(6, false, false);
     AdaptiveStatics statics = build_adaptive_statics(model);
     for (int i = 0; i < 7; ++i) (void)step_adaptive(model, settings, state, statics);
@@ -172,4 +229,95 @@ TEST_CASE("an adaptive step has the wrench of the others on a molecule", "[stati
     }
 
     CHECK((find_wrench_on(statics, 0) - expected).norm() < 1e-8 * expected.norm());
+}
+
+TEST_CASE("two hands move and turn a molecule each", "[statics][adaptive]") {
+    // Beside a third that moves by itself, and one that is fixed.
+    const auto bases =
+        GENERATE(std::vector{Turning, Held, Free, Held}, std::vector{Turning, Turning, Free, Held},
+                 std::vector{Held, Free, Free, Held});
+    const std::size_t active = GENERATE(std::size_t{0}, std::size_t{8}, everything);
+    const bool fast = GENERATE(false, true), ends = GENERATE(false, true);
+    const TorsionModel model = test::model_of(
+        test::with_copy(test::with_copy(test::alanine_dipeptide(), {7, 3, -2}), {-3, 9, 4}), bases);
+    TorsionState state = test::state_after(model, 0.03, 4);
+    const AdaptiveSettings settings = settings_of(active, fast, ends);
+    if (fast) part_atoms(model, state);
+    AdaptiveStatics statics = build_adaptive_statics(model);
+    REQUIRE(update_adaptive_forces(model, settings, state, statics));
+
+    for (int i = 0; i < 40; ++i) {
+        const TwoHands hands = hands_at(i);
+        const std::vector<Vec3> before = state.positions;
+        shift_base(model, 0, hands.first, state, statics);
+        turn_base(model, 1, hands.turn, hands.second, state, statics);
+
+        const std::size_t atoms = before.size() / 4;
+        Vec3 pivot = before[atoms];
+        if (bases[1] == Free) {
+            pivot.setZero();
+            for (std::size_t a = atoms; a < 2 * atoms; ++a)
+                pivot += model.masses[a] / model.molecule_masses[1] * before[a];
+        }
+        for (std::size_t a = 0; a < before.size(); ++a) {
+            Vec3 expected = before[a];
+            if (a < atoms) expected += hands.first;
+            if (a / atoms == 1) expected = pivot + hands.turn * (before[a] - pivot) + hands.second;
+            REQUIRE((state.positions[a] - expected).norm() < 1e-12);
+        }
+
+        REQUIRE(update_adaptive_forces(model, settings, state, statics));
+        REQUIRE(step_adaptive(model, settings, state, statics).step.is_finite);
+        const AdaptiveDeviation deviation = find_deviation(model, settings, state, statics);
+        INFO("step " << i);
+        CHECK(deviation.position < 1e-9);
+        CHECK(deviation.force < (fast ? 2e-5 : 1e-9));
+        TorsionState full = state;
+        ForceMemory memory;
+        update_forces(model, settings.step.forces, memory, full);
+        for (const std::size_t molecule : {std::size_t{0}, std::size_t{1}}) {
+            Vec6 expected = Vec6::Zero();
+            for (std::size_t a = molecule * atoms; a < (molecule + 1) * atoms; ++a) {
+                expected.head<3>() += full.positions[a].cross(full.forces[a]);
+                expected.tail<3>() += full.forces[a];
+            }
+            // What its atoms do to each other is rounded and cancels.
+            const double size = test::stacked(full.forces).norm() * 20;
+            CHECK((find_wrench_on(statics, molecule) - expected).norm() <
+                  (fast ? 1e-5 : 1e-9) * size);
+            CHECK((find_wrench_on(model, full, molecule) - expected).norm() < 1e-12 * size);
+        }
+    }
+    CHECK(statics.is_guided == std::vector<std::uint8_t>{1, 1, 0, 0});
+}
+
+TEST_CASE("with everything active two hands lead to where they lead a quasi-static step",
+          "[statics][adaptive]") {
+    const auto bases =
+        GENERATE(std::array{Turning, Held}, std::array{Turning, Turning}, std::array{Held, Free});
+    auto [model, state] = test::peptide_pair(bases);
+    TorsionState other = state;
+    const AdaptiveSettings settings = settings_of(everything, false, false);
+    AdaptiveStatics adaptive = build_adaptive_statics(model);
+    QuasiStatics plain = build_quasi_statics(model);
+    const std::vector<Vec3> start = state.positions;
+
+    for (int i = 0; i < 30; ++i) {
+        const TwoHands hands = hands_at(i);
+        shift_base(model, 0, hands.first, state, adaptive);
+        turn_base(model, 1, hands.turn, hands.second, state, adaptive);
+        REQUIRE(update_adaptive_forces(model, settings, state, adaptive));
+        const AdaptiveReport report = step_adaptive(model, settings, state, adaptive);
+        shift_base(model, 0, hands.first, other);
+        turn_base(model, 1, hands.turn, hands.second, other);
+        update_forces(model, settings.step.forces, plain.memory, other);
+        const QuasiStaticReport expected = step_quasi_static(model, settings.step, other, plain);
+
+        REQUIRE(report.step.is_taken == expected.is_taken);
+        REQUIRE(report.step.energy_change ==
+                Approx(expected.energy_change).epsilon(1e-5).margin(1e-9));
+    }
+
+    CHECK(find_largest_move(start, state.positions) > 0.2);
+    CHECK(find_largest_move(state.positions, other.positions) < 1e-6);
 }

@@ -51,17 +51,17 @@ double farthest(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 }
 
 // Two tetrapeptides of which a spring holds three atoms of the second.
-struct Tethered {
+struct PulledPair {
     TorsionModel model;
     TorsionState state;
 };
 
-Tethered tethered_pair(BaseFreedom first, BaseFreedom second) {
-    Tethered result{test::model_of(test::with_copy(test::tetrapeptide(), {12, 5, -2}),
-                                   {first, second}, test::all_joints),
-                    {}};
+PulledPair pulled_pair(BaseFreedom first, BaseFreedom second) {
+    PulledPair result{test::model_of(test::with_copy(test::tetrapeptide(), {12, 5, -2}),
+                                     {first, second}, test::all_joints),
+                      {}};
     result.state = test::state_after(result.model, 0.2, 3);
-    result.state.tether = Tether{{62 + 8, 62 + 20, 62 + 47}, 15, {1, -2, 20}};
+    result.state.springs = {{{62 + 8, 62 + 20, 62 + 47}, 15, {1, -2, 20}}};
     return result;
 }
 
@@ -170,6 +170,20 @@ TEST_CASE("bases turn about their pivots and go where they are moved", "[statics
     }
     CHECK((shifted.pivots[0] - start.pivots[0] - by).norm() < 1e-13);
     CHECK(shifted.angles == start.angles);
+
+    // By hand, whatever a base may do by itself.
+    const Eigen::Quaterniond rotation(Eigen::AngleAxisd(turn.norm(), axis));
+    TorsionState placed = start;
+    turn_base(model, 0, rotation, by, placed);
+    turn_base(model, 1, rotation.inverse() * rotation.inverse(), by, placed);
+    for (std::size_t i = 0; i < 62; ++i) expected[i] += by;
+    CHECK(farthest(placed.positions, expected) < 1e-12);
+    CHECK((placed.pivots[0] - start.pivots[0] - by).norm() < 1e-13);
+    CHECK((placed.pivots[1] - centre - by).norm() < 1e-12);
+    CHECK(placed.angles == start.angles);
+    // From the coordinates, not only in the positions.
+    update_positions(model, placed);
+    CHECK(farthest(placed.positions, expected) < 1e-12);
 }
 
 TEST_CASE("a move there and back ends where it began", "[statics][state]") {
@@ -205,7 +219,7 @@ TEST_CASE("forces along the coordinates are the slopes of the energy", "[statics
     using enum BaseFreedom;
     const auto freedoms =
         GENERATE(std::array{Held, Free}, std::array{Turning, Turning}, std::array{Free, Turning});
-    auto [model, state] = tethered_pair(freedoms[0], freedoms[1]);
+    auto [model, state] = pulled_pair(freedoms[0], freedoms[1]);
     ForceSettings settings;
     if (freedoms[0] == Free) {  // with a list of pairs
         settings.nonbonded.electrostatics = ElectrostaticCutoff::ForceSwitch;
@@ -250,36 +264,9 @@ TEST_CASE("forces on atoms become forces along coordinates as the atoms move", "
     CHECK((state.coordinate_forces - expected).norm() < 1e-9 * expected.norm());
 }
 
-TEST_CASE("a tether pulls at the centre of mass of its atoms", "[statics][state]") {
-    test::TorsionCase c = test::torsion_case(7, 4, TorsionShape::Chain);
-    c.masses[1] = 2;
-    c.masses[3] = 6;
-    const TorsionModel model = test::forceless_model(c, BaseFreedom::Free);
-    TorsionState state = build_torsion_state(model);
-    ForceMemory memory;
-    const Vec3 place(1, 2, 3);
-    state.tether = Tether{{1, 3}, 10, place};
-
-    update_forces(model, {}, memory, state);
-
-    const Vec3 centre = 0.25 * c.positions[1] + 0.75 * c.positions[3];
-    CHECK((find_tethered(model, *state.tether, state.positions) - centre).norm() < 1e-14);
-    CHECK(state.tether_energy == Approx(5 * (centre - place).squaredNorm()));
-    CHECK(state.energy() == state.tether_energy);
-    CHECK((state.forces[1] - 2.5 * (place - centre)).norm() < 1e-12);
-    CHECK((state.forces[3] - 7.5 * (place - centre)).norm() < 1e-12);
-    CHECK(state.forces[0].norm() == 0);
-    CHECK(memory.evaluations == 1);
-
-    state.tether.reset();
-    update_forces(model, {}, memory, state);
-    CHECK(state.energy() == 0);
-    CHECK(state.forces[1].norm() == 0);
-}
-
 TEST_CASE("a state takes over another's place, and with it what was computed there",
           "[statics][state]") {
-    auto [model, there] = tethered_pair(BaseFreedom::Free, BaseFreedom::Free);
+    auto [model, there] = pulled_pair(BaseFreedom::Free, BaseFreedom::Free);
     ForceMemory memory;
     update_forces(model, {}, memory, there);
     update_coordinate_forces(model, there);
@@ -290,7 +277,7 @@ TEST_CASE("a state takes over another's place, and with it what was computed the
     CHECK(coordinates.angles == expected.angles);
     CHECK(coordinates.positions == expected.positions);
     CHECK(coordinates.pivots == expected.pivots);
-    CHECK(coordinates.tether.has_value());
+    CHECK(coordinates.springs.size() == 1);
     CHECK(coordinates.energy() == 0);
     CHECK(coordinates.coordinate_forces.norm() == 0);
     // Coordinates and not only positions: it goes on from there.

@@ -2,13 +2,14 @@
 #pragma once
 #include "core/units.h"
 #include "devices/emulated_omni.h"
+#include "ecs/world.h"
 #include "session/lockstep.h"
 #include "session/ripple.h"
 #include "session/run_headless.h"
 #include "simulation/probe.h"
-#include "simulation/simulation.h"
 #include "simulation/step.h"
-#include "simulation/touch.h"
+#include "simulation/systems/publish_contact.h"
+#include "tests/support/held_scene.h"
 #include "tests/support/water_scene.h"
 
 #include <algorithm>
@@ -34,7 +35,7 @@ struct Due {
 using DueFunction = std::function<Due()>;
 
 struct GuardedCase {
-    Grip grip = Grip::Medium;
+    HandGrip grip = HandGrip::Medium;
     double friction_newton = 0;
     std::uint64_t period_ms = 1;
     double start_angstrom = 7;
@@ -42,7 +43,7 @@ struct GuardedCase {
     double seconds = 10;
     std::vector<std::string> settings = {};                           // of the scene, beside these
     std::optional<HandModel> hand = {};                               // in place of the grip's
-    double hot_newton = 0.88;                                         // of the motors
+    double thermal_limit_newton = 0.88;                               // of the motors
     double spring_N_per_m = std::numeric_limits<double>::infinity();  // of the fixed water
     DueFunction draw = {};                                            // in place of the period
 };
@@ -68,7 +69,7 @@ public:
           law_newton_(std::move(law_newton)) {}
 
     void add(const ServoTick& tick) {
-        const double distance = tick.touch.molecule.place_angstrom.x();
+        const double distance = tick.contact.molecule.place_angstrom.x();
         const double sent = tick.sent_newton.x();
         const double F_m = law_newton_(distance);
         // The damping of the tick before, which is when the force left: from a speed with the
@@ -131,19 +132,19 @@ inline EmulatedOmni guarded_omni(const GuardedCase& c) {
 // As run_lockstep, at periods of any kind, and no longer than `on_tick` says yes. What is lost
 // never arrives; the next step starts all the same.
 inline void run_unsteady(std::uint64_t ticks, const DueFunction& draw, const ServoSettings& servo,
-                         Device& device, const Touch& first, const StepFunction& step,
+                         Device& device, const LocalContactModel& first, const StepFunction& step,
                          const std::function<bool(const ServoTick&)>& on_tick) {
     Exchange exchange;
     ServoState state;
-    TouchModel felt;
-    Touch next = first;
+    ContactModel felt;
+    LocalContactModel next = first;
     HandPose hand;
     Due due{0, false};
     std::uint64_t due_at = 0;
     for (std::uint64_t tick = 0; tick < ticks; ++tick) {
         const bool period_begins = tick == due_at;
         if (period_begins && !due.is_lost) {
-            exchange.touch.post(next);
+            exchange.contact.post(next);
             felt = next.model;
         }
 
@@ -165,51 +166,48 @@ inline void run_unsteady(std::uint64_t ticks, const DueFunction& draw, const Ser
 class SprungDimer {
 public:
     SprungDimer(const SceneDescription& scene, double spring_N_per_m)
-        : simulation_(load_simulation(scene)),
+        : world_(load_world(scene)),
           spring_(spring_N_per_m / units::newton_per_metre_per_kcal_per_mol_angstrom2) {}
 
-    const Simulation& simulation() const { return simulation_; }
+    const World& world() const { return world_; }
 
-    Touch step(const HandPose& hand, const TouchModel& felt) {
+    LocalContactModel step(const HandPose& hand, const ContactModel& felt) {
         if (std::isinf(spring_)) {
-            (void)step_simulation(simulation_, hand, felt);
-            return simulation_.touch;
+            (void)step_world(world_, hand, felt);
+            return local_contact_of(world_);
         }
         relax_at(hand.molecule.value().place_angstrom);
-        update_touch(hand, simulation_);
-        return simulation_.touch;
+        update_contact(world_, first_hand(world_), hand);
+        return local_contact_of(world_);
     }
 
     // Force on the moved water with the other at rest (N, along x).
     double newton_at(double distance) {
         if (std::isinf(spring_)) {
-            return force_along_line_at(simulation_, distance).force *
+            return force_along_line_at(world_, distance).force *
                    units::newton_per_kcal_per_mol_angstrom;
         }
         relax_at(Vec3(distance, 0, 0));
-        return field_on_grabbed(simulation_).force.x() * units::newton_per_kcal_per_mol_angstrom;
+        return field_on_grabbed(world_).force.x() * units::newton_per_kcal_per_mol_angstrom;
     }
 
 private:
     // Newton's way with steps of 0.05 Å at most, from where it was.
     void relax_at(const Vec3& place) {
-        place_grabbed(simulation_, place);
+        place_grabbed(world_, place);
         for (int i = 0; i < 60; ++i) {
-            const FieldSum field = field_on_grabbed(simulation_);
+            const FieldSum field = field_on_grabbed(world_);
             const double slope = std::max(spring_ + field.stiffness(0, 0), 0.2 * spring_);
             const double by =
                 std::clamp(-(spring_ * moved_ + field.force.x()) / slope, -0.05, 0.05);
             moved_ += by;
-            const auto grabbed =
-                static_cast<std::ptrdiff_t>(grabbed_points(simulation_).positions.size());
-            for (auto atom = simulation_.atoms.positions.begin() + grabbed;
-                 atom != simulation_.atoms.positions.end(); ++atom)
-                atom->x() += by;
+            for (const std::uint32_t i : atoms_around(world_))
+                world_.resource<AtomTable>().positions[i].x() += by;
             if (std::abs(by) < 1e-9) return;
         }
     }
 
-    Simulation simulation_;
+    World world_;
     double spring_;     // kcal/mol/Å^2
     double moved_ = 0;  // Å, the fixed water
 };
@@ -217,11 +215,11 @@ private:
 inline Measured run_guarded(const GuardedCase& c) {
     const SceneDescription scene = guarded_scene(c);
     SprungDimer dimer(scene, c.spring_N_per_m), at_rest(scene, c.spring_N_per_m);
-    ServoSettings servo = build_servo_settings(scene, dimer.simulation());
-    servo.safety.hot_newton = c.hot_newton;
+    ServoSettings servo = build_servo_settings(scene, dimer.world());
+    servo.safety.thermal_limit_newton = c.thermal_limit_newton;
     EmulatedOmni omni = guarded_omni(c);
     Watch watch(servo, [&](double distance) { return at_rest.newton_at(distance); });
-    const auto step = [&](const HandPose& hand, const TouchModel& felt) {
+    const auto step = [&](const HandPose& hand, const ContactModel& felt) {
         return dimer.step(hand, felt);
     };
     const auto on_tick = [&](const ServoTick& tick) {
@@ -229,7 +227,7 @@ inline Measured run_guarded(const GuardedCase& c) {
         return true;
     };
     const auto ticks = static_cast<std::uint64_t>(std::lround(c.seconds * servo_rate_hz));
-    const Touch& first = dimer.simulation().touch;
+    const LocalContactModel& first = local_contact_of(dimer.world());
     if (c.draw) {
         run_unsteady(ticks, c.draw, servo, omni, first, step, on_tick);
     } else {
@@ -239,7 +237,7 @@ inline Measured run_guarded(const GuardedCase& c) {
 }
 
 // Held at rest and knocked.
-inline GuardedCase held(Grip grip, double friction_newton, std::uint64_t period_ms) {
+inline GuardedCase held(HandGrip grip, double friction_newton, std::uint64_t period_ms) {
     GuardedCase c{grip, friction_newton, period_ms, rest_angstrom};
     c.script.path = {{0, 0}};
     c.script.kick_N_s = 0.005;
@@ -247,7 +245,7 @@ inline GuardedCase held(Grip grip, double friction_newton, std::uint64_t period_
 }
 
 // In by `depth_m`, rest there, and out again.
-inline GuardedCase stroke(Grip grip, double friction_newton, std::uint64_t period_ms,
+inline GuardedCase stroke(HandGrip grip, double friction_newton, std::uint64_t period_ms,
                           double stroke_s, double depth_m, double pause_s = 1) {
     GuardedCase c{grip, friction_newton, period_ms};
     const double in = 0.3 + stroke_s, out = in + pause_s;

@@ -122,6 +122,12 @@ TorsionState state_after(const TorsionModel& model, double size, std::uint32_t s
     return state;
 }
 
+PeptidePair peptide_pair(const std::array<BaseFreedom, 2>& bases) {
+    PeptidePair pair{model_of(with_copy(tetrapeptide(), {12, 5, -2}), {bases[0], bases[1]}), {}};
+    pair.state = state_after(pair.model, 0.03, 21);
+    return pair;
+}
+
 Eigen::MatrixXd find_jacobian(const TorsionModel& model, const TorsionState& state) {
     constexpr double h = 1e-3;
     const auto atoms = static_cast<Eigen::Index>(state.positions.size());

@@ -5,6 +5,7 @@
 #include "statics/torsion_state.h"
 #include "tests/support/torsion_molecules.h"
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <random>
@@ -46,6 +47,14 @@ Coordinates random_move(const TorsionModel& model, double size, std::mt19937& ra
 
 // Where it is after a random move from the reference.
 TorsionState state_after(const TorsionModel& model, double size, std::uint32_t seed);
+
+// Two tetrapeptides near each other, after a random move.
+struct PeptidePair {
+    TorsionModel model;
+    TorsionState state;
+};
+
+PeptidePair peptide_pair(const std::array<BaseFreedom, 2>& bases);
 
 // How atoms go with each coordinate, as the positions themselves tell: a column of x, y and z of
 // each atom per coordinate. Differences of fourth order, an error of 1e-11 of the arm or so.

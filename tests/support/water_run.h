@@ -3,9 +3,9 @@
 #include "devices/emulated_omni.h"
 #include "session/plan_hand.h"
 #include "session/run_headless.h"
-#include "simulation/simulation.h"
+#include "simulation/load.h"
+#include "tests/support/emulated_hand.h"
 #include "tests/support/water_scene.h"
-#include "tools/hands.h"
 
 #include <string>
 #include <vector>
@@ -14,11 +14,11 @@ namespace palpa::test {
 
 inline Summary run_water(const std::vector<std::string>& settings) {
     const SceneDescription scene = water_scene(settings);
-    Simulation simulation = load_simulation(scene);
-    const EmulatedOmniSettings device_settings = build_emulated_omni(scene, simulation);
+    World world = load_world(scene);
+    const EmulatedOmniSettings device_settings = build_played_omni(scene, world);
     EmulatedOmni device(device_settings);
-    return run_headless(scene, simulation, device,
-                        list_warnings(scene, simulation, device_settings.script), nullptr, {});
+    return run_headless(scene, world, device, list_warnings(scene, world, device_settings.script),
+                        nullptr, {});
 }
 
 }  // namespace palpa::test

@@ -88,7 +88,7 @@ class BenchAdaptive(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             rows, image = Path(folder) / "rows.json", Path(folder) / "image.png"
             rows.write_text(self.json)
-            draw = [ROOT / "tools" / "plot_adaptive", rows, image]
+            draw = [ROOT / "tools" / "scripts" / "plot_adaptive", rows, image]
             self.assertEqual(subprocess.run(draw, stdout=subprocess.DEVNULL).returncode, 0)
             self.assertEqual(image.read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
             rows.write_text("{}")

@@ -51,6 +51,28 @@ class CheckLayers(unittest.TestCase):
         self.assertEqual(code, 1)
         self.assertIn("engine/core/a.cpp:2: 'core' may not include 'haptics'", output)
 
+    def test_a_header_of_the_operating_system_is_of_platform_alone(self):
+        for header in ("unistd.h", "sys/stat.h", "windows.h", "Windows.h"):
+            for name, code in (("platform", 0), ("core", 1)):
+                with self.subTest(header=header, module=name):
+                    self.module(name, [])
+                    path = self.root / "engine" / name / "a.cpp"
+                    path.write_text(f"#include <{header}>\n")
+                    result, output = check(self.root)
+                    self.assertEqual(result, code, output)
+                    if code:
+                        self.assertIn(f"engine/core/a.cpp:1: <{header}> is the operating system's", output)
+                    path.write_text("")
+
+    def test_sources_of_one_system_are_listed_too(self):
+        folder = self.root / "engine" / "platform"
+        folder.mkdir(parents=True)
+        (folder / "a.cpp").write_text("")
+        (folder / "b.cpp").write_text("")
+        (folder / "CMakeLists.txt").write_text("palpa_module(platform\n    POSIX a.cpp\n    WINDOWS b.cpp)\n")
+        code, output = check(self.root)
+        self.assertEqual(code, 0, output)
+
     def test_an_include_in_angle_brackets_or_after_a_comment_is_seen(self):
         for line in ("#include <haptics/a.h>", '/* why */ #include "haptics/a.h"'):
             with self.subTest(line=line):
@@ -94,6 +116,20 @@ class CheckLayers(unittest.TestCase):
         code, output = check(self.root)
         self.assertEqual(code, 1)
         self.assertIn("engine/extra/a.cpp: its folder has no palpa_module", output)
+
+    def test_the_map_of_modules_has_all_of_them_with_their_arrows_and_no_others(self):
+        right = ["| core | what all stand on | |", "| math | vectors | core |",
+                 "| haptics | the servo | math |"]
+        for rows, complaint in ((right, None), (right[:2], "no row of the module 'haptics'"),
+                                ([*right, "| field | pairs | math |"], "'field' is no module"),
+                                ([*right[:2], "| haptics | the servo | core |"],
+                                 "README.md:5: 'haptics' uses core; its CMakeLists.txt has math")):
+            with self.subTest(complaint=complaint):
+                table = ["| module | what it is for | uses |", "| --- | --- | --- |", *rows]
+                (self.root / "engine" / "README.md").write_text("\n".join(table) + "\n")
+                code, output = check(self.root)
+                self.assertEqual(code, 1 if complaint else 0, output)
+                self.assertIn(complaint or "all pointing down", output)
 
     def test_an_empty_tree_fails(self):
         with tempfile.TemporaryDirectory() as empty:

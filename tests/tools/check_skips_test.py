@@ -1,4 +1,4 @@
-"""tools/check_skips and the list of expected skips: which skipped tests should have run."""
+"""tools/scripts/check_skips and the list of expected skips: which skipped tests should have run."""
 import importlib.machinery
 import importlib.util
 import json
@@ -10,7 +10,7 @@ import unittest
 from pathlib import Path
 
 ROOT = Path(os.environ["PALPA_ROOT"])
-TOOL = ROOT / "tools" / "check_skips"
+TOOL = ROOT / "tools" / "scripts" / "check_skips"
 BUILD = Path(os.environ["PALPA_PROGRAM"]).parent.parent
 
 

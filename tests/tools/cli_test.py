@@ -5,10 +5,14 @@ import re
 import shutil
 import signal
 import subprocess
+import sys
 import tempfile
 import time
 import unittest
 from pathlib import Path
+
+sys.path.append(str(Path(__file__).resolve().parents[1] / "support"))
+from terminal import run_on_terminal  # noqa: E402
 
 PROGRAM = os.environ["PALPA_PROGRAM"]
 ROOT = Path(os.environ["PALPA_ROOT"])
@@ -156,6 +160,16 @@ class Cli(unittest.TestCase):
         result = self.palpa("run", WATER, "--headless", "--device", "mouse")
         self.assertNotIn("--headless", result.stderr)
 
+    def test_a_terminal_shows_how_far_a_run_is(self):
+        run = [PROGRAM, "run", WATER, "--headless", "--seconds", "2", "--record", self.tmp / "r"]
+        replay = [PROGRAM, "replay", self.tmp / "r", "--verify"]
+        for command in (run, replay):
+            code, text = run_on_terminal(command)
+            self.assertEqual(code, 0)
+            self.assertRegex(text, r"playing +\d+ %")
+            self.assertRegex(text, r"\r +\r$")  # the line is wiped
+        self.assertEqual(run_on_terminal([*replay, "--json"]), (0, ""))
+
     def test_every_command_has_help(self):
         for arguments in (["--help"], ["run", "--help"], ["bench", "--help"], ["--version"],
                           ["run", "--keys"]):
@@ -169,17 +183,21 @@ class Cli(unittest.TestCase):
                                 (["run"], "palpa run: scene is required; 'palpa' alone lists"),
                                 (["run", WATER, "--speed", "3"], "palpa run: no option '--speed'"),
                                 (["run", WATER, WATER], "is one argument too many"),
-                                (["prepare", "--toppar", "a.rtf", "1abc.pdb", "-o", "x"],
+                                (["prepare", "--without", "MK1", "1abc.pdb", "--toppar", "a.rtf", "-o",
+                                  "x"],
                                  "structure is required; it stands before options"),
                                 (["run", WATER, "--mode"], "palpa run: no value for --mode;"),
                                 (["--speed"], "palpa: no option '--speed' without a command"),
                                 (["bench"], "palpa bench: a scene"), (["bench", "--json"], "a scene"),
-                                (["help", "fly"], "palpa: no command 'fly'")):
+                                (["help", "fly"], "palpa: no command 'fly'"),
+                                (["feel", WATER], "palpa feel is now palpa accuracy"),
+                                (["help", "loops"], "palpa loops is now palpa closed-paths"),
+                                (["journey"], "palpa journey is now palpa unbind")):
             with self.subTest(arguments=arguments):
                 self.assert_bad_input(self.palpa(*arguments), said)
 
     def test_a_seed_is_a_whole_number_that_fits(self):
-        for command in ("loops", "journey", "study", "scenarios", "report", "run"):
+        for command in ("closed-paths", "unbind", "study", "scenarios", "report", "run"):
             for seed in ("-1", "99999999999999999999", "1.5", "one"):
                 arguments = [] if command == "report" else [WATER]
                 with self.subTest(command=command, seed=seed):

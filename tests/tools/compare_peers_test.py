@@ -1,4 +1,4 @@
-"""tools/compare_peers: what it reads of the scene is what Palpa reads, and what is missing is said."""
+"""tools/scripts/compare_peers: what it reads of the scene is what Palpa reads, and what is missing is said."""
 import importlib.machinery
 import importlib.util
 import json
@@ -15,7 +15,7 @@ SCENE = ROOT / "scenes" / "hiv"
 
 def load_script():
     loader = importlib.machinery.SourceFileLoader("compare_peers",
-                                                  str(ROOT / "tools" / "compare_peers"))
+                                                  str(ROOT / "tools" / "scripts" / "compare_peers"))
     module = importlib.util.module_from_spec(importlib.util.spec_from_loader(loader.name, loader))
     loader.exec_module(module)
     return module
@@ -56,7 +56,7 @@ class ComparePeers(unittest.TestCase):
         self.assertAlmostEqual(load_script().gromacs_energy(log), -8560.98 / 4.184)
 
     def test_without_the_program_it_says_so(self):
-        result = subprocess.run([ROOT / "tools" / "compare_peers"], capture_output=True, text=True,
+        result = subprocess.run([ROOT / "tools" / "scripts" / "compare_peers"], capture_output=True, text=True,
                                 env={**os.environ, "PALPA_PROGRAM": "/nowhere/palpa"})
         self.assertEqual(result.returncode, 2)
         self.assertIn("/nowhere/palpa is missing", result.stderr)

@@ -1,4 +1,4 @@
-"""TL-3 as shipped: neutral groups, its formula and bonds; and what tools/compare_tl3 prints."""
+"""TL-3 as shipped: neutral groups, its formula and bonds; and what tools/scripts/compare_tl3 prints."""
 import os
 import subprocess
 import sys
@@ -33,7 +33,7 @@ class CompareTl3(unittest.TestCase):
 
     @unittest.skipUnless(DATA, "PALPA_DATA names no folder with reference/hiv_tl3_c36m.*.json")
     def test_the_energies_are_those_of_the_scene_and_the_charges_those_of_cgenff(self):
-        result = subprocess.run([sys.executable, ROOT / "tools" / "compare_tl3"],
+        result = subprocess.run([sys.executable, ROOT / "tools" / "scripts" / "compare_tl3"],
                                 capture_output=True, text=True)
         self.assertEqual(result.returncode, 0, result.stderr)
 

@@ -46,18 +46,20 @@ class Devices(unittest.TestCase):
         self.assertIn("/nowhere/libHD.so", checks["library"]["found"])
         self.assertIn("ldconfig", after[0])
 
-    def test_a_second_hand_shares_the_way(self):
-        def run(*arguments):
-            return palpa("run", WATER, "--headless", "--json", *arguments)
+    def test_a_second_hand_is_one_of_the_scene(self):
+        def run(scene, *arguments):
+            return palpa("run", scene, "--headless", "--json", "--seconds", 1, *arguments)
 
-        alone, both = (json.loads(run(*second).stdout) for second in ((), ("--second", "emulated")))
-        self.assertEqual(both["device"], f"{alone['device']} and {alone['device']}")
-        # Of two equal handles half the viscosity is left between them, so that less of the cap is,
-        # and the same way of the first hand brings the molecules less near.
-        self.assertGreater(both["closest_angstrom"], alone["closest_angstrom"] + 0.02)
-        self.assertLess(both["ripple_N"], 0.02)
-        for name, reason in (("mouse", "led by the window"), ("omni", "needs the window")):
-            result = run("--second", name)
+        two = WATER / "two-hands.toml"
+        both = json.loads(run(two).stdout)
+        self.assertEqual(both["hand_2"]["device"], both["device"])
+        self.assertEqual(json.loads(run(two, "--second", "emulated").stdout)["hand_2"]["net_work_J"],
+                         both["hand_2"]["net_work_J"])
+        self.assertNotIn("hand_2", json.loads(run(WATER).stdout))
+        for scene, name, reason in ((WATER, "emulated", "says what a second hand holds"),
+                                    (two, "mouse", "needs the window"),
+                                    (two, "omni", "needs the window")):
+            result = run(scene, "--second", name)
             self.assertEqual(result.returncode, 2)
             self.assertIn(reason, result.stderr)
 

@@ -1,4 +1,4 @@
-"""tools/make_groel_scene makes what scenes/groel names; both say what is missing."""
+"""tools/scripts/make_groel_scene makes what scenes/groel names; both say what is missing."""
 import gzip
 import os
 import shutil
@@ -9,7 +9,7 @@ from pathlib import Path
 
 PROGRAM = os.environ["PALPA_PROGRAM"]
 ROOT = Path(os.environ["PALPA_ROOT"])
-SCRIPT = ROOT / "tools" / "make_groel_scene"
+SCRIPT = ROOT / "tools" / "scripts" / "make_groel_scene"
 
 
 def run(*command, **environment):

@@ -1,4 +1,4 @@
-"""The inputs of scenes/hiv are what tools/make_hiv_scene makes with palpa prepare."""
+"""The inputs of scenes/hiv are what tools/scripts/make_hiv_scene makes with palpa prepare."""
 import os
 import subprocess
 import tempfile
@@ -18,7 +18,7 @@ def places(path):
 class MakeHivScene(unittest.TestCase):
     def test_it_makes_what_is_committed(self):
         with tempfile.TemporaryDirectory() as folder:
-            subprocess.run([ROOT / "tools" / "make_hiv_scene", folder], check=True,
+            subprocess.run([ROOT / "tools" / "scripts" / "make_hiv_scene", folder], check=True,
                            capture_output=True)
             for part in (".", "charged"):
                 made, kept = Path(folder) / part, ROOT / "scenes" / "hiv" / part

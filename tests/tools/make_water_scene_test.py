@@ -27,6 +27,19 @@ class MakeWaterScene(unittest.TestCase):
                     except ValueError:
                         self.assertEqual(ours, theirs)
 
+class MakeWaterSceneAgain(unittest.TestCase):
+    def test_nothing_is_replaced_and_nothing_beside_it_written(self):
+        with tempfile.TemporaryDirectory() as folder:
+            there = Path(folder) / "dimer.crd"
+            there.write_text("mine")
+            result = subprocess.run([MAKER, ROOT / "scenes" / "water" / "tip3p.str", folder],
+                                    capture_output=True, text=True)
+            self.assertEqual(result.returncode, 2)
+            self.assertIn("dimer.crd: is there already; expected another folder", result.stderr)
+            self.assertNotIn("--overwrite", result.stderr)  # which it does not have
+            self.assertEqual(there.read_text(), "mine")
+            self.assertEqual([file.name for file in Path(folder).iterdir()], ["dimer.crd"])
+
 
 if __name__ == "__main__":
     unittest.main()

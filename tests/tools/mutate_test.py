@@ -1,4 +1,4 @@
-"""tools/mutate: which changes it finds, that their names last, and what it makes of results. Nothing is
+"""tools/scripts/mutate: which changes it finds, that their names last, and what it makes of results. Nothing is
 built here."""
 import contextlib
 import importlib.machinery
@@ -16,7 +16,7 @@ ROOT = Path(os.environ["PALPA_ROOT"])
 
 def load_tool():
     sys.dont_write_bytecode = True
-    loader = importlib.machinery.SourceFileLoader("mutate", str(ROOT / "tools" / "mutate"))
+    loader = importlib.machinery.SourceFileLoader("mutate", str(ROOT / "tools" / "scripts" / "mutate"))
     module = importlib.util.module_from_spec(importlib.util.spec_from_loader(loader.name, loader))
     loader.exec_module(module)
     return module
@@ -127,11 +127,11 @@ class Results(unittest.TestCase):
 class CommandLine(unittest.TestCase):
     def test_a_change_is_shown_and_an_unknown_module_is_refused(self):
         mutant = TOOL.draw(ROOT, ["math"], 1)[0]
-        shown = subprocess.run([ROOT / "tools" / "mutate", "--show", mutant.id], capture_output=True, text=True)
+        shown = subprocess.run([ROOT / "tools" / "scripts" / "mutate", "--show", mutant.id], capture_output=True, text=True)
         self.assertEqual(shown.returncode, 0, shown.stderr)
         self.assertIn(f"{mutant.id} {mutant.path}:{mutant.line}", shown.stdout)
         self.assertEqual(sum(line.startswith("+") for line in shown.stdout.splitlines()), 1)
-        refused = subprocess.run([ROOT / "tools" / "mutate", "--modules", "render"], capture_output=True, text=True)
+        refused = subprocess.run([ROOT / "tools" / "scripts" / "mutate", "--modules", "render"], capture_output=True, text=True)
         self.assertEqual(refused.returncode, 2)
         self.assertIn("unknown module 'render'", refused.stderr)
 

@@ -2,14 +2,19 @@
 import json
 import os
 import re
+import signal
 import subprocess
+import sys
 import tempfile
+import time
 import unittest
 from collections import Counter
 from pathlib import Path
 
+sys.path.append(str(Path(__file__).resolve().parents[1] / "support"))
+from prepare_case import SHARED, PrepareCase  # noqa: E402
+
 PROGRAM = os.environ["PALPA_PROGRAM"]
-SHARED = os.environ.get("PALPA_DATA")
 KJ_PER_KCAL = 4.184
 
 
@@ -48,22 +53,13 @@ def residue_keys(rows):
         yield begun, row["type"], row["charge"]
 
 
-class Prepare(unittest.TestCase):
-    def setUp(self):
-        if not SHARED:
-            self.skipTest("PALPA_DATA names no folder with data/charmm and data/hiv")
-        self.data = Path(SHARED) / "data"
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
-
+class Prepare(PrepareCase):
     def toppar(self, kind="36"):
-        charmm = self.data / "charmm"
         if kind == "22":
-            return [charmm / "top_all22_prot.rtf", charmm / "par_all22_prot.prm"]
-        names = ("top_all36_prot.rtf", "par_all36m_prot.prm", "top_all36_cgenff.rtf",
-                 "par_all36_cgenff.prm", "toppar_water_ions.str")
-        return [charmm / name for name in names]
+            return self.charmm_files("top_all22_prot.rtf", "par_all22_prot.prm")
+        return self.charmm_files("top_all36_prot.rtf", "par_all36m_prot.prm",
+                                 "top_all36_cgenff.rtf", "par_all36_cgenff.prm",
+                                 "toppar_water_ions.str")
 
     def tl3(self):
         derived = self.data / "hiv" / "derived"
@@ -124,6 +120,45 @@ class Prepare(unittest.TestCase):
         before, after = map(float, re.search(r"(-?[\d.]+) to (-?[\d.]+) kcal/mol in", report)
                             .groups())
         self.assertLess(after, before)
+
+    def test_the_structure_may_stand_anywhere(self):
+        peptide = self.data / "structures" / "alanine_dipeptide.pdb"
+        toppar = self.toppar()[:2]
+        written = []
+        for i, arguments in enumerate(([peptide, "--toppar", *toppar],
+                                       ["--toppar", *toppar, peptide],
+                                       ["--no-relax", "--toppar", *toppar, peptide, "--no-flips"],
+                                       ["--toppar", *toppar, "--", peptide])):
+            with self.subTest(arguments=arguments):
+                folder = self.folder / f"at{i}"
+                result = self.palpa("prepare", "-o", folder, "--no-scene", *arguments)
+                self.assertEqual(result.returncode, 0, result.stderr)
+                written.append((folder / "system.psf").read_text())
+        self.assertEqual(written, [written[0]] * 4)
+        result = self.palpa("prepare", peptide, "-o", self.folder / "two", "--toppar", *toppar,
+                            peptide)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("one argument too many", result.stderr)
+
+    def test_an_interrupt_leaves_no_files_behind(self):
+        """The scene is tried out in a temporary folder; Ctrl+C while it is there removes it."""
+        for number in (signal.SIGINT, signal.SIGTERM):
+            with self.subTest(signal=number), tempfile.TemporaryDirectory() as temporary:
+                command = [PROGRAM, "prepare", self.data / "structures" / "1crn.pdb", "--toppar",
+                           *self.toppar()[:2], "-o", self.folder / "out"]
+                # A background shell has SIGINT ignored, and what it starts inherits that.
+                program = subprocess.Popen(
+                    command, env={**os.environ, "TMPDIR": temporary}, stdout=subprocess.DEVNULL,
+                    stderr=subprocess.PIPE, text=True,
+                    preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
+                while program.poll() is None and not list(Path(temporary).glob("palpa-*/*.crd")):
+                    time.sleep(0.01)
+                program.send_signal(number)
+                _, errors = program.communicate(timeout=60)
+                self.assertEqual(program.returncode, -number, errors)
+                self.assertEqual(errors, "")
+                self.assertEqual(list(Path(temporary).iterdir()), [])
+                self.assertFalse((self.folder / "out").exists())
 
     def test_crambin_from_heavy_atoms_is_charmm_s_own(self):
         folder = self.prepare(self.data / "structures" / "1crn.pdb", self.toppar()[:2])
@@ -206,7 +241,7 @@ class Prepare(unittest.TestCase):
             with self.subTest(name=name):
                 folder = self.prepare(hiv / f"{name}.pdb", self.toppar()[:2], *options)
                 self.check_clean(folder)
-        with self.subTest(name="a clash of the file's own hydrogens is told"):
+        with self.subTest(name="a clash of the file's own hydrogens is reported"):
             folder = self.prepare(hiv / "1tw7_charmm_allH.pdb", self.toppar()[:2])
             self.assertRegex((folder / "report.txt").read_text(),
                              "a clash is left: .*PROA GLN 2 HE22 and PROB ASN 98 HD22")

@@ -36,7 +36,8 @@ class Replay(unittest.TestCase):
     def test_a_recording_is_found_again_to_the_last_digit(self):
         for arguments in (["--seconds", "1.5", WATER],
                           ["--seconds", "1", "--mode", "1", "--period-ms", "14", "--every", "7", WATER],
-                          ["--seconds", "2", WATER / "space.toml"]):
+                          ["--seconds", "2", WATER / "space.toml"],
+                          ["--seconds", "3", WATER / "two-hands.toml"]):
             with self.subTest(arguments=arguments):
                 self.record(*arguments)
                 code, report = self.verify()

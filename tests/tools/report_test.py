@@ -59,7 +59,7 @@ class Report(unittest.TestCase):
                 ("typo.toml", ("-o", page, "--hiv", self.tmp / "typo.toml"), {}),
                 ("guarded coupling's", ("-o", page, "--set", "mode=2"), {}),
                 ("start_angstrom", ("-o", page, "--set", "hand.start_angstrom=6"), {}),
-                ("a way and a length of its own", ("-o", page, "--set", "seconds=3"), {}),
+                ("a course and a length of its own", ("-o", page, "--set", "seconds=3"), {}),
                 ("--seed", ("-o", page, "--seed", "-1"), {}),
                 ("coupling.modes", ("-o", page, "--set", "coupling.modes=2"), {})):
             with self.subTest(expected=expected):

@@ -18,9 +18,11 @@ def run(*command, **options):
 
 class Scripts(unittest.TestCase):
     def test_every_tool_explains_itself(self):
-        for name in ("build", "run", "test", "plot_stroke", "check_style", "check_windows",
-                     "check_skips", "compare_peers", "compare_tl3", "mutate",
-                     "plot_adaptive", "plot_study"):
+        for name in ("build", "run", "test", "scripts/plot_stroke", "scripts/check_style",
+                     "scripts/check_windows", "scripts/make_manual", "scripts/check_skips",
+                     "scripts/compare_peers",
+                     "scripts/compare_tl3", "scripts/mutate", "scripts/plot_adaptive",
+                     "scripts/plot_study"):
             with self.subTest(tool=name):
                 result = run(ROOT / "tools" / name, "--help")
                 self.assertEqual(result.returncode, 0)
@@ -31,12 +33,12 @@ class Scripts(unittest.TestCase):
             recording, image = Path(folder) / "recording", Path(folder) / "stroke.png"
             self.assertEqual(run(PROGRAM, "run", ROOT / "scenes" / "water", "--headless",
                                  "--record", recording).returncode, 0)
-            result = run(ROOT / "tools" / "plot_stroke", recording, image)
+            result = run(ROOT / "tools" / "scripts" / "plot_stroke", recording, image)
             self.assertEqual(result.returncode, 0, result.stderr)
             data = image.read_bytes()
             self.assertEqual(data[:8], b"\x89PNG\r\n\x1a\n")
             self.assertEqual(struct.unpack(">II", data[16:24]), (1200, 480))
-            self.assertEqual(run(ROOT / "tools" / "plot_stroke", folder, image).returncode, 2)
+            self.assertEqual(run(ROOT / "tools" / "scripts" / "plot_stroke", folder, image).returncode, 2)
 
     def test_scenes_readme_has_the_list_of_keys_as_the_program_prints_it(self):
         keys = run(PROGRAM, "run", "--keys").stdout
@@ -57,12 +59,15 @@ class Scripts(unittest.TestCase):
 
     def test_vcpkg_lists_the_libraries_we_build_with(self):
         vcpkg = (ROOT / "vcpkg.json").read_text()
-        found = set(re.findall(r"find_package\((\w+)", (ROOT / "CMakeLists.txt").read_text() +
-                               (ROOT / "tests" / "CMakeLists.txt").read_text()))
+        found = set()
+        for file in [ROOT / "CMakeLists.txt", *(ROOT / "engine").rglob("CMakeLists.txt"),
+                     ROOT / "devices" / "CMakeLists.txt", ROOT / "tests" / "CMakeLists.txt"]:
+            found |= set(re.findall(r"find_package\((\w+)", file.read_text()))
         names = {"CLI11": "cli11", "Eigen3": "eigen3", "fmt": "fmt", "Catch2": "catch2",
                  "nlohmann_json": "nlohmann-json", "tomlplusplus": "tomlplusplus",
                  "glm": "glm", "hwy": "highway", "PNG": "libpng", "Vulkan": "vulkan",
-                 "glfw3": "glfw3"}
+                 "glfw3": "glfw3", "SDL2": "sdl2", "ZLIB": "zlib", "hidapi": "hidapi", "imgui": "imgui"}
+        self.assertIn('"builtin-baseline"', vcpkg)
         for package in found - {"Threads", "Python3", "PkgConfig"}:
             self.assertIn(f'"{names[package]}"', vcpkg)
 

@@ -126,13 +126,13 @@ class Study(unittest.TestCase):
     def test_the_figures_are_drawn_from_the_folder(self):
         folder = self.tmp / "study"
         self.study("--operators", 2, "--rounds", 1, "-o", folder)
-        result = run(ROOT / "tools" / "plot_study", folder, 2)
+        result = run(ROOT / "tools" / "scripts" / "plot_study", folder, 2)
         self.assertEqual(result.returncode, 0, result.stderr)
         for name, size in (("figure7.png", (1100, 440)), ("figure8.png", (900, 560))):
             data = (folder / name).read_bytes()
             self.assertEqual(struct.unpack(">II", data[16:24]), size)
-        self.assertEqual(run(ROOT / "tools" / "plot_study", folder, 3).returncode, 2)
-        self.assertEqual(run(ROOT / "tools" / "plot_study", self.tmp).returncode, 2)
+        self.assertEqual(run(ROOT / "tools" / "scripts" / "plot_study", folder, 3).returncode, 2)
+        self.assertEqual(run(ROOT / "tools" / "scripts" / "plot_study", self.tmp).returncode, 2)
 
     def test_forced_choices_have_a_row_for_every_pair_and_a_fit_for_every_mode(self):
         folder = self.tmp / "choices"

@@ -1,6 +1,8 @@
 // The overlays without a window: a mouse that is only numbers moves sliders and presses buttons.
 #include "ui/overlay.h"
 
+#include "simulation/held.h"
+#include "simulation/load.h"
 #include "simulation/step.h"
 #include "tests/support/water_scene.h"
 #include "ui/backend.h"
@@ -21,20 +23,21 @@ namespace {
 
 // An overlay of the water scene on a screen that is not there.
 struct Screen {
-    explicit Screen(const SceneDescription& scene = test::water_scene()) : overlay(scene) {
+    explicit Screen(const SceneDescription& scene = test::water_scene(), float text_scale = 1)
+        : overlay(scene) {
         ImGui::CreateContext();
         ImGuiIO& io = ImGui::GetIO();
         io.IniFilename = nullptr;
         io.DisplaySize = {1280, 800};
         io.DeltaTime = 1 / 60.0F;
-        set_ui_style(1);
+        set_ui_style(text_scale);
         unsigned char* pixels = nullptr;
         int width = 0, height = 0;
         io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
-        Simulation simulation = load_simulation(scene);
-        readout.touch = simulation.touch.model;
+        World world = load_world(scene);
+        readout.contact = local_contact_of(world).model;
         ServoTick tick;
-        tick.touch = readout.touch;
+        tick.contact = readout.contact;
         for (int i = 0; i < 100; ++i) overlay.add_tick(tick);
     }
     Screen(const Screen&) = delete;
@@ -74,6 +77,47 @@ struct Screen {
 };
 
 }  // namespace
+
+TEST_CASE("settings and edits are undone in the order in which they were made", "[ui]") {
+    Screen screen;
+    const CouplingMode first = screen.overlay.settings().coupling.mode;
+    // What undo or redo asks for: 'u' and 'r' of the session, 's' a change of settings, '-'
+    // nothing.
+    const auto press = [&](Action action) {
+        screen.commands.clear();
+        REQUIRE(screen.overlay.perform(action, screen.commands));
+        if (screen.commands.empty()) return '-';
+        const auto* const edit = std::get_if<EditDescription>(&screen.commands.back());
+        if (!edit) return 's';
+        return std::holds_alternative<UndoEdit>(edit->action) ? 'u' : 'r';
+    };
+    screen.overlay.note_edit();
+    (void)press(Action::Mode2);
+    screen.overlay.note_edit();
+
+    CHECK(press(Action::Undo) == 'u');
+    CHECK(press(Action::Undo) == 's');
+    CHECK(screen.overlay.settings().coupling.mode == first);
+    CHECK(press(Action::Redo) == 's');
+    CHECK(press(Action::Redo) == 'r');
+    CHECK(press(Action::Redo) == '-');
+
+    // One that was refused was none.
+    screen.overlay.note_edit();
+    ++screen.readout.refused_edits;
+    screen.frame();
+    CHECK(press(Action::Undo) == 'u');
+    CHECK(press(Action::Undo) == 's');
+    CHECK(press(Action::Undo) == 'u');
+    CHECK(press(Action::Undo) == '-');
+
+    // A reset knows no edits, and leaves settings.
+    (void)press(Action::Mode3);
+    screen.overlay.note_edit();
+    (void)press(Action::Reset);
+    CHECK(press(Action::Undo) == 's');
+    CHECK(press(Action::Undo) == '-');
+}
 
 TEST_CASE("a dragged slider changes a gain at once, and one undo takes the whole drag back",
           "[ui][overlay]") {
@@ -147,6 +191,54 @@ TEST_CASE("nothing is cut off, and the picture's middle is covered by no panel",
     }
 }
 
+TEST_CASE("the help breaks its lines where a screen is narrow, and keys only where they must",
+          "[ui][overlay]") {
+    struct Row {
+        ImVec2 size;
+        float text_scale;
+    };
+    const auto row = GENERATE(
+        values<Row>({{{900, 600}, 1}, {{900, 600}, 1.5F}, {{1600, 1000}, 1.5F}, {{640, 480}, 1}}));
+    INFO(row.size.x << " x " << row.size.y << ", text " << row.text_scale);
+    Screen screen(test::water_scene(), row.text_scale);
+    ImGui::GetIO().DisplaySize = row.size;
+    screen.overlay.perform(Action::ToggleHelp, screen.commands);
+    for (int i = 0; i < 4; ++i) screen.frame();
+
+    ImGuiWindow& window = *ImGui::FindWindowByName("Keys and mouse");
+    CHECK(window.Rect().Min.x >= 0);
+    CHECK(window.Rect().Max.x <= row.size.x);
+    CHECK(window.Rect().Max.y <= row.size.y);
+    CHECK(window.ContentSize.x <= window.InnerRect.GetWidth());
+    const ImGuiTable* const table = ImGui::TableFindByID(window.GetID("keys"));
+    REQUIRE(table);
+    for (int column = 0; column < 4; ++column) {
+        const ImGuiTableColumn& cells = table->Columns[column];
+        CHECK(cells.ContentMaxXUnfrozen <= cells.ClipRect.Max.x + 1);
+    }
+    // "Ctrl+Shift+Z" and the like are in the narrower columns, which stay whole.
+    CHECK(table->Columns[2].WidthGiven >= ImGui::CalcTextSize("Enter, N").x);
+}
+
+TEST_CASE("what nothing in hand does is no step of a lesson", "[ui][overlay]") {
+    Screen screen;
+    ServoTick tick;
+    tick.contact = screen.readout.contact;
+    tick.contact.is_still = true;
+    tick.contact.molecule.place_angstrom = Vec3(0, 0, 0);  // as near as the first step asks for
+    const auto add_seconds = [&](int seconds) {
+        for (int i = 0; i < 1000 * seconds; ++i) {
+            tick.reading.time_s += 1e-3;
+            screen.overlay.add_tick(tick);
+        }
+    };
+    add_seconds(10);
+    CHECK_FALSE(screen.overlay.lesson().can_go_on());
+    tick.contact.is_still = false;
+    add_seconds(10);
+    CHECK(screen.overlay.lesson().can_go_on());
+}
+
 TEST_CASE("both gain curves are 120 pixels high where a screen is 720", "[ui][overlay]") {
     const auto size = GENERATE(ImVec2(1280, 720), ImVec2(1366, 768));
     Screen screen;
@@ -194,13 +286,58 @@ TEST_CASE("at the wall the overlay says how to get off it", "[ui][overlay]") {
     Screen screen;
     const int usual = (screen.frame(), screen.frame(), screen.vertices());
     ServoTick tick;
-    tick.touch = screen.readout.touch;
-    tick.kept_m = {4e-3, 0, 0};
+    tick.contact = screen.readout.contact;
+    tick.overtravel_m = {4e-3, 0, 0};
     tick.reading.time_s = 1;
     screen.overlay.add_tick(tick);
     screen.frame();
     screen.frame();
     CHECK(screen.vertices() > usual + 200);  // a line of some hundred letters, four corners each
+}
+
+TEST_CASE("why an edit was refused is written over the picture", "[ui][overlay]") {
+    Screen screen;
+    const int usual = (screen.frame(), screen.frame(), screen.vertices());
+    screen.readout.problem = "not done: the scene's force field has no residue 'ABC'";
+    screen.frame();
+    screen.frame();
+    CHECK(screen.vertices() > usual + 100);  // four corners a letter
+}
+
+TEST_CASE("a recording that is under way has a red mark", "[ui][overlay]") {
+    Screen screen;
+    const auto count_red = [] {
+        int count = 0;
+        const ImDrawData& data = *ImGui::GetDrawData();
+        for (int list = 0; list < data.CmdListsCount; ++list) {
+            for (const ImDrawVert& vertex : data.CmdLists[list]->VtxBuffer) {
+                const ImVec4 colour = ImGui::ColorConvertU32ToFloat4(vertex.col);
+                count += colour.x > 0.7F && colour.y < 0.15F && colour.z < 0.15F ? 1 : 0;
+            }
+        }
+        return count;
+    };
+    screen.frame();
+    screen.frame();
+    CHECK(count_red() == 0);
+    screen.status.recorded_s = 61.5;
+    screen.frame();
+    CHECK(count_red() > 10 + 4 * 13);  // a circle, and "recording 1:01"
+}
+
+TEST_CASE("buttons add and remove a molecule, and record", "[ui][overlay]") {
+    Screen screen;
+    screen.frame();
+    screen.frame();
+    const Action wanted = GENERATE(Action::Add, Action::Remove, Action::Record);
+    const auto is_asked = [&] {
+        return std::count(screen.actions.begin(), screen.actions.end(), wanted) > 0;
+    };
+    for (float y = 60; y < 130 && !is_asked(); y += 10) {
+        for (float x = 20; x < 350 && !is_asked(); x += 20) screen.drag({x, y}, {x, y});
+    }
+    CHECK(is_asked());
+    CHECK_FALSE(screen.overlay.perform(wanted, screen.commands));  // the window does
 }
 
 TEST_CASE("keys switch modes, pause, step and reset", "[ui][overlay]") {
@@ -246,7 +383,7 @@ TEST_CASE("every mode and size of window can be drawn, whatever the values", "[u
     screen.overlay.perform(mode, screen.commands);
     screen.overlay.perform(Action::ToggleHelp, screen.commands);
     ServoTick broken;
-    broken.touch.force_newton.setConstant(std::numeric_limits<double>::quiet_NaN());
+    broken.contact.force_newton.setConstant(std::numeric_limits<double>::quiet_NaN());
     broken.stopped = true;
     screen.overlay.add_tick(broken);
 

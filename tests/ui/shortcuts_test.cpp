@@ -2,15 +2,15 @@
 
 #include <catch2/catch.hpp>
 #include <set>
-#include <utility>
+#include <tuple>
 
 using namespace palpa;
 
 TEST_CASE("every key means one thing, and the help tells it", "[ui]") {
-    std::set<std::pair<Key, bool>> seen;
+    std::set<std::tuple<Key, bool, bool>> seen;
     for (const Shortcut& shortcut : shortcuts()) {
-        CHECK(seen.emplace(shortcut.key, shortcut.control).second);
-        CHECK(find_action(shortcut.key, shortcut.control) == shortcut.action);
+        CHECK(seen.emplace(shortcut.key, shortcut.control, shortcut.shift).second);
+        CHECK(find_action(shortcut.key, shortcut.control, shortcut.shift) == shortcut.action);
         CHECK_FALSE(shortcut.name.empty());
         CHECK_FALSE(shortcut.does.empty());
     }
@@ -20,4 +20,8 @@ TEST_CASE("every key means one thing, and the help tells it", "[ui]") {
         CHECK_FALSE(find_action(key, false));
     }
     CHECK_FALSE(find_action(Key::P, true));
+    // Shift matters only where a key says so: a plus needs it on many keyboards.
+    CHECK(find_action(Key::Plus, true, true) == Action::LargerText);
+    CHECK(find_action(Key::Z, true, true) == Action::Redo);
+    CHECK(find_action(Key::Z, true, false) == Action::Undo);
 }

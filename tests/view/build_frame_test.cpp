@@ -2,8 +2,13 @@
 
 #include "render/renderer.h"
 #include "scene/read_scene.h"
+#include "simulation/edit.h"
+#include "simulation/held.h"
+#include "simulation/load.h"
 #include "simulation/probe.h"
+#include "simulation/resources.h"
 #include "tests/support/gpu.h"
+#include "tests/support/held_scene.h"
 #include "tests/support/paths.h"
 #include "tests/support/water_scene.h"
 #include "view/orbit_camera.h"
@@ -30,11 +35,11 @@ ViewSettings shown_as(Representation representation) {
 }  // namespace
 
 TEST_CASE("two waters are six spheres and four sticks, and an arrow along the force", "[view]") {
-    Simulation simulation = load_simulation(test::water_scene());
+    World world = load_world(test::water_scene());
     const double distance = GENERATE(2.5, 3.1);
-    move_grabbed(simulation, distance);
+    move_grabbed(world, distance);
 
-    const FrameScene frame = build_frame(simulation, {.hydrogen_bonds = false});
+    const FrameScene frame = build_frame(world, {.hydrogen_bonds = false});
 
     CHECK(frame.spheres.size() == 6);
     REQUIRE(frame.cones.size() >= 4 + 2);
@@ -44,12 +49,12 @@ TEST_CASE("two waters are six spheres and four sticks, and an arrow along the fo
     // Pushed out at 2.5 Å, drawn in at 3.1; the arrow is beyond the molecule either way.
     CHECK((head.b - shaft.a).x * (distance < 2.7 ? 1 : -1) > 0);
     CHECK(glm::length(glm::cross(head.b - shaft.a, {1, 0, 0})) < 1e-5);
-    CHECK(std::min(head.b.x, shaft.a.x) > frame.spheres[0].centre.x);
+    CHECK(std::min(head.b.x, shaft.a.x) > as_float(grabbed_place(world)).x);
 
-    CHECK(build_frame(simulation, shown_as(Representation::SpaceFilling)).cones.empty());
-    CHECK(build_frame(simulation, shown_as(Representation::Licorice)).cones.size() == 4);
+    CHECK(build_frame(world, shown_as(Representation::SpaceFilling)).cones.empty());
+    CHECK(build_frame(world, shown_as(Representation::Licorice)).cones.size() == 4);
     // In hand: the fixed water is its oxygen alone.
-    const FrameScene in_hand = build_frame(simulation, shown_as(Representation::InHand));
+    const FrameScene in_hand = build_frame(world, shown_as(Representation::InHand));
     CHECK(in_hand.spheres.size() == 4);
     CHECK(in_hand.cones.size() == 2);
 }
@@ -62,8 +67,8 @@ TEST_CASE("every atom that nothing hides is seen at its centre, and all fit the 
     const auto wide = static_cast<std::uint32_t>(static_cast<float>(height) * shape);
     GpuDevice device(test::validated());
     Renderer renderer(device);
-    Simulation simulation = load_simulation(test::water_scene());
-    FrameScene frame = build_frame(simulation, shown_as(representation));
+    World world = load_world(test::water_scene());
+    FrameScene frame = build_frame(world, shown_as(representation));
     OrbitCamera camera;
     frame_all(camera, frame, shape);
     frame.camera = frame_camera(camera, frame);
@@ -94,43 +99,52 @@ TEST_CASE("every atom that nothing hides is seen at its centre, and all fit the 
 }
 
 TEST_CASE("chains have carbons of their own colours, the grabbed molecule's stand out", "[view]") {
-    Simulation simulation = load_simulation(test::water_scene());
-    for (std::string& element : simulation.atoms.element) element = "C";
-    simulation.atoms.names.back().segment = "OTHER";
+    World world = test::three_waters(GENERATE(0, 1, 2), {0, 4, 0});
+    for (std::string& element : world.resource<AtomTable>().element) element = "C";
+    const AtomRange third = test::range_called(world, "third");
+    world.resource<AtomTable>().names[third.first + 2].segment = "OTHER";
 
+    // Three of what is held, three of the fixed water, three of the third.
     const auto colours = [&](Colouring colouring) {
+        const FrameScene frame = build_frame(world, {.colouring = colouring});
         std::vector<glm::vec3> found;
-        for (const SphereShape& s : build_frame(simulation, {.colouring = colouring}).spheres) {
-            found.push_back(s.colour);
+        for (const char* const name : {"moved", "fixed", "third"}) {
+            for (const SphereShape& s : shapes_of(frame, test::range_called(world, name)))
+                found.push_back(s.colour);
         }
         return found;
     };
     const std::vector<glm::vec3> by_chain = colours(Colouring::Chain),
                                  by_element = colours(Colouring::Element);
 
+    REQUIRE((by_chain.size() == 9 && by_element.size() == 9));
     CHECK(by_chain[0] != by_chain[3]);
-    CHECK(by_chain[3] == by_chain[4]);
-    CHECK(by_chain[4] != by_chain[5]);
-    CHECK(by_element[3] == by_element[5]);
+    CHECK(by_chain[3] == chain_carbons[0]);
+    CHECK(by_chain[3] == by_chain[5]);
+    CHECK(by_chain[5] == by_chain[7]);  // of one name
+    CHECK(by_chain[8] == chain_carbons[1]);
+    CHECK(by_element[3] == by_element[8]);
     CHECK(by_element[0] != by_element[3]);
     CHECK(by_chain[0] == by_element[0]);
 }
 
 TEST_CASE("of a molecule of which a spring holds a residue, that residue stands out", "[view]") {
-    // Two peptides of four residues each; carbons of the second one are in a colour of their own.
-    const std::vector<std::string> on_spring{"molecules.held.motion=free", "grab.atom=\"3\"",
-                                             "statics.relax_steps=0"};
-    const Simulation simulation =
-        load_simulation(read_scene(test::test_data("two_peptides"), on_spring));
-    const std::string in_hand = simulation.atoms.names.front().segment;
+    // Two peptides of four residues each; carbons of each are in a colour of their own.
+    const std::string residue = GENERATE("1", "3");
+    const std::size_t number = GENERATE(0, 1);
+    const std::vector<std::string> on_spring{
+        "molecules.held.motion=free", "grab.atom=\"" + residue + "\"", "statics.relax_steps=0"};
+    const World world = load_world(
+        test::with_held_at(number, read_scene(test::test_data("two_peptides"), on_spring)));
+    const AtomRange in_hand = held_range(world, first_hand(world));
     std::vector<glm::vec3> found, rest, others;
-    for (const SphereShape& sphere : build_frame(simulation, {.force_arrow = false}).spheres) {
-        const AtomName& name = simulation.atoms.names[sphere.pick];
+    for (const SphereShape& sphere : build_frame(world, {.force_arrow = false}).spheres) {
+        const AtomName& name = world.resource<AtomTable>().names[sphere.pick];
         if (name.atom.front() != 'C') continue;
-        if (name.segment != in_hand) {
+        if (!has_atom(in_hand, sphere.pick)) {
             others.push_back(sphere.colour);
         } else {
-            (name.number == "3" ? found : rest).push_back(sphere.colour);
+            (name.number == residue ? found : rest).push_back(sphere.colour);
         }
     }
     REQUIRE((!found.empty() && !rest.empty() && !others.empty()));
@@ -138,18 +152,101 @@ TEST_CASE("of a molecule of which a spring holds a residue, that residue stands 
         return std::ranges::all_of(colours, [&](const glm::vec3& c) { return c == colour; });
     };
     CHECK(all_are(found, grabbed_carbon));
-    CHECK(all_are(rest, chain_carbons[0]));
-    CHECK(all_are(others, chain_carbons[1]));
+    CHECK(all_are(rest, chain_carbons[number]));
+    CHECK(all_are(others, chain_carbons[1 - number]));
+}
+
+TEST_CASE("each molecule is drawn as its appearance says, and all others as the settings do",
+          "[view]") {
+    World world = load_world(test::water_scene());
+    for (std::string& element : world.resource<AtomTable>().element) element = "C";
+    move_grabbed(world, 2.8);
+    ViewSettings settings = shown_as(Representation::BallAndStick);
+    settings.hydrogen_bonds = true;
+    const AtomRange moved = held_range(world, first_hand(world));
+    const auto spheres_of_moved = [&] { return shapes_of(build_frame(world, settings), moved); };
+    const auto find_fixed = [&](const FrameScene& frame) {
+        return *std::ranges::find_if(frame.spheres, [&](const SphereShape& sphere) {
+            return !has_atom(moved, sphere.pick);
+        });
+    };
+    const std::vector<SphereShape> before = spheres_of_moved();
+    const glm::vec3 fixed_colour = find_fixed(build_frame(world, settings)).colour;
+
+    set_appearance(world, {"fixed", Representation::SpaceFilling, Colouring::Element, {}});
+    FrameScene frame = build_frame(world, settings);
+    CHECK(frame.cones.size() == 2);  // of the other one
+    CHECK(find_fixed(frame).radius > 3 * before.front().radius);
+    CHECK(find_fixed(frame).colour != fixed_colour);
+    CHECK(spheres_of_moved().front().radius == before.front().radius);
+    CHECK(spheres_of_moved().front().colour == before.front().colour);
+    // What it does not say stays that of the settings, and what it says stays.
+    settings.representation = Representation::Licorice;
+    CHECK(build_frame(world, settings).cones.size() == 2);
+    CHECK(spheres_of_moved().front().radius != before.front().radius);
+
+    set_appearance(world, {"fixed", {}, {}, false});
+    frame = build_frame(world, settings);
+    CHECK(frame.spheres.size() == 3);
+    set_appearance(world, {"fixed", {}, {}, true});
+    CHECK(build_frame(world, settings).spheres.size() == 6);
+}
+
+TEST_CASE("one molecule as a backbone, the other in full", "[view]") {
+    World world = load_world(read_scene(test::test_data("two_peptides")));
+    const ViewSettings settings = shown_as(Representation::BallAndStick);
+    const FrameScene full = build_frame(world, settings);
+    set_appearance(world, {"resting", Representation::Pocket, {}, {}});
+    const FrameScene mixed = build_frame(world, settings);
+    const AtomRange held = held_range(world, first_hand(world));
+
+    CHECK(shapes_of(mixed, held).size() == shapes_of(full, held).size());
+    // A tube is of pieces between two of its spheres.
+    const auto tubes = [&](const FrameScene& frame) {
+        return std::ranges::count_if(frame.cones, [](const ConeShape& cone) {
+            return cone.colour_a == cone.colour_b && cone.radius_a == 0.30F;
+        });
+    };
+    CHECK(tubes(full) == 0);
+    CHECK(tubes(mixed) > 6);
+    set_appearance(world, {"resting", {}, {}, false});
+    CHECK(build_frame(world, settings).spheres.size() == shapes_of(full, held).size());
+}
+
+TEST_CASE("hydrogen bonds of what is hidden are not drawn", "[view]") {
+    World world = load_world(test::water_scene());
+    move_grabbed(world, 2.8);
+    const ViewSettings settings{.force_arrow = false};
+    const auto dashes = [&] {
+        return std::ranges::count(build_frame(world, settings).cones, hydrogen_bond_pick,
+                                  &ConeShape::pick);
+    };
+    CHECK(dashes() > 0);
+    set_appearance(world, {"fixed", {}, {}, false});
+    CHECK(dashes() == 0);
+}
+
+TEST_CASE("a hand that holds nothing has no arrow and no bonds, and all is drawn as it is",
+          "[view]") {
+    World world = load_world(test::water_scene());
+    move_grabbed(world, 2.8);
+    const Representation representation =
+        GENERATE(Representation::BallAndStick, Representation::InHand, Representation::Pocket);
+    let_go(world, first_hand(world));
+    const FrameScene frame = build_frame(world, {.representation = representation});
+    CHECK(std::ranges::all_of(frame.cones,
+                              [](const ConeShape& cone) { return cone.pick < first_sign_pick; }));
+    CHECK(frame.spheres.size() >= 2);
 }
 
 TEST_CASE("the arrow is seen on the molecule's free side, and covers none of its atoms",
           "[view][gpu]") {
     GpuDevice device(test::validated());
     Renderer renderer(device);
-    Simulation simulation = load_simulation(test::water_scene());
+    World world = load_world(test::water_scene());
     const double distance = GENERATE(2.5, 3.1);
-    move_grabbed(simulation, distance);
-    FrameScene frame = build_frame(simulation, {});
+    move_grabbed(world, distance);
+    FrameScene frame = build_frame(world, {});
     OrbitCamera camera;
     orbit(camera, 0.3F, 0.4F);
     frame_all(camera, frame, 480.0F / 270);

@@ -2,6 +2,8 @@
 
 #include "render/renderer.h"
 #include "scene/read_scene.h"
+#include "simulation/held.h"
+#include "simulation/load.h"
 #include "tests/support/gpu.h"
 #include "tests/support/paths.h"
 #include "view/build_frame.h"
@@ -9,6 +11,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -38,7 +41,7 @@ TEST_CASE("what stands in front of the molecule in hand is left out, nothing els
                    {behind, aside, 0.1F, 0.1F, glm::vec3(1), glm::vec3(1), other},
                    {front, {0, 0, 4}, 0.1F, 0.1F, glm::vec3(1), glm::vec3(1), arrow_pick}};
 
-    clip_in_front(1, camera, frame);
+    clip_in_front({0, 1}, camera, frame);
 
     CHECK(has(frame, {0, 0, 0}));
     CHECK_FALSE(has(frame, front));
@@ -67,7 +70,7 @@ TEST_CASE("the partner of a hydrogen bond stays with its bonds, an atom without 
 
     SECTION("bonded") {
         add({0, 0, 0.6F}, {0, 0, 2.8F}, hydrogen_bond_pick);
-        clip_in_front(1, camera, frame);
+        clip_in_front({0, 1}, camera, frame);
         CHECK(has(frame, partner));
         CHECK(has(frame, next));
         CHECK_FALSE(has(frame, beyond));
@@ -76,7 +79,7 @@ TEST_CASE("the partner of a hydrogen bond stays with its bonds, an atom without 
     SECTION("beside, with a bond to what is hidden") {
         frame.spheres[3].centre = {5, 0, 5.5F};
         frame.cones[1].b = {5, 0, 5.5F};
-        clip_in_front(1, camera, frame);
+        clip_in_front({0, 1}, camera, frame);
         CHECK(frame.spheres.size() == 1);
         CHECK(frame.cones.empty());
     }
@@ -85,28 +88,28 @@ TEST_CASE("the partner of a hydrogen bond stays with its bonds, an atom without 
 TEST_CASE("clipped, the inhibitor is seen whole in its pocket from any side", "[view][clip][gpu]") {
     GpuDevice device(test::validated());
     Renderer renderer(device);
-    const Simulation simulation =
-        load_simulation(read_scene(test::in_project("scenes/hiv"), std::vector<std::string>()));
-    const auto grabbed = static_cast<std::uint32_t>(grabbed_points(simulation).positions.size());
+    const World world =
+        load_world(read_scene(test::in_project("scenes/hiv"), std::vector<std::string>()));
+    const AtomRange held = held_range(world, first_hand(world));
     const auto representation =
         GENERATE(Representation::InHand, Representation::SpaceFilling, Representation::Pocket);
     const float azimuth = GENERATE(0.0F, 1.5F, 3.0F, 4.5F), elevation = GENERATE(-0.9F, 0.0F, 0.9F);
-    FrameScene frame = build_frame(simulation, {.representation = representation});
+    FrameScene frame = build_frame(world, {.representation = representation});
     const FrameScene alone = [&] {
         FrameScene only = frame;
-        std::erase_if(only.spheres, [&](const SphereShape& s) { return s.pick >= grabbed; });
-        std::erase_if(only.cones, [&](const ConeShape& c) { return c.pick >= grabbed; });
+        std::erase_if(only.spheres, [&](const SphereShape& s) { return !has_atom(held, s.pick); });
+        std::erase_if(only.cones, [&](const ConeShape& c) { return !has_atom(held, c.pick); });
         return only;
     }();
     OrbitCamera camera;
     orbit(camera, azimuth, elevation);
     frame_shapes(camera, alone.spheres, 1);
-    clip_in_front(grabbed, camera, frame);
+    clip_in_front(held, camera, frame);
     const auto pixels_in_hand = [&](FrameScene scene) {
         scene.camera = frame_camera(camera, frame);
         const Picture picture = renderer.draw(scene, 200, 200);
-        return static_cast<double>(
-            std::ranges::count_if(picture.picks, [&](std::uint32_t p) { return p < grabbed; }));
+        return static_cast<double>(std::ranges::count_if(
+            picture.picks, [&](std::uint32_t p) { return has_atom(held, p); }));
     };
 
     CHECK(pixels_in_hand(frame) > 0.95 * pixels_in_hand(alone));

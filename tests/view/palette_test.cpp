@@ -84,13 +84,14 @@ TEST_CASE("without one kind of cone greys stay grey, and its colours are confuse
         const test::Colour grey = test::multiply(vision.matrix, {0.4, 0.4, 0.4});
         for (const double channel : grey) CHECK(channel == Approx(0.4).margin(1e-5));
     }
-    // A red and a green, a blue and a green of the same lightness to those who confuse them.
+    // A red and a green, a blue and a green of the same mobility weight to those who confuse them.
     const test::Colour red{0.45, 0.10, 0.02}, green{0.10, 0.24, 0.02};
     CHECK(test::colour_difference(test::visions[0], red, green) > 40);
     CHECK(test::colour_difference(test::visions[2], red, green) < 20);
 }
 
-TEST_CASE("whatever people see, colours that tell things apart are told apart", "[view][palette]") {
+TEST_CASE("colours that mark different things differ for every kind of colour vision",
+          "[view][palette]") {
     constexpr double least = 15;  // CIEDE2000
     const std::vector<Category> all = categories();
     REQUIRE(all.size() == 15);

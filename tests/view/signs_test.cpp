@@ -1,14 +1,19 @@
 #include "view/signs.h"
 
 #include "render/renderer.h"
+#include "simulation/held.h"
+#include "simulation/load.h"
 #include "simulation/probe.h"
+#include "simulation/resources.h"
 #include "tests/support/gpu.h"
+#include "tests/support/held_scene.h"
 #include "tests/support/water_scene.h"
 #include "view/build_frame.h"
 #include "view/orbit_camera.h"
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstddef>
@@ -22,7 +27,7 @@ namespace {
 
 // A ball in hand at the origin, alone or with one of others on the x axis.
 struct Stage {
-    HeldMolecule held{.grabbed_atoms = 1};
+    HeldMolecule held{.atoms = {0, 1}};
     FrameScene frame{.spheres = {{{0, 0, 0}, 0.5F}}};
     std::vector<ViewLabel> labels;
 
@@ -121,7 +126,7 @@ TEST_CASE("the arrow begins and ends outside of all atoms, where there is room",
         CHECK(x_of(-1).first < -0.5F);
     }
     SECTION("beyond other atoms of the molecule in hand that stand in the way") {
-        stage.held.grabbed_atoms = 3;
+        stage.held.atoms = {0, 3};
         stage.frame.spheres.push_back({{1.5F, 0.2F, 0}, 0.5F, glm::vec3(1), 1});
         stage.frame.spheres.push_back({{3, 0, 0}, 0.5F, glm::vec3(1), 2});
         CHECK(x_of(1).first > 3.5F);
@@ -186,15 +191,18 @@ TEST_CASE("the wish of a hand is a dashed thread to a ring that faces the eye", 
 
 TEST_CASE("hydrogen bonds are dashes between the atoms as drawn, with their lengths in Å",
           "[view][signs]") {
-    Simulation simulation = load_simulation(test::water_scene());
-    move_grabbed(simulation, 2.9);
+    World world = load_world(test::water_scene());
+    move_grabbed(world, 2.9);
     std::vector<ViewLabel> labels;
-    const FrameScene frame =
-        build_frame(simulation, simulation.touch.model, {.force_arrow = false}, &labels);
+    const FrameScene frame = build_frame(world, std::array{local_contact_of(world).model},
+                                         {.force_arrow = false}, &labels);
 
     REQUIRE(labels.size() == 1);
-    const auto& places = simulation.atoms.positions;
-    const double length = std::min((places[1] - places[3]).norm(), (places[2] - places[3]).norm());
+    const auto places_of = [&](const char* name) {
+        return points_of(world.resource<AtomTable>(), test::range_called(world, name)).positions;
+    };
+    const auto moved = places_of("moved"), fixed = places_of("fixed");
+    const double length = std::min((moved[1] - fixed[0]).norm(), (moved[2] - fixed[0]).norm());
     CHECK(length == Approx(2.9 - 0.957).margin(0.01));
     CHECK(labels[0].text == fmt::format("{:.2f} Å", length));
     std::size_t dashes = 0;
@@ -207,8 +215,7 @@ TEST_CASE("hydrogen bonds are dashes between the atoms as drawn, with their leng
         }
     }
     CHECK(dashes >= 3);
-    const FrameScene without =
-        build_frame(simulation, {.force_arrow = false, .hydrogen_bonds = false});
+    const FrameScene without = build_frame(world, {.force_arrow = false, .hydrogen_bonds = false});
     CHECK(without.cones.size() == 4);
 }
 
@@ -216,10 +223,10 @@ TEST_CASE("in attraction and in repulsion the arrow is plain to see, and repulsi
           "[view][signs][gpu]") {
     GpuDevice device(test::validated());
     Renderer renderer(device);
-    Simulation simulation = load_simulation(test::water_scene());
+    World world = load_world(test::water_scene());
     const auto pixels = [&](double distance) {
-        move_grabbed(simulation, distance);
-        FrameScene frame = build_frame(simulation, {});
+        move_grabbed(world, distance);
+        FrameScene frame = build_frame(world, {});
         OrbitCamera camera;
         frame_all(camera, frame, 1280.0F / 720);
         frame.camera = frame_camera(camera, frame);

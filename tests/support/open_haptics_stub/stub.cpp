@@ -403,7 +403,11 @@ Stub& stub() { return *stubs().back(); }
 }  // namespace
 
 // NOLINTBEGIN(readability-identifier-naming): the names are the library's.
+#ifdef _WIN32
+#define PALPA_EXPORT extern "C" __declspec(dllexport)
+#else
 #define PALPA_EXPORT extern "C" __attribute__((visibility("default")))
+#endif
 
 PALPA_EXPORT test::OpenHapticsStub* open_haptics_stub() {
     stubs().push_back(std::make_unique<Stub>());

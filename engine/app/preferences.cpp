@@ -1,0 +1,135 @@
+#include "app/preferences.h"
+
+#include "core/files.h"
+#include "core/load_error.h"
+#include "core/text.h"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <sstream>
+#include <system_error>
+#include <utility>
+
+namespace palpa {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A key, how its value is read (false: it cannot be), and the message where it cannot.
+struct Preference {
+    std::string_view name;
+    bool (*read)(const toml::node& value, Preferences& preferences);
+    std::string_view wrong;
+};
+
+template <auto Field>
+bool read_text(const toml::node& value, Preferences& preferences) {
+    return (preferences.*Field = value.value<std::string>()).has_value();
+}
+
+bool read_sound(const toml::node& value, Preferences& preferences) {
+    return (preferences.sound = value.value_exact<bool>()).has_value();
+}
+
+bool read_text_scale(const toml::node& value, Preferences& preferences) {
+    const std::optional<double> scale = preferences.text_scale = value.value<double>();
+    return scale && *scale >= 0.5 && *scale <= 4;
+}
+
+constexpr std::array<Preference, 4> known_keys{{
+    {"device", read_text<&Preferences::device>,
+     "device is no text; expected a name as --device takes it"},
+    {"sound", read_sound, "sound is no truth value; expected true or false"},
+    {"scene", read_text<&Preferences::scene>,
+     "scene is no text; expected the file or folder of a scene"},
+    {"text_scale", read_text_scale, "text_scale is no number from 0.5 to 4"},
+}};
+
+TextPlace place_in(const std::string& file, const toml::source_region& source) {
+    return {file, source.begin.line, source.begin.column};
+}
+
+[[noreturn]] void refuse_key(std::string_view key, const TextPlace& place) {
+    std::array<std::string_view, known_keys.size()> names;
+    std::ranges::transform(known_keys, names.begin(), &Preference::name);
+    throw LoadError(place, fmt::format("unknown key '{}'; expected one of {}{}", key,
+                                       fmt::join(names, ", "), near_name_hint(key, names)));
+}
+
+// The environment's folder of that name; relative ones do not count, as XDG wants it.
+std::optional<fs::path> find_folder(const char* variable) {
+    const char* const value = std::getenv(variable);
+    if (!value || !fs::path(value).is_absolute()) return std::nullopt;
+    return value;
+}
+
+}  // namespace
+
+Preferences parse_preferences(std::string_view text, const std::string& file) {
+    toml::table table;
+    try {
+        table = toml::parse(text, file);
+    } catch (const toml::parse_error& error) {
+        throw LoadError(place_in(file, error.source()), std::string(error.description()));
+    }
+    Preferences preferences;
+    for (const auto& [key, value] : table) {
+        const TextPlace place = place_in(file, value.source());
+        const auto known = std::ranges::find(known_keys, key.str(), &Preference::name);
+        if (known == known_keys.end()) refuse_key(key.str(), place);
+        if (!known->read(value, preferences)) throw LoadError(place, std::string(known->wrong));
+    }
+    return preferences;
+}
+
+std::string format_preferences(const Preferences& preferences) {
+    toml::table table;
+    if (preferences.device) table.insert("device", *preferences.device);
+    if (preferences.sound) table.insert("sound", *preferences.sound);
+    if (preferences.scene) table.insert("scene", *preferences.scene);
+    if (preferences.text_scale) table.insert("text_scale", *preferences.text_scale);
+    std::ostringstream text;
+    text << "# What was chosen in Palpa's window.\n" << table << "\n";
+    return text.str();
+}
+
+std::optional<fs::path> find_preferences_file() {
+    const fs::path name = fs::path("palpa") / "preferences.toml";
+    if (const auto folder = find_folder("XDG_CONFIG_HOME")) return *folder / name;
+    if (const auto folder = find_folder("APPDATA")) return *folder / name;
+    if (const auto folder = find_folder("HOME")) return *folder / ".config" / name;
+    return std::nullopt;
+}
+
+PreferencesFile::PreferencesFile(std::optional<fs::path> file) : file_(std::move(file)) {
+    std::error_code error;
+    if (!file_ || !fs::exists(*file_, error)) return;
+    try {
+        now_ = parse_preferences(read_text_file(*file_), file_->string());
+    } catch (const LoadError& problem) {
+        problem_ = problem.what();
+    }
+}
+
+void PreferencesFile::keep(const Preferences& preferences) {
+    if (preferences == now_) return;
+    const TextPlace place{"preferences"};
+    if (!problem_.empty()) throw LoadError(place, "what was chosen is not remembered: " + problem_);
+    if (!file_)
+        throw LoadError(place,
+                        "what was chosen is not remembered: no folder for settings is named");
+    std::error_code error;
+    fs::create_directories(file_->parent_path(), error);
+    if (error) {
+        throw LoadError(place,
+                        fmt::format("what was chosen is not remembered: {} cannot be made: {}",
+                                    file_->parent_path().string(), error.message()));
+    }
+    write_text_file(*file_, format_preferences(preferences), Existing::Replace);
+    now_ = preferences;
+}
+
+}  // namespace palpa

@@ -1,0 +1,209 @@
+// The inside of run_window: the window's thread, what it knows and what it does. A file of
+// sandbox_* has what it does of one kind.
+#pragma once
+#include "app/live_session.h"
+#include "app/render_scale.h"
+#include "app/run_window.h"
+#include "gpu/swapchain.h"
+#include "render/renderer.h"
+#include "sound/speaker.h"
+#include "ui/add_panel.h"
+#include "ui/backend.h"
+#include "ui/question.h"
+#include "view/orbit_camera.h"
+#include "window/window.h"
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace palpa {
+
+using SteadyClock = std::chrono::steady_clock;
+
+inline constexpr double notice_s = 4, first_notice_s = 15;
+
+// All that is lost with a device, made and thrown away as one.
+struct Graphics {
+    Graphics(const Window& window, bool validation, double text_scale)
+        : device({.validation = validation,
+                  .instance_extensions = window.vulkan_extensions(),
+                  .create_surface =
+                      [&window](VkInstance instance) { return window.create_surface(instance); }}),
+          swapchain(device, window.size()),
+          renderer(device),
+          ui(window, device, swapchain.overlay_pass(), swapchain.image_count(),
+             static_cast<float>(text_scale) * window.content_scale()) {}
+
+    GpuDevice device;
+    Swapchain swapchain;
+    Renderer renderer;
+    UiBackend ui;
+};
+
+inline double ms_since(SteadyClock::time_point begin) {
+    return std::chrono::duration<double, std::milli>(SteadyClock::now() - begin).count();
+}
+
+// A hand of the scene with its device.
+struct WindowHand {
+    Device* device;
+    HandOrders* orders;
+    double mouse_reach_m;
+    Vec3 wish_m = Vec3::Zero();    // where mouse or keys want the handle
+    Vec3 handle_m = Vec3::Zero();  // where it is
+    double displacement_gain = 0;  // A_d at this moment
+    double felt_newton = 0;        // sent to the device at this moment
+    Statistics statistics{servo_tick_s};
+
+    bool is_led() const { return orders && mouse_reach_m > 0; }
+};
+
+class Sandbox {
+public:
+    Sandbox(const SceneDescription& scene, Device& device, const WindowOptions& options);
+
+    WindowReport run();
+
+private:
+    void frame();
+    void show_first_view();
+    void look_at_all();
+    void look_at_grabbed();
+    ScreenArea free_area() const;
+    glm::vec2 free_centre() const;
+    Room free_room() const;
+    void compose_picture();
+    void look_at_grabbed_or_all();
+    void show_as(const ViewSettings& view);
+    template <typename Value>
+    void choose_next(Value ViewSettings::* choice, std::span<const std::string_view> names,
+                     std::string_view said);
+    // That of the mouse and of clicks, and that of the arrow keys: the same where there is one.
+    WindowHand& hand() { return hands_[led_]; }
+    const WindowHand& hand() const { return hands_[led_]; }
+    std::size_t by_keys() const { return (led_ + 1) % hands_.size(); }
+    const LiveHand& in_hand() const { return frame_.hands[led_]; }
+    void exchange_hands();
+    void rest(std::size_t slot);
+    void rest_all();
+    bool can_choose_device() const { return devices_.open && !options_.study; }
+    void look_for_devices();
+    bool change_device(const std::string& name);
+    bool choose_device(const std::string& name);
+    void choose_next_device();
+    bool switch_sound(bool is_on);
+    void choose_sound();
+    void play_force();
+    void take_ticks();
+    void take_input();
+    void move_camera(const Input& input);
+    void heed_device(const Input& input);
+    void post_pad(const Input& input);
+    void move_hand(const Input& input);
+    void move_hand_by_keys(const Input& input, double seconds);
+    void pull(std::size_t slot, const glm::vec3& way);
+    void show_wish();
+    void perform(Action action);
+    void record_or_end();
+    void press_study_key();
+    void press_key(const KeyPress& press);
+    void press_in_dialog(const KeyPress& press);
+    void give(const Answer& answer);
+    // Something over the picture must be answered or closed first.
+    bool is_asked() const { return question_ || add_panel_.is_open(); }
+    bool save_scene();
+    ViewDescription describe_view() const;
+    void ask_to_quit();
+    void ask_for_stand_in();
+    bool is_stand_in(const std::string& name) const;
+    void change_text_scale(double scale);
+    std::optional<std::uint32_t> find_atom(double x, double y);
+    void look_at_pixel(double x, double y);
+    void click(const MouseClick& click);
+    void take_clicked();
+    void take(const std::string& address);
+    void let_go();
+    void edit(EditAction action);
+    void open_add_panel();
+    void take_dropped(const Input& input);
+    void add(AddEdit wanted);
+    void remove_held();
+    void tell_what_was_edited();
+    std::string molecule_in_hand() const;
+    void watch_hover(const Input& input, bool is_free);
+    std::string describe_atom(std::uint32_t atom) const;
+    void tell_what_is_held();
+    void draw();
+    void save(const WindowShot& shot);
+    void restart_graphics();
+    void notice(std::string text, double seconds = notice_s);
+    VkExtent2D picture_size() const;
+    void keep_validation_messages();
+
+    const WindowOptions options_;
+    DeviceMenu devices_;
+    std::unique_ptr<Device> chosen_;  // in the place of the first that the window began with
+    std::vector<WindowHand> hands_;
+    std::size_t led_ = 0;  // by the mouse
+    double text_scale_;    // over the display's own
+    SteadyClock::time_point next_look_ = SteadyClock::now();
+    Window window_;
+    LiveSession session_;
+    std::unique_ptr<Graphics> graphics_;
+    Overlay overlay_;
+    LiveSettings saved_;  // as the scene's file has them, or the file saved last
+    std::optional<Question> question_;
+    std::optional<Speaker> speaker_;  // while sound is on
+
+    LiveFrame frame_;
+    bool has_frame_ = false;
+    const ViewDescription first_;
+    FrameScene first_picture_;  // empty until there is one
+    OrbitCamera camera_;
+    ViewSettings view_;
+    bool clips_;  // what hides the molecule in hand is left out
+    bool looks_at_grabbed_ = false;
+    FrameScene shown_;  // the frame's picture, and what the window puts in it
+    SteadyClock::time_point last_input_ = SteadyClock::now();
+    VkExtent2D drawn_size_{};  // of the last picture
+    bool holding_ = false;
+    // What a click would take, once it is known to be no double click.
+    struct Wanted {
+        std::string address;
+        SteadyClock::time_point when;
+    };
+    std::optional<Wanted> wanted_;
+    std::string held_address_;  // as told last
+    AddPanel add_panel_;
+    // Of an edit that is on its way, to be said once the molecule is there, or gone.
+    struct Announced {
+        std::string molecule;
+        bool is_there = true;
+        std::uint64_t refused_edits = 0;  // before it
+        std::string text{};
+    };
+    std::optional<Announced> announced_;
+    std::filesystem::path recorded_in_;
+    std::string hover_;
+    SteadyClock::time_point rests_since_ = SteadyClock::now();  // the mouse; or looked at anew
+    bool drags_panel_ = false;  // the drag that is under way, or was the last one
+    SteadyClock::time_point heeded_ = SteadyClock::now();  // the device, for the last time
+    RenderScale scale_;
+    const SteadyClock::time_point start_ = SteadyClock::now();
+    bool is_over_ = false;  // the last screenshot is due
+    bool quitting_ = false, wants_shot_ = false, must_rebuild_ = false;
+    std::string notice_;
+    std::string refusal_;      // of the device that was tried last
+    bool has_looked_ = false;  // for the device that is wanted
+    SteadyClock::time_point notice_until_{};
+    std::vector<double> frame_ms_;
+    std::vector<std::string> validation_messages_;
+    double last_frame_ms_ = 0;
+};
+
+}  // namespace palpa

@@ -1,0 +1,184 @@
+// What keys and buttons ask for.
+#include "app/sandbox.h"
+
+#include "core/load_error.h"
+#include "view/first_view.h"
+
+#include <fmt/format.h>
+#include <functional>
+#include <system_error>
+#include <utility>
+
+namespace palpa {
+namespace {
+
+constexpr double text_step = 1.1;
+
+// Of what a study leaves to a person: where to look, and the way out.
+bool is_of_picture(Action action) {
+    return action == Action::Focus || action == Action::FrameAll || action == Action::FirstView ||
+           action == Action::Screenshot || action == Action::RestartGraphics ||
+           action == Action::LargerText || action == Action::SmallerText ||
+           action == Action::UsualText || action == Action::Quit;
+}
+
+std::filesystem::path next_recording(const std::filesystem::path& folder) {
+    for (int number = 1;; ++number) {
+        std::filesystem::path path = folder / fmt::format("palpa-session-{:04}", number);
+        std::error_code error;
+        if (!std::filesystem::exists(path, error)) return path;
+    }
+}
+
+}  // namespace
+
+void Sandbox::give(const Answer& answer) {
+    const std::function<void()> then = answer.then;  // the answer goes with its question
+    question_.reset();
+    if (then) then();
+}
+
+// Shows the molecules by the next of the values that `choice` may have.
+template <typename Value>
+void Sandbox::choose_next(Value ViewSettings::* choice, std::span<const std::string_view> names,
+                          std::string_view said) {
+    const std::size_t next = (static_cast<std::size_t>(view_.*choice) + 1) % names.size();
+    ViewSettings view = view_;
+    view.*choice = static_cast<Value>(next);
+    show_as(view);
+    notice(fmt::format("{} {}", said, names[next]));
+}
+
+bool Sandbox::save_scene() {
+    if (!options_.save) return false;
+    try {
+        const std::string file = options_.save(overlay_.settings(), describe_view());
+        saved_ = overlay_.settings();
+        notice(fmt::format("saved {}", file), first_notice_s);
+        return true;
+    } catch (const LoadError& error) {
+        notice(error.what(), first_notice_s);
+        return false;
+    }
+}
+
+void Sandbox::ask_to_quit() {
+    if (options_.study || !options_.save || overlay_.settings() == saved_) {
+        quitting_ = true;
+        return;
+    }
+    question_ = {"The settings were changed and are not saved.",
+                 {{Key::S, "Save and quit (S)", [this] { quitting_ = save_scene(); }},
+                  {Key::Q, "Quit without saving (Q)", [this] { quitting_ = true; }},
+                  {Key::Escape, "Stay (Esc)"}}};
+}
+
+void Sandbox::record_or_end() {
+    try {
+        if (session_.recorded_s()) {
+            session_.end_recording();
+            notice(fmt::format("recorded {0}; palpa replay {0} plays it", recorded_in_.string()),
+                   first_notice_s);
+        } else {
+            recorded_in_ = next_recording(options_.screenshots);
+            session_.begin_recording(recorded_in_);
+            notice(fmt::format("recording into {}", recorded_in_.string()));
+        }
+    } catch (const LoadError& error) {
+        notice(error.what(), first_notice_s);
+    }
+}
+
+void Sandbox::press_study_key() {
+    StudyCourse& study = *options_.study;
+    if (study.stage() == StudyCourse::Stage::Done) quitting_ = true;
+    const std::size_t before = study.results().size();
+    if (study.press_key()) {
+        LiveSettings settings = overlay_.settings();
+        settings.coupling.mode = study.mode();
+        session_.send(settings);
+        // The mouse's hand stays where the handle is.
+        rest_all();
+        session_.send(Reset{study.start_angstrom()});
+    }
+    if (study.results().size() > before && options_.on_trial) options_.on_trial();
+}
+
+void Sandbox::perform(Action action) {
+    if (options_.study && !is_of_picture(action)) return;
+    if (action == Action::Reset) show_first_view();
+    if (action == Action::Reset) rest_all();
+    if (action == Action::Reset) wanted_.reset();
+    if (action == Action::Reset) announced_.reset();
+    std::vector<Command> commands;
+    if (overlay_.perform(action, commands)) {
+        for (const Command& command : commands) {
+            const auto* const change = std::get_if<EditDescription>(&command);
+            change ? edit(change->action) : session_.send(command);
+        }
+        return;
+    }
+    switch (action) {
+        case Action::NextRepresentation:
+            choose_next(&ViewSettings::representation, representation_names, "shown as");
+            break;
+        case Action::NextColouring:
+            choose_next(&ViewSettings::colouring, colouring_names, "coloured by");
+            break;
+        case Action::OtherHand:
+            exchange_hands();
+            break;
+        case Action::Record:
+            record_or_end();
+            break;
+        case Action::Add:
+            open_add_panel();
+            break;
+        case Action::Remove:
+            remove_held();
+            break;
+        case Action::LetGo:
+            let_go();
+            break;
+        case Action::Focus:
+            look_at_grabbed_or_all();
+            break;
+        case Action::FrameAll:
+            look_at_all();
+            break;
+        case Action::FirstView:
+            show_first_view();
+            break;
+        case Action::NextDevice:
+            choose_next_device();
+            break;
+        case Action::ToggleSound:
+            choose_sound();
+            break;
+        case Action::Screenshot:
+            wants_shot_ = true;
+            break;
+        case Action::RestartGraphics:
+            restart_graphics();
+            break;
+        case Action::Save:
+            (void)save_scene();
+            break;
+        case Action::LargerText:
+            change_text_scale(text_scale_ * text_step);
+            break;
+        case Action::SmallerText:
+            change_text_scale(text_scale_ / text_step);
+            break;
+        case Action::UsualText:
+            change_text_scale(1);
+            break;
+        case Action::Quit:
+            if (options_.study || !overlay_.close_something()) ask_to_quit();
+            break;
+        default:
+            break;
+    }
+}
+
+}  // namespace palpa

@@ -1,0 +1,190 @@
+// What mouse, keys and devices do with the view and the hands.
+#include "app/sandbox.h"
+
+#include "core/units.h"
+#include "view/build_frame.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace palpa {
+namespace {
+
+constexpr float radians_per_pixel = 0.008F;
+constexpr float zoom_per_notch = 0.9F;
+constexpr double angstrom_per_notch = 0.25;  // of the molecule in hand, towards the eye and away
+// Of what the handle stays behind the mouse: the medium hand's newton is 1.2 Å, and leaves the
+// atom.
+constexpr double thread_angstrom_per_m = 240;
+constexpr double key_angstrom_per_s = 2, slow_key = 0.2;
+constexpr double longest_key_s = 0.1;  // that counts at once
+
+}  // namespace
+
+void Sandbox::take_input() {
+    const Input& input = window_.poll();
+    must_rebuild_ = must_rebuild_ || input.resized;
+    if (input.rescaled) restart_graphics();
+    heed_device(input);
+    if (options_.pads) post_pad(input);
+    for (const KeyPress& press : input.pressed) {
+        if (add_panel_.is_open() && !question_) {
+            press_in_dialog(press);
+        } else if (!graphics_->ui.wants_keys()) {
+            press_key(press);
+        }
+    }
+    take_dropped(input);
+    const bool leads = hand().is_led() && !graphics_->ui.wants_keys() && !is_asked();
+    const double seconds = 1e-3 * ms_since(std::exchange(last_input_, SteadyClock::now()));
+    const bool keys_lead = hands_[by_keys()].is_led() && !graphics_->ui.wants_keys() && !is_asked();
+    if (keys_lead) move_hand_by_keys(input, std::min(seconds, longest_key_s));
+    const bool held_before = std::exchange(holding_, leads && input.is_held(Key::Space));
+    window_.capture_cursor(holding_);
+    // A drag belongs to what lies where it began, however fast the mouse goes.
+    for (const MousePress& press : input.clicked) {
+        drags_panel_ = graphics_->ui.covers(press.x, press.y);
+    }
+    const bool is_dragging =
+        std::find(input.down.begin(), input.down.end(), true) != input.down.end();
+    const bool is_on_panel = is_dragging || !input.clicked.empty()
+                                 ? drags_panel_
+                                 : graphics_->ui.covers(input.mouse_x, input.mouse_y);
+    if (holding_) {
+        // What the mouse did since the last look was done without the key, where that is new.
+        if (held_before) move_hand(input);
+    } else if (!is_on_panel && !is_asked()) {
+        move_camera(input);
+        if (input.double_clicked) look_at_pixel(input.mouse_x, input.mouse_y);
+    }
+    if (input.double_clicked) wanted_.reset();
+    if (!holding_ && !is_asked()) {
+        for (const MouseClick& ended : input.clicks) click(ended);
+    }
+    take_clicked();
+    watch_hover(input, !holding_ && !is_asked() && !is_on_panel && !is_dragging);
+}
+
+void Sandbox::move_camera(const Input& input) {
+    const auto dx = static_cast<float>(input.mouse_dx), dy = static_cast<float>(input.mouse_dy);
+    const bool shifts = input.is_down(MouseButton::Right) || input.is_down(MouseButton::Middle) ||
+                        (input.is_down(MouseButton::Left) && input.shift);
+    if (shifts) {
+        pan(camera_, dx, dy, static_cast<float>(window_.size().height));
+    } else if (input.is_down(MouseButton::Left)) {
+        orbit(camera_, -radians_per_pixel * dx, radians_per_pixel * dy);
+    }
+    if (input.wheel != 0) zoom(camera_, std::pow(zoom_per_notch, static_cast<float>(input.wheel)));
+}
+
+// Without focus its sticks are meant for others.
+void Sandbox::post_pad(const Input& input) {
+    PadInput pad{.is_there = input.pad.has_value()};
+    if (input.pad && input.focused) {
+        const PadState& state = *input.pad;
+        pad = {true,          state.left_x,  state.left_y,
+               state.right_x, state.right_y, state.right_shoulder};
+    }
+    options_.pads->inputs.post(pad);
+    options_.pads->is_there = pad.is_there;
+}
+
+// Input that comes without focus is meant for others.
+void Sandbox::heed_device(const Input& input) {
+    for (const WindowHand& each : hands_) each.device->attend(input.focused);
+    constexpr double longest_s = 0.1;  // after a pause nothing leaps
+    const double passed_s = std::chrono::duration<double>(SteadyClock::now() - heeded_).count();
+    heeded_ = SteadyClock::now();
+    carry(camera_, hands_.front().device->view_rate(), std::min(passed_s, longest_s));
+}
+
+void Sandbox::move_hand(const Input& input) {
+    const float scale = angstrom_per_pixel(camera_, as_float(in_hand().grabbed_angstrom),
+                                           static_cast<float>(window_.size().height));
+    pull(led_, scale * (static_cast<float>(input.mouse_dx) * rightward(camera_) -
+                        static_cast<float>(input.mouse_dy) * upward(camera_)) -
+                   static_cast<float>(input.wheel * angstrom_per_notch) * backward(camera_));
+}
+
+void Sandbox::move_hand_by_keys(const Input& input, double seconds) {
+    const auto along = [&](Key forth, Key back) {
+        return static_cast<float>(input.is_held(forth)) - static_cast<float>(input.is_held(back));
+    };
+    const glm::vec3 way = along(Key::Right, Key::Left) * rightward(camera_) +
+                          along(Key::Up, Key::Down) * upward(camera_) -
+                          along(Key::PageUp, Key::PageDown) * backward(camera_);
+    if (way == glm::vec3(0)) return;
+    pull(by_keys(),
+         static_cast<float>(key_angstrom_per_s * (input.shift ? slow_key : 1) * seconds) * way);
+}
+
+// The molecule would go this way (Å) where nothing holds it: handle travel is A_d times its way.
+void Sandbox::pull(std::size_t slot, const glm::vec3& way) {
+    WindowHand& pulling = hands_[slot];
+    pulling.wish_m +=
+        Vec3(way.x, way.y, way.z) * units::metre_per_angstrom * pulling.displacement_gain;
+    // Never further ahead than the hand pulls: so that coming back is felt at once.
+    const Vec3 ahead = pulling.wish_m - pulling.handle_m;
+    if (ahead.norm() > pulling.mouse_reach_m)
+        pulling.wish_m = pulling.handle_m + ahead * (pulling.mouse_reach_m / ahead.norm());
+    session_.move_hand(pulling.wish_m, slot);
+}
+
+// A hand that mouse or keys lead stays where its handle is: it pulls at nothing.
+void Sandbox::rest(std::size_t slot) {
+    WindowHand& resting = hands_[slot];
+    if (resting.is_led()) session_.move_hand(resting.wish_m = resting.handle_m, slot);
+}
+
+void Sandbox::rest_all() {
+    for (std::size_t slot = 0; slot < hands_.size(); ++slot) rest(slot);
+}
+
+void Sandbox::exchange_hands() {
+    if (hands_.size() < 2)
+        return notice("this scene has one hand; [second.grab] in its file gives it another");
+    led_ = by_keys();
+    held_address_ = in_hand().held_address;
+    notice(fmt::format("mouse and clicks: the {} hand ({}); arrow keys: the other one",
+                       led_ == 0 ? "first" : "second",
+                       held_address_.empty() ? "nothing in it" : held_address_));
+}
+
+// A study shows nothing of it.
+void Sandbox::show_wish() {
+    if (options_.study) return;
+    for (std::size_t slot = 0; slot < hands_.size(); ++slot) {
+        const auto& [held, place, address, contact] = frame_.hands[slot];
+        if (!hands_[slot].is_led() || held.count == 0) continue;
+        const Vec3 ahead = hands_[slot].wish_m - hands_[slot].handle_m;
+        add_wish(as_float(place), as_float(place + thread_angstrom_per_m * ahead),
+                 backward(camera_), shown_);
+    }
+}
+
+// Letters and all else are the dialog's own.
+void Sandbox::press_in_dialog(const KeyPress& press) {
+    if (press.key == Key::Escape) return add_panel_.close();
+    const std::optional<Action> action = find_action(press.key, press.control, press.shift);
+    const bool is_for_all = action == Action::Screenshot || action == Action::RestartGraphics ||
+                            action == Action::LargerText || action == Action::SmallerText ||
+                            action == Action::UsualText;
+    if (is_for_all) return perform(*action);
+    add_panel_.press(press.key);
+}
+
+void Sandbox::press_key(const KeyPress& press) {
+    if (question_) {
+        const Answer* const answer = press.control ? nullptr : find_answer(*question_, press.key);
+        if (answer) return give(*answer);
+        if (find_action(press.key, press.control, press.shift) != Action::Screenshot) return;
+    }
+    if (options_.study && press.key == Key::Enter) return press_study_key();
+    if (const std::optional<Action> action = find_action(press.key, press.control, press.shift)) {
+        perform(*action);
+    }
+}
+
+}  // namespace palpa

@@ -1,0 +1,110 @@
+// What is seen, and how large.
+#include "app/sandbox.h"
+
+#include "core/load_error.h"
+#include "view/build_frame.h"
+#include "view/first_view.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+namespace palpa {
+namespace {
+
+constexpr float surroundings = 1.6F;  // times the distance that fits the molecule in hand alone
+
+}  // namespace
+
+ScreenArea Sandbox::free_area() const {
+    const auto width = static_cast<float>(window_.size().width);
+    const auto height = static_cast<float>(window_.size().height);
+    return options_.study ? ScreenArea{0, 0, width, height} : overlay_.free_area(width, height);
+}
+
+glm::vec2 Sandbox::free_centre() const {
+    const auto width = static_cast<float>(std::max(window_.size().width, 1U));
+    const auto height = static_cast<float>(std::max(window_.size().height, 1U));
+    const ScreenArea area = free_area();
+    return {(area.left + area.right) / width - 1, 1 - (area.top + area.bottom) / height};
+}
+
+Room Sandbox::free_room() const {
+    const auto height = static_cast<float>(std::max(window_.size().height, 1U));
+    const ScreenArea area = free_area();
+    return {area.width() / height, area.height() / height};
+}
+
+// As it was when the window opened, wherever the molecules are now.
+void Sandbox::show_first_view() {
+    camera_ = first_camera(first_, first_picture_, frame_.framed, free_room());
+    clips_ = first_.clip;
+    looks_at_grabbed_ = false;
+    show_as(options_.view);
+}
+
+void Sandbox::look_at_all() {
+    frame_all(camera_, frame_.picture, free_room());
+    clips_ = looks_at_grabbed_ = false;
+}
+
+void Sandbox::look_at_grabbed() {
+    frame_shapes(camera_, shapes_of(frame_.picture, in_hand().held), free_room());
+    zoom(camera_, surroundings);
+    clips_ = looks_at_grabbed_ = true;
+}
+
+void Sandbox::look_at_grabbed_or_all() {
+    if (!looks_at_grabbed_ && in_hand().held.count == 0) {
+        notice("nothing is in hand");
+    } else if (looks_at_grabbed_) {
+        look_at_all();
+        notice("everything is shown");
+    } else {
+        look_at_grabbed();
+        notice("what stands in front of the molecule in hand is left out; F shows everything");
+    }
+}
+
+void Sandbox::show_as(const ViewSettings& view) {
+    if (view_ == view) return;
+    view_ = view;
+    session_.send(view_);
+}
+
+void Sandbox::look_at_pixel(double x, double y) {
+    const std::optional<std::uint32_t> atom = find_atom(x, y);
+    for (const SphereShape& sphere : frame_.picture.spheres) {
+        if (sphere.pick != atom) continue;
+        camera_.target = sphere.centre;
+        return;
+    }
+}
+
+// As it is seen now, for a scene's file.
+ViewDescription Sandbox::describe_view() const {
+    ViewDescription view = first_;
+    view.colouring = view_.colouring;
+    if (view_.representation != options_.view.representation) {
+        view.representation = view_.representation;
+    }
+    view.camera = describe_camera(camera_, first_, first_picture_, frame_.framed, free_room());
+    view.clip = clips_;
+    return view;
+}
+
+void Sandbox::change_text_scale(double scale) {
+    // Panels need 900 pixels of width at the usual size; beyond a little more they would be cut.
+    constexpr double smallest = 0.7, largest = 4, needed_pixels = 900, too_wide = 1.2;
+    const double fits = too_wide * window_.size().width / (needed_pixels * window_.content_scale());
+    text_scale_ = std::clamp(scale, smallest, std::clamp(fits, 1.0, largest));
+    restart_graphics();
+    notice(fmt::format("text: {:.0f} %", 100 * text_scale_));
+    if (!options_.text_scale.remember) return;
+    try {
+        options_.text_scale.remember(text_scale_);
+    } catch (const LoadError& error) {
+        notice(error.what(), first_notice_s);
+    }
+}
+
+}  // namespace palpa

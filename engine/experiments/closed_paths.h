@@ -1,0 +1,71 @@
+// Random hands and devices on closed paths in space. What the coupling did on them
+// is held against the continuous law along the same path of the handle.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace palpa {
+
+struct ClosedPathOptions {
+    std::filesystem::path scene;
+    std::vector<std::string> settings;  // "key=value", over the scene file and the path's own
+    std::size_t count = 1000, first = 0;
+    std::uint64_t seed = 1;
+    bool turn = false;  // the handle turns as well, and back
+};
+
+struct ClosedPathResult {
+    std::vector<std::string> settings;  // of the path, for palpa run --set
+    bool in_plane = false;
+    double period_ms = 0;
+    // By the force at the hand, but for the servo's own damping; by the continuous law along the
+    // same path. + = generated.
+    double work_J = 0, law_J = 0;
+    double drift_angstrom = 0;  // from where the law's molecule ends to where the molecule is
+    // The handle ends so far from where it began; once it is brought home, straight, the law has
+    // done this work, and its molecule is so far from where it began.
+    double open_mm = 0, closed_law_J = 0, closure_angstrom = 0;
+    double farthest_angstrom = 0;  // of the reference atoms, by the continuous law
+    double ripple_N = 0;           // above 3 Hz, over the last 4 s, which are at rest
+    double felt_share =
+        0;  // of the cap: the largest stiffness felt of the field where the molecule was
+    double largest_N = 0;        // felt
+    bool was_limited = false;    // by the stop or the thermal limit, unknown to the continuous law
+    double clipped_mm = 0;       // handle travel that the limits of a step did away with
+    double clamped_share = 0;    // of the time
+    bool was_held_back = false;  // by a stage of the safety chain graver than the thermal limit
+
+    double extra_joule() const noexcept { return work_J - law_J; }
+};
+
+// Bars of a path. Drift has one where it is inside of `near_angstrom` and nothing turned;
+// energy where nothing turned.
+inline constexpr double most_extra_J = 1e-3, most_drift_angstrom = 0.1, near_angstrom = 6,
+                        most_closed_path_ripple_N = 0.02, most_felt_share = 1.1;
+
+bool meets_bars(const ClosedPathResult& result, bool turned) noexcept;
+
+// Whether the scene has such paths and a continuous law, and no setting replaces them. Throws
+// LoadError.
+void check_closed_paths(const ClosedPathOptions& options);
+
+// Each force is of all pairs in double, some thousands of times a path: how many pairs of atoms
+// these are, and how long a path takes, about. Throws LoadError.
+struct ClosedPathCost {
+    double pairs = 0, seconds = 0;
+};
+ClosedPathCost find_closed_path_cost(const ClosedPathOptions& options);
+
+// Path `number` of a seed; the same whatever the others are. Throws LoadError.
+ClosedPathResult play_closed_path(const ClosedPathOptions& options, std::size_t number);
+
+// All of them; `on_result` after each.
+std::vector<ClosedPathResult> play_closed_paths(
+    const ClosedPathOptions& options,
+    const std::function<void(std::size_t number, const ClosedPathResult&)>& on_result);
+
+}  // namespace palpa

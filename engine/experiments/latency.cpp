@@ -1,0 +1,61 @@
+#include "experiments/latency.h"
+
+#include "haptics/exchange.h"
+#include "haptics/safety.h"
+#include "haptics/servo.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace palpa {
+namespace {
+
+constexpr double newton_per_model_newton = 1e9;
+constexpr int ticks_per_model = 10;  // or it would be stale
+
+}  // namespace
+
+AnsweringServo::AnsweringServo(Device& device) : device_(device), thread_([this] { run(); }) {}
+
+AnsweringServo::~AnsweringServo() { (void)stop(); }
+
+std::vector<double> AnsweringServo::stop() {
+    is_over_ = true;
+    if (thread_.joinable()) thread_.join();
+    return std::move(ticks_us_);
+}
+
+void AnsweringServo::run() {
+    ServoSettings settings;
+    settings.force_law = ConstantForceLaw{newton_per_model_newton};
+    settings.safety.is_full = true;
+    limit_to(device_.spec(), settings.safety);
+    ServoState state;
+    Exchange exchange;
+    LocalContactModel contact;
+    bool was_pressed = false;
+    const Clock::time_point start = Clock::now();
+    Clock::time_point next = start;
+    for (int tick = 0; !is_over_; ++tick) {
+        const Clock::time_point begin = Clock::now();
+        const DeviceReading reading = device_.read();
+        const bool is_pressed_now = is_pressed(reading.buttons, Button::Clutch);
+        const bool is_news = is_pressed_now != was_pressed;
+        was_pressed = is_pressed_now;
+        contact.model.force_newton = Vec3(0, newton(is_pressed_now) / newton_per_model_newton, 0);
+        if (is_news || tick % ticks_per_model == 0) exchange.contact.post(contact);
+        const ServoTick done = step_servo(settings, state, exchange, reading,
+                                          std::chrono::duration<double>(begin - start).count());
+        device_.write(done.sent_newton);
+        const Clock::time_point end = Clock::now();
+        if (is_news) {
+            answered_ = end;
+            ++answers_;
+        }
+        ticks_us_.push_back(std::chrono::duration<double, std::micro>(end - begin).count());
+        next = std::max(next + std::chrono::milliseconds(1), end);
+        std::this_thread::sleep_until(next);
+    }
+}
+
+}  // namespace palpa

@@ -1,0 +1,121 @@
+#include "experiments/scenarios.h"
+
+#include "core/draws.h"
+#include "core/units.h"
+#include "devices/emulated_omni.h"
+#include "experiments/emulated_hand.h"
+#include "scene/read_scene.h"
+#include "session/run_headless.h"
+#include "simulation/held.h"
+#include "simulation/load.h"
+#include "simulation/probe.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+namespace palpa {
+namespace {
+
+std::vector<std::string> draw_scenario(Draws& draws) {
+    constexpr double rest_s = 8, lead_s = 0.3;
+    std::vector<std::string> settings = draw_hand(draws);
+    const auto set = [&](const char* key, const auto& value) {
+        settings.push_back(fmt::format("{}={}", key, value));
+    };
+    set("hand.start_angstrom", draws.between(2.7, 10));
+    const double depth_mm = draws.between(20, 145), fastest_mm_per_s = draws.scale(30, 600);
+    // Minimum jerk is fastest in the middle, at 15/8 of the mean.
+    const double way_s = 15.0 / 8 * depth_mm / fastest_mm_per_s, pause_s = draws.between(0, 1);
+    const double far = depth_mm / 2;
+    const double in_s = lead_s + way_s, out_s = in_s + pause_s + 1e-3, end_s = out_s + way_s;
+    settings.push_back(
+        fmt::format("hand.path=[[{:.6f}, {:.4f}], [{:.6f}, {:.4f}], [{:.6f}, {:.4f}], "
+                    "[{:.6f}, {:.4f}]]",
+                    lead_s, far, in_s, -far, out_s, -far, end_s, far));
+    set("run.seconds", fmt::format("{:.3f}", end_s + rest_s));
+    return settings;
+}
+
+// Work (J) that the static law does on the hand while the molecule goes from one distance (Å) to
+// another: the integral of f(F) A_d.
+double find_static_work(const SceneDescription& scene, const World& world, double from, double to) {
+    const ServoSettings servo = build_servo_settings(scene, world);
+    const auto steps = static_cast<int>(std::ceil(std::abs(to - from) / 1e-3)) + 1;
+    const double width = (to - from) / steps;
+    double sum = 0;
+    for (int i = 0; i < steps; ++i) {
+        const LineForce line = force_along_line_at(world, from + (i + 0.5) * width);
+        const double F_m = line.force * units::newton_per_kcal_per_mol_angstrom;
+        const double A_d = gain_where(servo, world, line);
+        sum += hand_force(world.resource<Coupling>().laws.force, F_m) * A_d;
+    }
+    return sum * width * units::metre_per_angstrom;
+}
+
+}  // namespace
+
+std::vector<std::string> draw_hand(Draws& draws) {
+    std::vector<std::string> settings{"hand.stroke=path"};
+    const auto set = [&](const char* key, const auto& value) {
+        settings.push_back(fmt::format("{}={}", key, value));
+    };
+    set("hand.grip", grip_names[1 + draws.below(grip_names.size() - 1)]);
+    set("device.friction_N", draws.below(3) == 0 ? 0.0 : draws.between(0, 0.5));
+    set("device.inertia_kg", draws.scale(0.03, 0.15));
+    set("device.viscosity_N_s_per_m", draws.between(0.05, 0.5));
+    set("device.servo_delay_ticks", draws.below(2));
+    set("run.period_ms", std::lround(draws.scale(1, 100)));
+    return settings;
+}
+
+void check_scenarios(const ScenarioOptions& options) {
+    const SceneDescription scene = read_scene(options.scene, options.settings);
+    for (const MoleculeDescription& molecule : scene.molecules) {
+        if (molecule.name != scene.grab.molecule || molecule.motion == Motion::AlongX) continue;
+        throw LoadError(scene.place_of("grab.molecule"),
+                        "moves in space, where work on a closed path is not zero; expected a "
+                        "molecule that moves along-x, or palpa closed-paths");
+    }
+}
+
+bool ScenarioResult::is_calm() const noexcept {
+    return generated_J <= most_generated_J && ripple_N < most_ripple_N && !went_through &&
+           !was_held_back;
+}
+
+ScenarioResult play_scenario(const ScenarioOptions& options, std::size_t number) {
+    Draws draws(options.seed, number);
+    ScenarioResult result;
+    result.settings = draw_scenario(draws);
+    result.settings.insert(result.settings.end(), options.settings.begin(), options.settings.end());
+    const SceneDescription scene = read_scene(options.scene, result.settings);
+    World world = load_world(scene);
+    EmulatedOmni device(build_emulated_omni(scene, world));
+    const double start = grabbed_distance(world);
+    const Summary summary = run_headless(scene, world, device, {}, nullptr, {});
+    const double end = grabbed_distance(world);
+    result.generated_J = summary.net_work_J - find_static_work(scene, world, start, end);
+    result.ripple_N = summary.ripple ? summary.ripple->rms : 0;
+    result.closest_angstrom = summary.closest_angstrom;
+    result.went_through = summary.went_through;
+    result.was_held_back = summary.gravest > SafetyStage::ThermalLimit;
+    result.clamped_share = summary.clamped_share;
+    return result;
+}
+
+std::vector<ScenarioResult> play_scenarios(
+    const ScenarioOptions& options,
+    const std::function<void(std::size_t number, const ScenarioResult&)>& on_result) {
+    std::vector<ScenarioResult> results;
+    for (std::size_t i = options.first; i < options.first + options.count; ++i) {
+        results.push_back(play_scenario(options, i));
+        if (on_result) on_result(i, results.back());
+    }
+    return results;
+}
+
+}  // namespace palpa

@@ -1,0 +1,53 @@
+// Random hands, devices, periods and speeds on a scene of one axis. None may
+// generate energy, end in a limit cycle or go through.
+#pragma once
+#include "core/draws.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace palpa {
+
+struct ScenarioOptions {
+    std::filesystem::path scene;
+    std::vector<std::string> settings;  // "key=value", over the scene file and the scenario
+    std::size_t count = 10000, first = 0;
+    std::uint64_t seed = 1;
+};
+
+// A hand on a device and a period, as "key=value".
+std::vector<std::string> draw_hand(Draws& draws);
+
+struct ScenarioResult {
+    std::vector<std::string> settings;  // of the scenario, for palpa run --set
+    // By the force at the hand over the way in and out, beyond what the static law does on the way
+    // that the molecule went; + = generated.
+    double generated_J = 0;
+    double ripple_N = 0;          // above 3 Hz, over the last 4 s
+    double closest_angstrom = 0;  // on the line
+    bool went_through = false;
+    bool was_held_back = false;  // by a stage of the safety chain graver than the thermal limit
+    double clamped_share = 0;    // of the time
+
+    bool is_calm() const noexcept;
+};
+
+// Bars of a scenario.
+inline constexpr double most_generated_J = 1e-3, most_ripple_N = 0.02;
+
+// Whether the scene has one axis. Throws LoadError.
+void check_scenarios(const ScenarioOptions& options);
+
+// Scenario `number` of a seed; the same whatever the others are. Throws LoadError.
+ScenarioResult play_scenario(const ScenarioOptions& options, std::size_t number);
+
+// All of them; `on_result` after each.
+std::vector<ScenarioResult> play_scenarios(
+    const ScenarioOptions& options,
+    const std::function<void(std::size_t number, const ScenarioResult&)>& on_result);
+
+}  // namespace palpa

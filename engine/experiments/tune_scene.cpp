@@ -1,0 +1,329 @@
+#include "experiments/tune_scene.h"
+
+#include "core/assertion.h"
+#include "core/interrupt.h"
+#include "core/load_error.h"
+#include "core/machine.h"
+#include "core/work_folder.h"
+#include "devices/emulated_omni.h"
+#include "experiments/emulated_hand.h"
+#include "formats/crd.h"
+#include "formats/psf.h"
+#include "prepare/scene_of.h"
+#include "scene/read_scene.h"
+#include "session/run_headless.h"
+#include "simulation/held.h"
+#include "simulation/load.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <utility>
+
+namespace palpa {
+namespace {
+
+// The system as its scene has it: segments that are bonded are one.
+struct SystemCopy {
+    Structure structure;
+    Connectivity connectivity;
+    std::vector<std::vector<std::string>> joined;
+    std::vector<SystemSegment> segments;
+    HandChoice hand;
+};
+
+SystemCopy copy_for_scene(const PreparedSystem& system, const std::string& grab) {
+    SystemCopy copy{system.structure, system.connectivity, {}, {}, {}};
+    copy.joined = join_bonded_segments(copy.structure, copy.connectivity);
+    copy.segments = find_segments(copy.structure, copy.connectivity);
+    copy.hand = choose_hand(copy.structure, copy.segments, grab);
+    return copy;
+}
+
+void leave_if_interrupted() {
+    if (noted_interrupt() != 0) throw Interrupted();
+}
+
+// What a stroke of the emulated hand found.
+struct Played {
+    double strong_pN = 0;    // force on what is held; 95 % of the time it is below
+    double felt_newton = 0;  // at most, in any direction
+    double moved_angstrom = 0;
+    double median_us = 0, p99_us = 0;  // of a step, p99 without renewals
+    bool has_renewals = false;
+};
+
+Played play(const SceneDescription& scene, World& world, std::string_view stage,
+            const StageFunction& on_stage) {
+    std::vector<double> forces_pN;
+    Played played;
+    const auto watch = [&](const ServoTick& tick) {
+        forces_pN.push_back(1e12 * tick.contact.force_newton.norm());
+        const Vec3 felt = tick.sent_newton - tick.damping_newton;
+        played.felt_newton = std::max(played.felt_newton, felt.norm());
+    };
+    EmulatedOmni device(build_emulated_omni(scene, world));
+    const Summary summary = run_headless(
+        scene, world, device, {}, nullptr, [&](double share) { tell(on_stage, stage, share); }, {},
+        watch, [] { return noted_interrupt() != 0; });
+    leave_if_interrupted();
+    const auto strong =
+        forces_pN.begin() + static_cast<std::ptrdiff_t>(forces_pN.size() * 95 / 100);
+    std::ranges::nth_element(forces_pN, strong);
+    played.strong_pN = strong == forces_pN.end() ? 0 : *strong;
+    if (summary.unbinding) played.moved_angstrom = summary.unbinding->farthest;
+    played.median_us = summary.step_median_us;
+    played.p99_us = summary.step_p99_us;
+    played.has_renewals = summary.relaxation && summary.relaxation->renewals > 0;
+    // Steps in which the model is renewed take a hundred times as long as others, and come late.
+    constexpr double ordinary = 10;
+    if (played.has_renewals) played.p99_us = std::min(played.p99_us, ordinary * played.median_us);
+    return played;
+}
+
+constexpr double least_felt = 0.3, least_moved = 1;  // N, Å
+
+double two_digits(double value) {
+    const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
+    return std::round(value / unit) * unit;
+}
+
+// A tenth of a strong force is felt as 0.3 N, a strong one as 1.3 N; what is thrice as strong as
+// 2.7 N. So neither friction (0.26 N) hides what is there, nor do motors get warm of it.
+std::array<double, 2> choose_range(double strong_pN) {
+    constexpr double weakest = 10, strongest = 3e5;  // so that the key takes what comes of it
+    const double strong = std::clamp(strong_pN, weakest, strongest);
+    return {two_digits(strong / 10), two_digits(3 * strong)};
+}
+
+// With room for what else the machine does. In a window the drawing, too, takes cores away, for
+// some milliseconds at a time where there is no graphics card; guarded coupling needs no shorter
+// period.
+double choose_period_ms(double p99_us) {
+    constexpr double headroom = 1.5, shortest = 5, longest = 1000;
+    return std::clamp(std::ceil(headroom * 1e-3 * p99_us), shortest, longest);
+}
+
+// Fewer for larger systems, so that it takes no more than some minutes.
+std::int64_t relax_steps_for(std::size_t atoms) {
+    constexpr std::size_t atom_steps = 16'000'000;
+    return static_cast<std::int64_t>(std::clamp<std::size_t>(atom_steps / atoms, 100, 4000));
+}
+
+// About what a step takes.
+double first_period_ms(std::size_t atoms) {
+    constexpr double ms_per_atom = 5e-3, longest = 60;
+    return std::clamp(std::ceil(ms_per_atom * static_cast<double>(atoms)), 1.0, longest);
+}
+
+// A scene on its way from a first try to the one that is written.
+struct Tuning {
+    SystemCopy copy;
+    std::string title;      // of files
+    bool is_turned = true;  // the way out is +x
+    Structure rest;         // the copy's atoms where their joints came to rest
+    Vec3 way = Vec3::UnitX();
+    SceneText text;
+    SceneTuning tuning;
+    JointRelaxReport relaxed;
+    std::size_t joints = 0;
+    double p99_us = 0;  // of a step, by which the period is
+    std::string measured = "99 % of steps";
+
+    std::string scene() const {
+        return format_scene(copy.structure, copy.segments, copy.hand, way, text, tuning);
+    }
+    std::vector<TextFile> files() const {
+        std::vector<TextFile> all{{"scene.toml", scene()},
+                                  {text.structure, format_crd(rest, title)}};
+        if (!copy.joined.empty()) {
+            all.push_back({text.topology, format_psf(copy.connectivity, title)});
+        }
+        return all;
+    }
+};
+
+// Where the table of the scene's atoms has the copy's.
+std::vector<std::uint32_t> find_table_order(const SystemCopy& copy) {
+    std::vector<std::uint32_t> order;
+    for (const SystemSegment& segment : copy.segments)
+        order.insert(order.end(), segment.atoms.begin(), segment.atoms.end());
+    return order;
+}
+
+// Joints turn where charges act in full; the scene begins where they end.
+void bring_to_rest(const std::filesystem::path& folder, const StageFunction& on_stage,
+                   Tuning& tuning) {
+    const World world = load_world(read_scene(folder / "scene.toml"), on_stage);
+    const StartReport& report = world.resource<StartReport>();
+    PALPA_ASSERT(report.joints_at_rest);  // the scene says so
+    if (!report.joints_at_rest) return;
+    tuning.relaxed = *report.joints_at_rest;
+    tuning.joints = report.joints;
+    const std::vector<std::uint32_t> order = find_table_order(tuning.copy);
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        tuning.rest.positions[order[i]] = model_of(world).reference[i];
+    }
+    tuning.tuning.relax_steps.reset();
+    if (report.joints_at_rest->end != RelaxEnd::Converged) tuning.tuning.relax_steps = 0;
+}
+
+// As `align` does it, far below what matters, so that every compiler writes the same file.
+double rounded(double value) { return std::round(value * 1e6) / 1e6; }
+
+void take_way(const Vec3& way, Tuning& tuning) {
+    tuning.way = way;
+    if (!tuning.is_turned) return;
+    std::vector<Vec3>& positions = tuning.rest.positions;
+    const Mat3 turn = Quat::FromTwoVectors(way, Vec3::UnitX()).toRotationMatrix();
+    Vec3 middle = Vec3::Zero();
+    for (const Vec3& place : positions) middle += place / static_cast<double>(positions.size());
+    for (Vec3& place : positions) place = (turn * (place - middle)).unaryExpr(&rounded);
+    tuning.way = Vec3::UnitX();
+}
+
+void write_scene(const std::filesystem::path& folder, const Tuning& tuning) {
+    for (const TextFile& file : tuning.files()) {
+        write_text_file(folder / file.path, file.text, Existing::Replace);
+    }
+}
+
+// `settings`: over the file.
+Played play_written(const std::filesystem::path& folder, std::string_view stage,
+                    const std::vector<std::string>& settings, const StageFunction& on_stage,
+                    const Tuning& tuning) {
+    write_scene(folder, tuning);
+    const SceneDescription scene = read_scene(folder / "scene.toml", settings);
+    World world = load_world(scene, on_stage);
+    return play(scene, world, stage, on_stage);
+}
+
+void set_period(const Played& played, Tuning& tuning) {
+    tuning.p99_us = played.p99_us;
+    tuning.tuning.period_ms = choose_period_ms(played.p99_us);
+    tuning.measured = played.has_renewals ? "99 % of steps without a renewal" : "99 % of steps";
+    tuning.tuning.period_note = fmt::format(
+        "1.5 times what {} took here, 5 ms at least: {:.2f} ms ({:.2f} ms in the "
+        "median), {}.",
+        tuning.measured, 1e-3 * played.p99_us, 1e-3 * played.median_us, machine_name());
+}
+
+void set_coupling(const Played& first, Tuning& tuning) {
+    tuning.tuning.feel_pN = choose_range(first.strong_pN);
+    tuning.tuning.coupling_note = fmt::format(
+        "The emulated hand found forces of up to {:.0f} pN for 95 % of its stroke: a tenth of that "
+        "is felt as 0.3 N, three times that as 2.7 N.",
+        first.strong_pN);
+}
+
+void report_scene(const Played& played, const Tuning& tuning, Report& report) {
+    constexpr std::string_view heading = "Scene";
+    const HandChoice& hand = tuning.copy.hand;
+    report.add(heading, fmt::format("in the hand: {} ({}; --grab SEGMENT:RESIDUE or --grab SEGMENT "
+                                    "takes another)",
+                                    hand.words, hand.reason));
+    for (const std::vector<std::string>& names : tuning.copy.joined) {
+        report.add(heading, fmt::format("bonded to each other, so one molecule there: {}",
+                                        fmt::join(names, ", ")));
+    }
+    report.add(
+        heading,
+        fmt::format("{} joints turn, in vacuum with full charges; brought to rest: {:.2f} to "
+                    "{:.2f} kcal/mol in {} steps, moved {:.2f} Å at most (relaxed.crd)",
+                    tuning.joints, tuning.relaxed.energy_before, tuning.relaxed.energy_after,
+                    tuning.relaxed.steps, tuning.relaxed.largest_move));
+    if (tuning.relaxed.end != RelaxEnd::Converged) {
+        report.add(heading, fmt::format("not yet at rest: an rms force of {:.3g} kcal/mol per "
+                                        "radian and Å is left; palpa relax goes on",
+                                        tuning.relaxed.rms_force));
+    }
+    if (const auto range = tuning.tuning.feel_pN) {
+        report.add(heading, fmt::format("guarded coupling; forces of {} to {} pN are felt as 0.3 "
+                                        "to 2.7 N",
+                                        (*range)[0], (*range)[1]));
+    }
+    report.add(heading, fmt::format("period {} ms: {} took {:.2f} ms here", tuning.tuning.period_ms,
+                                    tuning.measured, 1e-3 * tuning.p99_us));
+    report.add(heading, fmt::format("the emulated hand felt up to {:.2f} N and moved what it holds "
+                                    "by {:.2f} Å",
+                                    played.felt_newton, played.moved_angstrom));
+    if (played.felt_newton < least_felt || played.moved_angstrom < least_moved) {
+        report.warn(fmt::format(
+            "in the scene the emulated hand felt up to {:.2f} N and moved what it holds by {:.2f} "
+            "Å; expected {} N and {} Å at least: --grab takes something else into the hand",
+            played.felt_newton, played.moved_angstrom, least_felt, least_moved));
+    }
+}
+
+// The stroke's way out with constant gains, or across where what is held does not move that way.
+Played try_ways(const std::filesystem::path& folder, const StageFunction& on_stage,
+                Tuning& tuning) {
+    const Structure rest = tuning.rest;
+    const Vec3 out = find_way_out(rest, tuning.copy.hand.held);
+    const Vec3 across = out.unitOrthogonal();
+    Played best;
+    best.moved_angstrom = -1;
+    Vec3 best_way = out;
+    for (const Vec3& way : {out, across, Vec3(out.cross(across))}) {
+        tuning.rest = rest;
+        take_way(way, tuning);
+        const Played played =
+            play_written(folder, "looking for the forces", {"run.seconds=5"}, on_stage, tuning);
+        if (played.moved_angstrom > best.moved_angstrom) {
+            best = played;
+            best_way = way;
+        }
+        if (best.moved_angstrom > least_moved) break;
+    }
+    tuning.rest = rest;
+    take_way(best_way, tuning);
+    return best;
+}
+
+TunedScene tune(PreparedSystem& system, Tuning& tuning, const StageFunction& tell_stage) {
+    const WorkFolder scratch;
+    const StageFunction on_stage = [&](std::string_view stage, std::optional<double> share) {
+        leave_if_interrupted();
+        tell(tell_stage, stage, share);
+    };
+    const std::filesystem::path& folder = scratch.path();
+    write_prepared(system, folder, tuning.title, tuning.files());
+    bring_to_rest(folder, on_stage, tuning);
+    const Played first = try_ways(folder, on_stage, tuning);
+    set_coupling(first, tuning);
+    set_period(first, tuning);
+    const Played played = play_written(folder, "playing the scene", {}, on_stage, tuning);
+    if (choose_period_ms(played.p99_us) > tuning.tuning.period_ms) set_period(played, tuning);
+    report_scene(played, tuning, system.report);
+    return {tuning.files(), tuning.copy.hand.words, played.felt_newton, played.moved_angstrom};
+}
+
+}  // namespace
+
+TunedScene tune_scene(PreparedSystem& system, const std::string& grab, bool is_aligned,
+                      const std::string& name, const std::string& title,
+                      const StageFunction& on_stage) {
+    tell(on_stage, "choosing what the hand holds");
+    Tuning tuning;
+    tuning.copy = copy_for_scene(system, grab);
+    tuning.title = title;
+    tuning.is_turned = !is_aligned;
+    tuning.rest = tuning.copy.structure;
+    tuning.text.title = name;
+    tuning.text.about =
+        fmt::format("In the hand: {}. The emulated hand pulls it by 4 Å and brings it back.",
+                    tuning.copy.hand.words);
+    tuning.text.made_by = "palpa prepare; report.txt has every decision";
+    if (!tuning.copy.joined.empty()) tuning.text.topology = "scene.psf";
+    const std::size_t atoms = tuning.rest.names.size();
+    tuning.tuning.relax_steps = relax_steps_for(atoms);
+    tuning.tuning.period_ms = first_period_ms(atoms);
+    return tune(system, tuning, on_stage);
+}
+
+}  // namespace palpa

@@ -1,0 +1,44 @@
+// Second derivatives of the energy of one pair of atoms, without or with a cutoff, in double.
+#pragma once
+#include "charmm/topology.h"
+#include "forces/nonbonded.h"
+
+namespace palpa {
+
+// An energy that depends on a distance r alone, as a function of u = r^2/2: dE/du (kcal/mol/Å^2)
+// and d2E/du2 (kcal/mol/Å^4). With d the vector between the atoms i and j,
+//     d2E/dx_i dx_j = -(first 1 + second d d^T),
+// and that of one atom alone is the negative of it.
+struct PairHessian {
+    double first = 0, second = 0;
+
+    PairHessian& operator+=(const PairHessian& other) noexcept {
+        first += other.first;
+        second += other.second;
+        return *this;
+    }
+};
+
+// The second derivatives of what forces/pair_law.h sums, for sound settings.
+class PairHessianLaw {
+public:
+    explicit PairHessianLaw(const NonbondedSettings& settings) noexcept;
+
+    // At the square of a distance (Å^2); `charges` is C q q'/eps. Within `pair_core_radius`
+    // the energy is linear in u. Second derivatives jump where switching begins and ends.
+    PairHessian evaluate(double r2, double charges, const LennardJonesPair& pair) const noexcept;
+
+    double reach2() const noexcept { return reach2_; }  // Å^2, from where on pairs have nothing
+
+private:
+    PairHessian electrostatic(double r2) const noexcept;  // of unit charges
+    PairHessian van_der_waals(double r2, const LennardJonesPair& pair) const noexcept;
+
+    ElectrostaticCutoff electrostatics_;
+    VanDerWaalsCutoff van_der_waals_;
+    bool distance_dielectric_;
+    double reach2_;
+    double c_, c2_, m2_;  // cutoff and its square, square of where switching begins, Å
+};
+
+}  // namespace palpa

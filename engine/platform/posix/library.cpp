@@ -1,0 +1,28 @@
+#include "platform/library.h"
+
+#include <dlfcn.h>
+
+namespace palpa {
+
+std::vector<std::string> list_library_files(std::string_view name,
+                                            std::initializer_list<std::string_view> versions) {
+    const std::string file = "lib" + std::string(name) + ".so";
+    std::vector<std::string> files{file};
+    for (const std::string_view version : versions)
+        files.push_back(file + "." + std::string(version));
+    return files;
+}
+
+SharedLibrary::SharedLibrary(const std::string& file)
+    : handle_(dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL)) {
+    if (!handle_) problem_ = dlerror();
+}
+
+void* SharedLibrary::find(const char* function) const noexcept { return dlsym(handle_, function); }
+
+std::string SharedLibrary::path_of(void* function) const {
+    Dl_info info{};
+    return dladdr(function, &info) != 0 && info.dli_fname ? info.dli_fname : "";
+}
+
+}  // namespace palpa

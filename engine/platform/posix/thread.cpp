@@ -1,0 +1,26 @@
+#include "platform/thread.h"
+
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+namespace palpa {
+
+bool ask_for_real_time() noexcept {
+    sched_param parameters{};
+    parameters.sched_priority = 50;
+    return pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters) == 0;
+}
+
+bool ask_for_locked_memory() noexcept {
+#ifdef MCL_ONFAULT
+    return mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0;
+#else
+    return false;  // all memory that is reserved would be taken at once
+#endif
+}
+
+void lower_priority() noexcept { (void)!nice(5); }
+
+}  // namespace palpa

@@ -1,0 +1,7 @@
+#include "platform/display.h"
+
+namespace palpa {
+
+bool has_display() { return true; }
+
+}  // namespace palpa

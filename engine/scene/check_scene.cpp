@@ -1,0 +1,290 @@
+#include "scene/check_scene.h"
+
+#include "core/text.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace palpa {
+namespace {
+
+std::string_view name_of(Motion motion) { return motion_names[static_cast<std::size_t>(motion)]; }
+
+// The molecule that a field names; null where the problem is told.
+const MoleculeDescription* find_named(const SceneDescription& scene, Problems& problems,
+                                      const std::string& key, const std::string& name) {
+    if (name.empty()) return nullptr;  // told already
+    std::vector<std::string_view> names;
+    for (const MoleculeDescription& molecule : scene.molecules) {
+        if (molecule.name == name) return &molecule;
+        names.emplace_back(molecule.name);
+    }
+    problems.add(problems.place_of(key),
+                 fmt::format("'{}' is \"{}\", which is no molecule of this scene; "
+                             "expected one of {}{}",
+                             key, name, fmt::join(names, ", "), near_name_hint(name, names)));
+    return nullptr;
+}
+
+// Whether another hand moves the molecule as a whole.
+bool is_moved_by_other(const SceneDescription& scene, const HandTables& by) {
+    return std::ranges::any_of(list_hands(scene), [&](const HandTables& other) {
+        return other.grab_key != by.grab_key && other.grab.atom.empty() &&
+               other.grab.molecule == by.grab.molecule;
+    });
+}
+
+// Whether the hand can do something with the molecule.
+bool check_grabbed(const SceneDescription& scene, const HandTables& by,
+                   const MoleculeDescription& grabbed, Problems& problems) {
+    const bool by_spring = !by.grab.atom.empty();
+    const bool is_flexible = grabbed.shape == Shape::Flexible;
+    const bool yields = grabbed.motion == Motion::Free ||
+                        (grabbed.motion == Motion::Fixed && is_flexible) ||
+                        (is_moved_by_other(scene, by) &&
+                         (is_flexible || grabbed.motion == Motion::TranslateAndTurn));
+    const bool is_moved = grabbed.motion == Motion::AlongX || grabbed.motion == Motion::Translate ||
+                          grabbed.motion == Motion::TranslateAndTurn ||
+                          grabbed.motion == Motion::WithHandle;
+    if (by_spring ? yields : is_moved) return true;
+    const std::string key = by.grab_key + ".molecule";
+    problems.add(
+        problems.place_of(key),
+        fmt::format("'{}' is \"{}\", whose motion is \"{}\"; expected {}", key, by.grab.molecule,
+                    name_of(grabbed.motion),
+                    by_spring ? fmt::format("a free molecule, or one that is fixed and flexible: "
+                                            "the hand pulls at it by a spring ({}.atom)",
+                                            by.grab_key)
+                              : "a molecule that moves, along-x, translate, translate-and-turn "
+                                "or with-handle"));
+    return false;
+}
+
+void check_start(const HandTables& by, bool along_x, Problems& problems) {
+    const std::string distance = by.hand_key + ".start_angstrom";
+    const std::string offset = by.hand_key + ".start_offset_angstrom";
+    if (along_x && by.hand.start_offset_angstrom != std::array<double, 3>{}) {
+        problems.add(problems.place_of(offset),
+                     fmt::format("'{}' is for a molecule that moves in space; expected {}", offset,
+                                 distance));
+    }
+    if (!along_x && by.hand.start_angstrom) {
+        problems.add(problems.place_of(distance),
+                     fmt::format("'{}' is for a molecule that moves along x; expected {}", distance,
+                                 offset));
+    }
+}
+
+// What the hand holds; null where that is told to be wrong.
+const MoleculeDescription* check_hold(const SceneDescription& scene, const HandTables& by,
+                                      Problems& problems) {
+    const std::string from = by.grab_key + ".measured_from";
+    const MoleculeDescription* const origin =
+        find_named(scene, problems, from, by.grab.measured_from);
+    if (origin && origin->motion != Motion::Fixed) {
+        problems.add(problems.place_of(from),
+                     fmt::format("'{}' is \"{}\", whose motion is \"{}\"; expected a fixed "
+                                 "molecule",
+                                 from, by.grab.measured_from, name_of(origin->motion)));
+    }
+    const MoleculeDescription* const grabbed =
+        find_named(scene, problems, by.grab_key + ".molecule", by.grab.molecule);
+    if (!grabbed || !check_grabbed(scene, by, *grabbed, problems)) return nullptr;
+    check_start(by, grabbed->motion == Motion::AlongX, problems);
+    return grabbed;
+}
+
+void check_motions(const SceneDescription& scene,
+                   std::span<const MoleculeDescription* const> grabbed, Problems& problems) {
+    for (const MoleculeDescription& molecule : scene.molecules) {
+        const std::string key = "molecules." + molecule.name + ".motion";
+        const bool by_itself = molecule.motion == Motion::Fixed || molecule.motion == Motion::Free;
+        if (!by_itself && std::ranges::find(grabbed, &molecule) == grabbed.end()) {
+            problems.add(
+                problems.place_of(key),
+                fmt::format("'{}' is \"{}\", but {}; expected fixed or free", key,
+                            name_of(molecule.motion),
+                            grabbed.size() > 1
+                                ? "the hands move only grab.molecule and second.grab.molecule"
+                                : "the hand moves only grab.molecule"));
+        }
+        if (molecule.motion == Motion::AlongX && scene.has_statics()) {
+            problems.add(problems.place_of(key),
+                         fmt::format("'{}' is \"along-x\" beside something that moves by "
+                                     "itself; expected translate or translate-and-turn",
+                                     key));
+        }
+        if (molecule.motion == Motion::WithHandle && scene.has_statics()) {
+            problems.add(problems.place_of(key),
+                         fmt::format("'{}' is \"with-handle\" beside something that moves by "
+                                     "itself, which a handle does not turn yet; expected "
+                                     "translate or translate-and-turn",
+                                     key));
+        }
+    }
+}
+
+void check_grab(const SceneDescription& scene, Problems& problems) {
+    std::vector<const MoleculeDescription*> grabbed;
+    for (const HandTables& hand : list_hands(scene)) {
+        grabbed.push_back(check_hold(scene, hand, problems));
+    }
+    // Without the right molecules in hand, what the others do is no problem of its own.
+    if (std::ranges::find(grabbed, nullptr) != grabbed.end()) return;
+    check_motions(scene, grabbed, problems);
+    if (!scene.joints.around.empty())
+        find_named(scene, problems, "joints.around", scene.joints.around);
+}
+
+void check_view(const ViewDescription& view, const SceneDescription& scene, Problems& problems) {
+    find_named(scene, problems, "view.look_at", view.look_at);
+    const auto [azimuth, elevation, zoom] = view.camera;
+    if (std::abs(elevation) <= 90 && zoom >= 0.01 && zoom <= 100) return;
+    problems.add(problems.place_of("view.camera"),
+                 fmt::format("'view.camera' is [{}, {}, {}]; expected [azimuth, elevation, zoom]: "
+                             "degrees, the second from -90 to 90, and a factor from 0.01 to 100",
+                             azimuth, elevation, zoom));
+}
+
+}  // namespace
+
+void check_edits(const SceneDescription& scene, Problems& problems) {
+    if (problems.any()) return;  // of a key that is wrong nothing was kept
+    for (std::size_t i = 0; i < scene.edits.size(); ++i) {
+        const std::string whose = fmt::format("edits[{}].hand", i + 1);
+        if (scene.edits[i].hand == 1 && !scene.second) {
+            problems.add(problems.place_of(whose),
+                         fmt::format("'{}' is \"second\", and the scene has one hand; expected "
+                                     "\"first\", or a table [second.grab]",
+                                     whose));
+        }
+        const EditAction& action = scene.edits[i].action;
+        const std::string key = fmt::format("edits[{}].{}", i + 1, edit_names[action.index()]);
+        if (const auto* const restraint = std::get_if<RestraintEdit>(&action)) {
+            const std::size_t ends = restraint->atoms.size() + (restraint->place_angstrom ? 1 : 0);
+            if (!restraint->atoms.empty() && ends != 2) {
+                problems.add(problems.place_of(key),
+                             fmt::format("'{}' has {} ends; expected two atoms, or one and "
+                                         "place_angstrom",
+                                         key, ends));
+            }
+        }
+        const auto* const mobility = std::get_if<MobilityEdit>(&action);
+        if (mobility && !mobility->motion && !mobility->shape) {
+            problems.add(problems.place_of(key),
+                         fmt::format("'{}' changes nothing; expected motion or shape", key));
+        }
+        const auto* const look = std::get_if<AppearanceEdit>(&action);
+        if (look && !look->representation && !look->colouring && !look->visible) {
+            problems.add(problems.place_of(key),
+                         fmt::format("'{}' changes nothing; expected representation, colouring "
+                                     "or visible",
+                                     key));
+        }
+    }
+}
+
+namespace {
+
+void check_hand(const HandTables& by, Problems& problems) {
+    const HandDescription& h = by.hand;
+    const std::string stroke = by.hand_key + ".stroke", path = by.hand_key + ".path";
+    const auto check = [&](bool right, const std::string& key, const std::string& what) {
+        if (!right) problems.add(problems.place_of(key), fmt::format("'{}' {}", key, what));
+    };
+    check(h.stroke != Stroke::InOut || h.grip != HandGrip::None, stroke,
+          "is \"in-out\" with a grip of \"none\": nobody would move the handle; expected "
+          "\"hold\", or a hand");
+    const bool has_path = h.stroke == Stroke::Path || h.stroke == Stroke::Lead;
+    check(!has_path || !h.path.empty(), stroke,
+          fmt::format("is \"{}\", but '{}' has no point; expected [[time, place], ...]",
+                      stroke_names[static_cast<std::size_t>(h.stroke)], path));
+    check(h.stroke != Stroke::Lead || h.grip != HandGrip::None, stroke,
+          "is \"lead\" with a grip of \"none\": nobody would move the handle; expected a hand");
+    const auto turns = [](const PathPoint& point) {
+        return point.turn_deg != PathPoint{}.turn_deg;
+    };
+    check(h.stroke != Stroke::Lead || std::ranges::none_of(h.path, turns), path,
+          fmt::format("turns the handle, but '{}' is \"lead\", which only moves; expected [s, Å] "
+                      "or [s, Å, Å, Å]",
+                      stroke));
+    for (std::size_t i = 1; i < h.path.size(); ++i) {
+        check(h.path[i].time_s > h.path[i - 1].time_s, path,
+              fmt::format("has the time {} after {}; expected ascending times", h.path[i].time_s,
+                          h.path[i - 1].time_s));
+    }
+}
+
+void check_ranges(const SceneDescription& scene, Problems& problems) {
+    const auto check = [&](bool right, const std::string& key, const std::string& what) {
+        if (!right) problems.add(problems.place_of(key), what);
+    };
+    check(!scene.coupling.feel_within_pN || !scene.has_statics() ||
+              method_of(scene.statics) == RelaxMethod::QuasiStatic ||
+              method_of(scene.statics) == RelaxMethod::SecondOrder,
+          "statics.method",
+          fmt::format("'statics.method' is \"{}\", which moves all joints at once; expected "
+                      "second-order or quasi-static with coupling.feel_within_pN",
+                      relax_method_names[static_cast<std::size_t>(method_of(scene.statics))]));
+    check(std::abs(scene.period_ms - std::round(scene.period_ms)) < 1e-9, "run.period_ms",
+          fmt::format("'run.period_ms' is {}; expected a whole number of servo ticks of 1 ms",
+                      scene.period_ms));
+    for (const LessonStepDescription& step : scene.lesson) {
+        const std::string key = "lesson." + step.name;
+        check(step.at_least || step.at_most, key,
+              fmt::format("'{}' has neither at_least nor at_most; expected one or both", key));
+        check(!(step.at_least && step.at_most) || *step.at_least <= *step.at_most, key + ".at_most",
+              fmt::format("'{}.at_most' is below at_least; no value would do", key));
+    }
+}
+
+}  // namespace
+
+void check_coupling(const CouplingDescription& c, Problems& problems) {
+    const auto check = [&](bool right, const std::string& key, const std::string& what) {
+        if (!right) problems.add(problems.place_of(key), what);
+    };
+    check(
+        c.F_h2_N > c.F_h1_N, "coupling.F_h2_N",
+        fmt::format("'coupling.F_h2_N' is {}; expected more than F_h1_N, {}", c.F_h2_N, c.F_h1_N));
+    check(c.A_d_max >= c.A_d_min, "coupling.A_d_max",
+          fmt::format("'coupling.A_d_max' is {}; expected A_d_min, {}, or more", c.A_d_max,
+                      c.A_d_min));
+    check(c.F_hi_nN * 1e3 > 2 * c.F_lo_pN, "coupling.F_hi_nN",
+          fmt::format("'coupling.F_hi_nN' is {}; expected more than twice F_lo_pN, {}", c.F_hi_nN,
+                      c.F_lo_pN));
+    if (const auto range = c.feel_pN) {
+        constexpr double most_felt_newton = 3;
+        const auto [weakest, strongest] = *range;
+        check(strongest > weakest, "coupling.feel_pN",
+              fmt::format("'coupling.feel_pN' is [{}, {}]; expected the weaker force first",
+                          weakest, strongest));
+        check(c.mode == CouplingMode::Guarded, "coupling.feel_pN",
+              fmt::format("'coupling.feel_pN' is for guarded coupling, and coupling.mode is {}, "
+                          "with forces of its own; expected mode = \"guarded\", or no feel_pN",
+                          coupling_mode_names[static_cast<std::size_t>(c.mode)]));
+        check(c.clamp_N >= most_felt_newton, "coupling.clamp_N",
+              fmt::format("'coupling.clamp_N' is {}, and what feel_pN names is felt as up to {} N; "
+                          "expected that or more",
+                          c.clamp_N, most_felt_newton));
+    }
+}
+
+void check_scene(const SceneDescription& scene, Problems& problems) {
+    check_grab(scene, problems);
+    check_coupling(scene.coupling, problems);
+    check_ranges(scene, problems);
+    for (const HandTables& hand : list_hands(scene)) check_hand(hand, problems);
+    check_view(scene.view, scene, problems);
+    check_edits(scene, problems);
+}
+
+}  // namespace palpa

@@ -1,0 +1,81 @@
+// What a scene file chooses from, with the names that it has for them.
+#pragma once
+#include "core/choices.h"
+
+#include <array>
+#include <string_view>
+
+namespace palpa {
+
+// Every choice of a scene file: its names stand in the order of the enumerators.
+enum class Motion { Fixed, AlongX, Translate, TranslateAndTurn, Free, WithHandle };
+inline constexpr std::array<std::string_view, 6> motion_names{
+    "fixed", "along-x", "translate", "translate-and-turn", "free", "with-handle"};
+
+enum class Shape { Rigid, Flexible };
+inline constexpr std::array<std::string_view, 2> shape_names{"rigid", "flexible"};
+
+enum class PairPrecision { Double, Fast };
+inline constexpr std::array<std::string_view, 2> pair_precision_names{"double", "fast"};
+
+// What a choice was called before, which is refused with the name that it has now.
+struct RenamedChoice {
+    std::string_view before, now;
+};
+
+// What counts where active joints are chosen.
+enum class JointWeights { Acceleration, Inertia, PerJoint, InverseMovedAtoms, HandProximity };
+inline constexpr std::array<std::string_view, 5> joint_weight_names{
+    "acceleration", "inertia", "per-joint", "inverse-moved-atoms", "hand-proximity"};
+inline constexpr std::array<RenamedChoice, 4> renamed_joint_weights{
+    {{"plain", "acceleration"},
+     {"single", "per-joint"},
+     {"light", "inverse-moved-atoms"},
+     {"near-hand", "hand-proximity"}}};
+
+enum class Stroke { Hold, InOut, Path, Lead };
+inline constexpr std::array<std::string_view, 4> stroke_names{"hold", "in-out", "path", "lead"};
+
+// The paper's five modes, and guarded coupling.
+enum class CouplingMode {
+    VariableForceVariableDisplacement,
+    VariableForceConstantDisplacement,
+    ConstantForceVariableDisplacement,
+    ConstantForceConstantDisplacement,
+    NoForce,
+    Guarded
+};
+inline constexpr std::array<std::string_view, 6> coupling_mode_names{"1", "2", "3",
+                                                                     "4", "5", "guarded"};
+
+// The laws of guarded coupling, and what carries the workspace.
+enum class ForceLawChoice { Printed, Calibrated, Constant, Perceptual };
+inline constexpr std::array<std::string_view, 4> force_law_names{"printed", "calibrated",
+                                                                 "constant", "perceptual"};
+enum class DisplacementLawChoice { Repaired, Printed, Constant };
+inline constexpr std::array<std::string_view, 3> displacement_law_names{"repaired", "printed",
+                                                                        "constant"};
+enum class WorkspaceChoice { Clutch, Bubble, Drift };
+inline constexpr std::array<std::string_view, 3> workspace_names{"clutch", "bubble", "drift"};
+
+// How a hand takes hold when nobody looks: a window always has the ramp.
+enum class Engage { AtOnce, Ramp };
+inline constexpr std::array<std::string_view, 2> engage_names{"at-once", "ramp"};
+
+// What a step of a lesson looks at.
+enum class LessonQuantity { Distance, Force, FeltForce, Mode };
+inline constexpr std::array<std::string_view, 4> lesson_quantity_names{
+    "distance_angstrom", "force_nN", "felt_N", "mode"};
+
+// In hand: the grabbed molecule as balls and sticks, all others as thin sticks without hydrogens.
+// Pocket: of the others the backbone, and thin sticks of those residues that are near to it.
+enum class Representation { BallAndStick, SpaceFilling, Licorice, InHand, Pocket };
+inline constexpr std::array<std::string_view, 5> representation_names{
+    "ball-and-stick", "space-filling", "licorice", "in-hand", "pocket"};
+
+// By chain: carbons in a colour of their chain, everything else as by element. Carbons of the
+// grabbed molecule have a colour of their own either way.
+enum class Colouring { Element, Chain };
+inline constexpr std::array<std::string_view, 2> colouring_names{"element", "chain"};
+
+}  // namespace palpa

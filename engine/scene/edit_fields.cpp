@@ -1,0 +1,189 @@
+#include "scene/edit_fields.h"
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+namespace palpa {
+namespace {
+
+constexpr double farthest_angstrom = 1e4;
+
+void visit_action(FieldVisitor& v, TakeEdit& e) {
+    v.text({.key = "take",
+            .meaning = "the hand holds \"NAME\", or by a spring \"NAME:25\", \"NAME:25 CA\"",
+            .form = TextForm::MoleculeOrPart},
+           e.what);
+}
+
+void visit_action(FieldVisitor& v, LetGoEdit& /*e*/) {
+    v.mark({.key = "let_go", .meaning = "the hand holds nothing"});
+}
+
+void visit_action(FieldVisitor& v, AddEdit& e) {
+    v.enter_table({.key = "add",
+                   .meaning = "a new molecule: a residue of the force field, a copy, or files",
+                   .is_inline = true});
+    constexpr std::array<std::string_view, 3> origins{"residue", "copy_of", "structure"};
+    const std::size_t chosen = !e.structure.empty() ? 2 : !e.copy_of.empty() ? 1 : 0;
+    for (const std::size_t origin : v.one_of(origins, chosen)) {
+        if (origin == 0) {
+            v.text({.key = "residue",
+                    .meaning = "name of a residue of the force field",
+                    .required = true},
+                   e.residue);
+        } else if (origin == 1) {
+            v.text({.key = "copy_of", .meaning = "name of a molecule", .form = TextForm::Molecule},
+                   e.copy_of);
+        } else {
+            v.file({.key = "structure", .meaning = "as of [molecules.NAME]", .required = true},
+                   e.structure);
+            v.file({.key = "topology", .meaning = "as of [molecules.NAME]"}, e.topology);
+            const Field segment{.key = "segment", .meaning = "of several in that file"};
+            if (v.is_there(segment, !e.segment.empty())) v.text(segment, e.segment);
+        }
+    }
+    v.text({.key = "name",
+            .meaning = "of the new molecule",
+            .required = true,
+            .form = TextForm::Molecule},
+           e.name);
+    v.triple({.key = "at_angstrom",
+              .meaning = "where its reference atom is",
+              .lowest = -farthest_angstrom,
+              .highest = farthest_angstrom,
+              .required = true},
+             e.at_angstrom);
+    v.leave_table();
+}
+
+void visit_action(FieldVisitor& v, RemoveEdit& e) {
+    v.text({.key = "remove", .meaning = "a molecule goes", .form = TextForm::Molecule}, e.molecule);
+}
+
+void visit_action(FieldVisitor& v, PinEdit& e) {
+    v.texts({.key = "pin",
+             .meaning = "label, distance, angle or dihedral",
+             .lowest = 1,
+             .highest = 4,
+             .form = TextForm::Atom},
+            e.atoms);
+}
+
+void visit_action(FieldVisitor& v, RestraintEdit& e) {
+    v.enter_table(
+        {.key = "restraint", .meaning = "a spring between two, or to a place", .is_inline = true});
+    v.texts({.key = "atoms",
+             .meaning = "one or two atoms or residues",
+             .lowest = 1,
+             .highest = 2,
+             .required = true,
+             .form = TextForm::ResidueOrAtom},
+            e.atoms);
+    const Field place{.key = "place_angstrom",
+                      .meaning = "where one atom is pulled to",
+                      .lowest = -farthest_angstrom,
+                      .highest = farthest_angstrom};
+    if (v.is_there(place, e.place_angstrom.has_value())) {
+        if (!e.place_angstrom) e.place_angstrom.emplace();
+        v.triple(place, *e.place_angstrom);
+    }
+    v.real({.key = "k_kcal_per_mol_angstrom2",
+            .meaning = "stiffness, E = k x²/2",
+            .lowest = 1e-3,
+            .highest = 1e4},
+           e.k_kcal_per_mol_angstrom2);
+    v.real({.key = "length_angstrom", .meaning = "length at rest", .lowest = 0, .highest = 1e3},
+           e.length_angstrom);
+    v.leave_table();
+}
+
+void visit_action(FieldVisitor& v, MobilityEdit& e) {
+    v.enter_table({.key = "mobility", .meaning = "as in [molecules.NAME]", .is_inline = true});
+    v.text({.key = "molecule",
+            .meaning = "name of a molecule",
+            .required = true,
+            .form = TextForm::Molecule},
+           e.molecule);
+    choose_if_set(v, {.key = "motion", .meaning = "as of [molecules.NAME]"}, motion_names,
+                  e.motion);
+    choose_if_set(v, {.key = "shape", .meaning = "as of [molecules.NAME]"}, shape_names, e.shape);
+    v.leave_table();
+}
+
+void visit_action(FieldVisitor& v, AppearanceEdit& e) {
+    v.enter_table({.key = "appearance", .meaning = "as in [view]", .is_inline = true});
+    v.text({.key = "molecule",
+            .meaning = "name of a molecule",
+            .required = true,
+            .form = TextForm::Molecule},
+           e.molecule);
+    choose_if_set(v, {.key = "representation", .meaning = "as of [view]"}, representation_names,
+                  e.representation);
+    choose_if_set(v, {.key = "colouring", .meaning = "as of [view]"}, colouring_names, e.colouring);
+    const Field visible{.key = "visible", .meaning = "whether it is drawn"};
+    if (v.is_there(visible, e.visible.has_value())) {
+        if (!e.visible) e.visible.emplace();
+        v.flag(visible, *e.visible);
+    }
+    v.leave_table();
+}
+
+void visit_action(FieldVisitor& v, CouplingEdit& e) {
+    v.coupling_settings({.key = "coupling", .meaning = "other values for them"}, e.settings);
+}
+
+void visit_action(FieldVisitor& v, ResetEdit& /*e*/) {
+    v.mark({.key = "reset", .meaning = "molecules, hands and coupling as this file has them"});
+}
+
+void visit_action(FieldVisitor& v, UndoEdit& /*e*/) {
+    v.mark({.key = "undo", .meaning = "undoes the last edit or grip"});
+}
+
+void visit_action(FieldVisitor& v, RedoEdit& /*e*/) {
+    v.mark({.key = "redo", .meaning = "does again what was undone"});
+}
+
+template <std::size_t... Index>
+EditAction action_of(std::size_t index, std::index_sequence<Index...> /*all*/) {
+    EditAction action;
+    ((index == Index ? void(action.emplace<Index>()) : void()), ...);
+    return action;
+}
+
+void visit_edit(FieldVisitor& v, EditDescription& edit) {
+    v.real({.key = "at_s",
+            .meaning = "of [[edits]]: one of these before the first step from then on",
+            .lowest = 0,
+            .highest = 1e5,
+            .required = true},
+           edit.at_s);
+    v.choice({.key = "hand", .meaning = "whose edit it is"}, edit_hand_names, edit.hand);
+    for (const std::size_t index : v.one_of(edit_names, edit.action.index())) {
+        if (index != edit.action.index()) {
+            edit.action =
+                action_of(index, std::make_index_sequence<std::variant_size_v<EditAction>>());
+        }
+        std::visit([&](auto& action) { visit_action(v, action); }, edit.action);
+    }
+}
+
+}  // namespace
+
+void visit_edits(FieldVisitor& v, std::vector<EditDescription>& edits) {
+    const Field field{.key = "edits", .meaning = "what changes while the scene runs"};
+    std::size_t count = edits.size();
+    v.list_entries(field, count);
+    edits.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        v.enter_entry(field, i, edits[i].place);
+        visit_edit(v, edits[i]);
+        v.leave_table();
+    }
+}
+
+}  // namespace palpa

@@ -1,0 +1,32 @@
+#include "scene/problems.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cstddef>
+#include <tuple>
+#include <utility>
+
+namespace palpa {
+
+TextPlace Problems::place_of(std::string_view key) const {
+    const auto found = places_.find(key);
+    if (found != places_.end()) return found->second;
+    const std::size_t dot = key.rfind('.');
+    if (dot == std::string_view::npos) return {file_, 1, 1};
+    return place_of(key.substr(0, dot));
+}
+
+FieldPlaces Problems::finish() {
+    if (problems_.empty()) return std::move(places_);
+    std::stable_sort(problems_.begin(), problems_.end(), [](const Problem& a, const Problem& b) {
+        return std::tie(a.place.line, a.place.column) < std::tie(b.place.line, b.place.column);
+    });
+    const std::size_t others = problems_.size() - 1;
+    throw LoadError(
+        problems_[0].place,
+        problems_[0].what + (others == 0   ? ""
+                             : others == 1 ? " (and 1 more problem)"
+                                           : fmt::format(" (and {} more problems)", others)));
+}
+
+}  // namespace palpa

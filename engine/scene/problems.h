@@ -1,0 +1,46 @@
+// What is wrong with a scene, gathered, so that the first problem in the file is told and not the
+// first one in our list; and where its fields stand.
+#pragma once
+#include "core/load_error.h"
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace palpa {
+
+using FieldPlaces = std::map<std::string, TextPlace, std::less<>>;  // by full key
+
+class Problems {
+public:
+    explicit Problems(const std::filesystem::path& file) : file_(file.string()) {}
+
+    void add(const TextPlace& place, std::string what) {
+        problems_.push_back({place, std::move(what)});
+    }
+    bool any() const { return !problems_.empty(); }
+
+    // Where a field was read, or the table where it should be, or the file.
+    void set_place(const std::string& key, const TextPlace& place) { places_[key] = place; }
+    TextPlace place_of(std::string_view key) const;
+
+    // Throws a LoadError with the first problem and the number of the others, or gives the places
+    // of all fields that the file has.
+    FieldPlaces finish();
+
+private:
+    struct Problem {
+        TextPlace place;
+        std::string what;
+    };
+
+    std::string file_;
+    std::vector<Problem> problems_;
+    FieldPlaces places_;
+};
+
+}  // namespace palpa

@@ -1,0 +1,120 @@
+#include "session/accuracy_report.h"
+
+#include "haptics/gains.h"
+#include "haptics/guarded.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cstddef>
+
+namespace palpa {
+
+UnmetRequirements find_unmet(const AccuracyReport& report) {
+    constexpr double most = 0.9, noticeable = 1.01;
+    UnmetRequirements unmet;
+    if (const auto within_pN = report.within_pN; within_pN && report.within_share < most) {
+        unmet.tolerance = fmt::format(
+            "the tolerance: nine tenths of the time within {:.3g} pN, {:.3g} times the {:.6g} "
+            "asked",
+            report.ninety_pN, report.ninety_pN / *within_pN, *within_pN);
+    }
+    if (report.within_pN && report.period_share > 1) {
+        unmet.period =
+            fmt::format("the period: a step takes {:.3g} times as long", report.period_share);
+    }
+    if (report.largest_cap_ratio > noticeable) {
+        unmet.reach =
+            fmt::format("the reach: A_d was raised up to {:.3g} times", report.largest_cap_ratio);
+    }
+    if (report.thermal_share > 0) {
+        unmet.motors =
+            fmt::format("the motors: for {:.3g} % of the time they were too warm for the force",
+                        100 * report.thermal_share);
+    }
+    return unmet;
+}
+
+std::vector<std::string> UnmetRequirements::all() const {
+    std::vector<std::string> all;
+    for (const std::string& text : {tolerance, period, reach, motors}) {
+        if (!text.empty()) all.push_back(text);
+    }
+    return all;
+}
+
+AccuracyLog::AccuracyLog(const SceneDescription& scene, const ServoSettings& servo)
+    : is_asked_(scene.coupling.feel_pN || scene.coupling.feel_within_pN),
+      period_us_(1e3 * scene.period_ms) {
+    report_.within_pN = scene.coupling.feel_within_pN;
+    if (!servo.guarded) return;
+    cap_N_per_m_ = guarded_cap(scene.device.viscosity_N_s_per_m, servo.guarded->damping_N_s_per_m,
+                               servo.delay_ticks);
+    report_.range_pN = scene.coupling.feel_pN;
+    if (const auto range = report_.range_pN) {
+        for (std::size_t i = 0; i < range->size(); ++i)
+            report_.ends_newton[i] = hand_force(servo.guarded->force_law, (*range)[i] * 1e-12);
+    }
+}
+
+void AccuracyLog::add(const ServoTick& tick) noexcept {
+    if (cap_N_per_m_ <= 0) return;
+    rendered_newton_ = tick.contact.force_newton;
+    report_.stiffest_share = std::max(report_.stiffest_share, tick.felt_N_per_m / cap_N_per_m_);
+    report_.largest_cap_ratio = std::max(report_.largest_cap_ratio, tick.cap_ratio);
+    ++ticks_;
+    if (tick.stage == SafetyStage::ThermalLimit || tick.stage == SafetyStage::CoolDown)
+        ++thermal_ticks_;
+}
+
+void AccuracyLog::add_step(const RelaxStepReport& relaxed) {
+    ++steps_;
+    report_.active += static_cast<double>(relaxed.active);
+    report_.steps += static_cast<double>(relaxed.steps);
+    if (const auto error_pN = relaxed.estimated_error_pN) add_error(*error_pN);
+}
+
+void AccuracyLog::add_answer(const ContactModel& answer) {
+    constexpr std::uint64_t every = 100;
+    if (cap_N_per_m_ <= 0 || ++steps_ % every != 0) return;
+    add_error(1e12 * (answer.force_newton - rendered_newton_).norm());
+}
+
+void AccuracyLog::add_error(double error_pN) {
+    found_.push_back({error_pN, steps_ - last_estimate_});
+    last_estimate_ = steps_;
+}
+
+std::optional<AccuracyReport> AccuracyLog::report(double step_median_us) const {
+    if (!is_asked_) return std::nullopt;
+    AccuracyReport report = report_;
+    report.period_share = step_median_us / period_us_;
+    if (ticks_ > 0)
+        report.thermal_share = static_cast<double>(thermal_ticks_) / static_cast<double>(ticks_);
+    if (steps_ > 0) {
+        report.active /= static_cast<double>(steps_);
+        report.steps /= static_cast<double>(steps_);
+    }
+    report.estimates = found_.size();
+    if (found_.empty()) return report;
+    std::vector<Found> sorted = found_;
+    std::ranges::sort(sorted, {}, &Found::error_pN);
+    // What it is at most for that share of the time.
+    const auto quantile = [&](double share) {
+        double left = share * static_cast<double>(last_estimate_) - 1e-6;
+        for (const auto& [error_pN, steps] : sorted) {
+            left -= static_cast<double>(steps);
+            if (left <= 0) return error_pN;
+        }
+        return sorted.back().error_pN;
+    };
+    report.median_pN = quantile(0.5);
+    report.ninety_pN = quantile(0.9);
+    const double within_pN = report.within_pN.value_or(0);
+    double within = 0;
+    for (const auto& [error_pN, steps] : sorted)
+        if (error_pN <= within_pN) within += static_cast<double>(steps);
+    report.within_share = within / static_cast<double>(last_estimate_);
+    return report;
+}
+
+}  // namespace palpa

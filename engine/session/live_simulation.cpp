@@ -1,0 +1,276 @@
+#include "session/live_simulation.h"
+
+#include "core/assertion.h"
+#include "core/load_error.h"
+#include "session/run_headless.h"
+#include "simulation/coupling.h"
+#include "simulation/held.h"
+#include "simulation/load.h"
+#include "simulation/mechanics.h"
+#include "simulation/resources.h"
+#include "simulation/step.h"
+#include "simulation/systems/follow_hands.h"
+
+#include <algorithm>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+namespace palpa {
+namespace {
+
+// While nothing moves, the hand feels nothing and has no hold.
+LocalContactModel without_force(const LocalContactModel& contact) {
+    LocalContactModel still(contact.model);
+    still.model.force_newton.setZero();
+    still.model.is_still = true;
+    return still;
+}
+
+void set_period(const SceneDescription& scene, World& world) {
+    const double period_s = scene.period_ms * 1e-3;
+    world.resource<Clock>().period_s = period_s;
+    world.each<Contact>(
+        [&](Entity, Contact& contact) { contact.answer.model.period_s = period_s; });
+}
+
+// Where forces must be exact, real time is what limits the work for it, unless the scene does.
+SceneDescription limited_by_period(SceneDescription scene) {
+    constexpr double share = 0.8;
+    if (scene.coupling.feel_within_pN && !scene.statics.budget_us)
+        scene.statics.budget_us = share * 1e3 * scene.period_ms;
+    return scene;
+}
+
+}  // namespace
+
+LiveSimulation::LiveSimulation(const SceneDescription& scene, std::vector<HandDevice> devices,
+                               ServoLine& line)
+    : scene_(scene),
+      devices_(std::move(devices)),
+      line_(line),
+      world_(load_world(limited_by_period(scene))),
+      edits_(scene),
+      poses_(devices_.size()),
+      felt_(devices_.size()),
+      contacts_(devices_.size()),
+      orders_(devices_.size()) {
+    PALPA_ASSERT(!devices_.empty() && devices_.size() <= find_hands(world_).size());
+    for (const HandDevice& device : devices_) check_period(device.spec, scene.period_ms * 1e-3);
+    play(PublishEvent{});
+    post_orders();
+}
+
+bool LiveSimulation::all_stand_still() const noexcept {
+    return std::ranges::all_of(devices_, &HandDevice::stands_still);
+}
+
+void LiveSimulation::play(const LiveEvent& event, std::span<const HandPose> poses) {
+    PALPA_ASSERT(poses.size() == poses_.size());
+    std::ranges::copy(poses, poses_.begin());
+    std::visit([this](const auto& one) { play(one); }, event);
+}
+
+void LiveSimulation::play(const PublishEvent& /*event*/) {
+    const std::vector<Entity> hands = find_hands(world_);
+    for (std::size_t slot = 0; slot < devices_.size(); ++slot)
+        post(slot, contact_of(world_, hands[slot]).answer);
+}
+
+void LiveSimulation::play(const StepEvent& event) {
+    if (draft_) return;  // or the edit would undo what the step did
+    for (const EditDescription& due : edits_.take_due(time_s_)) edit(due, false);
+    const StepReport& report = step_world(world_, {poses_, felt_, event.took_us});
+    readout_.step_ms = 1e-3 * report.took_us;
+    ++readout_.steps;
+    time_s_ += world_.resource<Clock>().period_s;
+}
+
+void LiveSimulation::play(const HoldEvent& /*event*/) {
+    const std::vector<Entity> hands = find_hands(world_);
+    for (std::size_t slot = 0; slot < devices_.size(); ++slot) {
+        take_hold(world_, hands[slot], poses_[slot]);
+        post(slot, without_force(contact_of(world_, hands[slot]).answer));
+    }
+}
+
+void LiveSimulation::play(const CommandEvent& event) {
+    if (const auto* const settings = std::get_if<LiveSettings>(&event.command)) {
+        obey(*settings);
+    } else if (const auto* const pause = std::get_if<Pause>(&event.command)) {
+        obey(*pause);
+    } else if (std::holds_alternative<StepOnce>(event.command)) {
+        readout_.paused = true;
+        post_orders();
+    } else if (const auto* const anew = std::get_if<Reset>(&event.command)) {
+        obey(*anew);
+    } else if (const auto* const change = std::get_if<EditDescription>(&event.command)) {
+        if (!event.is_long) return edit(*change, event.settles);
+        draft_ = Draft{world_, *change, {}, {}};
+        readout_.edit_under_way = edit_names[change->action.index()];
+    }
+}
+
+void LiveSimulation::play(const DeviceEvent& event) {
+    devices_[event.slot] = event.device;
+    take_hold_anew(list_starts());
+    post_orders();  // or it would take one that was meant for the device before
+}
+
+void LiveSimulation::obey(const LiveSettings& settings) {
+    readout_.problem.clear();
+    if (can_build_laws(settings.coupling)) {
+        scene_.coupling = settings.coupling;
+        world_.resource<SceneFile>().scene.coupling = settings.coupling;  // edits begin from it
+    } else {
+        readout_.problem =
+            "eq. 2 of these numbers cannot have these slopes: the law from before stays";
+    }
+    try {
+        for (const HandDevice& device : devices_)
+            check_period(device.spec, settings.period_ms * 1e-3);
+        scene_.period_ms = settings.period_ms;
+    } catch (const LoadError& error) {
+        readout_.problem = error.what();
+    }
+    set_coupling(scene_.coupling, world_);
+    set_period(scene_, world_);
+    post_orders();
+}
+
+void LiveSimulation::obey(const Pause& pause) {
+    if (!all_stand_still()) play(HoldEvent{});  // not what was travelled since the last look
+    readout_.paused = pause.paused;
+    post_orders();
+}
+
+void LiveSimulation::obey(const Reset& reset) {
+    if (reset.start_angstrom) scene_.hand.start_angstrom = reset.start_angstrom;
+    const std::vector<std::uint32_t> last_starts = list_starts();
+    try {
+        world_ = load_world(limited_by_period(scene_));
+    } catch (const LoadError& error) {  // the files changed meanwhile: what runs, runs on
+        readout_.problem = error.what();
+        return;
+    }
+    history_ = {};
+    draft_.reset();
+    readout_.edit_under_way.clear();
+    edits_ = EditPlayer(scene_);
+    time_s_ = 0;
+    ++edition_;
+    readout_.problem.clear();
+    take_hold_anew(last_starts);
+    post_orders();
+}
+
+bool LiveSimulation::takes_long(const EditDescription& edit) const noexcept {
+    constexpr std::size_t many_atoms = 1000;
+    const auto is_quick = [](const auto& action) {
+        using Action = std::decay_t<decltype(action)>;
+        return std::is_same_v<Action, UndoEdit> || std::is_same_v<Action, RedoEdit> ||
+               std::is_same_v<Action, PinEdit> || std::is_same_v<Action, AppearanceEdit> ||
+               std::is_same_v<Action, CouplingEdit>;
+    };
+    const auto* const take = std::get_if<TakeEdit>(&edit.action);
+    const bool makes_mobile = std::holds_alternative<MobilityEdit>(edit.action) ||
+                              (take && take->what.find(':') != std::string::npos);
+    return world_.resource<AtomTable>().positions.size() >= many_atoms &&
+           (needs_mechanics(world_) || makes_mobile) && !std::visit(is_quick, edit.action);
+}
+
+void LiveSimulation::build_draft() noexcept {
+    if (!draft_ || draft_->changed || !draft_->refusal.empty()) return;
+    try {
+        draft_->changed = make_edit(draft_->before, draft_->edit);
+    } catch (const LoadError& error) {
+        draft_->refusal = error.what();
+    }
+}
+
+void LiveSimulation::play(const AdoptEvent& event) {
+    if (!draft_) return;  // the scene was loaded anew meanwhile
+    build_draft();
+    Draft draft = std::move(*draft_);
+    draft_.reset();
+    readout_.edit_under_way.clear();
+    if (!draft.changed) return refuse(draft.edit, std::move(draft.refusal));
+    history_.adopt(world_, std::move(*draft.changed), draft.edit);
+    publish_edit(event.settles);
+}
+
+void LiveSimulation::edit(const EditDescription& edit, bool settles) {
+    try {
+        history_.apply(world_, edit);
+    } catch (const LoadError& error) {
+        return refuse(edit, error.what());
+    }
+    publish_edit(settles);
+}
+
+void LiveSimulation::refuse(const EditDescription& edit, std::string why) {
+    readout_.problem = std::move(why);
+    const bool is_back_or_forth = std::holds_alternative<UndoEdit>(edit.action) ||
+                                  std::holds_alternative<RedoEdit>(edit.action);
+    if (!is_back_or_forth) ++readout_.refused_edits;
+}
+
+// Between two steps. The hands hold on, and the servos glide from what was felt to what is felt
+// now.
+void LiveSimulation::publish_edit(bool settles) {
+    readout_.problem.clear();
+    // The window's settings have an undo of their own.
+    CouplingDescription& of_world = world_.resource<SceneFile>().scene.coupling;
+    if (history_.has_changed_coupling()) {
+        scene_.coupling = of_world;
+    } else {
+        of_world = scene_.coupling;
+    }
+    set_coupling(scene_.coupling, world_);
+    set_period(scene_, world_);
+    ++edition_;
+    post_orders();
+    if (settles || (readout_.paused && !all_stand_still())) return play(HoldEvent{});
+    if (!readout_.paused) return play(PublishEvent{});
+    const std::vector<Entity> hands = find_hands(world_);
+    for (std::size_t slot = 0; slot < devices_.size(); ++slot)
+        felt_[slot] = contact_of(world_, hands[slot]).answer.model;
+}
+
+std::vector<std::uint32_t> LiveSimulation::list_starts() const {
+    std::vector<std::uint32_t> starts;
+    for (const Entity hand : find_hands(world_))
+        starts.push_back(contact_of(world_, hand).answer.model.start);
+    return starts;
+}
+
+void LiveSimulation::take_hold_anew(std::span<const std::uint32_t> last_starts) {
+    ++restarts_;
+    const std::vector<Entity> hands = find_hands(world_);
+    for (std::size_t slot = 0; slot < hands.size(); ++slot)
+        world_.find<Contact>(hands[slot])->answer.model.start = last_starts[slot] + 1;
+    play(HoldEvent{});
+}
+
+void LiveSimulation::post(std::size_t slot, const LocalContactModel& contact) {
+    felt_[slot] = contact.model;
+    line_.post(slot, contact, ++contacts_[slot]);
+}
+
+// A hand takes hold quietly; laws that are exchanged glide.
+void LiveSimulation::post_order(std::size_t slot) {
+    const DeviceSpec& device = devices_[slot].spec;
+    ServoOrder order{build_servo_settings(scene_, world_, device), restarts_,
+                     all_stand_still() && readout_.paused, ++orders_[slot]};
+    SafetySettings& safety = order.settings.safety;
+    safety.starts_engaged = false;
+    limit_to(device, safety);
+    if (order.settings.guarded) order.settings.guarded->revision = revision_++;
+    line_.post(slot, order);
+}
+
+void LiveSimulation::post_orders() {
+    for (std::size_t slot = 0; slot < devices_.size(); ++slot) post_order(slot);
+}
+
+}  // namespace palpa

@@ -1,0 +1,147 @@
+#include "session/play_journal.h"
+
+#include "core/load_error.h"
+#include "session/live_simulation.h"
+#include "session/servo_bank.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <deque>
+#include <map>
+#include <vector>
+
+namespace palpa {
+namespace {
+
+[[noreturn]] void fail(const std::string& what) {
+    throw LoadError({"journal.txt"},
+                    fmt::format("{}; expected the journal of this scene and program", what));
+}
+
+// Keeps what was posted until its tick.
+class KeptPosts final : public ServoLine {
+public:
+    explicit KeptPosts(std::size_t hands) : hands_(hands) {}
+
+    void post(std::size_t slot, const LocalContactModel& contact, std::uint64_t number) override {
+        LocalContactModel& kept = hands_[slot].contacts[number];
+        kept = contact;
+        kept.model.number = hands_[slot].last_contact = number;
+    }
+    void post(std::size_t slot, const ServoOrder& order) override {
+        hands_[slot].orders[order.number] = order;
+        hands_[slot].last_order = order.number;
+    }
+
+    bool has(std::size_t slot, const JournalHand& hand) const {
+        return hand.contact <= hands_[slot].last_contact && hand.order <= hands_[slot].last_order;
+    }
+
+    // Gives the servo what is in force in this tick, where that is new.
+    void deliver(std::size_t slot, const JournalHand& hand, ServoBank& servos) {
+        Hand& kept = hands_[slot];
+        if (hand.contact != kept.taken_contact)
+            servos.exchange(slot).contact.post(take(kept.contacts, hand.contact));
+        if (hand.order != kept.taken_order) servos.orders(slot).post(take(kept.orders, hand.order));
+        kept.taken_contact = hand.contact;
+        kept.taken_order = hand.order;
+    }
+
+private:
+    struct Hand {
+        std::map<std::uint64_t, LocalContactModel> contacts;
+        std::map<std::uint64_t, ServoOrder> orders;
+        std::uint64_t last_contact = 0, last_order = 0, taken_contact = 0, taken_order = 0;
+    };
+
+    // Older ones are taken by nobody any more.
+    template <class Value>
+    static Value take(std::map<std::uint64_t, Value>& kept, std::uint64_t number) {
+        const auto found = kept.find(number);
+        if (found == kept.end()) fail(fmt::format("goes back to what was posted as {}", number));
+        Value value = std::move(found->second);
+        kept.erase(kept.begin(), std::next(found));
+        return value;
+    }
+
+    std::vector<Hand> hands_;
+};
+
+class Player {
+public:
+    Player(const SceneDescription& scene, const Journal& journal)
+        : journal_(journal),
+          posts_(journal.devices.size()),
+          simulation_(scene, journal.devices, posts_),
+          servos_(journal.devices.size()),
+          poses_(journal.devices.size()) {}
+
+    std::span<const LiveTick> play_tick(std::size_t tick) {
+        const JournalTick& when = journal_.ticks[tick];
+        const std::span<const JournalHand> hands = journal_.hands_of(tick);
+        for (std::size_t slot = 0; slot < hands.size(); ++slot) {
+            while (!posts_.has(slot, hands[slot])) play_event();
+            posts_.deliver(slot, hands[slot], servos_);
+        }
+        if (when.is_fresh && tick > 0) servos_.begin_anew();
+        servos_.take_orders();
+        readings_.clear();
+        for (const JournalHand& hand : hands) readings_.push_back(hand.reading);
+        servos_.tick(readings_, when.now_s, when.is_ending);
+        for (std::size_t slot = 0; slot < hands.size(); ++slot) {
+            HandPose pose;
+            if (servos_.exchange(slot).hand.read(pose)) poses_[slot].push_back(pose);
+        }
+        return servos_.ticks();
+    }
+
+private:
+    void play_event() {
+        if (next_event_ == journal_.events.size()) fail("uses what no step has posted");
+        const PlayedEvent& played = journal_.events[next_event_++];
+        std::vector<HandPose> poses(poses_.size());
+        for (std::size_t slot = 0; slot < poses.size(); ++slot)
+            poses[slot] = find_pose(slot, played.poses[slot]);
+        simulation_.play(played.event, poses);
+    }
+
+    // Events never go back to older ones.
+    HandPose find_pose(std::size_t slot, std::uint64_t number) {
+        if (number == 0) return {};
+        std::deque<HandPose>& kept = poses_[slot];
+        while (!kept.empty() && kept.front().number < number) kept.pop_front();
+        if (kept.empty() || kept.front().number != number)
+            fail(fmt::format("an event begins from pose {} of hand {}, which was not yet there",
+                             number, slot + 1));
+        return kept.front();
+    }
+
+    const Journal& journal_;
+    KeptPosts posts_;
+    LiveSimulation simulation_;
+    ServoBank servos_;
+    std::vector<std::deque<HandPose>> poses_;  // that events may begin from
+    std::vector<DeviceReading> readings_;
+    std::size_t next_event_ = 0;
+};
+
+}  // namespace
+
+void play_journal(const SceneDescription& scene, const Journal& journal,
+                  const LiveTicksFunction& on_ticks, const ProgressFunction& progress) {
+    const std::size_t hands = scene.second ? 2 : 1;
+    if (journal.devices.size() > hands)
+        fail(fmt::format("moves {} hands, where the scene has {}", journal.devices.size(), hands));
+    Player player(scene, journal);
+    const std::size_t first = journal.first_recorded.value_or(journal.ticks.size());
+    constexpr std::size_t between_progress = 100;
+    for (std::size_t tick = 0; tick < journal.ticks.size(); ++tick) {
+        const std::span<const LiveTick> ticks = player.play_tick(tick);
+        if (tick >= first) on_ticks(ticks);
+        if (progress && tick % between_progress == 0)
+            progress(static_cast<double>(tick) / static_cast<double>(journal.ticks.size()));
+    }
+    if (progress) progress(1);
+}
+
+}  // namespace palpa

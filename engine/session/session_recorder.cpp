@@ -1,0 +1,123 @@
+#include "session/session_recorder.h"
+
+#include "core/assertion.h"
+#include "core/load_error.h"
+#include "haptics/device.h"
+#include "session/run_headless.h"
+
+#include <algorithm>
+#include <optional>
+#include <variant>
+
+namespace palpa {
+namespace {
+
+constexpr std::size_t journal_flush_bytes = 1 << 16;
+
+}  // namespace
+
+SessionRecorder::SessionRecorder(const SceneDescription& scene, std::span<const HandDevice> devices)
+    : scene_(scene), names_(scene), devices_(devices.begin(), devices.end()), writer_(devices) {}
+
+void SessionRecorder::add(const PlayedEvent& event) {
+    // An edit of files that cannot be read was refused, and changed nothing.
+    if (!std::ranges::all_of(event.files, &std::optional<std::string>::has_value)) return;
+    if (event.files.empty()) {
+        writer_.add(event);
+    } else {
+        PlayedEvent own = event;
+        EditAction& action =
+            std::get<EditDescription>(std::get<CommandEvent>(own.event).command).action;
+        const std::vector<std::filesystem::path*> files = list_files(action);
+        PALPA_ASSERT(files.size() == event.files.size());
+        for (std::size_t i = 0; i < files.size(); ++i) {
+            const std::optional<std::string>& content = event.files[i];
+            if (content) *files[i] = keep(*files[i], *content);
+        }
+        writer_.add(own);
+    }
+    if (const auto* const change = std::get_if<DeviceEvent>(&event.event))
+        devices_[change->slot] = change->device;
+    const auto* const step = std::get_if<StepEvent>(&event.event);
+    if (!step || !recording_) return;
+    for (Statistics& hand : statistics_) hand.add_step(1e-6 * step->took_us.value_or(0), true);
+}
+
+const std::string& SessionRecorder::keep(const std::filesystem::path& path,
+                                         const std::string& content) {
+    for (const KeptFile& file : files_) {
+        if (file.path == path && file.content == content) return file.name;
+    }
+    files_.push_back({path, names_.add(path), content});
+    if (recording_) recording_->add_input(files_.back().name, content);
+    return files_.back().name;
+}
+
+void SessionRecorder::add(std::span<const LiveTick> ticks) {
+    writer_.add(ticks);
+    if (recording_) {
+        std::vector<ServoTick> rows;
+        for (std::size_t i = 0; i < ticks.size(); ++i) {
+            rows.push_back(ticks[i].tick);
+            statistics_[i].add(ticks[i].tick);
+        }
+        recording_->add(rows);
+    }
+    if (writer_.size() > journal_flush_bytes) flush();
+}
+
+void SessionRecorder::begin(const std::filesystem::path& folder, bool overwrites) {
+    flush();
+    if (!is_whole_) {
+        throw LoadError({folder.string()},
+                        "cannot be recorded: the session is so long that its beginning is no "
+                        "longer kept; open the scene anew, or record from the start (--record)");
+    }
+    recording_.emplace(folder, scene_, overwrites, devices_.size(), RecordedBy::Journal);
+    try {
+        for (const KeptFile& file : files_) recording_->add_input(file.name, file.content);
+    } catch (const LoadError&) {
+        recording_.reset();
+        throw;
+    }
+    recording_->add_journal(kept_);
+    statistics_.assign(devices_.size(), Statistics(servo_tick_s));
+    writer_.begin_recording();
+    // It is this recording's alone.
+    recording_->add_journal(writer_.take());
+}
+
+void SessionRecorder::end() {
+    if (!recording_) return;
+    flush();
+    Summary summary = statistics_.front().summary();
+    summary.device = devices_.front().spec.name;
+    for (std::size_t i = 1; i < statistics_.size(); ++i) {
+        summary.other_hands.push_back(statistics_[i].summary());
+        summary.other_hands.back().device = devices_[i].spec.name;
+    }
+    warn_of_outcome(summary);
+    try {
+        recording_->finish(summary);
+    } catch (const LoadError&) {
+        recording_.reset();
+        throw;
+    }
+    recording_.reset();
+}
+
+double SessionRecorder::recorded_s() const noexcept {
+    return recording_ ? static_cast<double>(statistics_.front().ticks()) * servo_tick_s : 0;
+}
+
+void SessionRecorder::flush() {
+    const std::string text = writer_.take();
+    if (recording_) recording_->add_journal(text);
+    if (!is_whole_) return;
+    std::size_t bytes = kept_.size() + text.size();
+    for (const KeptFile& file : files_) bytes += file.content.size();
+    is_whole_ = bytes <= most_kept;
+    is_whole_ ? void(kept_ += text) : kept_.clear();
+}
+
+}  // namespace palpa

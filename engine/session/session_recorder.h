@@ -1,0 +1,64 @@
+// Keeps the journal of a live session from its first moment, so that a recording that somebody
+// begins later can be played again from there. Used by one thread at a time.
+#pragma once
+#include "scene/description.h"
+#include "session/journal.h"
+#include "session/live_events.h"
+#include "session/recording.h"
+#include "session/statistics.h"
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace palpa {
+
+class SessionRecorder {
+public:
+    // Bytes of a journal that are kept for a recording that may come: an hour or more.
+    static constexpr std::size_t most_kept = std::size_t{256} << 20;
+
+    SessionRecorder(const SceneDescription& scene, std::span<const HandDevice> devices);
+
+    void add(const PlayedEvent& event);
+    void add(std::span<const LiveTick> ticks);  // of all hands
+    // Something of the session was lost: no recording of it can be played again.
+    void lose() noexcept { is_whole_ = false; }
+
+    // The ticks from now on go into the folder's trace. Throws LoadError where a Recording would,
+    // or where the session's beginning is no longer known.
+    void begin(const std::filesystem::path& folder, bool overwrites);
+    // As it is, without a summary.
+    void give_up() noexcept { recording_.reset(); }
+    // Ends in order; nothing where nothing is recorded. Throws LoadError where it cannot be
+    // written.
+    void end();
+
+    bool is_recording() const noexcept { return recording_.has_value(); }
+    double recorded_s() const noexcept;
+
+private:
+    // A file of an edit.
+    struct KeptFile {
+        std::filesystem::path path;
+        std::string name, content;  // `name`: in a recording
+    };
+
+    const std::string& keep(const std::filesystem::path& path, const std::string& content);
+    void flush();
+
+    SceneDescription scene_;
+    InputNames names_;
+    std::vector<KeptFile> files_;
+    std::vector<HandDevice> devices_;
+    JournalWriter writer_;
+    std::string kept_;
+    bool is_whole_ = true;
+    std::optional<Recording> recording_;
+    std::vector<Statistics> statistics_;  // of what is recorded, of each hand
+};
+
+}  // namespace palpa

@@ -1,0 +1,69 @@
+#include "session/unbinding_path.h"
+
+#include "simulation/components.h"
+#include "simulation/held.h"
+#include "simulation/resources.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace palpa {
+namespace {
+
+constexpr double heavier_than_hydrogen = 2.5;  // amu
+
+Vec3 centre_of_held(const World& world) {
+    const Entity hand = first_hand(world);
+    if (const Spring* const spring = spring_of(world, hand))
+        return find_centre_of_mass(model_of(world), spring->atoms,
+                                   world.resource<TorsionState>().positions);
+    return centre_of_mass(world.resource<AtomTable>(), held_range(world, hand));
+}
+
+}  // namespace
+
+UnbindingLog::UnbindingLog(const World& start) {
+    const AtomTable& atoms = start.resource<AtomTable>();
+    const Entity hand = first_hand(start);
+    const auto is_heavy = [&](std::size_t i) { return atoms.mass[i] >= heavier_than_hydrogen; };
+    for (const std::uint32_t i : held_atoms(start, hand)) {
+        if (!is_heavy(i)) continue;
+        heavy_.push_back(i);
+        start_.push_back(atoms.positions[i]);
+    }
+    const AtomRange grabbed = held_range(start, hand);
+    for (std::size_t i = 0; i < atoms.size(); ++i) {
+        const bool is_grabbed = i >= grabbed.first && i < grabbed.first + grabbed.count;
+        if (!is_grabbed && is_heavy(i)) other_heavy_.push_back(i);
+    }
+    start_centre_ = centre_of_held(start);
+    unbinding_.closest = std::numeric_limits<double>::infinity();
+    unbinding_.farthest = -1;  // so that the start counts
+    add(start);
+}
+
+void UnbindingLog::add(const World& world) {
+    const std::vector<Vec3>& positions = world.resource<AtomTable>().positions;
+    double nearest2 = std::numeric_limits<double>::infinity(), square = 0;
+    for (std::size_t i = 0; i < heavy_.size(); ++i) {
+        const Vec3& place = positions[heavy_[i]];
+        square += (place - start_[i]).squaredNorm();
+        for (const std::size_t other : other_heavy_) {
+            nearest2 = std::min(nearest2, (positions[other] - place).squaredNorm());
+        }
+    }
+    const double clearance = std::sqrt(nearest2);
+    unbinding_.closest = std::min(unbinding_.closest, clearance);
+    const Vec3 centre = centre_of_held(world);
+    const double distance = (centre - start_centre_).norm();
+    if (distance > unbinding_.farthest) {
+        unbinding_.farthest = distance;
+        unbinding_.clearance = clearance;
+    }
+    unbinding_.last_rmsd =
+        heavy_.empty() ? 0 : std::sqrt(square / static_cast<double>(heavy_.size()));
+}
+
+}  // namespace palpa

@@ -1,0 +1,43 @@
+#include "simulation/atom_directory.h"
+
+#include "simulation/components.h"
+#include "simulation/resources.h"
+
+#include <algorithm>
+
+namespace palpa {
+
+std::shared_ptr<const AtomDirectory> list_atoms(const World& world) {
+    auto directory = std::make_shared<AtomDirectory>();
+    directory->names = world.resource<AtomTable>().names;
+    world.each<Molecule>([&](Entity, const Molecule& molecule) {
+        directory->molecules.push_back({molecule.name, molecule.atoms, molecule.reference_atom});
+    });
+    directory->force_field = world.resource<SceneFile>().force_field;
+    return directory;
+}
+
+const AtomDirectory::Entry* find_molecule(const AtomDirectory& directory, std::string_view name) {
+    const auto found =
+        std::ranges::find(directory.molecules, name, &AtomDirectory::Entry::molecule);
+    return found == directory.molecules.end() ? nullptr : &*found;
+}
+
+std::string address_of(const AtomDirectory& directory, std::uint32_t atom, AtomScope scope) {
+    const auto found = std::ranges::find_if(
+        directory.molecules,
+        [&](const AtomDirectory::Entry& entry) { return has_atom(entry.atoms, atom); });
+    if (found == directory.molecules.end()) return {};
+    const AtomName& name = directory.names[atom];
+    switch (scope) {
+        case AtomScope::Molecule:
+            break;
+        case AtomScope::Residue:
+            return found->molecule + ":" + name.number;
+        case AtomScope::Atom:
+            return found->molecule + ":" + name.number + " " + name.atom;
+    }
+    return found->molecule;
+}
+
+}  // namespace palpa

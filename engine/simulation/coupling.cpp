@@ -1,0 +1,112 @@
+#include "simulation/coupling.h"
+
+#include "simulation/held.h"
+#include "simulation/resources.h"
+#include "simulation/systems/publish_contact.h"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace palpa {
+namespace {
+
+ForceLaw guarded_force_law(const CouplingDescription& c,
+                           const PrintedForceLaw::Parameters& parameters) {
+    if (const auto range = c.feel_pN) {
+        const auto [weakest_pN, strongest_pN] = *range;
+        return PerceptualForceLaw::for_range(weakest_pN * 1e-12, strongest_pN * 1e-12);
+    }
+    switch (c.force_law) {
+        case ForceLawChoice::Printed:
+            break;
+        case ForceLawChoice::Calibrated:
+            if (const auto law = PrintedForceLaw::find_calibrated(parameters)) return *law;
+            break;  // see can_build_laws
+        case ForceLawChoice::Constant:
+            return ConstantForceLaw{c.A_f};
+        case ForceLawChoice::Perceptual:
+            return PerceptualForceLaw({.F_lo = c.F_lo_pN * 1e-12, .F_hi = c.F_hi_nN * 1e-9});
+    }
+    return PrintedForceLaw(parameters);
+}
+
+DisplacementLaw guarded_displacement_law(const CouplingDescription& c,
+                                         const PrintedDisplacementLaw::Parameters& parameters) {
+    switch (c.displacement_law) {
+        case DisplacementLawChoice::Repaired:
+            break;
+        case DisplacementLawChoice::Printed:
+            return PrintedDisplacementLaw(parameters);
+        case DisplacementLawChoice::Constant:
+            return ConstantDisplacementLaw{c.A_d};
+    }
+    return RepairedDisplacementLaw({.printed = parameters});
+}
+
+PrintedForceLaw::Parameters force_parameters(const CouplingDescription& c) {
+    return {.F_h1 = c.F_h1_N,
+            .F_h2 = c.F_h2_N,
+            .F_0 = c.F_0_nN * 1e-9,
+            .A_fmin = c.A_f_min,
+            .A_fmax = c.A_f_max};
+}
+
+}  // namespace
+
+bool can_build_laws(const CouplingDescription& c) {
+    return c.mode != CouplingMode::Guarded || c.feel_pN.has_value() ||
+           c.force_law != ForceLawChoice::Calibrated ||
+           PrintedForceLaw::find_calibrated(force_parameters(c)).has_value();
+}
+
+CouplingLaws build_coupling_laws(const CouplingDescription& c) {
+    const PrintedForceLaw printed_force(force_parameters(c));
+    const PrintedDisplacementLaw::Parameters displacement{.gamma = c.gamma_per_N,
+                                                          .F_off = c.F_off_pN * 1e-12,
+                                                          .A_dmin = c.A_d_min,
+                                                          .A_dmax = c.A_d_max};
+    const PrintedDisplacementLaw printed_displacement(displacement);
+    const ConstantForceLaw constant_force{c.A_f};
+    const ConstantDisplacementLaw constant_displacement{c.A_d};
+    switch (c.mode) {
+        case CouplingMode::VariableForceVariableDisplacement:
+            return {printed_force, printed_displacement};
+        case CouplingMode::VariableForceConstantDisplacement:
+            return {printed_force, constant_displacement};
+        case CouplingMode::ConstantForceVariableDisplacement:
+            return {constant_force, printed_displacement};
+        case CouplingMode::ConstantForceConstantDisplacement:
+            return {constant_force, constant_displacement};
+        case CouplingMode::NoForce:
+            break;
+        case CouplingMode::Guarded:
+            return {guarded_force_law(c, force_parameters(c)),
+                    guarded_displacement_law(c, displacement)};
+    }
+    return {ConstantForceLaw{0}, constant_displacement};
+}
+
+void set_coupling(const CouplingDescription& coupling, World& world) {
+    world.set_resource(Coupling{build_coupling_laws(coupling),
+                                coupling.mode == CouplingMode::Guarded,
+                                static_cast<std::size_t>(coupling.pairs_per_tick)});
+    if (AdaptiveState* const adaptive = world.find_resource<AdaptiveState>()) {
+        if (adaptive->accuracy && coupling.feel_within_pN)
+            adaptive->accuracy->set_tolerance(*coupling.feel_within_pN);
+    }
+    SecondOrder* const second = world.find_resource<SecondOrder>();
+    if (second && coupling.feel_within_pN) {
+        second->settings.tolerance =
+            *coupling.feel_within_pN / units::piconewton_per_kcal_per_mol_angstrom;
+    }
+    for (const Entity hand : find_hands(world)) {
+        if (!world.find<Grip>(hand)) continue;  // it feels nothing in any mode
+        update_near(world, hand);
+        LocalContactModel& contact = world.find<Contact>(hand)->answer;
+        const std::uint32_t start = contact.model.start;
+        contact = build_local_contact(world, hand, {});
+        contact.model.start = start;
+    }
+}
+
+}  // namespace palpa

@@ -1,0 +1,564 @@
+#include "simulation/edit.h"
+
+#include "charmm/force_field.h"
+#include "core/load_error.h"
+#include "scene/read_scene.h"
+#include "simulation/coupling.h"
+#include "simulation/held.h"
+#include "simulation/load.h"
+#include "simulation/mechanics.h"
+#include "simulation/molecules.h"
+#include "simulation/resources.h"
+#include "simulation/sources.h"
+#include "simulation/systems/publish_contact.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace palpa {
+namespace {
+
+// ---- what edits name -------------------------------------------------------------------------
+
+[[noreturn]] void refuse(const std::string& what) { throw LoadError({"edit"}, what); }
+
+Entity find_molecule(const World& world, std::string_view name) {
+    const Entity found = molecule_called(world, name);
+    if (found != Entity{}) return found;
+    std::vector<std::string> names;
+    world.each<Molecule>([&](Entity, const Molecule& molecule) { names.push_back(molecule.name); });
+    refuse(fmt::format("there is no molecule '{}'; there are {}", name, fmt::join(names, ", ")));
+}
+
+// "molecule", "molecule:25", "molecule:25 CA". No atoms: the whole molecule.
+AtomsOf find_atoms(const World& world, const std::string& address) {
+    const std::size_t colon = address.find(':');
+    AtomsOf found{find_molecule(world, address.substr(0, colon)), {}};
+    if (colon == std::string::npos) return found;
+    const std::string name = address.substr(colon + 1);
+    found.atoms = atoms_called(world, found.molecule, name);
+    if (found.atoms.empty()) {
+        refuse(
+            fmt::format("'{}' has no residue or atom \"{}\"; expected a residue's number as "
+                        "\"25\" or \"27A\", or an atom's as \"25 CA\"",
+                        address.substr(0, colon), name));
+    }
+    return found;
+}
+
+AtomsOf find_some_atoms(const World& world, const std::string& address) {
+    AtomsOf found = find_atoms(world, address);
+    if (found.atoms.empty())
+        refuse(fmt::format("\"{}\" is a whole molecule; expected \"{}:25\" or \"{}:25 CA\"",
+                           address, address, address));
+    return found;
+}
+
+void check_name_is_new(const World& world, const std::string& name) {
+    if (name.empty()) refuse("what is added has no name; expected name = \"w2\"");
+    const std::optional<Address> address = find_address(name);
+    if (!address || !address->residue.empty())
+        refuse(fmt::format("'{}' is no name of a molecule; expected one without ':'", name));
+    if (molecule_called(world, name) != Entity{})
+        refuse(fmt::format("there is a molecule '{}' already; expected another name", name));
+}
+
+// ---- after an edit ---------------------------------------------------------------------------
+
+// A hand that holds nothing feels nothing.
+LocalContactModel build_still_contact(const World& world) {
+    LocalContactModel contact;
+    contact.model.is_still = true;
+    contact.model.period_s = world.resource<Clock>().period_s;
+    return contact;
+}
+
+void refresh_contact(World& world, Entity hand) {
+    Contact& contact = *world.find<Contact>(hand);
+    const std::uint32_t start = contact.answer.model.start;
+    contact.near = {};
+    if (world.find<Grip>(hand)) {
+        update_near(world, hand);
+        contact.answer = build_local_contact(world, hand, {});
+    } else {
+        contact.answer = build_still_contact(world);
+    }
+    contact.answer.model.start = start;
+}
+
+// Mechanics and contact models from where everything is.
+void settle_edit(World& world) {
+    rebuild_mechanics(world);
+    for (const Entity hand : find_hands(world)) refresh_contact(world, hand);
+}
+
+// Another start: the servo puts the molecule where the model says.
+void take_hold_anew(World& world, Entity hand) { ++world.find<Contact>(hand)->answer.model.start; }
+
+// What another world, which takes this one's place, goes on with: what hands hold there they take
+// hold of anew, where their devices are.
+void keep_clock_and_devices(const World& world, World& other) {
+    world.each<Hand>([&](Entity entity, const Hand& hand) {
+        if (Hand* const held = other.find<Hand>(entity)) *held = hand;
+        const Contact* const now = world.find<Contact>(entity);
+        Contact* const then = other.find<Contact>(entity);
+        if (now && then) then->answer.model.start = now->answer.model.start + 1;
+    });
+    other.resource<Clock>() = world.resource<Clock>();
+}
+
+// Changes a copy, which takes the world's place only if all went well.
+template <class Change>
+void edit_whole(World& world, const Change& change) {
+    World changed = world;
+    change(changed);
+    settle_edit(changed);
+    world = std::move(changed);
+}
+
+// ---- hold --------------------------------------------------------------------------------------
+
+Entity other_holder(const World& world, Entity hand, Entity molecule) {
+    Entity other;
+    world.each<Grip>([&](Entity holder, const Grip& grip) {
+        if (holder != hand && grip.molecule == molecule) other = holder;
+    });
+    return other;
+}
+
+bool can_move_by_itself(const Mobility& mobility) {
+    return mobility.motion == Motion::Free || mobility.shape == Shape::Flexible;
+}
+
+// A spring needs a molecule that can move.
+void free_for_spring(Mobility& mobility) {
+    if (!can_move_by_itself(mobility)) mobility.motion = Motion::Free;
+}
+
+void release(World& world, Entity hand) {
+    const Grip* const held = world.find<Grip>(hand);
+    if (!held) return;
+    const Grip grip = *held;
+    world.remove<Grip>(hand);
+    take_hold_anew(world, hand);
+    const Entity other = other_holder(world, hand, grip.molecule);
+    Mobility& mobility = *world.find<Mobility>(grip.molecule);
+    if (other == Entity{}) {
+        mobility = grip.before;
+        return;
+    }
+    if (!grip.atoms.empty()) return;
+    mobility = grip.before;
+    free_for_spring(mobility);
+}
+
+Motion motion_in_hand(const World& world, Entity hand) {
+    if (needs_mechanics(world)) return Motion::TranslateAndTurn;
+    return world.find<Hand>(hand)->turns ? Motion::WithHandle : Motion::Translate;
+}
+
+// From what the hand measured before, or from the molecule itself.
+Entity find_origin(const World& world, Entity molecule) {
+    const SceneFile& file = world.resource<SceneFile>();
+    const Entity origin = molecule_called(world, file.scene.grab.measured_from);
+    return origin == Entity{} ? molecule : origin;
+}
+
+Grip build_grip(const World& world, const AtomsOf& what) {
+    Grip grip;
+    grip.molecule = what.molecule;
+    grip.atoms = what.atoms;
+    // What it may do while nobody holds it.
+    const Entity other = other_holder(world, {}, what.molecule);
+    grip.before =
+        other == Entity{} ? *world.find<Mobility>(what.molecule) : grip_of(world, other).before;
+    grip.measured_from = find_origin(world, what.molecule);
+    const std::vector<Vec3>& positions = world.resource<AtomTable>().positions;
+    const Molecule& origin = *world.find<Molecule>(grip.measured_from);
+    const Molecule& molecule = *world.find<Molecule>(what.molecule);
+    grip.anchor = positions[origin.reference_atom];
+    const bool is_whole = what.atoms.empty();
+    const Vec3 place = is_whole ? positions[molecule.reference_atom] : middle_of(world, what);
+    grip.pose.place_angstrom = place - grip.anchor;
+    grip.line_origin = grip.pose.place_angstrom;
+    grip.projector = Mat3::Identity();
+    grip.freedom = 3;
+    grip.is_new = false;
+    if (!is_whole) grip.k = world.resource<SceneFile>().scene.grab.spring_kcal_per_mol_angstrom2;
+    return grip;
+}
+
+// ---- molecules ---------------------------------------------------------------------------------
+
+Source build_source(const World& world, Entity original, const AddEdit& edit) {
+    if (original != Entity{}) return copy_source(world, original, edit.name);
+    if (!edit.structure.empty())
+        return read_segment(edit.structure, edit.topology, edit.segment, edit.name);
+    return build_residue(*world.resource<SceneFile>().force_field, edit.residue, edit.name);
+}
+
+void place_atoms(World& world, AtomRange range, const Vec3& by) {
+    std::vector<Vec3>& positions = world.resource<AtomTable>().positions;
+    for (std::uint32_t i = range.first; i < range.first + range.count; ++i) positions[i] += by;
+}
+
+// Nothing that is not bonded comes as near, and from there forces would tear molecules apart.
+void check_room(const AtomTable& atoms, AtomRange added, const std::string& name) {
+    constexpr double nearest = 1;  // Å
+    std::array<std::size_t, 2> pair{};
+    double closest2 = nearest * nearest;
+    for (std::uint32_t i = added.first; i < added.first + added.count; ++i) {
+        for (std::uint32_t j = 0; j < added.first; ++j) {
+            const double distance2 = (atoms.positions[i] - atoms.positions[j]).squaredNorm();
+            if (!(distance2 < closest2)) continue;
+            closest2 = distance2;
+            pair = {i, j};
+        }
+    }
+    if (pair[0] == pair[1]) return;
+    refuse(
+        fmt::format("'{}' would be on what is there: {} is {:.2f} Å from {}; expected a place "
+                    "(at_angstrom) with {} Å or more between all atoms",
+                    name, to_string(atoms.names[pair[0]]), std::sqrt(closest2),
+                    to_string(atoms.names[pair[1]]), nearest));
+}
+
+void forget_bonded_terms(World& world) { world.set_resource(BondedTerms{}); }
+
+bool names(std::span<const AtomsOf> atoms, Entity molecule) {
+    return std::ranges::find(atoms, molecule, &AtomsOf::molecule) != atoms.end();
+}
+
+// What names a molecule that goes.
+void forget(World& world, Entity molecule) {
+    std::vector<Entity> gone;
+    world.each<Restraint>([&](Entity entity, const Restraint& restraint) {
+        if (names(restraint.ends, molecule)) gone.push_back(entity);
+    });
+    world.each<Mark>([&](Entity entity, const Mark& mark) {
+        if (names(mark.atoms, molecule)) gone.push_back(entity);
+    });
+    for (const Entity entity : gone) world.destroy(entity);
+    world.each<Grip>([&](Entity, Grip& grip) {
+        if (grip.measured_from == molecule) grip.measured_from = grip.molecule;
+    });
+}
+
+}  // namespace
+
+void take(World& world, Entity hand, const TakeEdit& edit) {
+    edit_whole(world, [&](World& changed) {
+        const AtomsOf what = find_atoms(changed, edit.what);
+        release(changed, hand);
+        const bool is_whole = what.atoms.empty();
+        const Entity other = other_holder(changed, hand, what.molecule);
+        if (is_whole && other != Entity{} && grip_of(changed, other).atoms.empty()) {
+            refuse(
+                fmt::format("the other hand holds '{}' as a whole; expected a residue or an "
+                            "atom of it, as \"{}:25 CA\"",
+                            edit.what, edit.what));
+        }
+        Grip grip = build_grip(changed, what);
+        Mobility& mobility = *changed.find<Mobility>(what.molecule);
+        if (is_whole) {
+            mobility.motion = motion_in_hand(changed, hand);
+            grip.freedom = mobility.motion == Motion::WithHandle ? 6 : 3;
+            grip.pose.orientation = changed.find<Pose>(what.molecule)->orientation;
+            set_shape(changed, what.molecule);
+        } else if (other == Entity{}) {
+            free_for_spring(mobility);
+        }
+        if (needs_mechanics(changed) && is_whole) grip.pose.orientation = Quat::Identity();
+        changed.set(hand, std::move(grip));
+        take_hold_anew(changed, hand);
+    });
+}
+
+void let_go(World& world, Entity hand) {
+    edit_whole(world, [&](World& changed) { release(changed, hand); });
+}
+
+void add_molecule(World& world, const AddEdit& edit) {
+    edit_whole(world, [&](World& changed) {
+        check_name_is_new(changed, edit.name);
+        const ForceField& force_field = *changed.resource<SceneFile>().force_field;
+        const bool is_copy = !edit.copy_of.empty();
+        const Entity original = is_copy ? find_molecule(changed, edit.copy_of) : Entity{};
+        Source source = build_source(changed, original, edit);
+        AtomTable& atoms = changed.resource<AtomTable>();
+        const AtomRange range = add_segment_atoms(force_field, source, atoms);
+        std::uint32_t reference = range.first;
+        Mobility mobility{needs_mechanics(changed) ? Motion::Free : Motion::Fixed, Shape::Rigid};
+        if (is_copy) {
+            const Molecule& of = *changed.find<Molecule>(original);
+            reference += of.reference_atom - of.atoms.first;
+            mobility.shape = changed.find<Mobility>(original)->shape;
+        }
+        const Vec3 at(edit.at_angstrom.data());
+        place_atoms(changed, range, at - atoms.positions[reference]);
+        check_room(atoms, range, edit.name);
+        create_molecule(changed, {edit.name, range, reference}, mobility, std::move(source));
+        set_interactions(changed);
+        forget_bonded_terms(changed);
+    });
+}
+
+void remove_molecule(World& world, const RemoveEdit& edit) {
+    edit_whole(world, [&](World& changed) {
+        const Entity molecule = find_molecule(changed, edit.molecule);
+        std::size_t count = 0;
+        changed.each<Molecule>([&](Entity, const Molecule&) { ++count; });
+        if (count == 1) refuse(fmt::format("'{}' is the last molecule; it stays", edit.molecule));
+        for (const Entity hand : find_hands(changed)) {
+            const Grip* const grip = changed.find<Grip>(hand);
+            if (grip && grip->molecule == molecule) release(changed, hand);
+        }
+        forget(changed, molecule);
+        remove_atoms(changed, molecule);
+        set_interactions(changed);
+        forget_bonded_terms(changed);
+    });
+}
+
+void pin(World& world, const PinEdit& edit) {
+    Mark mark;
+    for (const std::string& address : edit.atoms)
+        mark.atoms.push_back(find_some_atoms(world, address));
+    if (mark.atoms.empty() || mark.atoms.size() > 4)
+        refuse(fmt::format("{} atoms are pinned; expected 1 to 4", mark.atoms.size()));
+    world.set(world.create(), std::move(mark));
+}
+
+void add_restraint(World& world, const RestraintEdit& edit) {
+    edit_whole(world, [&](World& changed) {
+        Restraint restraint;
+        for (const std::string& address : edit.atoms)
+            restraint.ends.push_back(find_some_atoms(changed, address));
+        const bool has_place = edit.place_angstrom.has_value();
+        if (restraint.ends.size() != (has_place ? 1 : 2))
+            refuse("a restraint is between two atoms or residues, or from one to a place");
+        if (has_place) restraint.place = Vec3(edit.place_angstrom->data());
+        restraint.k = edit.k_kcal_per_mol_angstrom2;
+        restraint.length = edit.length_angstrom;
+        changed.set(changed.create(), std::move(restraint));
+        if (!needs_mechanics(changed))
+            refuse(
+                "nothing is mobile here that a restraint could pull at; expected a molecule "
+                "with motion = \"free\" or shape = \"flexible\"");
+    });
+}
+
+void set_mobility(World& world, const MobilityEdit& edit) {
+    if (edit.motion && *edit.motion != Motion::Fixed && *edit.motion != Motion::Free)
+        refuse("only a hand guides a molecule; expected motion = \"fixed\" or \"free\"");
+    edit_whole(world, [&](World& changed) {
+        const Entity molecule = find_molecule(changed, edit.molecule);
+        bool is_held = false;
+        changed.each<Grip>([&](Entity, Grip& grip) {
+            if (grip.molecule != molecule) return;
+            is_held = true;
+            if (edit.motion) grip.before.motion = *edit.motion;
+            if (edit.shape) grip.before.shape = *edit.shape;
+        });
+        Mobility& mobility = *changed.find<Mobility>(molecule);
+        if (edit.motion && !is_held) mobility.motion = *edit.motion;
+        if (edit.shape) mobility.shape = *edit.shape;
+    });
+}
+
+void set_appearance(World& world, const AppearanceEdit& edit) {
+    const Entity molecule = find_molecule(world, edit.molecule);
+    Appearance appearance;
+    if (const Appearance* const before = world.find<Appearance>(molecule)) appearance = *before;
+    if (edit.representation) appearance.representation = edit.representation;
+    if (edit.colouring) appearance.colouring = edit.colouring;
+    if (edit.visible) appearance.visible = *edit.visible;
+    world.set(molecule, appearance);
+}
+
+void set_coupling(World& world, const CouplingEdit& edit) {
+    SceneDescription& scene = world.resource<SceneFile>().scene;
+    const CouplingDescription coupling = with_settings(scene.coupling, edit.settings);
+    if (!can_build_laws(coupling))
+        refuse(
+            "eq. 2 of these F_h1_N, F_h2_N, F_0_nN cannot have the slopes A_f_max at 0 and "
+            "A_f_min at F_0; expected others, or force_law = \"printed\"");
+    scene.coupling = coupling;
+    set_coupling(coupling, world);
+}
+
+void reset(World& world) {
+    SceneDescription scene = world.resource<SceneFile>().scene;
+    scene.coupling = world.resource<SceneFile>().coupling;
+    World start = load_world(scene);
+    keep_clock_and_devices(world, start);
+    world = std::move(start);
+}
+
+namespace {
+
+Entity hand_at(const World& world, std::size_t slot) {
+    const std::vector<Entity> hands = find_hands(world);
+    if (slot >= hands.size())
+        refuse(fmt::format("there is no {} hand; the scene has {}", slot == 1 ? "second" : "such",
+                           hands.size()));
+    return hands[slot];
+}
+
+// Each edit and the function above that makes it.
+void make(World& world, const EditDescription& edit) {
+    const auto visit = [&](const auto& action) {
+        using Action = std::decay_t<decltype(action)>;
+        if constexpr (std::is_same_v<Action, TakeEdit>)
+            take(world, hand_at(world, edit.hand), action);
+        else if constexpr (std::is_same_v<Action, LetGoEdit>)
+            let_go(world, hand_at(world, edit.hand));
+        else if constexpr (std::is_same_v<Action, AddEdit>)
+            add_molecule(world, action);
+        else if constexpr (std::is_same_v<Action, RemoveEdit>)
+            remove_molecule(world, action);
+        else if constexpr (std::is_same_v<Action, PinEdit>)
+            pin(world, action);
+        else if constexpr (std::is_same_v<Action, RestraintEdit>)
+            add_restraint(world, action);
+        else if constexpr (std::is_same_v<Action, MobilityEdit>)
+            set_mobility(world, action);
+        else if constexpr (std::is_same_v<Action, AppearanceEdit>)
+            set_appearance(world, action);
+        else if constexpr (std::is_same_v<Action, CouplingEdit>)
+            set_coupling(world, action);
+        else if constexpr (std::is_same_v<Action, ResetEdit>)
+            reset(world);
+        else
+            static_assert(std::is_same_v<Action, UndoEdit> || std::is_same_v<Action, RedoEdit>);
+    };
+    std::visit(visit, edit.action);
+}
+
+// What is refused names the edit's place.
+template <class Function>
+void at_place(const EditDescription& edit, const Function& function) {
+    try {
+        function();
+    } catch (const LoadError& error) {
+        std::string what = error.what();
+        constexpr std::string_view own = "edit: ";
+        if (what.starts_with(own)) what.erase(0, own.size());
+        throw LoadError(edit.place, what);
+    }
+}
+
+template <class Value>
+std::size_t bytes_of(const std::vector<Value>& values) noexcept {
+    return values.capacity() * sizeof(Value);
+}
+
+std::size_t bytes_of(const TorsionState& state) noexcept {
+    return bytes_of(state.angles) + bytes_of(state.turns) + bytes_of(state.shifts) +
+           bytes_of(state.motions) + bytes_of(state.positions) + bytes_of(state.forces) +
+           bytes_of(state.wrenches);
+}
+
+}  // namespace
+
+std::size_t count_bytes(const World& world) noexcept {
+    const AtomTable& atoms = world.resource<AtomTable>();
+    std::size_t bytes = bytes_of(atoms.names) + bytes_of(atoms.positions) +
+                        bytes_of(atoms.element) + 6 * bytes_of(atoms.mass) + bytes_of(atoms.bonds);
+    const TorsionState& state = world.resource<TorsionState>();
+    bytes += bytes_of(state);
+    // Pairs and their tiles, trial states and assembly of a solver: measured on HIV protease.
+    constexpr std::size_t solver_per_atom = 3000;
+    if (world.find_resource<Solver>()) bytes += solver_per_atom * state.positions.size();
+    if (world.find_resource<AdaptiveState>()) bytes += solver_per_atom * state.positions.size();
+    if (world.find_resource<SecondOrder>()) {
+        // Matrices of all coordinates: of the derivatives, their factor, and the model.
+        constexpr std::size_t doubles = 8;
+        const auto size = static_cast<std::size_t>(model_of(world).coordinates);
+        bytes += doubles * sizeof(double) * size * size;
+    }
+    world.each<Contact>([&](Entity, const Contact& contact) {
+        bytes += bytes_of(contact.near.atoms) + 80 * contact.near.atoms.size();
+    });
+    return bytes;
+}
+
+World make_edit(const World& world, const EditDescription& edit) {
+    World changed = world;
+    at_place(edit, [&] { make(changed, edit); });
+    return changed;
+}
+
+void EditHistory::apply(World& world, const EditDescription& edit) {
+    if (std::holds_alternative<UndoEdit>(edit.action)) {
+        at_place(edit, [&] { go(world, undo_, redo_); });
+    } else if (std::holds_alternative<RedoEdit>(edit.action)) {
+        at_place(edit, [&] { go(world, redo_, undo_); });
+    } else {
+        replace(world, make_edit(world, edit), edit);
+    }
+}
+
+void EditHistory::adopt(World& world, World changed, const EditDescription& edit) {
+    keep_clock_and_devices(world, changed);
+    replace(world, std::move(changed), edit);
+}
+
+void EditHistory::replace(World& world, World changed, const EditDescription& edit) {
+    std::swap(world, changed);
+    redo_.clear();
+    Change change;
+    change.is_of_coupling = std::holds_alternative<CouplingEdit>(edit.action) ||
+                            std::holds_alternative<ResetEdit>(edit.action);
+    has_changed_coupling_ = change.is_of_coupling;
+    const bool takes = std::holds_alternative<TakeEdit>(edit.action);
+    const bool ends =
+        (takes || std::holds_alternative<LetGoEdit>(edit.action)) && end_grip(edit.hand);
+    // Letting go is the end of the grip's entry, where it has one.
+    if (ends && !takes) return;
+    if (takes) change.grip = edit.hand;
+    push(std::move(changed), change, undo_);
+}
+
+bool EditHistory::end_grip(std::size_t hand) noexcept {
+    const auto found = std::find_if(undo_.rbegin(), undo_.rend(),
+                                    [&](const Entry& entry) { return entry.change.grip == hand; });
+    if (found == undo_.rend()) return false;
+    found->change.grip.reset();
+    return true;
+}
+
+void EditHistory::go(World& world, std::deque<Entry>& from, std::deque<Entry>& to) {
+    if (from.empty())
+        refuse(&from == &undo_ ? "nothing is there to be undone" : "nothing is there to be redone");
+    Entry entry = std::move(from.back());
+    from.pop_back();
+    has_changed_coupling_ = entry.change.is_of_coupling;
+    keep_clock_and_devices(world, entry.world);
+    push(std::move(world), entry.change, to);
+    world = std::move(entry.world);
+}
+
+void EditHistory::push(World world, const Change& change, std::deque<Entry>& to) {
+    const std::size_t bytes_of_world = count_bytes(world);
+    to.push_back({std::move(world), change, bytes_of_world});
+    std::size_t bytes = 0;
+    for (const Entry& entry : undo_) bytes += entry.bytes;
+    for (const Entry& entry : redo_) bytes += entry.bytes;
+    while (undo_.size() > 1 && (undo_.size() > most_entries || bytes > most_bytes)) {
+        bytes -= undo_.front().bytes;
+        undo_.pop_front();
+        ++dropped_;
+    }
+}
+
+}  // namespace palpa

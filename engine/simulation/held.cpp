@@ -1,0 +1,314 @@
+#include "simulation/held.h"
+
+#include "core/assertion.h"
+#include "core/text.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace palpa {
+namespace {
+
+// By the linearised model: torque about the origin, and force.
+Vec6 find_model_pull(const World& world, const SecondOrder& second, Entity hand) noexcept {
+    const auto found = std::ranges::find(second.hands, hand);
+    if (found == second.hands.end()) return Vec6::Zero();
+    Vec6 pull =
+        find_hand_pull(second.statics, static_cast<std::size_t>(found - second.hands.begin()));
+    pull.head<3>() += held_place(world, hand).cross(Vec3(pull.tail<3>()));
+    return pull;
+}
+
+// A base that the handle turns is turned as well.
+void move_mobile(World& world, const Grip& grip, const Vec3& by, const Quat& turn) noexcept {
+    const TorsionModel& model = model_of(world);
+    TorsionState& state = world.resource<TorsionState>();
+    if (grip.spring >= 0) {
+        state.springs[static_cast<std::size_t>(grip.spring)].place += by;
+        return;
+    }
+    const auto base = static_cast<std::size_t>(grip.base);
+    AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();
+    const bool turns = grip.freedom == 6 && turn.vec() != Vec3::Zero();
+    if (adaptive) {
+        turns ? turn_base(model, base, turn, by, state, adaptive->statics)
+              : shift_base(model, base, by, state, adaptive->statics);
+    } else {
+        turns ? turn_base(model, base, turn, by, state) : shift_base(model, base, by, state);
+    }
+}
+
+}  // namespace
+
+bool is_mobile(const Grip& grip) noexcept { return grip.base >= 0 || grip.spring >= 0; }
+
+std::vector<Entity> find_hands(const World& world) {
+    std::vector<Entity> hands;
+    world.each<Hand>([&](Entity hand, const Hand&) { hands.push_back(hand); });
+    return hands;
+}
+
+Entity first_hand(const World& world) {
+    Entity first;
+    world.each<Hand>([&](Entity hand, const Hand&) {
+        if (first == Entity{}) first = hand;
+    });
+    return first;
+}
+
+const Grip& grip_of(const World& world, Entity hand) noexcept {
+    const Grip* const grip = world.find<Grip>(hand);
+    PALPA_ASSERT(grip);
+    return *grip;
+}
+
+const Contact& contact_of(const World& world, Entity hand) noexcept {
+    const Contact* const contact = world.find<Contact>(hand);
+    PALPA_ASSERT(contact);
+    return *contact;
+}
+
+const LocalContactModel& local_contact_of(const World& world) noexcept {
+    return contact_of(world, first_hand(world)).answer;
+}
+
+LocalContactModel& local_contact_of(World& world) noexcept {
+    Contact* const contact = world.find<Contact>(first_hand(world));
+    PALPA_ASSERT(contact);
+    return contact->answer;
+}
+
+AtomRange held_range(const World& world, Entity hand) noexcept {
+    const Grip* const grip = world.find<Grip>(hand);
+    return grip ? world.find<Molecule>(grip->molecule)->atoms : AtomRange{};
+}
+
+const Spring* spring_of(const World& world, Entity hand) noexcept {
+    const Grip* const grip = world.find<Grip>(hand);
+    if (!grip || grip->spring < 0) return nullptr;
+    return &world.resource<TorsionState>().springs[static_cast<std::size_t>(grip->spring)];
+}
+
+std::vector<std::uint32_t> held_atoms(const World& world, Entity hand) {
+    if (const Spring* const spring = spring_of(world, hand)) return spring->atoms;
+    const AtomRange range = held_range(world, hand);
+    std::vector<std::uint32_t> atoms(range.count);
+    std::iota(atoms.begin(), atoms.end(), range.first);
+    return atoms;
+}
+
+std::vector<std::uint32_t> numbers_of(const World& world, const AtomsOf& atoms) {
+    const std::uint32_t first = world.find<Molecule>(atoms.molecule)->atoms.first;
+    std::vector<std::uint32_t> numbers;
+    for (const std::uint32_t atom : atoms.atoms) numbers.push_back(first + atom);
+    return numbers;
+}
+
+Vec3 middle_of(const World& world, const AtomsOf& atoms) {
+    const AtomTable& table = world.resource<AtomTable>();
+    Vec3 sum = Vec3::Zero();
+    double mass = 0;
+    for (const std::uint32_t i : numbers_of(world, atoms)) {
+        sum += table.mass[i] * table.positions[i];
+        mass += table.mass[i];
+    }
+    return sum / mass;
+}
+
+std::vector<std::uint32_t> atoms_called(const World& world, Entity molecule,
+                                        std::string_view name) {
+    const std::vector<std::string_view> words = split_words(name);
+    std::vector<std::uint32_t> found;
+    if (words.empty() || words.size() > 2) return found;
+    const AtomRange range = world.find<Molecule>(molecule)->atoms;
+    for (std::uint32_t i = 0; i < range.count; ++i) {
+        const AtomName& atom = world.resource<AtomTable>().names[range.first + i];
+        if (atom.number == words[0] && (words.size() == 1 || atom.atom == words[1]))
+            found.push_back(i);
+    }
+    return found;
+}
+
+Vec3 held_place(const World& world, Entity hand) noexcept {
+    const Grip& grip = grip_of(world, hand);
+    if (const Spring* const spring = spring_of(world, hand)) return spring->place;
+    if (grip.base >= 0) {
+        const std::uint32_t pivot =
+            model_of(world).bases[static_cast<std::size_t>(grip.base)].pivot;
+        return world.resource<TorsionState>().positions[pivot];
+    }
+    const Molecule& molecule = *world.find<Molecule>(grip.molecule);
+    return world.resource<AtomTable>().positions[molecule.reference_atom];
+}
+
+void place_held(World& world, Entity hand, const MoleculePose& pose) noexcept {
+    Grip& grip = *world.find<Grip>(hand);
+    const Quat turned = (pose.orientation * grip.pose.orientation.conjugate()).normalized();
+    grip.pose = pose;
+    const Vec3 reference = grip.anchor + pose.place_angstrom;
+    if (is_mobile(grip)) {
+        move_mobile(world, grip, reference - held_place(world, hand), turned);
+        copy_positions(world);
+        return;
+    }
+    *world.find<Pose>(grip.molecule) = {reference, pose.orientation};
+    const RigidShape& shape = *world.find<RigidShape>(grip.molecule);
+    const std::uint32_t first = world.find<Molecule>(grip.molecule)->atoms.first;
+    std::vector<Vec3>& positions = world.resource<AtomTable>().positions;
+    const Mat3 turn = pose.orientation.toRotationMatrix();
+    for (std::size_t i = 0; i < shape.atoms.size(); ++i)
+        positions[first + i] = reference + turn * shape.atoms[i];
+}
+
+Vec3 centre_of_mass(const AtomTable& atoms, AtomRange range) noexcept {
+    Vec3 sum = Vec3::Zero();
+    double mass = 0;
+    for (std::uint32_t i = range.first; i < range.first + range.count; ++i) {
+        sum += atoms.mass[i] * atoms.positions[i];
+        mass += atoms.mass[i];
+    }
+    return mass > 0 ? Vec3(sum / mass) : atoms.positions[range.first];
+}
+
+FieldPoints points_of(const AtomTable& atoms, AtomRange range) noexcept {
+    return {std::span(atoms.positions).subspan(range.first, range.count),
+            std::span(atoms.charge).subspan(range.first, range.count),
+            std::span(atoms.sqrt_epsilon).subspan(range.first, range.count),
+            std::span(atoms.half_rmin).subspan(range.first, range.count),
+            std::span(atoms.type).subspan(range.first, range.count)};
+}
+
+GatheredPoints::GatheredPoints(const AtomTable& atoms, std::span<const std::uint32_t> numbers) {
+    for (const std::uint32_t i : numbers) {
+        positions.push_back(atoms.positions[i]);
+        charge.push_back(atoms.charge[i]);
+        sqrt_epsilon.push_back(atoms.sqrt_epsilon[i]);
+        half_rmin.push_back(atoms.half_rmin[i]);
+        type.push_back(atoms.type[i]);
+    }
+}
+
+FieldPoints held_points(const World& world, Entity hand) noexcept {
+    return points_of(world.resource<AtomTable>(), held_range(world, hand));
+}
+
+std::vector<AtomRange> environment_of(const World& world, Entity hand) {
+    const AtomRange held = held_range(world, hand);
+    const std::uint32_t after = held.first + held.count;
+    const auto all = static_cast<std::uint32_t>(world.resource<AtomTable>().size());
+    std::vector<AtomRange> ranges;
+    if (held.first > 0) ranges.push_back({0, held.first});
+    if (after < all) ranges.push_back({after, all - after});
+    return ranges;
+}
+
+std::size_t count_environment(const World& world, Entity hand) noexcept {
+    return world.resource<AtomTable>().size() - held_range(world, hand).count;
+}
+
+PairRule pair_rule(const World& world) noexcept {
+    const Interactions& interactions = world.resource<Interactions>();
+    return {interactions.coulomb_constant, interactions.replaced_pairs};
+}
+
+FieldSum field_on_held(const World& world, Entity hand) {
+    return field_on(world, hand, held_points(world, hand));
+}
+
+FieldSum field_on(const World& world, Entity hand, const FieldPoints& group) {
+    FieldSum sum;
+    bool is_first = true;
+    for (const AtomRange& range : environment_of(world, hand)) {
+        const FieldSum part = evaluate_pair_field(
+            group, points_of(world.resource<AtomTable>(), range), pair_rule(world));
+        sum = is_first ? part : sum + part;
+        is_first = false;
+    }
+    return sum;
+}
+
+bool has_mobile(const World& world) noexcept { return !model_of(world).masses.empty(); }
+
+const TorsionModel& model_of(const World& world) noexcept {
+    return *world.resource<Mechanics>().model;
+}
+
+std::size_t find_active_freedom(const World& world) noexcept {
+    const AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();
+    return adaptive ? find_active_freedom(model_of(world), adaptive->statics)
+                    : static_cast<std::size_t>(model_of(world).coordinates);
+}
+
+Vec3 find_force_on_held(const World& world, Entity hand) noexcept {
+    const Grip* const grip = world.find<Grip>(hand);
+    if (!grip || !is_mobile(*grip)) return Vec3::Zero();
+    const AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();
+    if (adaptive && grip->spring < 0)
+        return find_wrench_on(adaptive->statics, static_cast<std::size_t>(grip->base)).tail<3>();
+    if (const SecondOrder* const second = find_second_order(world))
+        return find_model_pull(world, *second, hand).tail<3>();
+    return find_force_on_held(model_of(world), world.resource<TorsionState>(),
+                              {static_cast<std::uint32_t>(grip->base), grip->spring});
+}
+
+Vec6 find_pull_on_held(const World& world, Entity hand) noexcept {
+    const Grip* const grip = world.find<Grip>(hand);
+    if (!grip || grip->base < 0) return Vec6::Zero();
+    const auto base = static_cast<std::size_t>(grip->base);
+    if (const AdaptiveState* const adaptive = world.find_resource<AdaptiveState>())
+        return find_wrench_on(adaptive->statics, base);
+    if (const SecondOrder* const second = find_second_order(world))
+        return find_model_pull(world, *second, hand);
+    // What atoms of the molecule do to each other adds up to nothing.
+    const TorsionModel& model = model_of(world);
+    const TorsionState& state = world.resource<TorsionState>();
+    Vec6 wrench = Vec6::Zero();
+    for (std::size_t i = 0; i < state.forces.size(); ++i) {
+        if (model.tree.molecule_of[model.tree.bodies.body_of[i]] != base) continue;
+        wrench.head<3>() += state.positions[i].cross(state.forces[i]);
+        wrench.tail<3>() += state.forces[i];
+    }
+    return wrench;
+}
+
+const SecondOrder* find_second_order(const World& world) noexcept {
+    const SecondOrder* const second = world.find_resource<SecondOrder>();
+    return second && second->statics.linear ? second : nullptr;
+}
+
+double find_energy(const World& world) noexcept {
+    const SecondOrder* const second = find_second_order(world);
+    return second ? second->statics.value.energy : world.resource<TorsionState>().energy();
+}
+
+std::optional<double> find_error_estimate(const World& world) noexcept {
+    if (const ErrorEstimate* const estimate = world.find_resource<ErrorEstimate>())
+        return estimate->last_pN;
+    const std::optional<RelaxStepReport>& relaxed = world.resource<StepReport>().relaxed;
+    return relaxed ? relaxed->estimated_error_pN : std::nullopt;
+}
+
+void copy_positions(World& world) {
+    const TorsionState& state = world.resource<TorsionState>();
+    if (state.positions.empty()) return;
+    std::vector<Vec3>& positions = world.resource<AtomTable>().positions;
+    AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();
+    if (!adaptive) {
+        positions = state.positions;
+        return;
+    }
+    AdaptiveStatics& statics = adaptive->statics;
+    if (!statics.is_built || adaptive->copied != statics.rebuilds) {
+        positions = state.positions;
+        adaptive->copied = statics.rebuilds;
+    } else {
+        for (std::size_t c = 0; c < statics.has_moved.size(); ++c) {
+            if (statics.has_moved[c] == 0) continue;
+            for (const std::uint32_t i : atoms_of(statics.clusters, c))
+                positions[i] = state.positions[i];
+        }
+    }
+    std::ranges::fill(statics.has_moved, std::uint8_t{0});
+}
+
+}  // namespace palpa

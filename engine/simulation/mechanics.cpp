@@ -1,0 +1,686 @@
+#include "simulation/mechanics.h"
+
+#include "charmm/build_topology.h"
+#include "charmm/generate.h"
+#include "core/text.h"
+#include "core/units.h"
+#include "simulation/held.h"
+#include "simulation/systems/choose_active.h"
+#include "simulation/systems/relax.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <array>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace palpa {
+namespace {
+
+// A molecule in the atom table.
+struct ScenePart {
+    std::string_view name;
+    Mobility mobility;
+    AtomRange atoms;
+    std::uint32_t reference_atom;
+};
+
+std::vector<ScenePart> list_parts(const World& world) {
+    std::vector<ScenePart> parts;
+    world.each<Molecule, Mobility>([&](Entity, const Molecule& molecule, const Mobility& mobility) {
+        parts.push_back({molecule.name, mobility, molecule.atoms, molecule.reference_atom});
+    });
+    return parts;
+}
+
+// ---- which joints ----------------------------------------------------------------------------
+
+struct NamedAtom {
+    std::string_view segment, number, atom;
+};
+
+std::uint32_t find_atom(const Connectivity& connectivity, const NamedAtom& wanted,
+                        const TextPlace& place, std::string_view bond) {
+    for (std::uint32_t i = 0; i < connectivity.names.size(); ++i) {
+        const AtomName& name = connectivity.names[i];
+        if (name.segment == wanted.segment && name.number == wanted.number &&
+            name.atom == wanted.atom)
+            return i;
+    }
+    throw LoadError(place, fmt::format("\"{}\" names atom '{}' of residue {} of segment '{}', "
+                                       "which is not there",
+                                       bond, wanted.atom, wanted.number, wanted.segment));
+}
+
+JointOverride read_override(const Connectivity& connectivity, const std::string& bond,
+                            BondMotion motion, const TextPlace& place) {
+    const std::vector<std::string_view> words = split_words(bond);
+    if (words.size() != 4 && words.size() != 5) {
+        throw LoadError(place, fmt::format("\"{}\" is no bond; expected \"A 25 CB CG\" or, between "
+                                           "residues, \"A 25 C 26 N\"",
+                                           bond));
+    }
+    const NamedAtom first{words[0], words[1], words[2]};
+    const NamedAtom second{words[0], words.size() == 5 ? words[3] : words[1], words.back()};
+    return {
+        {find_atom(connectivity, first, place, bond), find_atom(connectivity, second, place, bond)},
+        motion};
+}
+
+JointRules read_rules(const SceneDescription& scene, const Connectivity& connectivity) {
+    const JointsDescription& j = scene.joints;
+    JointRules rules{j.hydroxyl, j.thiol,     j.ammonium,        j.methyl,
+                     j.amide,    j.amide_nh2, j.guanidinium_nh2, {}};
+    const auto add = [&](const std::vector<std::string>& bonds, BondMotion motion,
+                         std::string_view key) {
+        for (const std::string& bond : bonds) {
+            rules.overrides.push_back(
+                read_override(connectivity, bond, motion, scene.place_of(key)));
+        }
+    };
+    add(j.turn, BondMotion::Turn, "joints.turn");
+    add(j.rigid, BondMotion::Rigid, "joints.rigid");
+    add(j.springs, BondMotion::Spring, "joints.springs");
+    return rules;
+}
+
+// One entry per atom: whether bonds may turn there.
+class MobileAtoms {
+public:
+    explicit MobileAtoms(std::size_t atoms) : is_mobile_(atoms, 0) {}
+
+    void allow(AtomRange range) {
+        std::fill_n(is_mobile_.begin() + range.first, range.count, std::uint8_t{1});
+    }
+
+    // Of a molecule keeps only residues with an atom as near as that to one of `around`. Another
+    // molecule's residues beside these may have the same names.
+    void keep_within(double distance, AtomRange around, AtomRange molecule,
+                     const Connectivity& connectivity, std::span<const Vec3> positions) {
+        const std::size_t end = molecule.first + molecule.count;
+        const auto is_near = [&](std::size_t i) {
+            return std::ranges::any_of(
+                positions.subspan(around.first, around.count), [&](const Vec3& other) {
+                    return (positions[i] - other).squaredNorm() <= distance * distance;
+                });
+        };
+        for (std::size_t first = molecule.first, next = first; first < end; first = next) {
+            bool is_kept = false;
+            for (;
+                 next < end && is_same_residue(connectivity.names[first], connectivity.names[next]);
+                 ++next) {
+                is_kept = is_kept || (is_mobile_[next] != 0 && is_near(next));
+            }
+            if (is_kept) continue;
+            for (std::size_t i = first; i < next; ++i) is_mobile_[i] = 0;
+        }
+    }
+
+    bool has(const std::array<std::uint32_t, 2>& bond) const {
+        return is_mobile_[bond[0]] != 0 && is_mobile_[bond[1]] != 0;
+    }
+
+private:
+    std::vector<std::uint8_t> is_mobile_;
+};
+
+struct SceneJoints {
+    Joints joints;
+    std::size_t held = 0;
+};
+
+SceneJoints find_joints(const SceneDescription& scene, const Connectivity& connectivity,
+                        std::span<const Vec3> positions, std::span<const ScenePart> parts) {
+    MobileAtoms mobile(connectivity.names.size());
+    for (const ScenePart& part : parts) {
+        if (part.mobility.shape == Shape::Flexible) mobile.allow(part.atoms);
+    }
+    const JointRules rules = read_rules(scene, connectivity);
+    SceneJoints result{build_joints(connectivity, rules), 0};
+    // What the scene names turns whatever else it says, but for rigid molecules.
+    const auto is_named = [&](const Joint& joint) {
+        return std::ranges::any_of(rules.overrides, [&](const JointOverride& o) {
+            return o.motion == BondMotion::Turn &&
+                   std::minmax(o.bond[0], o.bond[1]) == std::minmax(joint.bond[0], joint.bond[1]);
+        });
+    };
+    if (!scene.joints.backbone) {
+        std::erase_if(result.joints.joints, [&](const Joint& joint) {
+            return is_backbone(connectivity, joint.bond) && !is_named(joint);
+        });
+    }
+    for (const JointOverride& o : rules.overrides) {
+        if (o.motion != BondMotion::Turn || mobile.has(o.bond)) continue;
+        throw LoadError(scene.place_of("joints.turn"),
+                        fmt::format("bond {} - {} is of a rigid molecule; expected shape = "
+                                    "\"flexible\" there",
+                                    to_string(connectivity.names[o.bond[0]]),
+                                    to_string(connectivity.names[o.bond[1]])));
+    }
+    const auto keep_mobile = [&] {
+        std::erase_if(result.joints.joints, [&](const Joint& joint) {
+            return !mobile.has(joint.bond) && !is_named(joint);
+        });
+        std::erase_if(result.joints.springs,
+                      [&](const std::array<std::uint32_t, 2>& bond) { return !mobile.has(bond); });
+    };
+    keep_mobile();
+    if (!scene.joints.within_angstrom) return result;
+    const std::string& name =
+        scene.joints.around.empty() ? scene.grab.molecule : scene.joints.around;
+    const auto around = std::ranges::find(parts, name, &ScenePart::name);
+    if (around == parts.end()) return result;
+    const std::size_t all = result.joints.joints.size();
+    for (const ScenePart& part : parts) {
+        mobile.keep_within(*scene.joints.within_angstrom, around->atoms, part.atoms, connectivity,
+                           positions);
+    }
+    keep_mobile();
+    result.held = all - result.joints.joints.size();
+    return result;
+}
+
+// ---- which bases -----------------------------------------------------------------------------
+
+BaseFreedom freedom_of(Motion motion) {
+    if (motion == Motion::Free) return BaseFreedom::Free;
+    return motion == Motion::TranslateAndTurn ? BaseFreedom::Turning : BaseFreedom::Held;
+}
+
+// Of each bonded molecule, as the scene's molecules have it that its atoms belong to.
+std::vector<MoleculeBase> find_bases(const TorsionBodies& bodies,
+                                     std::span<const ScenePart> parts) {
+    const std::vector<std::uint32_t> molecule_of = molecules_of(bodies);
+    std::vector<std::optional<MoleculeBase>> found(bodies.molecules());
+    for (const ScenePart& part : parts) {
+        const BaseFreedom freedom = freedom_of(part.mobility.motion);
+        const auto set = [&](std::uint32_t atom) {
+            const std::uint32_t body = bodies.body_of[atom];
+            std::optional<MoleculeBase>& base = found[molecule_of[body]];
+            if (!base && bodies.is_base(body)) base = MoleculeBase{freedom, atom};
+        };
+        set(part.reference_atom);
+        for (std::uint32_t i = 0; i < part.atoms.count; ++i) set(part.atoms.first + i);
+    }
+    std::vector<MoleculeBase> bases;
+    for (const std::optional<MoleculeBase>& base : found) {
+        bases.push_back(base.value_or(MoleculeBase{}));
+    }
+    return bases;
+}
+
+// A hand has hold of one base only.
+void check_one_piece(const TextPlace& place, const TorsionBodies& bodies, const Molecule& held) {
+    const std::vector<std::uint32_t> molecule_of = molecules_of(bodies);
+    const auto piece = [&](std::uint32_t atom) { return molecule_of[bodies.body_of[atom]]; };
+    for (std::uint32_t i = 0; i < held.atoms.count; ++i) {
+        if (piece(held.atoms.first + i) == piece(held.reference_atom)) continue;
+        throw LoadError(place,
+                        fmt::format("'{}' is not all bonded together; expected one molecule, or a "
+                                    "free one held by a spring (grab.atom)",
+                                    held.name));
+    }
+}
+
+// What bases that nothing moves do to each other is constant.
+void join_fixed(std::span<const HeldPart> held, TorsionModel& model) {
+    const TorsionBodies& bodies = model.tree.bodies;
+    std::optional<std::uint32_t> first;
+    for (std::uint32_t i = 0; i < bodies.body_of.size(); ++i) {
+        const std::uint32_t body = bodies.body_of[i], molecule = model.tree.molecule_of[body];
+        if (!bodies.is_base(body) ||
+            std::ranges::find(held, molecule, &HeldPart::base) != held.end() ||
+            model.bases[molecule].freedom != BaseFreedom::Held)
+            continue;
+        if (!first) first = body;
+        model.fast.atoms.groups[i] = *first;
+    }
+}
+
+// ---- springs ---------------------------------------------------------------------------------
+
+// Of a hand, from the middle of what it holds.
+Spring build_spring(const World& world, const Grip& grip) {
+    Spring spring;
+    spring.k = grip.k;
+    const std::uint32_t first = world.find<Molecule>(grip.molecule)->atoms.first;
+    for (const std::uint32_t atom : grip.atoms) spring.atoms.push_back(first + atom);
+    return spring;
+}
+
+Spring build_spring(const World& world, const Restraint& restraint) {
+    Spring spring;
+    spring.k = restraint.k;
+    spring.length = restraint.length;
+    spring.place = restraint.place;
+    spring.atoms = numbers_of(world, restraint.ends.front());
+    if (restraint.ends.size() > 1) spring.other_atoms = numbers_of(world, restraint.ends.back());
+    return spring;
+}
+
+// ---- settings --------------------------------------------------------------------------------
+
+RelaxSettings build_settings(const SceneDescription& scene) {
+    const StaticsDescription& s = scene.statics;
+    RelaxSettings settings;
+    settings.method = method_of(s);
+    settings.force_tolerance = s.rest_kcal_per_mol;
+    settings.steps = static_cast<std::size_t>(s.steps);
+    settings.largest_move = s.largest_move_angstrom;
+    settings.keeps_pairs = true;  // from period to period
+    settings.step.largest_move = s.largest_move_angstrom;
+    ForceSettings& forces = settings.step.forces;
+    forces.fast = s.pairs == PairPrecision::Fast;
+    forces.nonbonded.coulomb_constant = scene.force_field.coulomb_constant;
+    if (s.cutoff_angstrom) {
+        constexpr double width = 2;  // Å
+        forces.nonbonded.electrostatics = ElectrostaticCutoff::ForceSwitch;
+        forces.nonbonded.van_der_waals = VanDerWaalsCutoff::ForceSwitch;
+        forces.nonbonded.cutoff = *s.cutoff_angstrom;
+        forces.nonbonded.switch_from = *s.cutoff_angstrom - width;
+    }
+    return settings;
+}
+
+AdaptiveSettings build_adaptive_settings(const StaticsDescription& s,
+                                         const QuasiStaticSettings& step) {
+    AdaptiveSettings settings;
+    settings.step = step;
+    settings.limits.degrees_of_freedom = static_cast<std::size_t>(s.active);
+    settings.choose_every = static_cast<std::size_t>(s.choose_every);
+    if (s.weights != JointWeights::Acceleration) settings.weight = MetricWeight::Inertia;
+    if (s.weights != JointWeights::Acceleration && s.weights != JointWeights::Inertia)
+        settings.limits.shape = SelectionShape::Single;
+    return settings;
+}
+
+// A joint that turns half a chain makes all its pairs change; its factor falls with the third power
+// of the atoms behind it, and that of a free base as if all were.
+std::vector<double> find_mobility_weights(const TorsionModel& model) {
+    const AssemblyTree& tree = model.tree;
+    const std::vector<Body>& bodies = tree.bodies.bodies;
+    std::vector<double> behind(bodies.size(), 0), mobility_weights;
+    for (std::size_t b = bodies.size(); b-- > 0;) {
+        behind[b] += tree.first_atom[b + 1] - tree.first_atom[b];
+        if (!tree.bodies.is_base(b)) behind[bodies[b].parent] += behind[b];
+    }
+    for (const double atoms : behind) {
+        mobility_weights.push_back(1 / ((1 + atoms / 20) * (1 + atoms * atoms / 100)));
+    }
+    return mobility_weights;
+}
+
+AdaptiveState build_adaptive(const SceneDescription& scene, const RelaxSettings& settings,
+                             const TorsionModel& model, std::span<const HeldPart> held) {
+    AdaptiveState adaptive;
+    adaptive.settings = build_adaptive_settings(scene.statics, settings.step);
+    adaptive.statics = build_adaptive_statics(model);
+    const JointWeights weights = scene.statics.weights;
+    adaptive.weighs_hand_proximity = weights == JointWeights::HandProximity;
+    if (weights == JointWeights::InverseMovedAtoms || weights == JointWeights::HandProximity) {
+        adaptive.mobility_weights = find_mobility_weights(model);
+        // What is in the hand weighs nothing.
+        for (const HeldPart& part : held)
+            adaptive.mobility_weights[model.tree.bases[part.base]] = 1;
+        adaptive.settings.factors = adaptive.mobility_weights;
+    }
+    adaptive.choose_every = adaptive.settings.choose_every;
+    if (scene.statics.budget_us) adaptive.budget.emplace(*scene.statics.budget_us);
+    if (const auto within_pN = scene.coupling.feel_within_pN) {
+        adaptive.accuracy.emplace(
+            *within_pN, WorkBudget{adaptive.settings.limits.degrees_of_freedom, settings.steps},
+            static_cast<std::size_t>(model.coordinates), adaptive.budget.has_value());
+    }
+    return adaptive;
+}
+
+void add_held_atoms(const TorsionModel& model, const TorsionState& state, const HandHold& hold,
+                    std::vector<std::uint32_t>& atoms) {
+    if (hold.spring) {
+        const std::vector<std::uint32_t>& pulled = state.springs[*hold.spring].atoms;
+        atoms.insert(atoms.end(), pulled.begin(), pulled.end());
+        return;
+    }
+    for (std::uint32_t i = 0; i < model.masses.size(); ++i) {
+        if (model.tree.molecule_of[model.tree.bodies.body_of[i]] == hold.molecule)
+            atoms.push_back(i);
+    }
+}
+
+// What hands hold that is mobile, in their order.
+HeldParts find_held_parts(const World& world, std::vector<Entity>& hands) {
+    const TorsionModel& model = model_of(world);
+    HeldParts held;
+    world.each<Grip>([&](Entity hand, const Grip& grip) {
+        if (!is_mobile(grip)) return;
+        HandHold hold;
+        hold.molecule = static_cast<std::uint32_t>(grip.base);
+        if (grip.spring >= 0) hold.spring = static_cast<std::size_t>(grip.spring);
+        hold.turns = grip.spring < 0 && grip.freedom == 6;
+        held.hands.push_back(hold);
+        hands.push_back(hand);
+        add_held_atoms(model, world.resource<TorsionState>(), hold, held.atoms);
+    });
+    std::ranges::sort(held.atoms);
+    const auto doubles = std::ranges::unique(held.atoms);
+    held.atoms.erase(doubles.begin(), doubles.end());
+    return held;
+}
+
+SecondOrder build_second_order(const StaticsDescription& s, const RelaxSettings& settings,
+                               const World& world) {
+    SecondOrder second;
+    second.settings.forces = settings.step.forces;
+    second.settings.near_reach = s.near_angstrom;
+    second.settings.renew_hand = s.renew_angstrom;
+    second.delay_s = 1e-3 * s.renewal_ms;
+    second.settings.renews_at_once = s.renewal_ms == 0;
+    second.statics =
+        build_second_order_statics(model_of(world), find_held_parts(world, second.hands));
+    return second;
+}
+
+// Against all pairs, whatever cutoff the steps have.
+ErrorEstimate build_error_estimate(const RelaxSettings& settings, const World& world) {
+    ErrorEstimate estimate;
+    ForceSettings& forces = estimate.settings.forces = settings.step.forces;
+    const double coulomb = forces.nonbonded.coulomb_constant;
+    forces.nonbonded = {};
+    forces.nonbonded.coulomb_constant = coulomb;
+    estimate.settings.relaxed = 0.1;
+    estimate.settings.most_relaxation = 500;
+    std::vector<Entity> hands;
+    estimate.held = find_held_parts(world, hands);
+    return estimate;
+}
+
+// Matrices of more coordinates are too large.
+RelaxMethod find_method(const SceneDescription& scene, Eigen::Index coordinates) {
+    const RelaxMethod method = method_of(scene.statics);
+    if (method != RelaxMethod::SecondOrder || coordinates <= most_second_order_coordinates)
+        return method;
+    if (!scene.statics.method) return RelaxMethod::QuasiStatic;
+    throw LoadError(scene.place_of("statics.method"),
+                    fmt::format("{} degrees of freedom by second order would take {:.1f} GB and "
+                                "minutes; expected at most {}: fewer joints "
+                                "(joints.within_angstrom), or quasi-static",
+                                coordinates, 5e-8 * static_cast<double>(coordinates * coordinates),
+                                most_second_order_coordinates));
+}
+
+// ---- together --------------------------------------------------------------------------------
+
+// Bodies and bases as molecules may now move.
+struct Plan {
+    TorsionBodies bodies;
+    std::vector<MoleculeBase> bases;
+    std::size_t joints = 0, joints_held = 0;
+};
+
+Plan plan_mechanics(World& world) {
+    const Connectivity& connectivity = *bonded_terms(world).connectivity;
+    const std::vector<ScenePart> parts = list_parts(world);
+    const SceneJoints joints = find_joints(world.resource<SceneFile>().scene, connectivity,
+                                           world.resource<AtomTable>().positions, parts);
+    std::vector<std::uint32_t> base_atoms;
+    for (const ScenePart& part : parts) base_atoms.push_back(part.reference_atom);
+    Plan plan{build_bodies(connectivity, joints.joints, base_atoms), {}, 0, 0};
+    plan.bases = find_bases(plan.bodies, parts);
+    plan.joints = joints.joints.joints.size();
+    plan.joints_held = joints.held;
+    return plan;
+}
+
+// What hands hold, in their order.
+std::vector<HeldPart> find_held(const World& world, const TorsionBodies& bodies) {
+    const std::vector<std::uint32_t> molecule_of = molecules_of(bodies);
+    const SceneDescription& scene = world.resource<SceneFile>().scene;
+    std::vector<HeldPart> held;
+    world.each<Grip>([&](Entity hand, const Grip& grip) {
+        const bool is_first = hand == first_hand(world);
+        const Molecule& molecule = *world.find<Molecule>(grip.molecule);
+        HeldPart& part = held.emplace_back();
+        part.base = molecule_of[bodies.body_of[molecule.reference_atom]];
+        if (grip.atoms.empty()) {
+            check_one_piece(scene.place_of(is_first ? "grab.molecule" : "second.grab.molecule"),
+                            bodies, molecule);
+        } else {
+            part.spring = build_spring(world, grip);
+        }
+    });
+    return held;
+}
+
+TorsionModel build_model(World& world, const Plan& plan, std::vector<MoleculeBase> bases) {
+    const BondedTerms& terms = bonded_terms(world);
+    return build_torsion_model(plan.bodies, terms.connectivity->mass,
+                               world.resource<AtomTable>().positions, *terms.topology,
+                               std::move(bases));
+}
+
+void set_mechanics(const SceneDescription& scene, TorsionModel model,
+                   std::span<const HeldPart> held, World& world) {
+    join_fixed(held, model);
+    TorsionState state = build_torsion_state(model);
+    std::size_t next = 0;
+    world.each<Grip>([&](Entity, Grip& grip) {
+        const HeldPart& part = held[next++];
+        grip.base = static_cast<std::int32_t>(part.base);
+        grip.spring = -1;
+        if (!part.spring) return;
+        grip.spring = static_cast<std::int32_t>(state.springs.size());
+        state.springs.push_back(*part.spring);
+        state.springs.back().place =
+            grip.is_new ? find_centre_of_mass(model, part.spring->atoms, state.positions)
+                        : Vec3(grip.anchor + grip.pose.place_angstrom);
+    });
+    world.each<Restraint>([&](Entity, const Restraint& restraint) {
+        state.springs.push_back(build_spring(world, restraint));
+    });
+    world.remove_resource<AdaptiveState>();
+    world.remove_resource<SecondOrder>();
+    world.remove_resource<ErrorEstimate>();
+    RelaxSettings settings = build_settings(scene);
+    settings.method = find_method(scene, model.coordinates);
+    if (settings.method == RelaxMethod::QuasiStatic)
+        world.set_resource(build_adaptive(scene, settings, model, held));
+    world.set_resource(Solver{settings, build_quasi_statics(model), {}});
+    world.set_resource(std::move(state));
+    world.set_resource(Mechanics{std::make_shared<const TorsionModel>(std::move(model))});
+    if (settings.method == RelaxMethod::SecondOrder) {
+        SecondOrder second = build_second_order(scene.statics, settings, world);
+        if (const auto within_pN = scene.coupling.feel_within_pN)
+            second.settings.tolerance = *within_pN / units::piconewton_per_kcal_per_mol_angstrom;
+        world.set_resource(std::move(second));
+    } else if (model_of(world).coordinates <= most_second_order_coordinates) {
+        world.set_resource(build_error_estimate(settings, world));
+    }
+    start_mechanics(world);
+}
+
+// What must be different atoms.
+void check_segments(const World& world) {
+    const SceneDescription& scene = world.resource<SceneFile>().scene;
+    world.each<Molecule, Source>([&](Entity a, const Molecule& one, const Source& from) {
+        world.each<Molecule, Source>([&](Entity b, const Molecule& other, const Source& source) {
+            if (a == b || from.structure != source.structure || from.segment != source.segment)
+                return;
+            throw LoadError(scene.place_of("molecules." + other.name + ".segment"),
+                            fmt::format("'{}' and '{}' are the same atoms, segment '{}'; expected "
+                                        "each segment once, where anything moves by itself",
+                                        one.name, other.name, from.segment));
+        });
+    });
+}
+
+void clear_mechanics(World& world) {
+    world.set_resource(Mechanics{});
+    world.set_resource(TorsionState{});
+    world.remove_resource<Solver>();
+    world.remove_resource<AdaptiveState>();
+    world.remove_resource<SecondOrder>();
+    world.remove_resource<ErrorEstimate>();
+    world.each<Grip>([](Entity, Grip& grip) { grip.base = grip.spring = -1; });
+}
+
+}  // namespace
+
+bool needs_mechanics(const World& world) {
+    bool needs = false;
+    world.each<Mobility>([&](Entity, const Mobility& mobility) {
+        needs = needs || mobility.shape == Shape::Flexible || mobility.motion == Motion::Free ||
+                mobility.motion == Motion::TranslateAndTurn;
+    });
+    world.each<Grip>([&](Entity, const Grip& grip) { needs = needs || !grip.atoms.empty(); });
+    return needs;
+}
+
+const BondedTerms& bonded_terms(World& world) {
+    BondedTerms& terms = world.resource<BondedTerms>();
+    if (terms.topology) return terms;
+    check_segments(world);
+    const ForceField& force_field = *world.resource<SceneFile>().force_field;
+    // Several molecules may be of one file.
+    std::map<const Structure*, std::shared_ptr<const Connectivity>> generated;
+    auto all = std::make_shared<Connectivity>();
+    world.each<Molecule, Source>([&](Entity, const Molecule&, Source& source) {
+        if (!source.connectivity) {
+            std::shared_ptr<const Connectivity>& of_file = generated[source.structure.get()];
+            if (!of_file)
+                of_file = std::make_shared<const Connectivity>(
+                    build_connectivity(force_field, *source.structure));
+            source.connectivity = of_file;
+        }
+        const Connectivity& from = *source.connectivity;
+        const auto out = append_segment(from, source.segment, *all);
+        if (!out) return;
+        throw LoadError(
+            {from.file, from.lines[(*out)[0]]},
+            fmt::format("atoms {} and {} are bonded, across segments; expected "
+                        "molecules that are not bonded to others, where any moves by "
+                        "itself",
+                        to_string(from.names[(*out)[0]]), to_string(from.names[(*out)[1]])));
+    });
+    terms.topology = std::make_shared<const Topology>(build_topology(*all, force_field));
+    terms.connectivity = std::move(all);
+    return terms;
+}
+
+void rebuild_mechanics(World& world) {
+    if (!needs_mechanics(world)) {
+        clear_mechanics(world);
+        return;
+    }
+    Plan plan = plan_mechanics(world);
+    const std::vector<HeldPart> held = find_held(world, plan.bodies);
+    TorsionModel model = build_model(world, plan, plan.bases);
+    set_mechanics(world.resource<SceneFile>().scene, std::move(model), held, world);
+}
+
+void relax_and_build_mechanics(World& world, const RelaxProgressFunction& on_relax) {
+    const SceneDescription& scene = world.resource<SceneFile>().scene;
+    const Plan plan = plan_mechanics(world);
+    const std::vector<HeldPart> held = find_held(world, plan.bodies);
+
+    // At first nobody holds anything.
+    std::vector<MoleculeBase> bases = plan.bases;
+    for (const HeldPart& part : held) {
+        if (!part.spring) bases[part.base].freedom = BaseFreedom::Free;
+    }
+    const TorsionModel loose = build_model(world, plan, std::move(bases));
+    TorsionState rest = build_torsion_state(loose);
+    QuasiStatics statics = build_quasi_statics(loose);
+    RelaxSettings to_rest;
+    to_rest.step.forces = build_settings(scene).step.forces;
+    to_rest.force_tolerance = scene.statics.rest_kcal_per_mol;
+    to_rest.steps = static_cast<std::size_t>(scene.statics.relax_steps);
+    StartReport& report = world.resource<StartReport>();
+    report.joints = plan.joints;
+    report.joints_held = plan.joints_held;
+    report.joints_at_rest = relax_joints(loose, to_rest, rest, statics, on_relax);
+    if (report.joints_at_rest->end == RelaxEnd::NotFinite) {
+        throw LoadError(scene.place_of("molecules"),
+                        "the energy at the start is not finite; expected atoms apart from each "
+                        "other, and charges and parameters of molecules");
+    }
+    world.resource<AtomTable>().positions = rest.positions;
+    TorsionModel model = build_model(world, plan, plan.bases);
+    set_mechanics(scene, std::move(model), held, world);
+    world.resource<AtomTable>().positions = world.resource<TorsionState>().positions;
+}
+
+World build_mechanics_world(const SceneDescription& scene, TorsionModel model,
+                            const HeldPart& held) {
+    World world;
+    const Entity hand = world.create();
+    world.set(hand, Hand{});
+    world.set(hand, Grip{});
+    world.set_resource(AtomTable{});
+    StartReport report;
+    report.joints = model.tree.bodies.joints();
+    world.set_resource(report);
+    set_mechanics(scene, std::move(model), std::span(&held, 1), world);
+    return world;
+}
+
+void start_mechanics(World& world) {
+    if (!has_mobile(world)) return;
+    const TorsionModel& model = model_of(world);
+    TorsionState& state = world.resource<TorsionState>();
+    Solver& solver = world.resource<Solver>();
+    if (AdaptiveState* const adaptive = world.find_resource<AdaptiveState>()) {
+        prepare_choice(world);
+        world.each<Grip>([&](Entity, const Grip& grip) {
+            if (grip.base >= 0 && grip.spring < 0)
+                adaptive->statics.is_guided[static_cast<std::size_t>(grip.base)] = 1;
+        });
+        // What has no numbers is told by the first step.
+        (void)update_adaptive_forces(model, adaptive->settings, state, adaptive->statics);
+        return;
+    }
+    update_forces(model, solver.settings.step.forces, solver.statics.memory, state);
+    if (SecondOrder* const second = world.find_resource<SecondOrder>())
+        start_second_order(model, second->settings, state, second->statics);
+    solver.safe = state;
+}
+
+void move_held(World& world, const Vec3& by) {
+    const Entity hand = first_hand(world);
+    MoleculePose pose = grip_of(world, hand).pose;
+    pose.place_angstrom = held_place(world, hand) + by - grip_of(world, hand).anchor;
+    place_held(world, hand, pose);
+}
+
+RelaxStepReport relax_step(World& world) {
+    choose_active(world, {});
+    return relax_mobile(world);
+}
+
+void put_state(World& world, const TorsionState& state) {
+    world.resource<TorsionState>() = state;
+    world.resource<Solver>().statics.h = 0;
+    if (AdaptiveState* const adaptive = world.find_resource<AdaptiveState>()) {
+        adaptive->statics = build_adaptive_statics(model_of(world));
+        adaptive->near_to.clear();
+    }
+    if (SecondOrder* const second = world.find_resource<SecondOrder>()) {
+        HeldParts held = second->statics.renewals.lineariser.held;
+        second->statics = build_second_order_statics(model_of(world), std::move(held));
+    }
+    update_positions(model_of(world), world.resource<TorsionState>());
+    start_mechanics(world);
+}
+
+HeldPart held_part(const World& world) {
+    const Grip& grip = grip_of(world, first_hand(world));
+    HeldPart held{static_cast<std::uint32_t>(grip.base), {}};
+    if (const Spring* const spring = spring_of(world, first_hand(world))) held.spring = *spring;
+    return held;
+}
+
+}  // namespace palpa

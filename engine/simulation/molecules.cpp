@@ -1,0 +1,124 @@
+#include "simulation/molecules.h"
+
+#include "charmm/assign.h"
+#include "simulation/resources.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace palpa {
+namespace {
+
+std::vector<ReplacedPair> build_replaced_pairs(const ForceField& force_field,
+                                               const std::vector<std::string>& types) {
+    std::vector<ReplacedPair> pairs;
+    for (std::uint32_t a = 0; a < types.size(); ++a) {
+        for (std::uint32_t b = a; b < types.size(); ++b) {
+            const auto found = force_field.nbfix.find(std::minmax(types[a], types[b]));
+            if (found == force_field.nbfix.end()) continue;
+            pairs.push_back({a, b, found->second.epsilon, found->second.rmin});
+        }
+    }
+    return pairs;
+}
+
+template <class Value>
+void erase(AtomRange range, std::vector<Value>& column) {
+    const auto first = column.begin() + range.first;
+    column.erase(first, first + range.count);
+}
+
+// In the order of the atoms that have them, as loading numbers them.
+void renumber_types(AtomTable& atoms) {
+    std::vector<std::string> names;
+    for (std::uint32_t& type : atoms.type) {
+        const std::string& name = atoms.type_names[type];
+        const auto found = std::ranges::find(names, name);
+        type = static_cast<std::uint32_t>(found - names.begin());
+        if (found == names.end()) names.push_back(name);
+    }
+    atoms.type_names = std::move(names);
+}
+
+}  // namespace
+
+Entity molecule_called(const World& world, std::string_view name) noexcept {
+    Entity found;
+    world.each<Molecule>([&](Entity entity, const Molecule& molecule) {
+        if (molecule.name == name) found = entity;
+    });
+    return found;
+}
+
+Entity create_molecule(World& world, Molecule molecule, Mobility mobility, Source source) {
+    const Vec3 place = world.resource<AtomTable>().positions[molecule.reference_atom];
+    const Entity entity = world.create();
+    world.set(entity, std::move(molecule));
+    world.set(entity, mobility);
+    world.set(entity, Pose{place, Quat::Identity()});
+    world.set(entity, std::move(source));
+    return entity;
+}
+
+AtomRange add_segment_atoms(const ForceField& force_field, const Source& source, AtomTable& atoms) {
+    if (!source.connectivity)
+        return add_segment_atoms(force_field, *source.structure, source.segment, atoms);
+    return add_segment_atoms(force_field, *source.connectivity, *source.structure, source.segment,
+                             atoms);
+}
+
+void set_interactions(World& world) {
+    const SceneFile& file = world.resource<SceneFile>();
+    world.set_resource(Interactions{
+        file.scene.force_field.coulomb_constant,
+        build_replaced_pairs(*file.force_field, world.resource<AtomTable>().type_names)});
+}
+
+void set_shape(World& world, Entity entity) {
+    const Molecule& molecule = *world.find<Molecule>(entity);
+    const std::vector<Vec3>& positions = world.resource<AtomTable>().positions;
+    const Pose& pose = *world.find<Pose>(entity);
+    const Mat3 back = pose.orientation.toRotationMatrix().transpose();
+    const bool is_turned = pose.orientation.coeffs() != Quat::Identity().coeffs();
+    RigidShape shape;
+    for (std::uint32_t i = 0; i < molecule.atoms.count; ++i) {
+        const Vec3 arm = positions[molecule.atoms.first + i] - positions[molecule.reference_atom];
+        shape.atoms.push_back(is_turned ? Vec3(back * arm) : arm);
+    }
+    world.set(entity, std::move(shape));
+}
+
+void remove_atoms(World& world, Entity entity) {
+    const AtomRange gone = world.find<Molecule>(entity)->atoms;
+    AtomTable& atoms = world.resource<AtomTable>();
+    erase(gone, atoms.names);
+    erase(gone, atoms.positions);
+    erase(gone, atoms.element);
+    erase(gone, atoms.mass);
+    erase(gone, atoms.charge);
+    erase(gone, atoms.sqrt_epsilon);
+    erase(gone, atoms.half_rmin);
+    erase(gone, atoms.type);
+    std::erase_if(atoms.bonds, [&](const std::array<std::uint32_t, 2>& bond) {
+        return has_atom(gone, bond[0]) || has_atom(gone, bond[1]);
+    });
+    for (auto& bond : atoms.bonds) {
+        for (std::uint32_t& atom : bond) {
+            if (atom >= gone.first) atom -= gone.count;
+        }
+    }
+    renumber_types(atoms);
+    world.destroy(entity);
+    world.each<Molecule>([&](Entity, Molecule& molecule) {
+        if (molecule.atoms.first < gone.first) return;
+        molecule.atoms.first -= gone.count;
+        molecule.reference_atom -= gone.count;
+    });
+}
+
+}  // namespace palpa

@@ -1,0 +1,86 @@
+#include "simulation/observe.h"
+
+#include "core/units.h"
+#include "simulation/held.h"
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+namespace palpa {
+
+void note_rendered_force(World& world, const StepInput& input) {
+    AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();
+    if (!adaptive) return;
+    adaptive->rendered.reset();
+    if (!adaptive->accuracy || !input.hands.front().molecule) return;
+    if (!world.find<Grip>(first_hand(world))) return;
+    std::vector<std::optional<LiveMolecule>> live;
+    for (const HandPose& hand : input.hands) {
+        live.emplace_back();
+        if (hand.molecule) live.back() = {*hand.molecule, hand.start};
+    }
+    const LocalContactModel& contact = local_contact_of(world);
+    adaptive->rendered =
+        evaluate_local(contact.model, contact.field, *input.hands.front().molecule, live)
+            .force_newton /
+        units::newton_per_kcal_per_mol_angstrom;
+}
+
+void find_error(World& world) {
+    ErrorEstimate* const estimate = world.find_resource<ErrorEstimate>();
+    const Entity hand = first_hand(world);
+    const Grip* const grip = world.find<Grip>(hand);
+    if (!estimate || !grip || !is_mobile(*grip)) return;
+    const TorsionModel& model = model_of(world);
+    if (!estimate->memory) {
+        estimate->memory = {build_lineariser(model, estimate->held), build_quasi_statics(model),
+                            nullptr};
+    }
+    const Renewal rest = make_renewal(
+        model, estimate->settings, {world.resource<TorsionState>(), 0, {}, {}}, *estimate->memory);
+    if (!rest.linear) return;
+    const AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();
+    const Vec3 felt =
+        adaptive && adaptive->rendered ? *adaptive->rendered : find_force_on_held(world, hand);
+    const Vec3 found = find_force_on_held(model_of(world), rest.linear->at,
+                                          {static_cast<std::uint32_t>(grip->base), grip->spring});
+    constexpr double pN = units::piconewton_per_kcal_per_mol_angstrom;
+    estimate->last_pN = pN * (felt - found).norm();
+    estimate->felt_pN = pN * felt;
+    // Second derivatives cost about as much as so many evaluations.
+    constexpr std::size_t linearisation = 10;
+    estimate->evaluations = rest.relaxed.evaluations + linearisation;
+}
+
+void estimate_error(World& world) {
+    ErrorEstimate* const estimate = world.find_resource<ErrorEstimate>();
+    std::optional<RelaxStepReport>& report = world.resource<StepReport>().relaxed;
+    if (!estimate || !report || !report->is_finite) return;
+    AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();
+    AccuracyController* const accuracy =
+        adaptive && adaptive->accuracy ? &*adaptive->accuracy : nullptr;
+    if (accuracy) accuracy->add_step({report->active, report->steps});
+    constexpr std::size_t every = 200;  // steps, where nobody asks for an accuracy
+    ++estimate->steps;
+    if (accuracy ? !accuracy->is_due() : estimate->steps % every != 0) return;
+    estimate->last_pN.reset();
+    find_error(world);
+    report->is_estimating = true;
+    report->estimated_error_pN = estimate->last_pN;
+    if (accuracy && estimate->last_pN)
+        accuracy->add_estimate(*estimate->last_pN, estimate->felt_pN, estimate->evaluations);
+}
+
+void note_time(World& world) {
+    AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();
+    const StepReport& report = world.resource<StepReport>();
+    if (!adaptive || !adaptive->budget || !report.relaxed || report.relaxed->is_estimating) return;
+    if (report.relaxed->is_chosen || report.relaxed->is_renewed) {
+        adaptive->budget->add_choice(report.took_us);
+    } else {
+        adaptive->budget->add_step(report.took_us);
+    }
+}
+
+}  // namespace palpa

@@ -1,0 +1,83 @@
+#include "simulation/systems/follow_hands.h"
+
+#include "core/assertion.h"
+#include "core/units.h"
+#include "simulation/held.h"
+#include "simulation/resources.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace palpa {
+namespace {
+
+// Where what is held goes, and the gain that decided it.
+struct Move {
+    MoleculePose to;
+    std::optional<double> displacement_gain = {};
+};
+
+Move find_move(const World& world, const Grip& grip, const Hand& before, const HandPose& pose,
+               const ContactModel& felt, std::uint32_t start) noexcept {
+    // What the servo put elsewhere was held before.
+    if (pose.molecule) return {pose.start == start ? *pose.molecule : grip.pose};
+    const double gain =
+        displacement_gain(world.resource<Coupling>().laws.displacement, felt.force_newton.norm());
+    const Vec3 handle_m = grip.projector * (pose.travel_m - before.travel_m);
+    Move move{{grip.pose.place_angstrom + handle_m / gain * units::angstrom_per_metre,
+               grip.pose.orientation},
+              gain};
+    if (grip.freedom == 6) {
+        const Quat turned = pose.turn * before.turn.conjugate();
+        move.to.orientation = (turned * grip.pose.orientation).normalized();
+    }
+    return move;
+}
+
+// Farther out the digits that are left do not tell a shape.
+bool is_within_reach(const MoleculePose& pose) noexcept {
+    constexpr double farthest = 1e6;  // Å
+    return pose.place_angstrom.norm() < farthest && pose.orientation.coeffs().allFinite();
+}
+
+}  // namespace
+
+void follow_hands(World& world, const StepInput& input) {
+    StepReport& report = world.resource<StepReport>();
+    std::vector<MoleculePose> places;
+    std::size_t slot = 0;
+    world.each<Hand>([&](Entity entity, Hand& hand) {
+        PALPA_ASSERT(input.hands.size() == input.felt.size());
+        const Grip* const grip = world.find<Grip>(entity);
+        report.moves.emplace_back();
+        places.emplace_back();
+        if (grip) places.back() = grip->pose;
+        if (slot >= input.hands.size()) return;
+        const HandPose& pose = input.hands[slot];
+        const ContactModel& felt = input.felt[slot++];
+        if (grip) {
+            const Move move = find_move(world, *grip, hand, pose, felt,
+                                        contact_of(world, entity).answer.model.start);
+            report.finite = report.finite && is_within_reach(move.to);
+            report.moves.back() = {(move.to.place_angstrom - grip->pose.place_angstrom).norm(),
+                                   move.displacement_gain};
+            places.back() = move.to;
+        }
+        hand.travel_m = pose.travel_m;
+        hand.turn = pose.turn;
+    });
+    if (!report.finite) return;
+    slot = 0;
+    world.each<Hand>([&](Entity entity, const Hand&) {
+        if (world.find<Grip>(entity)) place_held(world, entity, places[slot]);
+        ++slot;
+    });
+}
+
+void take_hold(World& world, Entity hand, const HandPose& pose) noexcept {
+    Hand& held = *world.find<Hand>(hand);
+    held.travel_m = pose.travel_m;
+    held.turn = pose.turn;
+}
+
+}  // namespace palpa

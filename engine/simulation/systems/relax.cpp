@@ -1,0 +1,171 @@
+#include "simulation/systems/relax.h"
+
+#include "core/interrupt.h"
+#include "core/units.h"
+#include "simulation/held.h"
+#include "simulation/systems/choose_active.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace palpa {
+namespace {
+
+// Whether a step of the simulation makes another of its own. One that somebody ended is the run's
+// last, and nothing of it is felt or recorded.
+bool goes_on(const RelaxStepReport& report) { return report.is_finite && noted_interrupt() == 0; }
+
+RelaxStepReport relax_active(World& world, AdaptiveState& adaptive) {
+    const TorsionModel& model = model_of(world);
+    TorsionState& state = world.resource<TorsionState>();
+    const std::size_t steps = world.resource<Solver>().settings.steps;
+    const AdaptiveSettings& settings = adaptive.settings;
+    AdaptiveStatics& statics = adaptive.statics;
+    RelaxStepReport report;
+    const std::size_t evaluations = statics.memory.evaluations, renewals = statics.renewals;
+    const double before = state.energy();
+    report.is_finite = update_adaptive_forces(model, settings, state, statics);
+    const double moved_by_hand = state.energy();
+    report.hand_work = moved_by_hand - before;
+    report.steps = adaptive.accuracy ? adaptive.accuracy->work_budget().steps : steps;
+    // Many steps where all is at rest leave nothing of h but what rounding did not take.
+    if (adaptive.accuracy) statics.h = std::max(statics.h, settings.step.first_h);
+    const bool can_move = model.coordinates > 0;
+    for (std::size_t i = 0; can_move && i < report.steps && goes_on(report); ++i) {
+        const AdaptiveReport step = step_adaptive(model, settings, state, statics);
+        report.is_finite = step.step.is_finite;
+        report.is_chosen = report.is_chosen || step.is_chosen;
+        if (step.step.is_taken) report.largest_move += step.step.largest_move;
+    }
+    report.energy_change = state.energy() - moved_by_hand;
+    report.is_renewed = statics.renewals != renewals;
+    report.evaluations = statics.memory.evaluations - evaluations;
+    report.active = find_active_freedom(world);
+    report.total = statics.selection.total;
+    report.neglected = statics.selection.neglected;
+    report.is_finite = report.is_finite && std::isfinite(state.energy());
+    return report;
+}
+
+// Where the scene asks for a minimiser instead of the paper's step.
+RelaxStepReport minimise_all(World& world) {
+    const TorsionModel& model = model_of(world);
+    TorsionState& state = world.resource<TorsionState>();
+    Solver& solver = world.resource<Solver>();
+    const RelaxSettings& settings = solver.settings;
+    RelaxStepReport report;
+    const double before = solver.safe.energy();
+    const JointRelaxReport relaxed =
+        relax_joints(model, settings, state, solver.statics,
+                     [](const RelaxProgress&) { return noted_interrupt() == 0; });
+    report.hand_work = relaxed.energy_before - before;
+    report.energy_change = relaxed.energy_after - relaxed.energy_before;
+    report.evaluations = relaxed.evaluations;
+    report.active = static_cast<std::size_t>(model.coordinates);
+    report.steps = settings.steps;
+    report.is_finite = relaxed.end != RelaxEnd::NotFinite && std::isfinite(state.energy());
+    if (!report.is_finite) return report;
+    report.largest_move = find_largest_move(solver.safe.positions, state.positions);
+    solver.safe = state;
+    return report;
+}
+
+// A renewal belongs to the state at its request; it is used when its declared time has passed.
+void request_renewal(World& world, SecondOrder& second) {
+    if (second.pending) return;
+    const Clock& clock = world.resource<Clock>();
+    const auto steps = static_cast<std::uint64_t>(std::ceil(second.delay_s / clock.period_s));
+    second.pending = {make_renewal(model_of(world), second.settings,
+                                   request_renewal(second.settings, world.resource<TorsionState>(),
+                                                   second.statics),
+                                   second.statics.renewals),
+                      clock.steps + std::max<std::uint64_t>(steps, 1)};
+}
+
+bool adopt_due(const World& world, SecondOrder& second) {
+    if (!second.pending || world.resource<Clock>().steps < second.pending->due) return false;
+    adopt_renewal(second.settings, second.pending->renewal, second.statics);
+    second.pending.reset();
+    return true;
+}
+
+// All joints and bases follow the hands by second order.
+RelaxStepReport follow_by_second_order(World& world, SecondOrder& second) {
+    const TorsionModel& model = model_of(world);
+    TorsionState& state = world.resource<TorsionState>();
+    const double before = second.statics.value.energy;
+    const bool is_adopted = adopt_due(world, second);
+    const SecondOrderReport step = step_second_order(model, second.settings, state, second.statics);
+    if (step.is_renewed) second.pending.reset();  // it is of an older state
+    if (step.wants_renewal) request_renewal(world, second);
+    RelaxStepReport report;
+    report.energy_change = -step.released;
+    report.hand_work = step.energy + step.released - before;
+    report.largest_move = step.largest_move;
+    report.evaluations = step.full_evaluations + step.model_evaluations;
+    report.active = static_cast<std::size_t>(model.coordinates);
+    report.steps = step.model_evaluations;
+    report.is_renewed = step.is_renewed || is_adopted;
+    report.model_age = step.age;
+    report.estimated_error_pN = units::piconewton_per_kcal_per_mol_angstrom * step.error_estimate;
+    report.released = step.released;
+    report.is_finite = step.is_finite;
+    if (report.is_finite) world.resource<Solver>().safe = state;
+    return report;
+}
+
+}  // namespace
+
+void relax(World& world, const StepInput& /*input*/) {
+    if (!has_mobile(world)) return;
+    StepReport& report = world.resource<StepReport>();
+    report.relaxed = relax_mobile(world);
+    report.finite = report.relaxed->is_finite;
+    if (!report.finite) return;
+    copy_positions(world);
+    const TorsionState& state = world.resource<TorsionState>();
+    world.each<Molecule, Pose>([&](Entity, const Molecule& molecule, Pose& pose) {
+        const TorsionModel& model = model_of(world);
+        const std::uint32_t body = model.tree.bodies.body_of[molecule.reference_atom];
+        pose = {state.positions[molecule.reference_atom],
+                state.turns[model.tree.molecule_of[body]]};
+    });
+}
+
+RelaxStepReport relax_mobile(World& world) {
+    if (AdaptiveState* const adaptive = world.find_resource<AdaptiveState>())
+        return relax_active(world, *adaptive);
+    if (SecondOrder* const second = world.find_resource<SecondOrder>())
+        return follow_by_second_order(world, *second);
+    return minimise_all(world);
+}
+
+MobileCoordinates save_mobile(const World& world) {
+    const TorsionState& state = world.resource<TorsionState>();
+    return {state.angles, state.turns, state.shifts, state.springs};
+}
+
+void restore_mobile(const MobileCoordinates& saved, World& world) {
+    if (!has_mobile(world)) return;
+    TorsionState& state = world.resource<TorsionState>();
+    if (AdaptiveState* const adaptive = world.find_resource<AdaptiveState>()) {
+        state.angles = saved.angles;
+        state.turns = saved.turns;
+        state.shifts = saved.shifts;
+        state.springs = saved.springs;
+        update_positions(model_of(world), state);
+        adaptive->statics.is_built = false;
+        (void)update_adaptive_forces(model_of(world), adaptive->settings, state, adaptive->statics);
+    } else {
+        state = world.resource<Solver>().safe;
+        // A model of where that went wrong is of no use.
+        if (SecondOrder* const second = world.find_resource<SecondOrder>()) {
+            second->statics.linear.reset();
+            second->pending.reset();
+        }
+    }
+    copy_positions(world);
+}
+
+}  // namespace palpa

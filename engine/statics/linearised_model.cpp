@@ -1,0 +1,116 @@
+#include "statics/linearised_model.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace palpa {
+namespace {
+
+// Of near pairs alone, at the positions of the state.
+void evaluate_near(const TorsionModel& model, const ForceSettings& settings,
+                   const LinearisedModel& linear, const Eigen::VectorXd& at, NearPairs& near,
+                   TorsionState& state, ModelValue& value) {
+    std::ranges::fill(state.forces, Vec3::Zero());
+    value.energy = add_near_forces(model, settings, near, state.positions, state.forces);
+    value.gradient = find_gradient(model, linear.coordinates, linear.at, at, state);
+    // Springs belong to the rest.
+    for (const LocalCoordinates::SpringEnd& end : linear.coordinates.ends)
+        value.gradient.segment<3>(end.column).setZero();
+}
+
+void update_derivatives(const TorsionModel& model, const ForceSettings& settings,
+                        const TorsionState& state, Lineariser& lineariser) {
+    if (is_fast(settings)) {
+        update_fast_second_derivatives(model, lineariser.coordinates, lineariser.fast,
+                                       settings.nonbonded, state, lineariser.memory,
+                                       lineariser.all);
+    } else {
+        update_second_derivatives(model, lineariser.coordinates, lineariser.fast.paths,
+                                  settings.nonbonded, state, lineariser.all);
+    }
+}
+
+// Energy, gradient and second derivatives of all but the near pairs.
+void separate_rest(const TorsionModel& model, const ForceSettings& settings, Lineariser& lineariser,
+                   LinearisedModel& linear) {
+    const Eigen::VectorXd origin = Eigen::VectorXd::Zero(linear.coordinates.size());
+    TorsionState scratch = linear.at;
+    linear.gradient = find_gradient(model, linear.coordinates, linear.at, origin, scratch);
+    ModelValue near;
+    evaluate_near(model, settings, linear, origin, linear.near, scratch, near);
+    linear.rest_energy = linear.at.energy() - near.energy;
+    linear.rest_gradient = linear.gradient - near.gradient;
+    update_pair_derivatives(model, linear.coordinates, linear.near.all, settings.nonbonded,
+                            linear.at, lineariser.near);
+    linear.rest = (lineariser.all.all - lineariser.near.all).cast<float>();
+}
+
+}  // namespace
+
+Lineariser build_lineariser(const TorsionModel& model, HeldParts held) {
+    Lineariser lineariser;
+    lineariser.coordinates = build_local_coordinates(model, held.hands);
+    lineariser.fast = build_fast_second_derivatives(model, lineariser.coordinates);
+    lineariser.held = std::move(held);
+    return lineariser;
+}
+
+bool linearise(const TorsionModel& model, const ForceSettings& settings, double reach,
+               const TorsionState& state, Lineariser& lineariser, LinearisedModel& linear) {
+    linear.at = state;
+    linear.coordinates = lineariser.coordinates;
+    linear.near = build_near_pairs(model, state.positions, lineariser.held.atoms, reach);
+    update_derivatives(model, settings, state, lineariser);
+    const SecondDerivatives& all = lineariser.all;
+    separate_rest(model, settings, lineariser, linear);
+
+    update_atom_metric(model, linear.coordinates, state, lineariser.metric);
+    linear.factor.shift = lineariser.shift;
+    if (!update_response_factor(all, lineariser.metric, {}, linear.factor)) return false;
+    lineariser.shift = linear.factor.shift;
+    linear.factor.shifted.resize(0, 0);
+    linear.response = -find_response(linear.factor, all.mixed());
+    linear.frozen_stiffness = all.of_hands();
+    linear.relaxed_stiffness = all.of_hands() + all.mixed().transpose() * linear.response;
+    return true;
+}
+
+std::vector<Mat3> find_atom_responses(const TorsionModel& model, const LinearisedModel& linear,
+                                      const TorsionState& state, Eigen::Index first,
+                                      std::span<const std::uint32_t> atoms) {
+    std::vector<CoordinateMotion> motions;
+    update_motions(model, linear.coordinates, state, motions);
+    Eigen::MatrixXd moves = Eigen::MatrixXd::Zero(linear.coordinates.size(), 3);
+    moves.topRows(linear.mobile()) = linear.response.middleCols(first, 3);
+    moves.middleRows(linear.mobile() + first, 3).setIdentity();
+    // Turn and velocity at the origin of each body, for each displacement.
+    using Screws = Eigen::Matrix<double, 6, 3>;
+    const std::vector<Body>& bodies = model.tree.bodies.bodies;
+    std::vector<Screws> screws(bodies.size(), Screws::Zero());
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        if (bodies[b].parent != no_body) screws[b] = screws[bodies[b].parent];
+        for (const CarriedCoordinate& carried : linear.coordinates.of(b)) {
+            const CoordinateMotion& motion = motions[static_cast<std::size_t>(carried.column)];
+            screws[b] += motion.screw_at(Vec3::Zero()) * moves.row(carried.column);
+        }
+    }
+    std::vector<Mat3> responses;
+    for (const std::uint32_t atom : atoms) {
+        const Screws& screw = screws[model.tree.bodies.body_of[atom]];
+        responses.emplace_back(screw.bottomRows<3>() -
+                               cross_matrix(state.positions[atom]) * screw.topRows<3>());
+    }
+    return responses;
+}
+
+void evaluate_model(const TorsionModel& model, const ForceSettings& settings,
+                    const LinearisedModel& linear, const Eigen::VectorXd& at, NearPairs& near,
+                    TorsionState& state, ModelValue& value) {
+    place_about(model, linear.coordinates, linear.at, at, state);
+    evaluate_near(model, settings, linear, at, near, state, value);
+    const Eigen::VectorXd curved = (linear.rest * at.cast<float>()).cast<double>();
+    value.energy += linear.rest_energy + at.dot(linear.rest_gradient + 0.5 * curved);
+    value.gradient += linear.rest_gradient + curved;
+}
+
+}  // namespace palpa

@@ -1,0 +1,86 @@
+// The energy about a point of linearisation: exact for pairs between held atoms and atoms near
+// them, and to second order for everything else.
+#pragma once
+#include "statics/fast_second_derivatives.h"
+#include "statics/local_coordinates.h"
+#include "statics/near_pairs.h"
+#include "statics/response_factor.h"
+#include "statics/torsion_state.h"
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace palpa {
+
+// What hands hold of a model.
+struct HeldParts {
+    std::vector<HandHold> hands;
+    std::vector<std::uint32_t> atoms;  // of all hands, rising
+};
+
+// E(q, d) = E_near(q, d) + Q(q, d), where q are the mobile coordinates and d those of the hands,
+// both 0 at the point of linearisation (statics/local_coordinates.h). Q is the Taylor expansion to
+// second order of all terms but the near pairs. Not changed after it is built.
+struct LinearisedModel {
+    TorsionState at;  // the point of linearisation, with its energy
+    LocalCoordinates coordinates;
+    Eigen::VectorXd gradient;  // of the whole energy there; hands last: minus the forces on them
+    NearPairs near;
+
+    // Of Q at the point. Single precision is enough for the product with a small move.
+    double rest_energy = 0;  // kcal/mol
+    Eigen::VectorXd rest_gradient;
+    Eigen::MatrixXf rest;
+
+    ResponseFactor factor;     // of H, made positive definite
+    Eigen::MatrixXd response;  // X = -H^-1 G: moves of mobile coordinates per move of the hands
+    // At the hands (kcal/mol per Å and rad): K - G^T H^-1 G if everything mobile relaxes, and K if
+    // nothing does.
+    Eigen::MatrixXd relaxed_stiffness, frozen_stiffness;
+
+    Eigen::Index mobile() const noexcept { return coordinates.mobile; }
+    Eigen::Index hands() const noexcept { return coordinates.hands; }
+};
+
+// What one linearisation uses again at the next; of one model and its hands.
+struct Lineariser {
+    HeldParts held;
+    LocalCoordinates coordinates;
+    FastSecondDerivatives fast;
+    SecondDerivativesMemory memory;
+    SecondDerivatives all, near;
+    AtomMetric metric;
+    double shift = 0;  // of the last factor
+};
+
+Lineariser build_lineariser(const TorsionModel& model, HeldParts held);
+
+// At a state with forces; `reach`: within it pairs are exact, Å. False, and `linear` is of no use,
+// where second derivatives are not finite.
+[[nodiscard]] bool linearise(const TorsionModel& model, const ForceSettings& settings, double reach,
+                             const TorsionState& state, Lineariser& lineariser,
+                             LinearisedModel& linear);
+
+// How far each of these atoms goes if everything follows a hand that is displaced: column c of its
+// matrix per Å of the hand's displacement along axis c. `first`: of the hand's three displacements
+// among all hands' coordinates. `state`: where things stand, about the model's point.
+std::vector<Mat3> find_atom_responses(const TorsionModel& model, const LinearisedModel& linear,
+                                      const TorsionState& state, Eigen::Index first,
+                                      std::span<const std::uint32_t> atoms);
+
+// The model's energy (kcal/mol) and gradient (kcal/mol per rad and Å).
+struct ModelValue {
+    double energy = 0;
+    Eigen::VectorXd gradient;  // of all coordinates, hands last
+};
+
+// Places `state` at these coordinates and evaluates the model there. `near` is a copy of the
+// model's near pairs, since the kernel writes to its memory. The state's forces are then those of
+// the near pairs alone.
+void evaluate_model(const TorsionModel& model, const ForceSettings& settings,
+                    const LinearisedModel& linear, const Eigen::VectorXd& at, NearPairs& near,
+                    TorsionState& state, ModelValue& value);
+
+}  // namespace palpa

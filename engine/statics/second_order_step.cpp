@@ -1,0 +1,476 @@
+#include "statics/second_order_step.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace palpa {
+namespace {
+
+double rms_of(const Eigen::VectorXd& v) {
+    return v.size() > 0 ? std::sqrt(v.squaredNorm() / static_cast<double>(v.size())) : 0;
+}
+
+// ---- hands -------------------------------------------------------------------------------------
+
+// Where a hand has what it moves.
+struct HandPlace {
+    Vec3 place;
+    Quat turn;
+};
+
+HandPlace find_place(const TorsionModel& model, const TorsionState& state, const HandHold& hand) {
+    if (hand.spring) return {state.springs[*hand.spring].place, Quat::Identity()};
+    return {state.positions[model.bases[hand.molecule].pivot], state.turns[hand.molecule]};
+}
+
+Vec3 rotation_vector(const Quat& turn) {
+    const Eigen::AngleAxisd angle(turn);
+    return angle.angle() * angle.axis();
+}
+
+// The hands' coordinates about the point of linearisation, from where they are.
+Eigen::VectorXd find_hand_coordinates(const TorsionModel& model, const LinearisedModel& linear,
+                                      std::span<const HandHold> hands,
+                                      std::span<const HandPlace> places) {
+    Eigen::VectorXd d(linear.hands());
+    Eigen::Index next = 0;
+    for (std::size_t i = 0; i < hands.size(); ++i) {
+        const HandPlace origin = find_place(model, linear.at, hands[i]);
+        if (hands[i].turns) {
+            d.segment<3>(next) = rotation_vector(places[i].turn * origin.turn.conjugate());
+            next += 3;
+        }
+        d.segment<3>(next) = places[i].place - origin.place;
+        next += 3;
+    }
+    return d;
+}
+
+constexpr double arm =
+    5;  // Å: turns and torques of a hand count as at an atom so far from the axis
+
+// The longest of the hands' displacements or forces; turns and torques are multiplied by `of_turn`.
+double find_longest(std::span<const HandHold> hands, const Eigen::VectorXd& values,
+                    double of_turn) {
+    double longest = 0;
+    Eigen::Index next = 0;
+    for (const HandHold& hand : hands) {
+        if (hand.turns) {
+            longest = std::max(longest, of_turn * values.segment<3>(next).norm());
+            next += 3;
+        }
+        longest = std::max(longest, values.segment<3>(next).norm());
+        next += 3;
+    }
+    return longest;
+}
+
+// The farthest way of a hand by these coordinates, Å.
+double find_length(std::span<const HandHold> hands, const Eigen::VectorXd& d) {
+    return find_longest(hands, d, arm);
+}
+
+// The largest force on a hand, kcal/mol/Å.
+double find_force(std::span<const HandHold> hands, const Eigen::VectorXd& gradient) {
+    return find_longest(hands, gradient, 1 / arm);
+}
+
+// By how much the force on a hand would change if the model relaxed from here: -G^T H^-1 g.
+double find_unrelaxed(std::span<const HandHold> hands, const SecondOrderStatics& statics) {
+    const LinearisedModel& linear = *statics.linear;
+    const Eigen::VectorXd change =
+        linear.response.transpose() * statics.value.gradient.head(linear.mobile());
+    return find_force(hands, change);
+}
+
+// ---- steps on the model ------------------------------------------------------------------------
+
+// The model's energy over the mobile coordinates while hands stay.
+class ModelDescent {
+public:
+    ModelDescent(const TorsionModel& model, const SecondOrderSettings& settings,
+                 TorsionState& state, SecondOrderStatics& statics)
+        : model_(model), settings_(settings), state_(state), statics_(statics) {
+        forces_ = -statics.value.gradient.head(mobile());
+    }
+
+    double value() const { return statics_.value.energy; }
+    const Eigen::VectorXd& forces() const { return forces_; }
+    const Eigen::VectorXd& trial_forces() const { return trial_forces_; }
+    const Eigen::VectorXd& trial_move() const { return move_; }
+
+    Eigen::VectorXd precondition(const Eigen::VectorXd& forces) {
+        return find_response(statics_.linear->factor, forces);
+    }
+    static Eigen::VectorXd limit(Eigen::VectorXd direction) { return direction; }
+
+    double try_move(Eigen::VectorXd& direction, double& length) {
+        direction *= std::exchange(length, 1);
+        Eigen::VectorXd at = statics_.at;
+        at.head(mobile()) += direction;
+        evaluate(at);
+        const double moved = find_largest_move(state_.positions, statics_.trial.positions);
+        if (moved > settings_.largest_move) {
+            direction *= settings_.largest_move / moved;
+            at = statics_.at;
+            at.head(mobile()) += direction;
+            evaluate(at);
+        }
+        at_ = std::move(at);
+        move_ = direction;
+        trial_forces_ = -statics_.trial_value.gradient.head(mobile());
+        return statics_.trial_value.energy;
+    }
+
+    // Single precision rounds energies by more than a step near rest gains, so slopes decide.
+    bool accepts(double /*value*/, double /*linear_change*/) const {
+        constexpr double turned = 0.9;
+        return trial_forces_.allFinite() && trial_forces_.dot(move_) > -turned * forces_.dot(move_);
+    }
+
+    void accept() {
+        copy_coordinates(statics_.trial, state_);
+        statics_.at = at_;
+        std::swap(statics_.value, statics_.trial_value);
+        std::swap(forces_, trial_forces_);
+    }
+
+private:
+    Eigen::Index mobile() const { return statics_.linear->mobile(); }
+    void evaluate(const Eigen::VectorXd& at) {
+        evaluate_model(model_, settings_.forces, *statics_.linear, at, statics_.near,
+                       statics_.trial, statics_.trial_value);
+        ++statics_.model_evaluations;
+    }
+
+    const TorsionModel& model_;
+    const SecondOrderSettings& settings_;
+    TorsionState& state_;
+    SecondOrderStatics& statics_;
+    Eigen::VectorXd forces_, trial_forces_, move_, at_;
+};
+
+// Evaluates the model where `at` is, and goes towards its rest.
+void relax_model(const TorsionModel& model, const SecondOrderSettings& settings,
+                 TorsionState& state, SecondOrderStatics& statics) {
+    const std::span<const HandHold> hands = statics.renewals.lineariser.held.hands;
+    evaluate_model(model, settings.forces, *statics.linear, statics.at, statics.near, state,
+                   statics.value);
+    ++statics.model_evaluations;
+    ModelDescent descent(model, settings, state, statics);
+    constexpr LineSearch search{.tries = 6};
+    const std::size_t most = settings.tolerance ? 3 * settings.evaluations : settings.evaluations;
+    for (std::size_t i = 1; i < most; ++i) {
+        if (!descent.forces().allFinite() || rms_of(descent.forces()) < settings.rest) return;
+        if (i >= settings.evaluations && 4 * find_unrelaxed(hands, statics) < *settings.tolerance)
+            return;
+        if (!step_downhill(descent, statics.pairs, search)) return;
+    }
+}
+
+// Hands go by `by`, and everything follows linearly, as far as no atom goes too far at once.
+void follow_linearly(const TorsionModel& model, const SecondOrderSettings& settings,
+                     const Eigen::VectorXd& by, TorsionState& state, SecondOrderStatics& statics) {
+    const LinearisedModel& linear = *statics.linear;
+    const Eigen::VectorXd answer = linear.response * by;
+    statics.at.tail(linear.hands()) += by;
+    Eigen::VectorXd at = statics.at;
+    at.head(linear.mobile()) += answer;
+    place_about(model, linear.coordinates, linear.at, at, statics.trial);
+    const double moved = find_largest_move(state.positions, statics.trial.positions);
+    const double most = 2 * settings.largest_move;
+    statics.at.head(linear.mobile()) += std::min(1.0, most / std::max(moved, most)) * answer;
+}
+
+bool is_finite(const SecondOrderStatics& statics) {
+    return std::isfinite(statics.value.energy) && statics.value.gradient.allFinite();
+}
+
+// Relaxes on the whole energy while hands stay.
+JointRelaxReport relax_fully(const TorsionModel& model, const SecondOrderSettings& settings,
+                             TorsionState& state, RenewalMemory& memory) {
+    RelaxSettings relax;
+    relax.step.forces = settings.forces;
+    relax.largest_move = settings.relax_move;
+    relax.force_tolerance = settings.rest;
+    if (const auto& last = memory.last) {
+        relax.precondition = [&](const Coordinates& v) -> Coordinates {
+            return find_response(last->factor, v);
+        };
+    }
+    const std::size_t before = memory.full.memory.evaluations;
+    return relax_joints(model, relax, state, memory.full, [&](const RelaxProgress& progress) {
+        const std::size_t used = memory.full.memory.evaluations - before;
+        if (used >= settings.most_relaxation) return false;
+        return used < settings.least_relaxation || progress.rms_force > settings.relaxed;
+    });
+}
+
+// How far the state is from the point of linearisation, in units of the region in which the model
+// holds.
+double find_relative_age(const SecondOrderSettings& settings, const TorsionState& state,
+                         const SecondOrderStatics& statics) {
+    const LinearisedModel& linear = *statics.linear;
+    return std::max(
+        find_length(statics.renewals.lineariser.held.hands, statics.at.tail(linear.hands())) /
+            settings.renew_hand,
+        find_largest_move(linear.at.positions, state.positions) / settings.renew_atom);
+}
+
+// ---- one step ----------------------------------------------------------------------------------
+
+class Step {
+public:
+    Step(const TorsionModel& model, const SecondOrderSettings& settings, TorsionState& state,
+         SecondOrderStatics& statics)
+        : model_(model), settings_(settings), state_(state), statics_(statics) {
+        for (const HandHold& hand : hands()) places_.push_back(find_place(model, state, hand));
+    }
+
+    SecondOrderReport run() {
+        const std::vector<Vec3> start = state_.positions;
+        const std::size_t before = statics_.model_evaluations;
+        if (!statics_.linear && !renew(true)) return report_;
+        if (!place_with_springs()) return report_;
+        const double way = find_length(hands(), left());
+        if (prepare_still(way)) follow(way);
+        describe(start, before);
+        return report_;
+    }
+
+private:
+    std::span<const HandHold> hands() const { return statics_.renewals.lineariser.held.hands; }
+    const LinearisedModel& linear() const { return *statics_.linear; }
+
+    // The hands' coordinates that the model has not followed yet.
+    Eigen::VectorXd left() const {
+        return find_hand_coordinates(model_, linear(), hands(), places_) -
+               statics_.at.tail(linear().hands());
+    }
+
+    void place() { place_about(model_, linear().coordinates, linear().at, statics_.at, state_); }
+
+    // Springs that no hand moves may be others than the model knows: then it is made anew.
+    bool place_with_springs() {
+        std::vector<Spring> springs = state_.springs;
+        place();
+        for (const HandHold& hand : hands()) {
+            if (hand.spring && *hand.spring < springs.size())
+                springs[*hand.spring].place = state_.springs[*hand.spring].place;
+        }
+        if (springs == state_.springs) return true;
+        state_.springs = std::move(springs);
+        return renew(true);
+    }
+
+    // False where the caller makes it later, and where it is not finite.
+    bool renew(bool at_once) {
+        report_.wants_renewal = !at_once;
+        if (!at_once) return false;
+        const Renewal renewal = make_renewal(
+            model_, settings_, request_renewal(settings_, state_, statics_), statics_.renewals);
+        report_.is_renewed = true;
+        report_.is_finite = renewal.linear != nullptr;
+        report_.full_evaluations += renewal.relaxed.evaluations;
+        report_.released += renewal.relaxed.energy_before - renewal.relaxed.energy_after;
+        if (renewal.error) report_.renewal_error = renewal.error;
+        adopt_renewal(settings_, renewal, statics_);
+        if (report_.is_finite) place();
+        return report_.is_finite;
+    }
+
+    // Where hands stand still, a renewal after some steps, until the whole energy is at rest. False
+    // where there is nothing to do.
+    bool prepare_still(double way) {
+        constexpr double moved = 0.01;  // of a stride
+        if (way > moved * settings_.stride) {
+            statics_.still_steps = 0;
+            statics_.is_at_rest = false;
+            return true;
+        }
+        if (statics_.is_at_rest) return way > 0;
+        if (++statics_.still_steps < settings_.still_steps) return true;
+        statics_.still_steps = 0;
+        (void)renew(settings_.renews_at_once);
+        return report_.is_finite;
+    }
+
+    bool is_old() const {
+        const double way = find_length(hands(), statics_.at.tail(linear().hands()));
+        const double farthest = find_largest_move(linear().at.positions, state_.positions);
+        if (!statics_.is_settled || farthest > settings_.renew_atom) return true;
+        if (!settings_.tolerance) return way >= settings_.renew_hand;
+        constexpr double near = 0.7;
+        return way >= settings_.farthest_hand || error_estimate() > near * *settings_.tolerance;
+    }
+
+    double error_estimate() const {
+        const double age = find_relative_age(settings_, state_, statics_);
+        return std::hypot(find_unrelaxed(hands(), statics_), statics_.error_growth * age * age);
+    }
+
+    void follow(double way) {
+        const double stride =
+            std::max(settings_.stride, way / static_cast<double>(settings_.most_strides));
+        bool is_tried = false;  // one renewal a step where a state does not settle
+        for (bool is_there = false; !is_there;) {
+            if (is_old() && !(is_tried && !statics_.is_settled)) {
+                is_tried = true;
+                if (renew(settings_.renews_at_once)) continue;
+                if (!report_.is_finite) return;
+            }
+            const Eigen::VectorXd rest = left();
+            const double length = find_length(hands(), rest);
+            is_there = length <= stride;
+            const Eigen::VectorXd by = is_there ? rest : Eigen::VectorXd(rest * (stride / length));
+            const bool must_renew = report_.wants_renewal && is_beyond(by);
+            if (!must_renew && try_stride(by)) continue;
+            is_there = false;
+            if (!renew(true)) return;
+        }
+    }
+
+    bool is_beyond(const Eigen::VectorXd& by) const {
+        const Eigen::VectorXd d = statics_.at.tail(linear().hands());
+        const double next = find_length(hands(), d + by);
+        return next > settings_.farthest_hand && next > find_length(hands(), d);
+    }
+
+    // False, and everything is as it was, where an atom would leave the region of the model. With a
+    // model that is new nothing better can be had: then the hand alone goes on, before everything
+    // relaxes on the whole energy.
+    bool try_stride(const Eigen::VectorXd& by) {
+        const Eigen::VectorXd at = statics_.at;
+        const ModelValue value = statics_.value;
+        follow_linearly(model_, settings_, by, state_, statics_);
+        relax_model(model_, settings_, state_, statics_);
+        if (is_finite(statics_) &&
+            find_largest_move(linear().at.positions, state_.positions) < settings_.farthest)
+            return true;
+        ++statics_.discarded;
+        const bool is_new = at.squaredNorm() == 0;
+        statics_.at = at;
+        statics_.value = value;
+        statics_.pairs.clear();
+        if (is_new) statics_.at.tail(linear().hands()) += by;
+        place();
+        return false;
+    }
+
+    void describe(const std::vector<Vec3>& start, std::size_t before) {
+        if (!report_.is_finite) return;
+        report_.energy = statics_.value.energy;
+        report_.rms_force = rms_of(statics_.value.gradient.head(linear().mobile()));
+        report_.age = find_length(hands(), statics_.at.tail(linear().hands()));
+        report_.farthest = find_largest_move(linear().at.positions, state_.positions);
+        report_.largest_move = find_largest_move(start, state_.positions);
+        report_.error_estimate = error_estimate();
+        report_.model_evaluations = statics_.model_evaluations - before;
+    }
+
+    const TorsionModel& model_;
+    const SecondOrderSettings& settings_;
+    TorsionState& state_;
+    SecondOrderStatics& statics_;
+    std::vector<HandPlace> places_;  // where hands want what they hold
+    SecondOrderReport report_;
+};
+
+}  // namespace
+
+Renewal make_renewal(const TorsionModel& model, const SecondOrderSettings& settings,
+                     RenewalRequest request, RenewalMemory& memory) {
+    Renewal renewal;
+    renewal.relaxed = relax_fully(model, settings, request.state, memory);
+    if (renewal.relaxed.end == RelaxEnd::NotFinite || !std::isfinite(request.state.energy()))
+        return renewal;
+    auto linear = std::make_shared<LinearisedModel>();
+    if (!linearise(model, settings.forces, settings.near_reach, request.state, memory.lineariser,
+                   *linear))
+        return renewal;
+    if (request.felt.size() == linear->hands()) {
+        renewal.error = find_force(memory.lineariser.held.hands,
+                                   request.felt - linear->gradient.tail(linear->hands()));
+        renewal.model_error = find_force(memory.lineariser.held.hands,
+                                         request.at_rest - linear->gradient.tail(linear->hands()));
+        renewal.error_age = request.age;
+    }
+    memory.last = linear;
+    renewal.linear = std::move(linear);
+    return renewal;
+}
+
+SecondOrderStatics build_second_order_statics(const TorsionModel& model, HeldParts held) {
+    SecondOrderStatics statics;
+    statics.renewals.lineariser = build_lineariser(model, std::move(held));
+    statics.renewals.full = build_quasi_statics(model);
+    statics.trial = build_torsion_state(model);
+    return statics;
+}
+
+void start_second_order(const TorsionModel& model, const SecondOrderSettings& settings,
+                        const TorsionState& state, SecondOrderStatics& statics) {
+    SecondOrderSettings as_it_is = settings;
+    as_it_is.least_relaxation = as_it_is.most_relaxation = 0;
+    adopt_renewal(
+        settings,
+        make_renewal(model, as_it_is, request_renewal(settings, state, statics), statics.renewals),
+        statics);
+    statics.is_at_rest = false;
+}
+
+SecondOrderReport step_second_order(const TorsionModel& model, const SecondOrderSettings& settings,
+                                    TorsionState& state, SecondOrderStatics& statics) {
+    return Step(model, settings, state, statics).run();
+}
+
+RenewalRequest request_renewal(const SecondOrderSettings& settings, const TorsionState& state,
+                               const SecondOrderStatics& statics) {
+    RenewalRequest request{state, 0, {}, {}};
+    if (!statics.linear) return request;
+    request.age = find_relative_age(settings, state, statics);
+    const LinearisedModel& linear = *statics.linear;
+    request.felt = statics.value.gradient.tail(linear.hands());
+    request.at_rest =
+        request.felt + linear.response.transpose() * statics.value.gradient.head(linear.mobile());
+    return request;
+}
+
+void adopt_renewal(const SecondOrderSettings& settings, const Renewal& renewal,
+                   SecondOrderStatics& statics) {
+    if (!renewal.linear) return;
+    statics.linear = renewal.linear;
+    statics.near = renewal.linear->near;
+    statics.at = Eigen::VectorXd::Zero(renewal.linear->coordinates.size());
+    statics.value = {renewal.linear->at.energy(), renewal.linear->gradient};
+    statics.pairs.clear();
+    statics.is_settled =
+        renewal.relaxed.rms_force <= settings.relaxed || renewal.relaxed.end == RelaxEnd::Stuck;
+    constexpr double at_rest = 0.002;  // Å
+    statics.is_at_rest = renewal.relaxed.largest_move < at_rest;
+    if (renewal.error) {
+        constexpr double least_age = 0.3;
+        const double age = std::max(renewal.error_age, least_age);
+        const double growth = renewal.model_error / (age * age);
+        statics.error_growth =
+            statics.error_growth > 0 ? 0.5 * (statics.error_growth + growth) : growth;
+    }
+    ++statics.renewed;
+}
+
+Vec6 find_hand_pull(const SecondOrderStatics& statics, std::size_t hand) noexcept {
+    const std::vector<HandHold>& hands = statics.renewals.lineariser.held.hands;
+    Eigen::Index column = statics.linear->mobile();
+    for (std::size_t i = 0; i < hand; ++i) column += hands[i].turns ? 6 : 3;
+    Vec6 pull = Vec6::Zero();
+    const Eigen::VectorXd& gradient = statics.value.gradient;
+    if (hands[hand].turns) {
+        pull = -gradient.segment<6>(column);
+    } else {
+        pull.tail<3>() = -gradient.segment<3>(column);
+    }
+    return pull;
+}
+
+}  // namespace palpa

@@ -1,0 +1,150 @@
+// The quasi-static step by second order: all joints and bases answer the hands at once.
+//
+// Between renewals the energy is that of statics/linearised_model.h: exact near what hands hold,
+// quadratic elsewhere. If a hand moves, everything first follows linearly and then relaxes by
+// quasi-Newton steps on that model. Before a hand or an atom leaves the region where the model
+// holds, it is renewed: the state relaxes on the whole energy and is linearised again.
+#pragma once
+#include "statics/linearised_model.h"
+#include "statics/relax_joints.h"
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace palpa {
+
+// Dense matrices of so many coordinates take 0.4 GB and a renewal about a second; with more the
+// work grows with the third power.
+inline constexpr Eigen::Index most_second_order_coordinates = 3000;
+
+struct SecondOrderSettings {
+    ForceSettings forces;
+    double near_reach = 6;          // Å: pairs of held atoms with atoms so near are exact
+    double stride = 0.1;            // Å: the way of a hand between two relaxations, at most
+    std::size_t most_strides = 25;  // in a step; a hand that goes farther has longer ones
+    std::size_t evaluations = 4;    // of the model after each stride, at most
+    double largest_move = 0.15;     // Å, of any atom in one of them
+    double rest = 1e-3;  // rms force along coordinates that counts as rest, kcal/mol per rad and Å
+
+    // The model is renewed if a hand or an atom has gone so far from the point of linearisation
+    // (Å). A stride that takes an atom beyond `farthest` is repeated with a new model.
+    double renew_hand = 0.1, renew_atom = 0.3, farthest = 0.45;
+    // While a renewal is awaited, a hand that goes farther than this from the point (Å) does not
+    // wait for it: there is one within the step.
+    double farthest_hand = 0.3;
+    // Renewals take place within the step. Otherwise the step asks for them, goes on with the old
+    // model, and the caller makes them (make_renewal) and hands them over (adopt_renewal).
+    bool renews_at_once = true;
+    // Where hands stand still, the model is renewed after so many steps, so that what is felt
+    // comes to the rest of the whole energy.
+    std::size_t still_steps = 10;
+
+    // kcal/mol/Å. Where set, it decides instead of `renew_hand`: the model is renewed if the error
+    // estimate comes near it, and evaluations go on, up to three times as many, while what they
+    // leave is more than a quarter of it.
+    std::optional<double> tolerance;
+
+    // Relaxation at a renewal: at least so many evaluations of the whole energy, and more until
+    // the rms force is below `relaxed`, at most `most_relaxation`. No step moves an atom farther
+    // than `relax_move`.
+    std::size_t least_relaxation = 6, most_relaxation = 25;
+    double relaxed = 5;       // kcal/mol per rad and Å
+    double relax_move = 0.1;  // Å
+};
+
+// What renewals use again from one to the next. They read nothing else that changes, so a thread of
+// its own may make them.
+struct RenewalMemory {
+    Lineariser lineariser;
+    QuasiStatics full;
+    std::shared_ptr<const LinearisedModel> last;  // its factor preconditions the next relaxation
+};
+
+// Where a renewal starts from.
+struct RenewalRequest {
+    TorsionState state;
+    double age = 0;  // of the old model, in units of the region in which it holds
+    // Gradient at the hands by the old model, and what it would be if that model were at rest;
+    // empty where there is none.
+    Eigen::VectorXd felt, at_rest;
+};
+
+// A model linearised at a relaxed state.
+struct [[nodiscard]] Renewal {
+    std::shared_ptr<const LinearisedModel> linear;  // none where anything was not finite
+    JointRelaxReport relaxed;
+    // The force on the hands that the old model had, less the right one, kcal/mol/Å; the part of it
+    // that is the model's own, not what it had yet to relax; and the old model's age.
+    std::optional<double> error;
+    double model_error = 0, error_age = 0;
+};
+
+// Relaxes the state while its hands stay, and linearises there.
+Renewal make_renewal(const TorsionModel& model, const SecondOrderSettings& settings,
+                     RenewalRequest request, RenewalMemory& memory);
+
+struct [[nodiscard]] SecondOrderReport {
+    bool is_finite = true;  // else the state is where it was at the last renewal, or before
+    bool is_renewed = false;
+    bool wants_renewal = false;
+    double energy = 0;        // kcal/mol, by the model
+    double rms_force = 0;     // along the mobile coordinates
+    double age = 0;           // Å: the way of the farthest hand from the point of linearisation
+    double farthest = 0;      // Å: the same of any atom
+    double largest_move = 0;  // Å, of any atom in this step
+    std::size_t full_evaluations = 0, model_evaluations = 0;
+    std::optional<double> renewal_error;  // of the last one, as in Renewal
+    // Of the force on a hand, against complete relaxation (kcal/mol/Å): what the model has not
+    // relaxed yet, and the error at the last renewals, which grows with the square of the age.
+    double error_estimate = 0;
+    // By how much relaxation at renewals lowered the energy, kcal/mol. At a snap, where a minimum
+    // has vanished, this is what it sets free.
+    double released = 0;
+};
+
+// What steps keep from one to the next.
+struct SecondOrderStatics {
+    RenewalMemory renewals;
+
+    std::shared_ptr<const LinearisedModel> linear;  // none before the first step
+    Eigen::VectorXd at;                             // where the state is, about it
+    ModelValue value;                               // of the model there
+    CurvaturePairs pairs{false};
+    NearPairs near;               // the model's, with kernel memory of its own
+    bool is_settled = true;       // the model's point was relaxed enough
+    bool is_at_rest = false;      // the whole energy is, where the hands are
+    std::size_t still_steps = 0;  // since hands last moved, or a renewal
+    double error_growth = 0;      // of errors at renewals, kcal/mol/Å per squared age
+    TorsionState trial;
+    ModelValue trial_value;
+
+    std::size_t renewed = 0, discarded = 0;  // renewals; strides that were repeated
+    std::size_t model_evaluations = 0;
+};
+
+SecondOrderStatics build_second_order_statics(const TorsionModel& model, HeldParts held);
+
+// Linearises at the state as it is; without that the first step does, after relaxing.
+void start_second_order(const TorsionModel& model, const SecondOrderSettings& settings,
+                        const TorsionState& state, SecondOrderStatics& statics);
+
+// Follows the hands to where the state has the bases and spring ends that they move. All other
+// coordinates of the state are those of the last step.
+SecondOrderReport step_second_order(const TorsionModel& model, const SecondOrderSettings& settings,
+                                    TorsionState& state, SecondOrderStatics& statics);
+
+// For renewals that are made elsewhere: after a step that wants one, then as soon as it is there.
+// The new model belongs to where the hands were at the request. The next step follows from there
+// to where they are, by strides. One that is not finite changes nothing.
+RenewalRequest request_renewal(const SecondOrderSettings& settings, const TorsionState& state,
+                               const SecondOrderStatics& statics);
+void adopt_renewal(const SecondOrderSettings& settings, const Renewal& renewal,
+                   SecondOrderStatics& statics);
+
+// Torque about the point that a hand moves, zero where it does not turn it, and force, of the model
+// on what the hand moves after a step; kcal/mol and kcal/mol/Å.
+Vec6 find_hand_pull(const SecondOrderStatics& statics, std::size_t hand) noexcept;
+
+}  // namespace palpa

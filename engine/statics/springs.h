@@ -1,0 +1,68 @@
+// Springs that pull at atoms: a hand on an atom or a residue, a restraint between atoms.
+#pragma once
+#include "math/vec.h"
+#include "statics/torsion_model.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace palpa {
+
+// A spring from the centre of mass of some atoms to a place, or to the centre of mass of others.
+// E = k (|x - y| - length)^2/2.
+struct Spring {
+    std::vector<std::uint32_t> atoms = {};        // whose centre of mass is x; one or more
+    double k = 0;                                 // kcal/mol/Å^2
+    Vec3 place = Vec3::Zero();                    // y, Å, where there are no other atoms
+    std::vector<std::uint32_t> other_atoms = {};  // whose centre of mass is y
+    double length = 0;                            // Å, at rest
+
+    friend bool operator==(const Spring&, const Spring&) = default;
+};
+
+// The state of a spring. Where both ends of a spring with a length coincide its direction is
+// undefined: it pulls at nothing.
+struct SpringPull {
+    Vec3 stretch;   // x - y, Å
+    double k;       // k (1 - length/|x - y|), kcal/mol/Å^2: k times the stretch is the force on y
+    double energy;  // kcal/mol
+};
+
+Vec3 find_centre_of_mass(const TorsionModel& model, std::span<const std::uint32_t> atoms,
+                         std::span<const Vec3> positions) noexcept;
+
+// Where the other end is, Å.
+Vec3 find_other_end(const TorsionModel& model, const Spring& spring,
+                    std::span<const Vec3> positions) noexcept;
+
+SpringPull find_spring_pull(const TorsionModel& model, const Spring& spring,
+                            std::span<const Vec3> positions) noexcept;
+
+// By which it pulls at its other end, kcal/mol/Å.
+Vec3 find_spring_force(const TorsionModel& model, const Spring& spring,
+                       std::span<const Vec3> positions) noexcept;
+
+// -d(that force)/d(its other end), kcal/mol/Å^2: k along the spring and k (1 - length/|x - y|)
+// across it. Zero where a spring with a length has no direction.
+Mat3 find_spring_stiffness(const TorsionModel& model, const Spring& spring,
+                           std::span<const Vec3> positions) noexcept;
+
+// Adds the forces of a spring and returns its energy.
+double add_spring_forces(const TorsionModel& model, const Spring& spring,
+                         std::span<const Vec3> positions, std::span<Vec3> forces) noexcept;
+
+// Each atom that a spring pulls at, with the share of the force that it has, by mass: one below 0
+// pulls the other way.
+template <class Visit>
+void visit_pulled(const TorsionModel& model, const Spring& spring, const Visit& visit) {
+    const auto visit_end = [&](std::span<const std::uint32_t> atoms, double sign) {
+        double mass = 0;
+        for (const std::uint32_t atom : atoms) mass += model.masses[atom];
+        for (const std::uint32_t atom : atoms) visit(atom, sign * model.masses[atom] / mass);
+    };
+    visit_end(spring.atoms, 1);
+    visit_end(spring.other_atoms, -1);
+}
+
+}  // namespace palpa

@@ -1,0 +1,73 @@
+#include "app/preferences.h"
+
+#include "core/files.h"
+#include "tests/support/load_error_of.h"
+#include "tests/support/temporary_folder.h"
+
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <string>
+
+using namespace palpa;
+using Catch::Contains;
+
+TEST_CASE("preferences read as they were written", "[tools][preferences]") {
+    const Preferences odd{.device = "a \"b\"\n", .sound = GENERATE(true, false)};
+
+    CHECK(parse_preferences("device = \"omni\"", "p.toml") == Preferences{.device = "omni"});
+    CHECK(parse_preferences("sound = true", "p.toml") == Preferences{.sound = true});
+    CHECK(parse_preferences(format_preferences(odd), "p.toml") == odd);
+    CHECK(parse_preferences(format_preferences({}), "p.toml") == Preferences{});
+}
+
+TEST_CASE("preferences that are wrong say where", "[tools][preferences]") {
+    const auto told = [](const char* text) {
+        return test::load_error_of([&] { (void)parse_preferences(text, "p.toml"); });
+    };
+    CHECK_THAT(told("device = omni"), Contains("p.toml:1:10"));
+    CHECK_THAT(told("\ndevice = 3"), Contains("p.toml:2:10: device is no text"));
+    CHECK_THAT(told("sound = 1"), Contains("p.toml:1:9: sound is no truth value"));
+    CHECK_THAT(told("scene = true"), Contains("p.toml:1:9: scene is no text"));
+    CHECK_THAT(told("text_scale = \"2\""), Contains("text_scale is no number from 0.5 to 4"));
+    CHECK_THAT(told("text_scale = 4.1"), Contains("p.toml:1:14: text_scale is no number"));
+    CHECK_THAT(told("text_scale = 0.4"), Contains("text_scale is no number from 0.5 to 4"));
+    CHECK_THAT(told("devise = \"omni\""), Contains("p.toml:1:10: unknown key 'devise'") &&
+                                              Contains("device, sound, scene, text_scale") &&
+                                              Contains("did you mean 'device'"));
+}
+
+TEST_CASE("a choice is kept, in a folder that was not there", "[tools][preferences]") {
+    const test::TemporaryFolder folder;
+    const auto file = folder.path() / "a" / "b.toml";
+    PreferencesFile preferences(file);
+    CHECK(preferences.problem().empty());
+
+    preferences.keep({.device = "mouse"});
+
+    CHECK(PreferencesFile(file).now() == Preferences{.device = "mouse"});
+    CHECK(parse_preferences(read_text_file(file), "p.toml").device == "mouse");
+}
+
+TEST_CASE("a file that cannot be read is not written over", "[tools][preferences]") {
+    const test::TemporaryFolder folder;
+    const auto file = folder.add_file("p.toml", "device = \"omni\"\ncolour = 3\n");
+    PreferencesFile preferences(file);
+
+    CHECK_THAT(preferences.problem(), Contains("p.toml:2:10: unknown key 'colour'"));
+    CHECK(preferences.now() == Preferences{});
+    CHECK_THAT(test::load_error_of([&] { preferences.keep({.device = "mouse"}); }),
+               Contains("is not remembered: ") && Contains("unknown key"));
+    CHECK(read_text_file(file) == "device = \"omni\"\ncolour = 3\n");
+}
+
+TEST_CASE("the file is where the system keeps settings", "[tools][preferences]") {
+    setenv("XDG_CONFIG_HOME", "/some/where", 1);
+    CHECK(find_preferences_file() == "/some/where/palpa/preferences.toml");
+    setenv("XDG_CONFIG_HOME", "relative", 1);
+    unsetenv("APPDATA");
+    setenv("HOME", "/home/somebody", 1);
+    CHECK(find_preferences_file() == "/home/somebody/.config/palpa/preferences.toml");
+    unsetenv("XDG_CONFIG_HOME");
+    unsetenv("HOME");
+    CHECK_FALSE(find_preferences_file());
+}

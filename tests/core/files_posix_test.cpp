@@ -1,0 +1,49 @@
+// Pipes, links and devices among files: what Windows has no names in folders for.
+#include "core/files.h"
+
+#include "core/load_error.h"
+#include "tests/support/load_error_of.h"
+#include "tests/support/temporary_folder.h"
+
+#include <sys/stat.h>
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+using namespace palpa;
+using test::load_error_of;
+
+namespace fs = std::filesystem;
+
+TEST_CASE("what is no regular file is refused at once", "[core][files]") {
+    const test::TemporaryFolder folder;
+    const fs::path pipe = folder.path() / "pipe";
+    REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+    for (const fs::path& path : {pipe, fs::path("/dev/zero")}) {
+        CHECK(load_error_of([&] { read_text_file(path); }) ==
+              path.string() + ": is no regular file, one was expected");
+    }
+}
+
+TEST_CASE("a link is replaced and not written through", "[core][files]") {
+    const test::TemporaryFolder folder;
+    const fs::path target = folder.add_file("target", "old"), link = folder.path() / "link";
+    fs::create_symlink(target, link);
+
+    CHECK_THROWS_AS(write_text_file(link, "new"), LoadError);
+    CHECK_THROWS_AS(NewFile(link), LoadError);
+    CHECK_THROWS_AS(check_output(link, "old", true), LoadError);
+    CHECK_FALSE(has_mark(link, "old"));
+    CHECK(fs::is_symlink(link));
+
+    write_text_file(link, "new", Existing::Replace);
+    CHECK_FALSE(fs::is_symlink(link));
+    CHECK(read_text_file(target) == "old");
+}
+
+TEST_CASE("a device is written into, and stays a device", "[core][files]") {
+    CHECK(check_output("/dev/null", "# mark", false) == Existing::Replace);
+    write_text_file("/dev/null", "text");
+    CHECK(fs::is_character_file("/dev/null"));
+    CHECK_THROWS_AS(write_text_file("/dev/full", "text"), LoadError);
+    CHECK(fs::is_character_file("/dev/full"));
+}

@@ -1,0 +1,48 @@
+// The first of the scenarios that `palpa scenarios` plays, and that its bars can be missed.
+#include "experiments/scenarios.h"
+#include "tests/support/paths.h"
+
+#include <catch2/catch.hpp>
+
+using namespace palpa;
+
+namespace {
+
+const std::string two_waters = test::in_project("scenes/water");
+
+}  // namespace
+
+TEST_CASE("500 random hands on two waters: no energy from nothing, no vibration, none goes through",
+          "[experiments][coupling]") {
+    const std::vector<ScenarioResult> results =
+        play_scenarios({.scene = two_waters, .settings = {}, .count = 500}, {});
+
+    REQUIRE(results.size() == 500);
+    for (std::size_t i = 0; i < results.size(); ++i) {
+        const ScenarioResult& result = results[i];
+        INFO("scenario " << i << ": " << result.generated_J << " J, " << result.ripple_N << " N, "
+                         << result.closest_angstrom << " A");
+        CHECK(result.is_calm());
+        // 10 nN, 3 bodies that share it.
+        CHECK(result.closest_angstrom > 2.29);
+    }
+}
+
+TEST_CASE("the paper's coupling misses the bars of the scenarios", "[experiments][coupling]") {
+    const std::vector<ScenarioResult> results =
+        play_scenarios({.scene = two_waters, .settings = {"coupling.mode=2"}, .count = 20}, {});
+
+    std::size_t calm = 0;
+    for (const ScenarioResult& result : results) calm += result.is_calm() ? 1 : 0;
+    CHECK(calm < 15);
+}
+
+TEST_CASE("a scenario is the same whatever is played beside it", "[experiments][coupling]") {
+    const ScenarioOptions options{.scene = two_waters, .settings = {"run.seconds=2"}};
+
+    const ScenarioResult one = play_scenario(options, 7), again = play_scenario(options, 7);
+
+    CHECK(one.settings == again.settings);
+    CHECK(one.generated_J == again.generated_J);
+    CHECK(one.settings != play_scenario(options, 8).settings);
+}

@@ -1,0 +1,68 @@
+#include "session/unbinding_path.h"
+
+#include "scene/read_scene.h"
+#include "simulation/held.h"
+#include "simulation/load.h"
+#include "tests/support/paths.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <vector>
+
+using namespace palpa;
+
+TEST_CASE("of a hand on a spring the path is that of its residue", "[session][unbinding]") {
+    World world = load_world(read_scene(
+        test::in_project("scenes/hiv/flexible.toml"),
+        std::vector<std::string>{"grab.molecule=protease_b", "grab.atom=\"50\"",
+                                 "molecules.inhibitor.motion=free", "statics.relax_steps=0"}));
+    const AtomTable& atoms = world.resource<AtomTable>();
+    REQUIRE(has_mobile(world));
+    const auto is_held = [&](std::size_t i) {
+        return atoms.names[i].segment == "B" && atoms.names[i].number == "50";
+    };
+    const auto move_held_atoms = [&](double by) {
+        for (std::size_t i = 0; i < atoms.size(); ++i) {
+            if (!is_held(i)) continue;
+            world.resource<AtomTable>().positions[i].x() += by;
+            world.resource<TorsionState>().positions[i].x() += by;
+        }
+    };
+    const auto find_clearance = [&] {
+        double clearance = std::numeric_limits<double>::infinity();
+        for (std::size_t i = 0; i < atoms.size(); ++i) {
+            for (std::size_t j = 0; j < atoms.size(); ++j) {
+                if (!is_held(i) || atoms.names[j].segment == "B") continue;
+                if (atoms.mass[i] < 2 || atoms.mass[j] < 2) continue;
+                clearance = std::min(clearance, (atoms.positions[i] - atoms.positions[j]).norm());
+            }
+        }
+        return clearance;
+    };
+    const double at_start = find_clearance();
+    UnbindingLog log(world);
+    CHECK(log.unbinding().closest == Approx(at_start).epsilon(1e-12));
+
+    move_held_atoms(0.5);
+    log.add(world);
+
+    const double clearance = find_clearance();
+    CHECK(log.unbinding().farthest == Approx(0.5).epsilon(1e-12));
+    CHECK(log.unbinding().last_rmsd == Approx(0.5).epsilon(1e-12));
+    CHECK(log.unbinding().clearance == Approx(clearance).epsilon(1e-12));
+    CHECK(log.unbinding().closest == Approx(std::min(at_start, clearance)).epsilon(1e-12));
+    CHECK(clearance > 1);
+
+    move_held_atoms(-0.7);
+    log.add(world);
+
+    // Not as far as before, on the other side: only what is the smallest of all may change.
+    CHECK(log.unbinding().farthest == Approx(0.5).epsilon(1e-12));
+    CHECK(log.unbinding().clearance == Approx(clearance).epsilon(1e-12));
+    CHECK(log.unbinding().closest ==
+          Approx(std::min({at_start, clearance, find_clearance()})).epsilon(1e-12));
+    CHECK(log.unbinding().last_rmsd == Approx(0.2).epsilon(1e-12));
+}

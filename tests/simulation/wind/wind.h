@@ -1,0 +1,10 @@
+#pragma once
+#include "ecs/world.h"
+#include "simulation/systems/step_input.h"
+
+namespace palpa {
+
+// Pushes every water that moves by itself and that no hand holds along x.
+void blow_wind(World& world, const StepInput& input);
+
+}  // namespace palpa

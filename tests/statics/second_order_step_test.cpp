@@ -1,0 +1,345 @@
+#include "statics/second_order_step.h"
+
+#include "tests/support/torsion_case.h"
+
+#include <algorithm>
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <optional>
+#include <random>
+#include <vector>
+
+using namespace palpa;
+
+namespace {
+
+// Two tetrapeptides beside each other: the first on a hand that moves its base, which may turn; the
+// second free but for springs at three of its atoms.
+struct HeldPair {
+    TorsionModel model;
+    TorsionState state;
+    HeldParts held;
+    SecondOrderSettings settings;
+
+    explicit HeldPair(double rms = 1e-6) {
+        test::PeptidePair pair = test::peptide_pair({BaseFreedom::Turning, BaseFreedom::Free});
+        model = std::move(pair.model);
+        state = std::move(pair.state);
+        const std::size_t half = model.masses.size() / 2;
+        held.hands = {{.molecule = 0}};
+        held.atoms.resize(half);
+        std::iota(held.atoms.begin(), held.atoms.end(), 0U);
+        for (const std::size_t atom : {half, half + half / 2, 2 * half - 1}) {
+            state.springs.push_back({.atoms = {static_cast<std::uint32_t>(atom)},
+                                     .k = 5,
+                                     .place = state.positions[atom]});
+        }
+        relax(rms);
+    }
+
+    void relax(double rms) {
+        RelaxSettings to_rest;
+        to_rest.force_tolerance = rms;
+        to_rest.steps = 20000;
+        QuasiStatics statics = build_quasi_statics(model);
+        const JointRelaxReport report = relax_joints(model, to_rest, state, statics);
+        REQUIRE(report.rms_force < std::max(10 * rms, 3e-5));
+    }
+
+    void move_hand(const Vec3& by) { shift_base(model, 0, by, state); }
+
+    LinearisedModel linearised() const {
+        Lineariser lineariser = build_lineariser(model, held);
+        LinearisedModel linear;
+        REQUIRE(linearise(model, settings.forces, settings.near_reach, state, lineariser, linear));
+        return linear;
+    }
+};
+
+// Energy and gradient of everything, at coordinates about the state.
+ModelValue whole_at(const HeldPair& c, const LinearisedModel& linear, const Eigen::VectorXd& at) {
+    TorsionState state = c.state;
+    place_about(c.model, linear.coordinates, linear.at, at, state);
+    ForceMemory memory;
+    update_forces(c.model, c.settings.forces, memory, state);
+    return {state.energy(), find_gradient(c.model, linear.coordinates, linear.at, at, state)};
+}
+
+ModelValue model_at(const HeldPair& c, const LinearisedModel& linear, const Eigen::VectorXd& at) {
+    ModelValue value;
+    TorsionState state = c.state;
+    NearPairs near = linear.near;
+    evaluate_model(c.model, c.settings.forces, linear, at, near, state, value);
+    return value;
+}
+
+// By complete relaxation where the hand is.
+Vec3 relaxed_force(HeldPair c) {
+    c.relax(1e-7);
+    return find_wrench_on(c.model, c.state, 0).tail<3>();
+}
+
+Vec3 hand_force(const SecondOrderStatics& statics) { return find_hand_pull(statics, 0).tail<3>(); }
+
+}  // namespace
+
+TEST_CASE("atoms go with a hand as the linear response moves them", "[statics][second-order]") {
+    const HeldPair c;
+    const LinearisedModel linear = c.linearised();
+    std::vector<std::uint32_t> atoms(c.model.masses.size());
+    std::iota(atoms.begin(), atoms.end(), 0U);
+
+    const std::vector<Mat3> responses =
+        find_atom_responses(c.model, linear, linear.at, linear.hands() - 3, atoms);
+
+    constexpr double h = 1e-4;
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        const Eigen::Index column = linear.hands() - 3 + axis;
+        Eigen::VectorXd at(linear.coordinates.size());
+        at << h * linear.response.col(column), h * Eigen::VectorXd::Unit(linear.hands(), column);
+        TorsionState there = c.state, back = c.state;
+        place_about(c.model, linear.coordinates, linear.at, at, there);
+        place_about(c.model, linear.coordinates, linear.at, -at, back);
+        for (const std::uint32_t atom : atoms) {
+            const Vec3 way = (there.positions[atom] - back.positions[atom]) / (2 * h);
+            CHECK((responses[atom].col(axis) - way).norm() < 1e-5 * (1 + way.norm()));
+        }
+    }
+}
+
+TEST_CASE("near pairs are those of what is held with what is near, and nothing else",
+          "[statics][second-order]") {
+    const HeldPair c;
+    const double reach = 5;
+    NearPairs near = build_near_pairs(c.model, c.state.positions, c.held.atoms, reach);
+    const std::size_t half = c.held.atoms.size(), count = c.state.positions.size();
+
+    // Every pair across that has one atom within reach of the held molecule.
+    std::vector<std::array<std::uint32_t, 2>> pairs = near.all;
+    for (auto& pair : pairs) std::ranges::sort(pair);
+    std::ranges::sort(pairs);
+    CHECK(std::ranges::adjacent_find(pairs) == pairs.end());
+    for (std::uint32_t j = static_cast<std::uint32_t>(half); j < count; ++j) {
+        const bool is_near = std::ranges::any_of(c.held.atoms, [&](std::uint32_t i) {
+            return (c.state.positions[i] - c.state.positions[j]).norm() < reach;
+        });
+        for (const std::uint32_t i : c.held.atoms)
+            CHECK(std::ranges::binary_search(pairs, std::array{i, j}) == is_near);
+    }
+    // Their sum is that of the pairs one by one; single precision agrees.
+    std::vector<Vec3> expected(count, Vec3::Zero()), forces = expected, fast = expected;
+    ForceSettings settings;
+    const NonbondedEnergy sum = add_pair_forces(c.model.topology, settings.nonbonded, near.all,
+                                                c.state.positions, expected);
+    const double energy = add_near_forces(c.model, settings, near, c.state.positions, forces);
+    settings.fast = true;
+    const double fast_energy = add_near_forces(c.model, settings, near, c.state.positions, fast);
+    const double total = sum.van_der_waals + sum.electrostatic;
+    CHECK(energy == Approx(total).epsilon(1e-12));
+    CHECK(fast_energy == Approx(total).epsilon(1e-5));
+    for (std::size_t i = 0; i < count; ++i) {
+        CHECK((forces[i] - expected[i]).norm() < 1e-10);
+        CHECK((fast[i] - expected[i]).norm() < 1e-3);
+    }
+}
+
+TEST_CASE("at its point a linearised model is the whole energy, to second order",
+          "[statics][second-order]") {
+    const HeldPair c;
+    const LinearisedModel linear = c.linearised();
+    const Eigen::Index size = linear.coordinates.size();
+    const Eigen::VectorXd origin = Eigen::VectorXd::Zero(size);
+    CHECK(model_at(c, linear, origin).energy == Approx(c.state.energy()).epsilon(1e-10));
+    CHECK((model_at(c, linear, origin).gradient - linear.gradient).norm() < 1e-8);
+
+    // Its error grows with the third power of the way, that of the gradient with the second.
+    std::mt19937 random(4);
+    std::normal_distribution<double> normal;
+    Eigen::VectorXd way(size);
+    for (double& x : way) x = normal(random);
+    way.normalize();
+    const auto errors = [&](double length) {
+        const ModelValue model = model_at(c, linear, length * way);
+        const ModelValue whole = whole_at(c, linear, length * way);
+        return std::array{std::abs(model.energy - whole.energy),
+                          (model.gradient - whole.gradient).norm()};
+    };
+    const auto far = errors(0.04), near = errors(0.02);
+    CHECK(std::log2(far[0] / near[0]) == Approx(3).margin(0.5));
+    CHECK(std::log2(far[1] / near[1]) == Approx(2).margin(0.4));
+}
+
+TEST_CASE("the gradient of a linearised model is that of its energy", "[statics][second-order]") {
+    const HeldPair c;
+    const LinearisedModel linear = c.linearised();
+    Eigen::VectorXd at = Eigen::VectorXd::Zero(linear.coordinates.size());
+    std::mt19937 random(5);
+    std::normal_distribution<double> normal(0, 0.02);
+    for (double& x : at) x = normal(random);
+    const ModelValue value = model_at(c, linear, at);
+    constexpr double h = 1e-3;  // single precision of the product rounds energies
+    for (Eigen::Index i = 0; i < at.size(); ++i) {
+        const Eigen::VectorXd by = h * Eigen::VectorXd::Unit(at.size(), i);
+        const double slope =
+            (model_at(c, linear, at + by).energy - model_at(c, linear, at - by).energy) / (2 * h);
+        CHECK(value.gradient[i] == Approx(slope).epsilon(2e-3).margin(0.02));
+    }
+}
+
+TEST_CASE("the stiffness where everything follows is that of relaxed forces",
+          "[statics][second-order]") {
+    const HeldPair c(1e-8);
+    const LinearisedModel linear = c.linearised();
+    for (int axis = 0; axis < 3; ++axis) {
+        constexpr double h = 0.005;  // Å
+        HeldPair forth = c, back = c;
+        forth.move_hand(h * Vec3::Unit(axis));
+        back.move_hand(-h * Vec3::Unit(axis));
+        const Vec3 slope = (relaxed_force(back) - relaxed_force(forth)) / (2 * h);
+        INFO("axis " << axis << ": " << slope.transpose() << " against "
+                     << linear.relaxed_stiffness.col(axis).transpose());
+        CHECK((slope - linear.relaxed_stiffness.col(axis)).norm() <
+              0.01 * linear.relaxed_stiffness.norm());
+        // Frozen it is stiffer.
+        CHECK(linear.frozen_stiffness(axis, axis) > linear.relaxed_stiffness(axis, axis));
+    }
+}
+
+TEST_CASE("the force on a hand that moves is that of complete relaxation",
+          "[statics][second-order]") {
+    HeldPair c;
+    c.settings.forces.fast = GENERATE(false, true);
+    const Vec3 way = Vec3::Unit(GENERATE(0, 1, 2));
+    SecondOrderStatics statics = build_second_order_statics(c.model, c.held);
+    const Vec3 start = relaxed_force(c);
+    double worst = 0, largest = 0;
+    for (int k = 1; k <= 20; ++k) {
+        c.move_hand(0.02 * way);
+        const SecondOrderReport report = step_second_order(c.model, c.settings, c.state, statics);
+        REQUIRE(report.is_finite);
+        CHECK(report.age < 0.125);
+        if (k % 5 != 0) continue;
+        const Vec3 expected = relaxed_force(c);
+        largest = std::max(largest, (expected - start).norm());
+        worst = std::max(worst, (hand_force(statics) - expected).norm());
+    }
+    CHECK(statics.renewed >= 3);
+    INFO(worst << " of " << largest);
+    CHECK(worst < 0.03 * largest);
+}
+
+TEST_CASE("renewals that come late leave the force near that of complete relaxation",
+          "[statics][second-order]") {
+    HeldPair c;
+    c.settings.renews_at_once = false;
+    const std::size_t delay = GENERATE(1, 3, 10);
+    SecondOrderStatics statics = build_second_order_statics(c.model, c.held);
+    const Vec3 start = relaxed_force(c);
+    std::optional<Renewal> pending;
+    std::size_t due = 0, late = 0;
+    double worst = 0, largest = 0;
+    for (std::size_t k = 1; k <= 60; ++k) {
+        if (pending && k >= due) {
+            adopt_renewal(c.settings, *pending, statics);
+            pending.reset();
+            ++late;
+        }
+        c.move_hand(Vec3(0.01, 0, 0));
+        const SecondOrderReport report = step_second_order(c.model, c.settings, c.state, statics);
+        REQUIRE(report.is_finite);
+        CHECK_FALSE((k > 1 && report.is_renewed));
+        if (report.wants_renewal && !pending) {
+            pending = make_renewal(c.model, c.settings,
+                                   request_renewal(c.settings, c.state, statics), statics.renewals);
+            due = k + delay;
+        }
+        if (k % 10 != 0) continue;
+        const Vec3 expected = relaxed_force(c);
+        largest = std::max(largest, (expected - start).norm());
+        worst = std::max(worst, (hand_force(statics) - expected).norm());
+    }
+    CHECK(late >= 3);
+    INFO(worst << " of " << largest);
+    CHECK(worst < 0.03 * largest);
+}
+
+TEST_CASE("the error estimate of a step is near its error", "[statics][second-order]") {
+    constexpr double pN = 69.4770;  // of a kcal/mol/Å
+    std::size_t right = 0, states = 0;
+    for (int k = 0; k < 30; ++k) {
+        HeldPair c;
+        // Too rough a step, so that there are errors.
+        c.settings.evaluations = 1;
+        c.settings.renew_hand = 0.2;
+        SecondOrderStatics statics = build_second_order_statics(c.model, c.held);
+        const Vec3 way = (k % 4 < 2 ? 1 : -1) * (0.1 + 0.005 * k) * Vec3::Unit(k % 3);
+        SecondOrderReport report;
+        for (int i = 0; i < 4; ++i) {
+            c.move_hand(way);
+            report = step_second_order(c.model, c.settings, c.state, statics);
+        }
+        REQUIRE(report.is_finite);
+        const double error = pN * (hand_force(statics) - relaxed_force(c)).norm();
+        if (error < 10 || error > 1000) continue;
+        ++states;
+        const double estimate = pN * report.error_estimate;
+        UNSCOPED_INFO(estimate << " pN estimated, " << error);
+        if (estimate < 2 * error && error < 2 * estimate) ++right;
+    }
+    CHECK(states >= 12);
+    CHECK(6 * right >= 5 * states);
+}
+
+TEST_CASE("out and back without a snap the hand's force is what it was",
+          "[statics][second-order]") {
+    HeldPair c;
+    SecondOrderStatics statics = build_second_order_statics(c.model, c.held);
+    const auto follow = [&](const Vec3& by) {
+        c.move_hand(by);
+        REQUIRE(step_second_order(c.model, c.settings, c.state, statics).is_finite);
+        return hand_force(statics);
+    };
+    double work = 0, gross = 0;
+    Vec3 force = follow(Vec3::Zero());
+    for (int k = 0; k < 30; ++k) {
+        const Vec3 by(k < 15 ? 0.02 : -0.02, 0, 0), before = force;
+        force = follow(by);
+        const double done = -0.5 * (before + force).dot(by);
+        work += done;
+        if (k < 15) gross += std::abs(done);
+    }
+    INFO(work << " of " << gross << " kcal/mol");
+    CHECK(std::abs(work) < 0.02 * gross);
+}
+
+TEST_CASE("a hand that jumps, or one that holds what nothing surrounds, leaves everything finite",
+          "[statics][second-order]") {
+    HeldPair c;
+    SecondOrderStatics statics = build_second_order_statics(c.model, c.held);
+    const Vec3 by = GENERATE(Vec3(3, 0, 0), Vec3(-3, 0, 0), Vec3(0, 0, 3), Vec3(500, 0, 0));
+    REQUIRE(step_second_order(c.model, c.settings, c.state, statics).is_finite);
+    const Vec3 place = c.state.positions[c.model.bases[0].pivot];
+    c.move_hand(by);
+    const SecondOrderReport report = step_second_order(c.model, c.settings, c.state, statics);
+    CHECK(report.is_finite);
+    CHECK((c.state.positions[c.model.bases[0].pivot] - place - by).norm() < 1e-9);
+    CHECK(hand_force(statics).allFinite());
+    CHECK(statics.value.energy < 1e4);
+}
+
+TEST_CASE("a model in which nothing can move has the frozen stiffness", "[statics][second-order]") {
+    TorsionModel model = test::model_of(test::with_copy(test::alanine_dipeptide(), {9, 0, 0}),
+                                        {BaseFreedom::Held, BaseFreedom::Held}, {.overrides = {}});
+    TorsionState state = build_torsion_state(model);
+    HeldParts held{{{.molecule = 0}}, {}};
+    held.atoms.resize(model.masses.size() / 2);
+    std::iota(held.atoms.begin(), held.atoms.end(), 0U);
+    SecondOrderStatics statics = build_second_order_statics(model, held);
+    shift_base(model, 0, {0.05, 0, 0}, state);
+    CHECK(step_second_order(model, {}, state, statics).is_finite);
+    CHECK(find_hand_pull(statics, 0).allFinite());
+}

@@ -1,0 +1,14 @@
+#pragma once
+#include "simulation/held.h"
+#include "simulation/step.h"
+#include "tests/support/step_once.h"
+
+namespace palpa::test {
+
+// One step of a world with one hand, and what that feels then.
+inline ContactModel step_once(World& world, const HandPose& hand, const ContactModel& felt) {
+    (void)step_world(world, hand, felt);
+    return local_contact_of(world).model;
+}
+
+}  // namespace palpa::test

@@ -1,0 +1,237 @@
+#include "tools/bench/bench.h"
+
+#include "charmm/force_field.h"
+#include "core/machine.h"
+#include "core/text.h"
+#include "core/version.h"
+#include "devices/emulated_omni.h"
+#include "experiments/emulated_hand.h"
+#include "formats/psf.h"
+#include "formats/structure.h"
+#include "gpu/device.h"
+#include "render/renderer.h"
+#include "scene/read_scene.h"
+#include "session/run_headless.h"
+#include "simulation/held.h"
+#include "simulation/load.h"
+#include "simulation/probe.h"
+#include "simulation/step.h"
+#include "tools/bench/adaptive.h"
+#include "tools/bench/answer.h"
+#include "tools/bench/kernel.h"
+#include "tools/bench/row.h"
+#include "tools/bench/servo.h"
+#include "tools/bench/statics.h"
+#include "tools/bench/tree.h"
+#include "tools/commands/progress.h"
+#include "view/build_frame.h"
+#include "view/orbit_camera.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+namespace palpa {
+namespace {
+
+// One simulation step, while the hand sweeps back and forth over 10 mm.
+BenchRow bench_step(const std::string& scene_name, World world) {
+    // Steps too short for the clock are timed together.
+    const int batch = moves_in_space(world) ? 1 : 200;
+    BenchRow row{
+        "step/" + scene_name, {}, "us", {}, "relative", "central difference of the energy"};
+    ContactModel felt = local_contact_of(world).model;
+    HandPose hand;
+    int tick = 0;
+    row.samples = sample(101, 1e6 / batch, [&] {
+        for (int i = 0; i < batch; ++i, ++tick) {
+            hand.travel_m.x() = 0.005 * std::sin(0.01 * tick);
+            (void)step_world(world, hand, felt);
+            felt = local_contact_of(world).model;
+        }
+    });
+    double worst = 0;
+    constexpr double h = 1e-4;
+    const double nearest = moves_in_space(world) ? -0.5 : 2.4,
+                 farthest = moves_in_space(world) ? 0.5 : 8;
+    for (double distance = nearest; distance < farthest; distance += 0.1) {
+        const double slope = (force_along_line_at(world, distance + h).energy -
+                              force_along_line_at(world, distance - h).energy) /
+                             (2 * h);
+        const double force = force_along_line_at(world, distance).force;
+        worst = std::max(worst, std::abs(force + slope) / std::max(std::abs(force), 1.0));
+    }
+    row.error = worst;
+    return row;
+}
+
+// The scene as `palpa run` plays it, 10 s at its own period, without a recording.
+BenchRow bench_lockstep(const std::string& scene_name, SceneDescription scene) {
+    scene.seconds = 10;
+    BenchRow row{fmt::format("lockstep/{}/period={}ms/seconds=10", scene_name, scene.period_ms),
+                 {},
+                 "s",
+                 {},
+                 "J",
+                 "net work of the first run"};
+    std::optional<double> first;
+    double worst = 0;
+    for (int run = 0; run < 7; ++run) {
+        World world = load_world(scene);
+        EmulatedOmni device(build_emulated_omni(scene, world));
+        Summary summary;
+        row.samples.push_back(
+            seconds_of([&] { summary = run_headless(scene, world, device, {}, nullptr, {}); }));
+        const double work = summary.net_work_J;
+        worst = std::max(worst, std::abs(work - first.value_or(work)));
+        first = first.value_or(work);
+    }
+    row.error = worst;
+    return row;
+}
+
+// `read` returns what stands beside the time: how much was read.
+template <class Read>
+BenchRow bench_read(const std::string& name, const Read& read) {
+    BenchRow row{"load/" + name, {}, "ms"};
+    row.samples = sample(21, 1e3, [&] { row.reference = read(); });
+    return row;
+}
+
+void bench_files(const BenchOptions& options, std::vector<BenchRow>& rows) {
+    for (const std::filesystem::path& path : options.structures) {
+        rows.push_back(bench_read(path.filename().string(), [&] {
+            const bool is_psf = upper_case(path.extension().string()) == ".PSF";
+            return fmt::format("{} atoms", is_psf ? read_psf(path).names.size()
+                                                  : read_structure(path).names.size());
+        }));
+    }
+    if (options.toppar.empty()) return;
+    rows.push_back(bench_read("toppar", [&] {
+        return fmt::format("{} types", read_force_field(options.toppar).types.size());
+    }));
+}
+
+// Whole frames, recorded, submitted and waited for; and with the colours brought back.
+void bench_render(const std::string& scene_name, const World& world, std::vector<BenchRow>& rows) {
+    constexpr int warm_up = 5, frames = 60;
+    GpuDevice gpu{GpuOptions{}};
+    Renderer renderer(gpu);
+    FrameScene frame = build_frame(world, {});
+    for (const VkExtent2D size : {VkExtent2D{640, 360}, VkExtent2D{1280, 720}}) {
+        OrbitCamera camera;
+        frame_all(camera, frame, 16.0F / 9);
+        frame.camera = frame_camera(camera, frame);
+        const auto time = [&](const char* what, const auto& draw) {
+            for (int i = 0; i < warm_up; ++i) draw();
+            rows.push_back({fmt::format("render/{}/{}x{}/ball-and-stick{}", scene_name, size.width,
+                                        size.height, what),
+                            sample(frames, 1e3, draw), "ms"});
+        };
+        time("", [&] {
+            gpu.submit([&](VkCommandBuffer commands) { renderer.record(commands, frame, size); });
+        });
+        time("/read-back",
+             [&] { renderer.draw(frame, size.width, size.height, PictureContent::Colours); });
+    }
+}
+
+nlohmann::ordered_json as_json(const BenchRow& row) {
+    nlohmann::ordered_json json;
+    json["name"] = row.name;
+    json["median"] = quantile(row.samples, 0.5);
+    json["p10"] = quantile(row.samples, 0.1);
+    json["p90"] = quantile(row.samples, 0.9);
+    json["unit"] = row.unit;
+    json["error"] = row.error ? nlohmann::ordered_json(*row.error) : nullptr;
+    json["error_unit"] = row.error_unit;
+    json["reference"] = row.reference;
+    for (const auto& [key, value] : row.more) json[key] = value;
+    return json;
+}
+
+}  // namespace
+
+int bench_command(const BenchOptions& options) {
+    std::vector<BenchRow> rows;
+    std::string tables;
+    bench_files(options, rows);
+    if (options.kernel && options.scenes.empty()) bench_gas_kernels(rows);
+    if (options.servo) bench_made_up_servo(rows);
+    for (const std::filesystem::path& path : options.scenes) {
+        const SceneDescription scene = read_scene(path, options.settings);
+        const std::filesystem::path folder = std::filesystem::absolute(scene.file).parent_path();
+        const std::string name = folder.filename().string();
+        fmt::print(stderr, "timing {}\n", name);
+        ProgressLine progress;
+        const StageFunction on_stage = progress.stages();
+        if (options.kernel) {
+            bench_kernels(name, scene, rows);
+            continue;
+        }
+        if (options.servo) {
+            bench_servo(name, scene, rows);
+            continue;
+        }
+        if (options.render) {
+            bench_render(name, load_world(scene, on_stage), rows);
+            continue;
+        }
+        if (options.statics) {
+            bench_statics(name, scene, rows);
+            continue;
+        }
+        if (options.answer) {
+            tables += bench_answer(name, scene, options.answer_settings, rows);
+            continue;
+        }
+        if (options.adaptive) {
+            const auto bench = options.spheres ? bench_spheres
+                               : options.best  ? bench_best_joints
+                                               : bench_adaptive;
+            tables += bench(name, scene, options.adaptive_settings, rows);
+            continue;
+        }
+        if (options.tree) {
+            bench_tree(name, load_world(scene, on_stage).resource<AtomTable>(), rows);
+            continue;
+        }
+        rows.push_back(bench_read(name, [&] {
+            load_world(read_scene(path, options.settings));
+            return std::string();
+        }));
+        rows.push_back(bench_step(name, load_world(scene, on_stage)));
+        rows.push_back(bench_lockstep(name, scene));
+    }
+    if (options.tree) bench_polymers(rows);
+    if (options.table) {
+        fmt::print("{}, commit {}\n\n{}", machine_name(), commit_name, tables);
+        return 0;
+    }
+    nlohmann::ordered_json report{{"machine", machine_name()}, {"commit", commit_name}};
+    report["rows"] = nlohmann::ordered_json::array();
+    for (const BenchRow& row : rows) report["rows"].push_back(as_json(row));
+    if (!tables.empty()) report["table"] = tables;
+    if (options.json) {
+        fmt::print("{}\n", report.dump(2));
+        return 0;
+    }
+    fmt::print("{}, commit {}\n{:<58}{:>10}{:>10}{:>10}\n", machine_name(), commit_name, "",
+               "median", "p10", "p90");
+    for (const BenchRow& row : rows) {
+        fmt::print("{:<58}{:>10.4g}{:>10.4g}{:>10.4g} {}", row.name, quantile(row.samples, 0.5),
+                   quantile(row.samples, 0.1), quantile(row.samples, 0.9), row.unit);
+        if (row.error) {
+            fmt::print(", error {:.2g} {} against {}", *row.error, row.error_unit, row.reference);
+        } else if (!row.reference.empty()) {
+            fmt::print(", {}", row.reference);
+        }
+        fmt::print("\n");
+    }
+    return 0;
+}
+
+}  // namespace palpa

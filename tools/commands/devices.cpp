@@ -1,0 +1,266 @@
+#include "tools/commands/devices.h"
+
+#include "core/interrupt.h"
+#include "devices/open_device.h"
+#include "haptics/safety.h"
+#include "tools/commands/command.h"
+#include "tools/commands/latency.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace palpa {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using SteadyClock = std::chrono::steady_clock;
+
+constexpr std::array<std::string_view, 3> outcome_names{"ok", "unknown", "failed"};
+
+std::string_view name_of(CheckOutcome outcome) {
+    return outcome_names[static_cast<std::size_t>(outcome)];
+}
+
+// A device of the list, and what its layers said.
+struct Examined {
+    const DeviceMaker* maker = nullptr;
+    std::vector<DeviceCheck> checks;
+    bool is_usable = false;
+};
+
+// A tick of the servo a millisecond, in which `step` gets the reading and gives the force.
+template <class Step>
+void run_ticks(Device& device, int ticks, const Step& step) {
+    SteadyClock::time_point next = SteadyClock::now();
+    for (int i = 0; i < ticks && noted_interrupt() == 0; ++i) {
+        device.write(step(i, device.read()));
+        next = std::max(next + std::chrono::milliseconds(1), SteadyClock::now());
+        std::this_thread::sleep_until(next);
+    }
+    device.write(Vec3::Zero());
+}
+
+DeviceCheck check_readings(Device& device) {
+    constexpr int wanted = 50, longest_ticks = 2000;
+    int valid = 0;
+    for (int looked = 0; looked < longest_ticks && valid < wanted; looked += wanted) {
+        run_ticks(device, wanted, [&](int, const DeviceReading& reading) {
+            valid += reading.valid ? 1 : 0;
+            return Vec3(Vec3::Zero());
+        });
+    }
+    if (valid >= wanted) {
+        const Vec3 mm = 1e3 * device.read().position_m;
+        return {"readings", CheckOutcome::Ok,
+                fmt::format("valid; the handle is at {:.0f}, {:.0f}, {:.0f} mm", mm.x(), mm.y(),
+                            mm.z()),
+                ""};
+    }
+    const std::string status(device.status());
+    return {"readings", CheckOutcome::Failed,
+            fmt::format("{} valid ones in {} s", valid, longest_ticks / 1000),
+            status.empty() ? "plug the device in again, and switch it off and on" : status};
+}
+
+constexpr const char* force_warning =
+    "Force test: the handle is pushed to the right with 0.6 N for a twentieth of a second, up to "
+    "five\ntimes if it does not move; it moves by a few centimetres at most. Hold it loosely in "
+    "the "
+    "middle\nof its workspace, and keep clear of it. Enter begins; anything else leaves it out: ";
+
+// Asks on standard error, so that JSON stays alone on the other.
+bool is_agreed() {
+    fmt::print(stderr, "{}", force_warning);
+    std::fflush(stderr);
+    const int answer = std::getchar();
+    fmt::print(stderr, "\n");
+    return answer == '\n';
+}
+
+// Through the safety chain, as everything that a hand feels.
+DeviceCheck check_force(Device& device) {
+    if (!is_agreed()) return {"force", CheckOutcome::Unknown, "not tried", ""};
+    note_interrupts();
+    constexpr double push_newton = 0.6;
+    // The chain lets a force through when the handle has been quiet; a system that was too busy
+    // for the servo gets another chance.
+    constexpr int still_ticks = 50, push_ticks = 50, coast_ticks = 200, attempts = 5;
+    constexpr double least_m = 0.5e-3;
+    SafetySettings settings;
+    settings.clamp_newton = push_newton;
+    settings.ramp_s = 0.01;
+    SafetyState state;
+    SafetyStage worst = SafetyStage::None;
+    double from_m = 0, farthest_m = 0;
+    Vec3 last_m = Vec3::Zero();
+    bool has_last = false;
+    const SteadyClock::time_point start = SteadyClock::now();
+    const auto push = [&](int tick, const DeviceReading& reading) {
+        SafetyInput input;
+        input.reading = reading;
+        input.now_s = std::chrono::duration<double>(SteadyClock::now() - start).count();
+        const bool pushes = tick >= still_ticks && tick < still_ticks + push_ticks;
+        if (pushes) input.wanted_newton.x() = push_newton;
+        if (reading.valid) {
+            if (tick < still_ticks) from_m = reading.position_m.x();
+            if (has_last) input.velocity_m_per_s = (reading.position_m - last_m) / servo_tick_s;
+            last_m = reading.position_m;
+            has_last = true;
+            farthest_m = std::max(farthest_m, reading.position_m.x() - from_m);
+        }
+        const SafetyResult safe = guard_force(settings, state, input);
+        if (safe.stage > SafetyStage::Clamped) worst = std::max(worst, safe.stage);
+        return safe.newton;
+    };
+    for (int i = 0; i < attempts && farthest_m < least_m; ++i) {
+        farthest_m = 0;
+        run_ticks(device, still_ticks + push_ticks + coast_ticks, push);
+    }
+    if (farthest_m >= least_m) {
+        return {"force", CheckOutcome::Ok,
+                fmt::format("0.6 N to the right moved the handle by {:.1f} mm", 1e3 * farthest_m),
+                ""};
+    }
+    return {"force", CheckOutcome::Failed, "the handle did not move",
+            worst == SafetyStage::None ? "hold it loosely and try again; check its power supply"
+                                       : std::string(words(worst))};
+}
+
+Examined examine(const DeviceMaker& maker, const DeviceRequest& request, bool tests_force) {
+    Examined examined;
+    examined.maker = &maker;
+    OpenedDevice opened = maker.open(request);
+    examined.checks = std::move(opened.checks);
+    if (!opened.device) return examined;
+    examined.checks.push_back(check_readings(*opened.device));
+    examined.is_usable = examined.checks.back().outcome == CheckOutcome::Ok;
+    const bool has_motors = opened.device->spec().peak_force_newton > 0;
+    if (tests_force && examined.is_usable && has_motors && !maker.is_emulated) {
+        examined.checks.push_back(check_force(*opened.device));
+    }
+    return examined;
+}
+
+const DeviceCheck* find_failed(const Examined& examined) {
+    const auto failed = std::find_if(
+        examined.checks.begin(), examined.checks.end(),
+        [](const DeviceCheck& check) { return check.outcome == CheckOutcome::Failed; });
+    return failed == examined.checks.end() ? nullptr : &*failed;
+}
+
+// What to do now, a line each.
+std::vector<std::string> list_next(const std::vector<Examined>& all, bool is_any_usable) {
+    std::vector<std::string> next;
+    for (const Examined& examined : all) {
+        if (examined.maker->is_emulated) continue;
+        if (examined.is_usable) {
+            next.push_back(fmt::format("palpa run scenes/water --device {}", examined.maker->name));
+        } else if (const DeviceCheck* const failed = find_failed(examined)) {
+            next.push_back(fmt::format("{}: {}", examined.maker->name,
+                                       failed->remedy.empty() ? failed->found : failed->remedy));
+        }
+    }
+    if (!is_any_usable)
+        next.emplace_back("without a device: palpa run scenes/water, with the mouse");
+    return next;
+}
+
+void print_text(const std::vector<Examined>& all, const std::vector<std::string>& next) {
+    for (const Examined& examined : all) {
+        fmt::print("{}: {}; {}\n", examined.maker->name, examined.maker->summary,
+                   examined.is_usable ? "can be used" : "cannot be used");
+        for (const DeviceCheck& check : examined.checks) {
+            fmt::print("  {:<12} {:<8} {}\n", check.layer, name_of(check.outcome), check.found);
+            if (!check.remedy.empty()) fmt::print("  {:<12} {:<8} -> {}\n", "", "", check.remedy);
+        }
+    }
+    if (!next.empty()) fmt::print("\nnext:\n");
+    for (const std::string& line : next) fmt::print("  {}\n", line);
+}
+
+void print_json(const std::vector<Examined>& all, const std::vector<std::string>& next) {
+    Json json;
+    json["devices"] = Json::array();
+    for (const Examined& examined : all) {
+        Json checks = Json::array();
+        for (const DeviceCheck& check : examined.checks) {
+            checks.push_back({{"layer", check.layer},
+                              {"outcome", name_of(check.outcome)},
+                              {"found", check.found},
+                              {"remedy", check.remedy}});
+        }
+        json["devices"].push_back({{"name", examined.maker->name},
+                                   {"summary", examined.maker->summary},
+                                   {"emulated", examined.maker->is_emulated},
+                                   {"usable", examined.is_usable},
+                                   {"checks", checks}});
+    }
+    json["next"] = next;
+    fmt::print("{}\n", json.dump(2));
+}
+
+}  // namespace
+
+int devices_command(const DevicesOptions& options) {
+    if (options.times_latency) return latency_command();
+    std::vector<Examined> all;
+    const DeviceMaker* const only =
+        options.name.empty() ? nullptr : &device_maker_called(options.name);
+    DeviceRequest request;
+    request.file = file_of(options.name);
+    for (const DeviceMaker& maker : device_makers()) {
+        const bool is_meant = only ? only == &maker : maker.file.empty();
+        if (is_meant) all.push_back(examine(maker, request, options.tests_force));
+    }
+    const bool is_any_usable = std::any_of(all.begin(), all.end(), [&](const Examined& examined) {
+        return examined.is_usable && (only || !examined.maker->is_emulated);
+    });
+    const std::vector<std::string> next = list_next(all, is_any_usable);
+    options.json ? print_json(all, next) : print_text(all, next);
+    return exit_code_after(is_any_usable ? 0 : 1);
+}
+
+void print_device_list() {
+    const DeviceRequest request;
+    for (const DeviceMaker& maker : device_makers()) {
+        if (!maker.file.empty()) {
+            fmt::print("{:<10} {}; --device {}:{}\n", maker.name, maker.summary, maker.name,
+                       maker.file);
+            continue;
+        }
+        const OpenedDevice opened = maker.open(request);
+        const DeviceCheck last = opened.checks.empty() ? DeviceCheck{} : opened.checks.back();
+        fmt::print("{:<10} {}; {}\n", maker.name, maker.summary,
+                   opened.device ? "found: " + opened.device->spec().name
+                                 : fmt::format("not found: {}: {}", last.layer, last.found));
+    }
+    fmt::print("'palpa devices' tells more\n");
+}
+
+void add_devices(CLI::App& program, ProgramCommand& chosen) {
+    CLI::App& devices = *program.add_subcommand(
+        "devices", "What is plugged in, what works, what is wrong and how to mend it");
+    DevicesOptions& options = own_options<DevicesOptions>(devices, chosen, devices_command);
+    describe(devices, "Feel", {"palpa devices", "palpa devices omni --force-test"},
+             "Exit code 0 if there is a device that can be used, emulated ones beside, else 1.");
+    devices.add_option("device", options.name,
+                       "as --device of palpa run takes it; all unless given");
+    devices.add_flag("--force-test", options.tests_force, "push the handle a little, after asking");
+    CLI::Option* const json = devices.add_flag("--json", options.json, "print the result as JSON");
+    devices
+        .add_flag("--latency", options.times_latency,
+                  "time emulated devices instead, from their report to the force")
+        ->excludes(json);
+}
+
+}  // namespace palpa

@@ -1,0 +1,177 @@
+#include "tools/commands/open_window.h"
+
+#include "app/run_window.h"
+#include "app/save_scene.h"
+#include "app/window_devices.h"
+#include "core/files.h"
+#include "core/load_error.h"
+#include "experiments/emulated_hand.h"
+#include "haptics/hand.h"
+#include "render/picture.h"
+#include "scene/read_scene.h"
+#include "session/recording.h"
+#include "tools/commands/print_run.h"
+#include "view/first_view.h"
+
+#include <fmt/format.h>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <system_error>
+
+namespace palpa {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Asked for, or else chosen last.
+SoundChoice build_sound_choice(const RunOptions& options, PreferencesFile& preferences) {
+    return {.is_on = options.sound || preferences.now().sound.value_or(false),
+            .remember = [&preferences](bool is_on) {
+                Preferences chosen = preferences.now();
+                chosen.sound = is_on;
+                preferences.keep(chosen);
+            }};
+}
+
+// What cannot be remembered keeps nobody from working.
+void remember_scene(const fs::path& scene, PreferencesFile& preferences) {
+    std::error_code error;
+    Preferences chosen = preferences.now();
+    chosen.scene = fs::absolute(scene, error).lexically_normal().string();
+    try {
+        preferences.keep(chosen);
+    } catch (const LoadError& problem) {
+        fmt::print(stderr, "warning: {}\n", problem.what());
+    }
+}
+
+TextScaleChoice build_text_scale(PreferencesFile& preferences) {
+    return {.scale = preferences.now().text_scale.value_or(1),
+            .remember = [&preferences](double scale) {
+                Preferences chosen = preferences.now();
+                chosen.text_scale = scale;
+                preferences.keep(chosen);
+            }};
+}
+
+Existing check_shot(const RunOptions& options) {
+    return options.last_shot ? check_output(*options.last_shot, picture_mark, options.overwrites)
+                             : Existing::Refuse;
+}
+
+// How the file is opened again, where it lies apart from the files that it names.
+std::string describe_saved(const fs::path& file) {
+    try {
+        (void)read_scene(file);
+        return file.string();
+    } catch (const LoadError&) {
+        return fmt::format("{}; it names files in other folders, so open it with 'palpa run {} {}'",
+                           file.string(), file.string(), allow_outside);
+    }
+}
+
+void print_report(const SceneDescription& played, const WindowReport& report) {
+    print_summary(played, report.summary);
+    fmt::print("  drawn       {} frames, {:.1f} ms median, scale {:.2f} at the end\n",
+               report.frames, report.median_frame_ms, report.render_scale);
+    if (!played.lesson.empty()) {
+        fmt::print("  lesson      {} of {} steps done\n", report.lesson_steps_done,
+                   played.lesson.size());
+    }
+}
+
+// The scene as it was played, by the settings that it ended with.
+SceneDescription find_played(const SceneDescription& scene, const WindowReport& report,
+                             bool is_emulated) {
+    SceneDescription played = scene;
+    if (!is_emulated) played.hand.stroke = Stroke::Path;  // wherever the mouse went
+    played.coupling = report.settings.coupling;
+    played.period_ms = report.settings.period_ms;
+    played.seconds = static_cast<double>(report.summary.ticks) / servo_rate_hz;
+    return played;
+}
+
+// Nothing where the scene has one hand.
+WindowDevice open_second_of(const SceneDescription& scene, const World& world,
+                            const RunOptions& options, HandOrders& orders, WindowDevices& devices) {
+    if (!scene.second) return {};
+    EmulatedOmniSettings settings = build_emulated_omni(scene, world, 1);
+    if (!settings.hand) settings.hand = hand_model(HandGrip::Medium);
+    if (!options.play) give_to_mouse(settings);
+    WindowDevice second =
+        open_second(options.play ? std::optional<std::string>("emulated") : options.second,
+                    settings, orders, devices.pads());
+    if (options.play) second.mouse_reach_m = 0;
+    return second;
+}
+
+}  // namespace
+
+void check_window_options(const RunOptions& options) {
+    if (options.record) check_record_folder(*options.record, options.overwrites);
+    if (options.record && options.frames_per_second > 0) {
+        throw LoadError({"--fps"}, "is for runs without a window; expected --headless too");
+    }
+    if (options.play && options.device && *options.device != "emulated") {
+        throw LoadError({"--play"}, "is of the emulated hand; expected it without --device");
+    }
+    (void)check_shot(options);
+}
+
+int open_window(const SceneDescription& scene, const World& world, EmulatedOmniSettings settings,
+                const RunOptions& options) {
+    if (!settings.hand) settings.hand = hand_model(HandGrip::Medium);  // a window needs somebody
+    if (!options.play) give_to_mouse(settings);
+    PreferencesFile preferences(find_preferences_file());
+    WindowDevices devices(settings, preferences);
+    const WindowDevice first =
+        devices.open_first(options.play ? std::optional<std::string>("emulated") : options.device);
+    if (!devices.notice().empty()) fmt::print(stderr, "warning: {}\n", devices.notice());
+    HandOrders second_orders;
+    const WindowDevice second = open_second_of(scene, world, options, second_orders, devices);
+    if (preferences.can_keep()) remember_scene(scene.file, preferences);
+    SceneSaver saver(scene.file, options.screenshots);
+    const ViewSettings first_view = first_settings(scene.view, world);
+    const auto save = [&](const LiveSettings& live, const ViewDescription& view) {
+        SceneDescription set = scene;
+        set.coupling = live.coupling;
+        set.period_ms = live.period_ms;
+        set.view = view;
+        return describe_saved(saver.save(set));
+    };
+    const WindowReport report =
+        run_window(scene, *first.device,
+                   {.view = first_view,
+                    .width = options.width,
+                    .height = options.height,
+                    .grows = !options.has_size,
+                    .screenshots = options.screenshots,
+                    .last_shot = options.last_shot,
+                    .last_shot_existing = check_shot(options),
+                    .last_shot_s = options.last_shot_s,
+                    .orders = first.orders,
+                    .mouse_reach_m = options.play ? 0 : first.mouse_reach_m,
+                    .second = {second.device.get(), second.orders, second.mouse_reach_m},
+                    .record = options.record,
+                    .overwrites = options.overwrites,
+                    .pads = &devices.pads(),
+                    .devices = options.play ? DeviceMenu() : devices.menu(),
+                    .sound = build_sound_choice(options, preferences),
+                    .text_scale = build_text_scale(preferences),
+                    .save = save,
+                    .notice = devices.notice(),
+                    .lose_device_at = options.lose_device_at,
+                    .validation = options.validation});
+    const SceneDescription played = find_played(scene, report, options.play);
+    if (options.json) {
+        fmt::print("{}", format_summary(played, report.summary));
+    } else {
+        print_report(played, report);
+    }
+    return 0;
+}
+
+}  // namespace palpa

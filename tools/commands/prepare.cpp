@@ -1,0 +1,263 @@
+#include "tools/commands/prepare.h"
+
+#include "charmm/force_field.h"
+#include "core/files.h"
+#include "core/load_error.h"
+#include "core/text.h"
+#include "experiments/tune_scene.h"
+#include "formats/structure.h"
+#include "prepare/prepare.h"
+#include "tools/commands/command.h"
+#include "tools/commands/progress.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+namespace palpa {
+namespace {
+
+// "LEFT=RIGHT"; `form`: what would be right.
+std::pair<std::string, std::string> split(const std::string& text, const char* option,
+                                          std::string_view form, char at = '=') {
+    const std::size_t by = text.find(at);
+    if (by == std::string::npos || by == 0 || by + 1 == text.size()) {
+        throw LoadError({fmt::format("{} {}", option, text)}, fmt::format("expected {}", form));
+    }
+    return {text.substr(0, by), text.substr(by + 1)};
+}
+
+// "CHAIN:NUMBER", or ":NUMBER" of a file without chains.
+ResidueChoice read_choice(const std::string& text, const char* option, std::string_view form) {
+    const std::size_t by = text.rfind(':');
+    if (by == std::string::npos || by + 1 == text.size()) {
+        throw LoadError({fmt::format("{} {}", option, text)}, fmt::format("expected {}", form));
+    }
+    return {text.substr(0, by), text.substr(by + 1)};
+}
+
+PrepareSettings build_settings(const PrepareOptions& options) {
+    PrepareSettings settings = options.settings;
+    for (const std::string& text : options.as) {
+        const auto [from, to] = split(text, "--as", "NAME=NAME, as in CSO=CYS");
+        settings.residue_names.emplace_back(upper_case(from), upper_case(to));
+    }
+    for (const std::string& text : options.protonation) {
+        constexpr std::string_view form = "CHAIN:NUMBER=STATE, as in A:25=ASPP";
+        const auto [where, state] = split(text, "--protonation", form);
+        settings.protonation.emplace_back(read_choice(where, "--protonation", form),
+                                          upper_case(state));
+    }
+    for (const std::string& text : options.alternates) {
+        constexpr std::string_view form = "CHAIN:NUMBER=LETTER, as in A:53=B";
+        const auto [where, letter] = split(text, "--altloc", form);
+        if (letter.size() != 1) {
+            throw LoadError({fmt::format("--altloc {}", text)}, fmt::format("expected {}", form));
+        }
+        settings.alternates.emplace_back(read_choice(where, "--altloc", form), letter[0]);
+    }
+    for (const std::string& text : options.first) {
+        auto [chain, patch] = split(text, "--first", "CHAIN=PATCH, as in A=NNEU");
+        settings.first.emplace_back(chain, upper_case(patch));
+    }
+    for (const std::string& text : options.last) {
+        auto [chain, patch] = split(text, "--last", "CHAIN=PATCH, as in A=CNEU");
+        settings.last.emplace_back(chain, upper_case(patch));
+    }
+    for (const std::string& text : options.disulphides) {
+        constexpr std::string_view form = "CHAIN:NUMBER-CHAIN:NUMBER, as in A:3-A:40";
+        const auto [one, other] = split(text, "--disulphide", form, '-');
+        settings.disulphides.emplace_back(read_choice(one, "--disulphide", form),
+                                          read_choice(other, "--disulphide", form));
+    }
+    if (!options.x_along.empty()) {
+        settings.align = AlignSettings{options.x_along, {}};
+        if (!options.y_towards.empty()) {
+            constexpr std::string_view form = "CHAIN:NUMBER-CHAIN:NUMBER, as in A:25-A:50";
+            const auto [one, other] = split(options.y_towards, "--y-towards", form, '-');
+            settings.align->up = {read_choice(one, "--y-towards", form),
+                                  read_choice(other, "--y-towards", form)};
+        }
+    }
+    return settings;
+}
+
+// Whether the folder can be made.
+void check_missing_folder(const std::filesystem::path& folder) {
+    std::error_code error;
+    std::filesystem::path missing = folder;
+    while (!missing.parent_path().empty() && !std::filesystem::exists(missing.parent_path(), error))
+        missing = missing.parent_path();
+    const std::filesystem::path parent = missing.parent_path();
+    if (!parent.empty() && !std::filesystem::is_directory(parent, error)) {
+        throw LoadError({folder.string()},
+                        fmt::format("cannot be made: {} is no folder", parent.string()));
+    }
+    (void)check_output(missing, prepared_mark, false);
+}
+
+// Before the work: whether its results can be written.
+void check_outputs(const PrepareOptions& options) {
+    std::error_code error;
+    if (!std::filesystem::exists(options.folder, error)) {
+        check_missing_folder(options.folder);
+        return;
+    }
+    for (const char* const name : {"system.psf", "system.pdb", "system.crd", "system.prm",
+                                   "report.txt", "scene.toml", "relaxed.crd", "scene.psf"}) {
+        (void)check_output(options.folder / name, prepared_mark, options.overwrites);
+    }
+}
+
+// A structure of which no scene can be made is prepared all the same.
+TunedScene find_scene(const PrepareOptions& options, const std::string& title,
+                      const StageFunction& on_stage, PreparedSystem& system) {
+    if (!options.makes_scene) return {};
+    try {
+        return tune_scene(system, options.grab, !options.x_along.empty(),
+                          printable(options.structure.stem().string()), title, on_stage);
+    } catch (const LoadError& error) {
+        if (!options.grab.empty()) throw;
+        system.report.warn(fmt::format("no scene is written: {}", error.what()));
+        return {};
+    }
+}
+
+void print_json(const PreparedSystem& system, const TunedScene& scene) {
+    nlohmann::ordered_json json;
+    json["atoms"] = system.structure.names.size();
+    json["bonds"] = system.connectivity.bonds.size();
+    json["angles"] = system.connectivity.angles.size();
+    json["dihedrals"] = system.connectivity.dihedrals.size();
+    json["impropers"] = system.connectivity.impropers.size();
+    json["cmaps"] = system.connectivity.cmaps.size();
+    json["warnings"] = system.report.warnings();
+    if (!scene.files.empty()) {
+        json["scene"] = {{"in_hand", scene.in_hand},
+                         {"felt_N", scene.felt_newton},
+                         {"moved_angstrom", scene.moved_angstrom}};
+    }
+    fmt::print("{}\n", json.dump(2));
+}
+
+}  // namespace
+
+int prepare_command(const PrepareOptions& options) {
+    const PrepareSettings settings = build_settings(options);
+    check_outputs(options);
+    ProgressLine progress(!options.json);
+    const StageFunction on_stage = progress.stages();
+    tell(on_stage, "reading the force field");
+    const ForceField force_field = read_force_field(options.toppar);
+    tell(on_stage, "reading the structure");
+    const Structure structure = read_structure(options.structure);
+    PreparedSystem system = prepare_system(force_field, structure, settings, on_stage);
+    const std::string origin = fmt::format("Prepared from {} by palpa prepare; see report.txt.",
+                                           options.structure.filename().string());
+    const std::string title =
+        options.title.empty() ? origin : fmt::format("{}\n{}", options.title, origin);
+    const TunedScene scene = find_scene(options, title, on_stage, system);
+    tell(on_stage, "writing");
+    write_prepared(system, options.folder, title, scene.files,
+                   options.overwrites ? Existing::Replace : Existing::Refuse);
+    progress.wipe();
+    if (options.json) {
+        print_json(system, scene);
+        return 0;
+    }
+    const std::string folder = options.folder.string();
+    fmt::print("{}written: {}\n", system.report.to_text(), folder);
+    if (!scene.files.empty()) {
+        fmt::print(
+            "in the hand: {}\nfeel it in a window:   palpa run {}   (hold Space and move "
+            "the mouse)\nplay it without one:   palpa run {} --headless\n",
+            scene.in_hand, folder, folder);
+    }
+    return 0;
+}
+
+namespace {
+
+// What of the file is taken, and as what.
+void add_prepare_choices(CLI::App& prepare, PrepareOptions& options) {
+    PrepareSettings& settings = options.settings;
+    prepare
+        .add_option("--without", settings.without,
+                    "residue names (MK1), chains (chain:B) or residues (A:101) to leave out")
+        ->type_name("WHAT");
+    prepare.add_option("--as", options.as, "take a residue as another, CSO=CYS");
+    prepare.add_option("--protonation", options.protonation, "a residue (HSE) or a patch (ASPP)")
+        ->type_name("CHAIN:NUMBER=STATE");
+    prepare.add_option("--first", options.first, "at its first residue, or NONE")
+        ->type_name("CHAIN=PATCH");
+    prepare.add_option("--last", options.last, "at its last residue, or NONE")
+        ->type_name("CHAIN=PATCH");
+    prepare
+        .add_option("--disulphide", options.disulphides,
+                    "CHAIN:NUMBER-CHAIN:NUMBER: a bond beside those found")
+        ->type_name("PAIR");
+    add_negation(prepare, "--no-disulphides", settings.finds_disulphides, "look for none");
+    prepare.add_flag("--keep-waters", settings.keeps_waters, "waters are left out otherwise");
+    add_negation(prepare, "--no-ions", settings.keeps_ions, "ions are kept otherwise");
+    prepare.add_option("--model", settings.model, "the first unless given");
+    prepare
+        .add_option("--assembly", settings.assembly,
+                    "build this biological assembly of the file, often 1, by its symmetry; "
+                    "unless given, what the file holds is taken as it is")
+        ->check(in_range(1, 1e6));
+    prepare
+        .add_option("--altloc", options.alternates,
+                    "CHAIN:NUMBER=LETTER: the location to take, not the most occupied")
+        ->type_name("CHAIN:NUMBER=LETTER");
+    add_negation(prepare, "--no-flips", settings.flips, "amides and imidazoles stay as they are");
+    add_negation(prepare, "--no-relax", settings.relaxes,
+                 "atoms stay where they are or were built");
+}
+
+// How the result stands, and what of it is in the hand.
+void add_prepare_scene(CLI::App& prepare, PrepareOptions& options) {
+    CLI::Option* const x_along =
+        prepare
+            .add_option("--x-along", options.x_along,
+                        "segment whose long axis becomes x, its middle the origin")
+            ->type_name("SEGMENT");
+    prepare
+        .add_option("--y-towards", options.y_towards,
+                    "CHAIN:NUMBER-CHAIN:NUMBER: y from one residue to another; :NUMBER is the mean "
+                    "of all chains")
+        ->type_name("PAIR")
+        ->needs(x_along);
+    prepare
+        .add_option("--grab", options.grab,
+                    "what the hand holds in the scene: a SEGMENT, or SEGMENT:RESIDUE on a spring; "
+                    "unless given, a small molecule or an exposed residue")
+        ->type_name("WHAT");
+    add_negation(prepare, "--no-scene", options.makes_scene, "no scene is made; takes less time");
+}
+
+}  // namespace
+
+void add_prepare(CLI::App& program, ProgramCommand& chosen) {
+    CLI::App& prepare = *program.add_subcommand(
+        "prepare", "Complete and type a structure: hydrogens, patches, topology, a report");
+    PrepareOptions& options = own_options<PrepareOptions>(prepare, chosen, prepare_command);
+    describe(prepare, "Make scenes",
+             {"palpa prepare 1hsg.pdb --without MK1 -o my-protease --toppar top_all36_prot.rtf "
+              "par_all36m_prot.prm toppar_water_ions.str"});
+    prepare.add_option("structure", options.structure, ".pdb, .ent, .cif or .crd")->required();
+    add_toppar_option(prepare, options.toppar);
+    prepare
+        .add_option("-o,--output", options.folder,
+                    "folder for system.psf, .pdb, .crd, .prm, report.txt and scene.toml")
+        ->required();
+    add_prepare_choices(prepare, options);
+    add_prepare_scene(prepare, options);
+    prepare.add_option("--title", options.title, "what the files say of themselves")
+        ->type_name("TEXT");
+    add_overwrite_flag(prepare, options.overwrites);
+    prepare.add_flag("--json", options.json, "print counts and warnings as JSON");
+}
+
+}  // namespace palpa

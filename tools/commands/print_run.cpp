@@ -1,0 +1,265 @@
+#include "tools/commands/print_run.h"
+
+#include "core/text.h"
+#include "core/units.h"
+#include "haptics/gains.h"
+#include "session/accuracy_report.h"
+#include "session/plan_hand.h"
+#include "session/run_headless.h"
+#include "simulation/held.h"
+#include "simulation/probe.h"
+
+#include <fmt/format.h>
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace palpa {
+namespace {
+
+constexpr double force_nN = units::newton_per_kcal_per_mol_angstrom * 1e9;  // of one of ours
+
+// Of ways to relax that do not bring all surroundings to rest in a step.
+constexpr const char* unrelaxed_note =
+    "not complete in a step: the force can be several times that of surroundings\n"
+    "              at rest (README.md, Limits)";
+
+int freedom_of_hands(const World& world) {
+    int freedom = 0;
+    for (const Entity hand : find_hands(world)) freedom += grip_of(world, hand).freedom;
+    return freedom;
+}
+
+void print_relaxation(const RelaxationSummary& r) {
+    if (r.renewals == 0) fmt::print("  relaxation  {}\n", unrelaxed_note);
+    if (r.estimates > 0) {
+        fmt::print(
+            "  error       {:.3g} pN in the median, {:.3g} pN in nine of ten steps, against "
+            "complete\n              relaxation, as estimated\n",
+            r.error_median_pN, r.error_90_pN);
+    }
+    if (r.renewals > 0) {
+        fmt::print("  model       {} renewals; {} snaps set {:.1f} kcal/mol free\n", r.renewals,
+                   r.snaps, r.released);
+    }
+}
+
+// What moves by itself, and how it came to rest.
+void print_mobile(const World& world, const JointRelaxReport& r) {
+    const StartReport& report = world.resource<StartReport>();
+    const Eigen::Index coordinates = model_of(world).coordinates;
+    fmt::print("  freedom     {} degrees: {} joints, {} of bases; {} more of the hand\n",
+               coordinates, report.joints, coordinates - static_cast<Eigen::Index>(report.joints),
+               freedom_of_hands(world));
+    if (report.joints_held > 0) {
+        fmt::print("  region      {} joints further away are held\n", report.joints_held);
+    }
+    fmt::print(
+        "  relaxed     {:.3f} to {:.3f} kcal/mol in {} steps, moved {:.3f} Å at most, rms "
+        "force {:.3g} kcal/mol left\n",
+        r.energy_before, r.energy_after, r.steps, r.largest_move, r.rms_force);
+    const ContactModel start = local_contact_of(world).model;
+    fmt::print("  start       {:.3f} kcal/mol, {:.3f} nN\n", start.potential_kcal_per_mol,
+               start.force_newton.norm() * 1e9);
+    if (!world.find_resource<SecondOrder>()) fmt::print("  relaxation  {}\n", unrelaxed_note);
+}
+
+// How much of the handle's way a molecule takes where it is stiffest, along and across.
+void print_gains(const SceneDescription& scene, const World& world, double distance) {
+    if (!world.resource<Coupling>().is_guarded || !moves_in_space(world) ||
+        !scene.grab.atom.empty())
+        return;
+    const FieldSum field = field_on_grabbed_at(world, distance);
+    GuardedSettings guarded =
+        build_servo_settings(scene, world).guarded.value_or(GuardedSettings{});
+    guarded.gain_shape = GainShape::Tensor;
+    const GuardedGain gain =
+        guarded_gain(guarded, units::newton_per_kcal_per_mol_angstrom * field.force,
+                     units::newton_per_metre_per_kcal_per_mol_angstrom2 * field.stiffness);
+    const Eigen::SelfAdjointEigenSolver<Mat3> along(gain.tensor, Eigen::EigenvaluesOnly);
+    const Vec3 cm = along.eigenvalues() / units::angstrom_per_metre * 100;
+    fmt::print(
+        "  gain        {:.2f} cm of handle for an Å there; with coupling.gain_shape = \"tensor\" "
+        "{:.2f}, {:.2f} and {:.2f}\n",
+        cm.z(), cm.x(), cm.y(), cm.z());
+}
+
+// Where it began, of one that was relaxed.
+void print_relaxed(const World& world, const RelaxReport& r) {
+    const ContactModel start = local_contact_of(world).model;
+    fmt::print(
+        "  relaxed     {:.3f} to {:.3f} kcal/mol in {} evaluations, moved {:.3f} Å, turned "
+        "{:.2f}°, {:.3f} pN left\n",
+        r.energy_before, r.energy_after, r.evaluations, r.displacement,
+        r.angle * 180 / std::numbers::pi, r.force * force_nN * 1e3);
+    const Vec3 springs = units::newton_per_metre_per_kcal_per_mol_angstrom2 *
+                         Eigen::SelfAdjointEigenSolver<Mat3>(field_on_grabbed(world).stiffness,
+                                                             Eigen::EigenvaluesOnly)
+                             .eigenvalues();
+    fmt::print("  start       {:.3f} kcal/mol, {:.3f} nN; {:.1f}, {:.1f} and {:.1f} N/m\n",
+               start.potential_kcal_per_mol, start.force_newton.norm() * 1e9, springs.x(),
+               springs.y(), springs.z());
+}
+
+// On a line: where it rests, and the strongest attraction beyond.
+void print_rest(const World& world, double rest) {
+    const LineForce line = force_along_line_at(world, rest);
+    fmt::print("  rest        {:.3f} kcal/mol at {:.3f} Å, {:.1f} N/m\n", line.energy, rest,
+               line.stiffness * units::newton_per_metre_per_kcal_per_mol_angstrom2);
+    double strongest = 0, where = 0;
+    for (double distance = rest; distance < 30; distance += 0.001) {
+        const double attraction = -force_along_line_at(world, distance).force * force_nN;
+        if (attraction > strongest) {
+            strongest = attraction;
+            where = distance;
+        }
+    }
+    fmt::print("  attraction  {:.3f} nN at {:.2f} Å, felt as {:.3f} N\n", strongest, where,
+               hand_force(world.resource<Coupling>().laws.force, strongest * 1e-9));
+}
+
+}  // namespace
+
+namespace {
+
+// What hands hold, where there are two.
+void print_hands(const SceneDescription& scene) {
+    const std::vector<HandTables> hands = list_hands(scene);
+    if (hands.size() < 2) return;
+    const auto held = [](const GrabDescription& grab) {
+        return grab.atom.empty() ? grab.molecule : grab.molecule + ":" + grab.atom + " by a spring";
+    };
+    fmt::print("  hands       two: {}, and {}\n", held(hands[0].grab), held(hands[1].grab));
+}
+
+}  // namespace
+
+void print_line(const SceneDescription& scene, const World& world, ProgressLine& progress) {
+    print_hands(scene);
+    const StartReport& report = world.resource<StartReport>();
+    if (report.joints_at_rest) {
+        print_mobile(world, *report.joints_at_rest);
+    } else if (report.rigid) {
+        print_relaxed(world, *report.rigid);
+    } else if (const std::optional<double> rest = equilibrium_distance(world)) {
+        print_rest(world, *rest);
+    }
+    // In space these are places on a line along x, and no distances.
+    const bool in_space = moves_in_space(world);
+    const char* const along = in_space ? "x = " : "";
+    // A spring is pulled at; its molecule is not moved against others.
+    const bool on_spring = !scene.grab.atom.empty();
+    tell(progress.stages(), "looking for where it repels");
+    const std::optional<double> wall =
+        on_spring ? std::nullopt
+                  : repulsion_distance(world, scene.hand.peak_nN / force_nN,
+                                       in_space ? grabbed_distance(world) : 30);
+    progress.wipe();
+    if (wall) {
+        fmt::print("  {}   {} nN at {}{:.3f} Å, felt as {:.3f} N\n",
+                   in_space ? "resists  " : "repulsion", scene.hand.peak_nN, along, *wall,
+                   hand_force(world.resource<Coupling>().laws.force, scene.hand.peak_nN * 1e-9));
+    }
+    const FeltStiffness stiffest = stiffest_place(scene, world, progress.stages());
+    progress.wipe();
+    const double calm =
+        calm_stiffness(scene, hand_model(scene.hand.grip), world.resource<Clock>().period_s);
+    fmt::print("  stiffest    {:.3g} N/m felt at {}{:.3f} Å, this hand keeps {:.3g} N/m calm\n",
+               stiffest.newton_per_metre, along, stiffest.angstrom, calm);
+    print_gains(scene, world, stiffest.angstrom);
+}
+
+namespace {
+
+// What had to be felt, and which of these requirements were not met.
+void print_accuracy(const AccuracyReport& f) {
+    if (const auto range = f.range_pN) {
+        fmt::print("  to feel     {:.6g} to {:.6g} pN, felt as {:.3f} to {:.3f} N\n", (*range)[0],
+                   (*range)[1], f.ends_newton[0], f.ends_newton[1]);
+    }
+    fmt::print("  stiffness   {:.1f} % of the cap felt at most\n", 100 * f.stiffest_share);
+    if (const auto within_pN = f.within_pN; within_pN && f.estimates > 0) {
+        fmt::print(
+            "  {}   would have given a force within {:.3g} pN of this one half of the time, "
+            "within {:.3g} pN\n              nine tenths of it, within {:.6g} pN {:.1f} % of it "
+            "({} comparisons)\n",
+            f.steps > 0 ? "all joints" : "all pairs ", f.median_pN, f.ninety_pN, *within_pN,
+            100 * f.within_share, f.estimates);
+        if (f.steps > 0) {
+            fmt::print(
+                "              {:.1f} degrees of freedom and {:.1f} steps in a period on average\n",
+                f.active, f.steps);
+        }
+    } else if (f.within_pN) {
+        fmt::print("  compared    with nothing: too short a run, or not guarded\n");
+    }
+    const std::vector<std::string> not_met = find_unmet(f).all();
+    if (not_met.empty()) fmt::print("  not met     nothing\n");
+    for (const std::string& what : not_met) fmt::print("  not met     {}\n", what);
+}
+
+}  // namespace
+
+void print_summary(const SceneDescription& scene, const Summary& s) {
+    fmt::print("{}: {} s, mode {}, T_s = {} ms, {} hand, friction {} N, stroke {}\n",
+               printable(scene.title), scene.seconds,
+               coupling_mode_names[static_cast<std::size_t>(scene.coupling.mode)], scene.period_ms,
+               grip_names[static_cast<std::size_t>(scene.hand.grip)], scene.device.friction_N,
+               stroke_names[static_cast<std::size_t>(scene.hand.stroke)]);
+    if (s.is_on_axis) {
+        fmt::print("  felt        {:.3f} N of attraction and {:.3f} N of repulsion at most\n",
+                   s.largest_attraction_N, s.largest_repulsion_N);
+    } else {
+        fmt::print("  felt        {:.3f} N at most\n", s.largest_felt_N);
+    }
+    if (!s.ripple) {
+        fmt::print("  ripple      too short a run to tell\n");
+    } else {
+        fmt::print("  ripple      {:.3f} N rms above 3 Hz towards the end", s.ripple->rms);
+        // What is slower is the stroke, of which the measure keeps a part.
+        if (s.ripple->rms > 0.02) {
+            fmt::print("{}at {:.1f} Hz", s.ripple->hertz < 3 ? ", the stroke itself " : ", ",
+                       s.ripple->hertz);
+        }
+        fmt::print("\n");
+    }
+    fmt::print("  net work    {:+.4f} J on the hand\n", s.net_work_J);
+    for (std::size_t i = 0; i < s.other_hands.size(); ++i) {
+        const Summary& other = s.other_hands[i];
+        fmt::print("  hand {}      {:.3f} N at most, {:+.4f} J of net work; {:.3f} Å at the end\n",
+                   i + 2, other.largest_felt_N, other.net_work_J, other.last_angstrom);
+    }
+    fmt::print("  molecule    {:.3f} Å at the closest, {:.3f} Å at the end\n", s.closest_angstrom,
+               s.last_angstrom);
+    if (s.unbinding) {
+        const UnbindingPath& j = *s.unbinding;
+        fmt::print("  unbinding   centre of mass up to {:.2f} Å from its start", j.farthest);
+        // What a spring holds is bonded to others.
+        if (std::isfinite(j.closest) && scene.grab.atom.empty()) {
+            fmt::print(
+                ", heavy atoms {:.2f} Å from all others there;\n              {:.2f} Å at the "
+                "closest",
+                j.clearance, j.closest);
+        }
+        fmt::print("; at the end {:.2f} Å rms from where they started\n", j.last_rmsd);
+    }
+    if (s.activity) {
+        const Activity& a = *s.activity;
+        fmt::print(
+            "  active      {:.1f} degrees of freedom on average, chosen {} times; {:.1f} % of "
+            "steps "
+            "within the budget\n",
+            a.active, a.choices, 100 * a.within_budget);
+    }
+    if (s.accuracy) print_accuracy(*s.accuracy);
+    if (s.relaxation) print_relaxation(*s.relaxation);
+    fmt::print("  clamped     {:.1f} % of the time\n", 100 * s.clamped_share);
+    fmt::print("  step        {:.2f} µs median, {:.2f} µs p99 of {} steps\n", s.step_median_us,
+               s.step_p99_us, s.steps);
+}
+
+}  // namespace palpa

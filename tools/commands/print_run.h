@@ -1,0 +1,16 @@
+// What palpa run says of a scene and of a run.
+#pragma once
+#include "ecs/world.h"
+#include "scene/description.h"
+#include "session/statistics.h"
+#include "tools/commands/progress.h"
+
+namespace palpa {
+
+// What the molecule will meet on its line, found by looking along it; what moves by itself.
+// Shows on `progress` where it looks, which takes minutes in a large rigid scene.
+void print_line(const SceneDescription& scene, const World& world, ProgressLine& progress);
+
+void print_summary(const SceneDescription& scene, const Summary& summary);
+
+}  // namespace palpa

@@ -1,0 +1,107 @@
+#include "tools/commands/relax.h"
+
+#include "core/files.h"
+#include "core/text.h"
+#include "formats/crd.h"
+#include "molecule/coincident_atoms.h"
+#include "scene/read_scene.h"
+#include "simulation/held.h"
+#include "simulation/load.h"
+#include "tools/commands/command.h"
+#include "tools/commands/progress.h"
+
+#include <fmt/format.h>
+#include <array>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+namespace palpa {
+namespace {
+
+// In the order of RelaxEnd.
+constexpr std::array<std::string_view, 4> end_names{
+    "at rest", "not at rest: more steps would go on", "nothing lowers the energy any more",
+    "not finite"};
+
+std::string_view end_of(const JointRelaxReport& report) {
+    return end_names[static_cast<std::size_t>(report.end)];
+}
+
+void print_report(const StartReport& start) {
+    const JointRelaxReport& r = start.joints_at_rest.value();
+    fmt::print("{} joints: {:.4f} to {:.4f} kcal/mol, rms force {:.3g} kcal/mol per radian and Å\n",
+               start.joints, r.energy_before, r.energy_after, r.rms_force);
+    fmt::print("{} steps, {} evaluations, moved {:.3f} Å at most; {}\n", r.steps, r.evaluations,
+               r.largest_move, end_of(r));
+}
+
+void print_json(const StartReport& start) {
+    const JointRelaxReport& r = start.joints_at_rest.value();
+    const nlohmann::ordered_json json{{"joints", start.joints},
+                                      {"energy_before", r.energy_before},
+                                      {"energy_after", r.energy_after},
+                                      {"rms_force", r.rms_force},
+                                      {"steps", r.steps},
+                                      {"evaluations", r.evaluations},
+                                      {"largest_move", r.largest_move},
+                                      {"end", end_of(r)}};
+    fmt::print("{}\n", json.dump(2));
+}
+
+// Stands in the title of what is written, by which it is known again.
+constexpr std::string_view coordinates_mark = "* Written by palpa relax.\n";
+
+}  // namespace
+
+int relax_command(const RelaxOptions& options) {
+    const SceneDescription scene = read_scene(options.scene, options.settings);
+    const Existing existing =
+        options.coordinates
+            ? check_output(*options.coordinates, coordinates_mark, options.overwrites)
+            : Existing::Refuse;
+    ProgressLine progress;
+    const World world = load_world(scene, progress.stages());
+    progress.wipe();
+    if (!has_mobile(world)) {
+        throw LoadError({scene.file.string()},
+                        "nothing moves by itself here; expected a molecule with shape = "
+                        "\"flexible\" or motion = \"free\"");
+    }
+    const StartReport& start = world.resource<StartReport>();
+    const JointRelaxReport& relaxed = start.joints_at_rest.value();
+    if (options.coordinates) {
+        Structure structure;
+        structure.names = world.resource<AtomTable>().names;
+        structure.positions = model_of(world).reference;
+        write_text_file(
+            *options.coordinates,
+            format_crd(structure,
+                       fmt::format("Written by palpa relax.\n{}: relaxed, {} joints, rms force "
+                                   "{:.3g} kcal/mol per radian and angstrom",
+                                   scene.title, start.joints, relaxed.rms_force)),
+            existing);
+    }
+    if (const auto closest =
+            describe_coincident_atoms(world.resource<AtomTable>().names, model_of(world).reference,
+                                      nearest_single_precision)) {
+        fmt::print(stderr, "warning: atoms are on each other: {}\n", printable(*closest));
+    }
+    options.json ? print_json(start) : print_report(start);
+    return relaxed.end == RelaxEnd::Converged ? 0 : 1;
+}
+
+void add_relax(CLI::App& program, ProgramCommand& chosen) {
+    CLI::App& relax =
+        *program.add_subcommand("relax", "Bring the flexible molecules of a scene to rest");
+    RelaxOptions& options = own_options<RelaxOptions>(relax, chosen, relax_command);
+    describe(relax, "Make scenes", {"palpa relax scenes/hiv/flexible.toml -o rest.crd"});
+    relax.add_option("scene", options.scene, "scene folder or file")->required();
+    relax.add_option("-o,--output", options.coordinates,
+                     "CHARMM coordinates (.crd) to write: where they rest");
+    add_overwrite_flag(relax, options.overwrites);
+    relax.add_flag("--json", options.json, "print JSON");
+    add_set_option(relax, options.settings);
+}
+
+}  // namespace palpa

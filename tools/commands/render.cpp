@@ -1,0 +1,179 @@
+#include "tools/commands/render.h"
+
+#include "core/load_error.h"
+#include "core/text.h"
+#include "devices/emulated_omni.h"
+#include "experiments/emulated_hand.h"
+#include "render/picture.h"
+#include "scene/read_scene.h"
+#include "session/run_headless.h"
+#include "simulation/held.h"
+#include "simulation/load.h"
+#include "tools/commands/choice.h"
+#include "tools/commands/command.h"
+#include "tools/commands/progress.h"
+#include "view/clip.h"
+#include "view/first_view.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <system_error>
+
+namespace palpa {
+namespace {
+
+// What the options say over the scene's [view].
+void apply_options(const RenderOptions& options, World& world, ViewDescription& view) {
+    if (!options.representation.empty()) {
+        view.representation = static_cast<Representation>(
+            choice_called("--as", options.representation, representation_names));
+    }
+    if (!options.colouring.empty()) {
+        view.colouring =
+            static_cast<Colouring>(choice_called("--colour", options.colouring, colouring_names));
+    }
+    if (!options.look_at.empty()) {
+        std::vector<std::string_view> names;
+        world.each<Molecule>(
+            [&](Entity, const Molecule& molecule) { names.emplace_back(molecule.name); });
+        view.look_at = names[choice_called("--look-at", options.look_at, names)];
+    }
+    if (!options.camera.empty()) view.camera = read_camera(options.camera);
+    view.clip = options.clips.value_or(view.clip);
+}
+
+// Seen by that camera.
+void finish_frame(const ViewDescription& view, const World& world, const OrbitCamera& camera,
+                  FrameScene& frame) {
+    if (view.clip) clip_in_front(held_range(world, first_hand(world)), camera, frame);
+    frame.camera = frame_camera(camera, frame);
+}
+
+float aspect_of(std::uint32_t width, std::uint32_t height) {
+    return static_cast<float>(width) / static_cast<float>(std::max<std::uint32_t>(height, 1));
+}
+
+}  // namespace
+
+std::array<double, 3> read_camera(std::string_view text) {
+    std::vector<double> numbers;
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t end = std::min(text.find(',', begin), text.size());
+        numbers.push_back(find_real(text.substr(begin, end - begin)).value_or(NAN));
+        begin = end + 1;
+    }
+    if (numbers.size() == 2) numbers.push_back(1);
+    if (numbers.size() != 3 || !std::isfinite(numbers[0]) || !(std::abs(numbers[1]) <= 90) ||
+        !(numbers[2] >= 0.01 && numbers[2] <= 100)) {
+        throw LoadError({fmt::format("--camera {}", text)},
+                        "expected AZIMUTH,ELEVATION[,ZOOM]: degrees, the second from -90 to 90, "
+                        "and a factor from 0.01 to 100");
+    }
+    return {numbers[0], numbers[1], numbers[2]};
+}
+
+int render_command(const RenderOptions& options) {
+    SceneDescription scene = read_scene(options.scene, options.settings);
+    const Existing existing = check_output(options.image, picture_mark, options.overwrites);
+    const std::int64_t pixels = std::int64_t{options.width} * options.height * options.samples;
+    if (pixels > most_pixels) {
+        throw LoadError({"--samples"},
+                        fmt::format("{} pixels in all; expected {} at most", pixels, most_pixels));
+    }
+    if (!options.camera.empty()) (void)read_camera(options.camera);  // before anything is loaded
+    ProgressLine progress;
+    const StageFunction on_stage = progress.stages();
+    World world = load_world(scene, on_stage);
+    apply_options(options, world, scene.view);
+    ViewSettings view = first_settings(scene.view, world);
+    view.force_arrow = options.arrow;
+    if (options.time_s > 0) {
+        scene.seconds = options.time_s;
+        EmulatedOmni device(build_emulated_omni(scene, world));
+        run_headless(scene, world, device, {}, nullptr, progress.shares("playing"));
+    }
+    tell(on_stage, "drawing");
+    FrameScene frame = build_frame(world, view);
+    const float aspect = aspect_of(options.width, options.height);
+    const OrbitCamera camera =
+        first_camera(scene.view, frame, framed_atoms(scene.view, world), aspect);
+    finish_frame(scene.view, world, camera, frame);
+
+    GpuDevice gpu{GpuOptions{}};
+    Renderer renderer(gpu);
+    const auto side = static_cast<std::uint32_t>(std::lround(std::sqrt(options.samples)));
+    frame.outline = static_cast<int>(side);
+    const Picture drawn =
+        renderer.draw(frame, side * options.width, side * options.height, PictureContent::Colours);
+    const Picture picture = side == 1 ? drawn : average_down(drawn, side);
+    write_png(options.image, picture, existing);
+    progress.wipe();
+    fmt::print("{}: {}x{} on {}\n", options.image.string(), picture.width, picture.height,
+               gpu.name());
+    return 0;
+}
+
+FrameWriter::FrameWriter(const std::filesystem::path& folder, std::uint32_t width,
+                         std::uint32_t height, const ViewDescription& view)
+    : folder_(folder),
+      width_(width),
+      height_(height),
+      view_(view),
+      gpu_(GpuOptions{}),
+      renderer_(gpu_) {
+    renderer_.check_size({width, height});
+}
+
+void FrameWriter::write(World& world) {
+    std::error_code error;
+    std::filesystem::create_directories(folder_, error);
+    if (error) throw LoadError({folder_.string()}, "cannot be made: " + error.message());
+    FrameScene frame = build_frame(world, first_settings(view_, world));
+    if (written_ == 0) {
+        camera_ =
+            first_camera(view_, frame, framed_atoms(view_, world), aspect_of(width_, height_));
+    }
+    finish_frame(view_, world, camera_, frame);
+    write_png(folder_ / fmt::format("{:04}.png", written_++),
+              renderer_.draw(frame, width_, height_, PictureContent::Colours));
+}
+
+void add_render(CLI::App& program, ProgramCommand& chosen) {
+    CLI::App& render = *program.add_subcommand("render", "A picture of a scene; needs no display");
+    RenderOptions& options = own_options<RenderOptions>(render, chosen, render_command);
+    describe(render, "Look and measure", {"palpa render scenes/hiv -o tunnel.png"});
+    render.add_option("scene", options.scene, "scene folder or file")->required();
+    render.add_option("-o,--output", options.image, "PNG file to write")->required();
+    add_overwrite_flag(render, options.overwrites);
+    add_size_option(render, "--size", options.width, options.height);
+    render.add_option("--time", options.time_s, "seconds that the hand plays before the picture")
+        ->check(in_range(0.0, 1e5));
+    render
+        .add_option(
+            "--as,--representation", options.representation,
+            "ball-and-stick, space-filling, licorice, in-hand: all but the molecule in hand "
+            "thin, or pocket: of these what is near to it, and backbones; this and what "
+            "follows: unless given, as the scene's [view] says")
+        ->type_name("NAME");
+    render.add_option("--colour,--colouring", options.colouring,
+                      "chain: carbons in a colour of their chain; or element");
+    render
+        .add_option("--camera", options.camera,
+                    "degrees around what is framed and above it, and how many times nearer")
+        ->type_name("AZIMUTH,ELEVATION[,ZOOM]");
+    render.add_option("--look-at", options.look_at, "a molecule of the scene to frame, not all");
+    render.add_flag_callback(
+        "--clip", [&options] { options.clips = true; },
+        "leave out what stands in front of the molecule in hand");
+    render.add_flag_callback(
+        "--no-clip", [&options] { options.clips = false; }, "show it, whatever the scene says");
+    render.add_option("--samples", options.samples, "averaged for a pixel: 1, 4, 9 or 16")
+        ->check(CLI::IsMember({1, 4, 9, 16}));
+    add_negation(render, "--no-arrow", options.arrow, "without the force on the molecule");
+    add_set_option(render, options.settings);
+}
+
+}  // namespace palpa

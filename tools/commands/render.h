@@ -1,0 +1,65 @@
+// palpa render: a picture of a scene, without a window or a display. And pictures of a run.
+#pragma once
+#include "ecs/world.h"
+#include "gpu/device.h"
+#include "render/renderer.h"
+#include "view/build_frame.h"
+#include "view/orbit_camera.h"
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace palpa {
+
+// Of a picture with all its samples: it takes some 2 GiB until it is written.
+inline constexpr std::int64_t most_pixels = std::int64_t{1} << 26;
+
+struct RenderOptions {
+    std::filesystem::path scene;
+    std::vector<std::string> settings;
+    std::filesystem::path image;
+    std::uint32_t width = 1280, height = 720;
+    double time_s = 0;  // simulated, under the emulated hand, before the picture
+    // Empty: as the scene's [view] says.
+    std::string representation, colouring;
+    std::string camera;   // azimuth, elevation in degrees, zoom
+    std::string look_at;  // a molecule's name
+    std::optional<bool> clips;
+    std::uint32_t samples = 1;  // a pixel: 1, 4, 9 or 16
+    bool overwrites = false;    // an earlier file of this command
+    bool arrow = true;
+};
+
+// Throws LoadError or GpuError. Returns the exit code.
+int render_command(const RenderOptions& options);
+
+// "AZIMUTH,ELEVATION" or "AZIMUTH,ELEVATION,ZOOM": degrees, and a factor above 0 by which the
+// camera comes nearer than where it sees everything; as [view] has them. Throws LoadError that
+// names the option.
+std::array<double, 3> read_camera(std::string_view text);
+
+// frames/0000.png and on in a recording, all from where the scene is seen at first.
+class FrameWriter {
+public:
+    // Throws GpuError where nothing can draw, or nothing of that size.
+    FrameWriter(const std::filesystem::path& folder, std::uint32_t width, std::uint32_t height,
+                const ViewDescription& view);
+
+    // Throws GpuError, or LoadError where it cannot be written.
+    void write(World& world);
+
+private:
+    std::filesystem::path folder_;
+    std::uint32_t width_, height_, written_ = 0;
+    ViewDescription view_;
+    GpuDevice gpu_;
+    Renderer renderer_;
+    OrbitCamera camera_;
+};
+
+}  // namespace palpa

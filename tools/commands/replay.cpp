@@ -1,0 +1,214 @@
+#include "tools/commands/replay.h"
+
+#include "core/files.h"
+#include "core/load_error.h"
+#include "core/text.h"
+#include "devices/emulated_omni.h"
+#include "experiments/emulated_hand.h"
+#include "scene/read_scene.h"
+#include "session/journal.h"
+#include "session/play_journal.h"
+#include "session/replay.h"
+#include "session/run_headless.h"
+#include "simulation/held.h"
+#include "simulation/load.h"
+#include "tools/commands/command.h"
+#include "tools/commands/progress.h"
+#include "tools/commands/run.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <system_error>
+#include <vector>
+
+namespace palpa {
+namespace {
+
+SceneDescription read_session(const std::filesystem::path& folder) {
+    const std::filesystem::path session = folder / "session.toml";
+    std::error_code error;
+    if (!std::filesystem::exists(session, error)) {
+        throw LoadError({folder.string()},
+                        "holds no session.toml; expected the folder of a recording (palpa run "
+                        "--record)");
+    }
+    return read_scene(session, {});
+}
+
+void check_repeats(const SceneDescription& scene) {
+    if (!scene.statics.budget_us) return;
+    throw LoadError(
+        scene.place_of("statics.budget_us"),
+        "the session had a time budget, and how much moved hung on the machine's speed: "
+        "such runs do not repeat; expected one without statics.budget_us");
+}
+
+// The session's file brings back the emulated hand, and no other. A recording that was cut off has
+// no summary, and only the trace will tell.
+void check_device(const std::filesystem::path& folder) {
+    const std::filesystem::path file = folder / "summary.json";
+    std::error_code error;
+    if (!std::filesystem::exists(file, error)) return;
+    const auto summary = nlohmann::json::parse(read_text_file(file), nullptr, false);
+    const auto check = [&](const nlohmann::json& hand) {
+        if (!hand.is_object() || !hand.contains("device")) return;
+        const std::string device =
+            hand["device"].is_string() ? hand["device"].get<std::string>().substr(0, 80) : "";
+        if (device == "emulated Omni") return;
+        throw LoadError({(folder / "summary.json").string()},
+                        fmt::format("the device was '{}'; expected one of the emulated hand (palpa "
+                                    "run --device replay:{} plays what was read then)",
+                                    device, folder.string()));
+    };
+    check(summary);
+    if (summary.is_object() && summary.contains("hand_2")) check(summary["hand_2"]);
+}
+
+// How much of a session is there.
+struct RecordedTime {
+    double recorded_s, session_s;
+};
+
+nlohmann::ordered_json as_json(const TraceCheck& check, const RecordedTime& time) {
+    nlohmann::ordered_json json{
+        {"recorded", check.recorded()},       {"compared", check.compared()},
+        {"different", check.different()},     {"cut_off", check.is_cut_off()},
+        {"recorded_s", time.recorded_s},      {"session_s", time.session_s},
+        {"surplus", check.surplus()},         {"not_finite", check.not_finite()},
+        {"largest_N", check.largest_newton()}};
+    if (const auto& first = check.first()) {
+        json["first"] = {{"row", first->row},
+                         {"time_s", first->time_s},
+                         {"column", first->column},
+                         {"recorded", first->recorded},
+                         {"played", first->played}};
+    }
+    return json;
+}
+
+void print_check(const TraceCheck& check, const RecordedTime& time) {
+    fmt::print("{} of {} rows played again: ", check.compared(), check.recorded());
+    if (check.different() == 0 && check.not_finite() > 0) {
+        fmt::print("all the same, and not all finite\n");
+    } else if (const auto& difference = check.first(); !difference) {
+        fmt::print("all the same to the last digit\n");
+    } else {
+        const TraceDifference& first = *difference;
+        fmt::print(
+            "{} differ\n  first       row {}, {} s: {} was {}, now {}\n  forces      {:.3g} N "
+            "apart "
+            "at most\n",
+            check.different(), first.row, printable(first.time_s), first.column,
+            printable(first.recorded), first.played, check.largest_newton());
+        fmt::print(
+            "  The same bits come from the same program on the same kind of processor "
+            "(session.toml says which).\n");
+    }
+    if (check.is_cut_off()) {
+        fmt::print("  cut off     {:.7g} of {:.7g} s were recorded\n", time.recorded_s,
+                   time.session_s);
+    }
+    if (check.not_finite() > 0)
+        fmt::print("  not finite  a number in each of {} rows\n", check.not_finite());
+    if (check.surplus() > 0)
+        fmt::print("  too many    rows behind the session's end: {}\n", check.surplus());
+}
+
+int report(const TraceCheck& check, const RecordedTime& time, bool json) {
+    if (json) {
+        fmt::print("{}\n", as_json(check, time).dump(2));
+    } else {
+        print_check(check, time);
+    }
+    const bool is_whole = check.compared() == check.recorded();
+    return check.different() == 0 && check.not_finite() == 0 && is_whole ? 0 : 1;
+}
+
+void check_has_rows(const TraceCheck& check, const std::filesystem::path& folder) {
+    if (check.recorded() > 0) return;
+    throw LoadError({(folder / "trace.csv").string(), 2},
+                    "holds no row; expected a recording that had begun");
+}
+
+// What people did in a window.
+int replay_journal(const ReplayOptions& options, const SceneDescription& scene) {
+    const std::filesystem::path file = options.recording / "journal.txt";
+    const Journal journal = parse_journal(read_text_file(file), file.string());
+    const std::size_t recorded =
+        journal.ticks.size() - journal.first_recorded.value_or(journal.ticks.size());
+    TraceCheck check(options.recording, recorded, scene.every, journal.devices.size());
+    check_has_rows(check, options.recording);
+    ProgressLine progress(!options.json);
+    std::vector<ServoTick> played(journal.devices.size());
+    play_journal(
+        scene, journal,
+        [&](std::span<const LiveTick> ticks) {
+            std::ranges::transform(ticks, played.begin(), &LiveTick::tick);
+            check.add(played);
+        },
+        progress.shares("playing"));
+    progress.wipe();
+    const double recorded_s = static_cast<double>(recorded) * servo_tick_s;
+    return report(check, {recorded_s, recorded_s}, options.json);
+}
+
+bool has_journal(const std::filesystem::path& folder) {
+    std::error_code error;
+    return std::filesystem::exists(folder / "journal.txt", error);
+}
+
+}  // namespace
+
+int replay_command(const ReplayOptions& options) {
+    SceneDescription scene = read_session(options.recording);
+    if (has_journal(options.recording)) return replay_journal(options, scene);
+    if (!options.verify) {
+        RunOptions run;
+        run.scene = options.recording / "session.toml";
+        run.headless = true;
+        run.json = options.json;
+        return run_command(run);
+    }
+    check_repeats(scene);
+    check_device(options.recording);
+    const std::size_t hands = list_hands(scene).size();
+    TraceCheck check(options.recording, count_ticks(scene), scene.every, hands);
+    check_has_rows(check, options.recording);
+    // One that was cut off is played as far as it goes.
+    const auto ticks = check.recorded() * static_cast<std::uint64_t>(scene.every);
+    const double session_s = scene.seconds;
+    scene.seconds = std::min(session_s, static_cast<double>(ticks) * servo_tick_s);
+    const RecordedTime time{scene.seconds, session_s};
+    ProgressLine progress(!options.json);
+    World world = load_world(scene, progress.stages());
+    std::vector<std::unique_ptr<EmulatedOmni>> omnis;
+    std::vector<Device*> devices;
+    for (std::size_t slot = 0; slot < hands; ++slot) {
+        omnis.push_back(std::make_unique<EmulatedOmni>(build_emulated_omni(scene, world, slot)));
+        devices.push_back(omnis.back().get());
+    }
+    (void)run_headless(scene, world, devices, {}, nullptr, progress.shares("playing"), {},
+                       [&](std::span<const ServoTick> ticks) { check.add(ticks); });
+    progress.wipe();
+    return report(check, time, options.json);
+}
+
+void add_replay(CLI::App& program, ProgramCommand& chosen) {
+    CLI::App& replay = *program.add_subcommand(
+        "replay", "Plays a recorded session again; --verify demands the same to the last digit");
+    ReplayOptions& options = own_options<ReplayOptions>(replay, chosen, replay_command);
+    describe(replay, "Experiments", {"palpa replay recordings/water --verify"});
+    replay.add_option("recording", options.recording, "folder of palpa run --record")->required();
+    replay.add_flag("--verify", options.verify,
+                    "hold every row of the trace against what is found now; exit code 1 where one "
+                    "differs");
+    replay.add_flag("--json", options.json, "print the result as JSON");
+}
+
+}  // namespace palpa

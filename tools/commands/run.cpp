@@ -1,0 +1,300 @@
+#include "tools/commands/run.h"
+
+#include "core/interrupt.h"
+#include "core/load_error.h"
+#include "core/text.h"
+#include "devices/emulated_omni.h"
+#include "devices/open_device.h"
+#include "experiments/emulated_hand.h"
+#include "scene/fields.h"
+#include "scene/read_scene.h"
+#include "session/recording.h"
+#include "session/run_headless.h"
+#include "simulation/held.h"
+#include "simulation/load.h"
+#include "simulation/step.h"
+#include "tools/commands/command.h"
+#include "tools/commands/devices.h"
+#include "tools/commands/open_window.h"
+#include "tools/commands/print_run.h"
+#include "tools/commands/progress.h"
+#include "tools/commands/render.h"
+
+#include <fmt/format.h>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace palpa {
+namespace {
+
+// A frame that cannot be drawn or written is the last one; the run goes on.
+void write_frame(std::unique_ptr<FrameWriter>& writer, World& world, ProgressLine& progress) {
+    if (!writer) return;
+    try {
+        writer->write(world);
+    } catch (const std::runtime_error& error) {
+        progress.wipe();
+        fmt::print(stderr, "warning: no more frames: {}\n", error.what());
+        writer.reset();
+    }
+}
+
+// Without a window nobody is there.
+void check_headless(const char* option, const std::string& device) {
+    const DeviceMaker& maker = device_maker_called(device);
+    if (maker.is_emulated && !maker.needs_window) return;
+    throw LoadError({fmt::format("{} {}", option, device)},
+                    "is held by a person and needs the window; this run has none (headless)");
+}
+
+}  // namespace
+
+void print_scene_keys() {
+    fmt::print("| key | value | unless given | meaning |\n| --- | --- | --- | --- |\n");
+    for (const FieldNote& field : list_fields()) {
+        fmt::print("| `{}` | {} | {} | {} |\n", field.key, field.type, field.fallback,
+                   field.meaning);
+    }
+}
+
+namespace {
+
+// What can be said of the options before anything is loaded.
+void check_options(const RunOptions& options) {
+    if (options.check_only) return;
+    if (!options.headless) return check_window_options(options);
+    if (options.record) check_record_folder(*options.record, options.overwrites);
+    if (options.last_shot || options.play || options.sound) {
+        throw LoadError({options.play    ? "--play"
+                         : options.sound ? "--sound"
+                                         : "--shot"},
+                        "needs the window, and this run has none (headless)");
+    }
+    if (options.device) check_headless("--device", *options.device);
+    if (options.second) check_headless("--second", *options.second);
+}
+
+void check_second(const RunOptions& options, const SceneDescription& scene) {
+    if (!options.second || scene.second) return;
+    throw LoadError({fmt::format("--second {}", *options.second)},
+                    "is for a scene that says what a second hand holds ([second.grab]), such as "
+                    "water/two-hands or hiv/two-hands; this one does not");
+}
+
+int print_check(const SceneDescription& scene, const World& world,
+                const std::vector<std::string>& warnings, ProgressLine& progress) {
+    fmt::print("{}: {}\n", printable(scene.file.string()),
+               warnings.empty() ? "nothing wrong found"
+                                : fmt::format("can be run, with {} warning{}", warnings.size(),
+                                              warnings.size() == 1 ? "" : "s"));
+    print_line(scene, world, progress);
+    for (const std::string& warning : warnings) {
+        fmt::print("  warning: {}\n", printable(warning));
+    }
+    return 0;
+}
+
+// Nothing where no frames are asked for; where they cannot be drawn a warning says so.
+std::unique_ptr<FrameWriter> open_frames(const RunOptions& options, const ViewDescription& view,
+                                         std::vector<std::string>& warnings) {
+    if (!options.record || options.frames_per_second <= 0) return nullptr;
+    try {
+        return std::make_unique<FrameWriter>(*options.record / "frames", options.frame_width,
+                                             options.frame_height, view);
+    } catch (const GpuError& error) {
+        warnings.push_back(fmt::format("no frames are drawn: {}", error.what()));
+        return nullptr;
+    }
+}
+
+void print_warnings(std::span<const std::string> warnings) {
+    for (const std::string& warning : warnings) {
+        fmt::print(stderr, "warning: {}\n", printable(warning));
+    }
+}
+
+// The scene's hands on their devices.
+std::vector<std::unique_ptr<Device>> open_hands(const SceneDescription& scene, const World& world,
+                                                const RunOptions& options) {
+    std::vector<std::unique_ptr<Device>> devices;
+    const std::optional<std::string> named[] = {options.device, options.second};
+    for (std::size_t slot = 0; slot < list_hands(scene).size(); ++slot) {
+        devices.push_back(open_device(named[slot].value_or("emulated"),
+                                      {.emulated = build_emulated_omni(scene, world, slot)})
+                              .device);
+    }
+    return devices;
+}
+
+// In lockstep, without a window.
+int run_without_window(SceneDescription scene, World& world,
+                       std::span<const std::unique_ptr<Device>> devices, const RunOptions& options,
+                       std::vector<std::string> warnings, std::unique_ptr<FrameWriter> writer,
+                       ProgressLine& progress) {
+    note_interrupts();  // a recording that is begun is ended in order
+    std::optional<Recording> recording;
+    if (options.record)
+        recording.emplace(*options.record, scene, options.overwrites, devices.size());
+    std::vector<Device*> hands;
+    for (const std::unique_ptr<Device>& device : devices) hands.push_back(device.get());
+    if (options.record && (options.second.value_or("emulated") != "emulated" ||
+                           options.device.value_or("emulated") != "emulated")) {
+        warnings.emplace_back(
+            "session.toml of this recording plays the scene's own hand; whoever runs it again has "
+            "to name --device and --second again");
+    }
+    FrameClock frames;
+    if (writer) {
+        frames = {options.frames_per_second, [&] { write_frame(writer, world, progress); }};
+    }
+    print_warnings(warnings);
+    const Summary summary =
+        run_headless(scene, world, hands, warnings, recording ? &*recording : nullptr,
+                     progress.shares("playing"), frames, {}, [] { return noted_interrupt() != 0; });
+    progress.wipe();
+    if (noted_interrupt() != 0) scene.seconds = static_cast<double>(summary.ticks) / servo_rate_hz;
+    print_warnings(std::span(summary.warnings).subspan(warnings.size()));
+    if (options.json) {
+        fmt::print("{}", format_summary(scene, summary));
+    } else {
+        print_summary(scene, summary);
+        if (options.record) fmt::print("recorded in {}\n", options.record->string());
+    }
+    return exit_code_after(0);
+}
+
+}  // namespace
+
+int run_command(const RunOptions& options) {
+    const SceneDescription scene = read_scene(options.scene, options.settings);
+    check_options(options);
+    check_second(options, scene);
+    ProgressLine progress(!options.json);
+    World world = load_world(scene, progress.stages());
+    tell(progress.stages(), "planning the hand's way");
+    const EmulatedOmniSettings settings = build_emulated_omni(scene, world);
+    std::vector<std::string> warnings =
+        list_warnings(scene, world, settings.script, progress.stages());
+    for (std::size_t slot = 1; slot < list_hands(scene).size(); ++slot) {
+        const HandScript script = build_emulated_omni(scene, world, slot).script;
+        for (std::string& warning :
+             list_hand_warnings(scene, world, script, slot, progress.stages()))
+            warnings.push_back(std::move(warning));
+    }
+    progress.wipe();
+    if (options.check_only) return print_check(scene, world, warnings, progress);
+    if (!options.headless) {
+        return exit_code_after(open_window(scene, world, settings, options));
+    }
+    // Complaints about the size of frames come before a recording is begun.
+    std::unique_ptr<FrameWriter> writer = open_frames(options, scene.view, warnings);
+    // Until the run begins a signal ends the program at once, however long a file takes to be read.
+    const std::vector<std::unique_ptr<Device>> devices = open_hands(scene, world, options);
+    return run_without_window(scene, world, devices, options, std::move(warnings),
+                              std::move(writer), progress);
+}
+
+namespace {
+
+void add_window_options(CLI::App& run, RunOptions& options) {
+    run.option_defaults()->group("In a window");
+    run.add_flag("--play", options.play,
+                 "the emulated hand plays the scene's stroke, not the mouse");
+    run.add_flag("--sound", options.sound,
+                 "play the felt force as a tone, the stronger the higher and louder");
+    add_size_option(run, "--size", options.width, options.height);
+    run.get_option("--size")->each([&options](const std::string&) { options.has_size = true; });
+    run.add_option("--screenshots", options.screenshots,
+                   "folder for screenshots, the present one "
+                   "unless given")
+        ->type_name("FOLDER");
+    CLI::Option* const shot =
+        run.add_option("--shot", options.last_shot, "a picture of the window, which then closes")
+            ->type_name("FILE.png");
+    run.add_option("--after", options.last_shot_s, "seconds until --shot, 5 unless given")
+        ->check(in_range(0.0, 1e5))
+        ->needs(shot);
+    run.add_flag("--validation", options.validation,
+                 "let the Vulkan validation layer watch the drawing");
+    run.add_option("--lose-device-at", options.lose_device_at)->group("");  // a test's
+}
+
+void add_headless_options(CLI::App& run, RunOptions& options) {
+    run.option_defaults()->group("Without a window");
+    run.add_flag("--headless", options.headless,
+                 "in lockstep on a virtual clock: the same command gives the same bytes");
+    CLI::Option* const record =
+        run.add_option("--record", options.record,
+                       "record into this folder: trace.csv, summary.json, session.toml, frames; "
+                       "a window session also journal.txt")
+            ->type_name("FOLDER")
+            ->group("With and without a window");
+    add_overwrite_flag(run, options.overwrites);
+    run.get_option("--overwrite")->group("With and without a window");
+    run.add_option("--fps", options.frames_per_second,
+                   "frames/0000.png ... into the recording, this many a simulated second")
+        ->check(in_range(0.01, 1000.0))
+        ->needs(record);
+    add_size_option(run, "--frame-size", options.frame_width, options.frame_height);
+    run.add_flag("--json", options.json, "print the summary as JSON");
+}
+
+}  // namespace
+
+void add_run(CLI::App& program, ProgramCommand& chosen) {
+    CLI::App& run = *program.add_subcommand("run", "A scene in a window, or without one");
+    RunOptions& options = own_options<RunOptions>(run, chosen, run_command);
+    describe(run, "Feel",
+             {"palpa run hiv", "palpa run scenes/water --headless --record recordings/water",
+              "palpa run scenes/water --headless --mode 2 --period-ms 14 --friction 0",
+              "palpa run scenes/hiv/flexible.toml --play"});
+    run.add_option("scene", options.scene,
+                   "scene folder or file, recorded session.toml, or the name of one of Palpa's own "
+                   "scenes")
+        ->required();
+    run.add_flag("--check", options.check_only,
+                 "only read the scene and say what is wrong with it");
+    run.add_flag_callback(
+        "--keys",
+        [] {
+            print_scene_keys();
+            throw CLI::Success();
+        },
+        "list the keys of scene files, and do nothing else");
+    run.option_defaults()->group("Hand and device");
+    run.add_option_function<std::string>(
+        "--device",
+        [&options](const std::string& name) {
+            if (name == "list") {
+                print_device_list();
+                throw CLI::Success();
+            }
+            options.device = name;
+        },
+        "mouse unless given, without a window emulated; 'list' lists them");
+    run.add_option("--second", options.second,
+                   "device of a scene's second hand; arrow keys in a window unless given");
+    std::vector<std::string>& settings = options.settings;
+    add_setting(run, "--hand", "none, light, slack, medium, firm or firm-grip", settings);
+    add_setting(run, "--friction", "Coulomb friction of the emulated device, N", settings);
+    run.option_defaults()->group("Coupling and simulation");
+    add_setting(run, "--mode", "guarded, or 1 to 5 as in the paper", settings);
+    add_setting(run, "--period-ms", "time between two steps of the simulation, ms", settings);
+    add_setting(run, "--engage",
+                "at-once, or ramp: the force of guarded coupling comes after a pause, in 2 s",
+                settings);
+    add_setting(run, "--seconds", "length of the run", settings);
+    add_setting(run, "--seed", "random seed, 1 unless given", settings);
+    add_setting(run, "--every", "write every Nth row of the trace", settings);
+    add_set_option(run, settings);
+    add_window_options(run, options);
+    add_headless_options(run, options);
+}
+
+}  // namespace palpa

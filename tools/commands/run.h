@@ -1,0 +1,40 @@
+// palpa run: a scene in a window, or headless under the emulated hand.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace palpa {
+
+struct RunOptions {
+    std::filesystem::path scene;
+    std::vector<std::string> settings;  // "key=value", over the scene file
+    std::optional<std::filesystem::path> record;
+    bool overwrites = false;       // an earlier recording, or an earlier picture of --shot
+    double frames_per_second = 0;  // 0: no frames in the recording
+    std::uint32_t frame_width = 640, frame_height = 360;
+    bool check_only = false;
+    bool json = false;  // the summary as JSON on standard output
+    bool headless = false;
+    std::optional<std::string> device;  // one of the list in devices/open_device.h
+    std::optional<std::string> second;  // the same, of the scene's second hand
+    bool sound = false;                 // in a window: the felt force as a tone, from the beginning
+    bool play = false;  // in a window: the emulated hand plays the scene's stroke, no mouse
+    std::uint32_t width = 1280, height = 800;        // of the window
+    bool has_size = false;                           // they were asked for
+    std::filesystem::path screenshots = ".";         // folder for those of the window
+    std::optional<std::filesystem::path> last_shot;  // of the window, which then closes
+    double last_shot_s = 5;
+    std::uint64_t lose_device_at = 0;
+    bool validation = false;  // of all that Vulkan is told
+};
+
+// All keys of a scene file as a Markdown table, as scenes/README.md has it.
+void print_scene_keys();
+
+// Throws LoadError on bad input. Returns the exit code.
+int run_command(const RunOptions& options);
+
+}  // namespace palpa

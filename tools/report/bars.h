@@ -1,0 +1,30 @@
+// Bars of a report that need no stroke of their own, and how a bar is printed.
+#pragma once
+#include "ecs/world.h"
+#include "experiments/closed_paths.h"
+#include "tools/report/report.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace palpa {
+
+struct BarRow {
+    std::string test, bar, measured;  // HTML
+    bool is_met = false;
+};
+
+// What two waters do to each other; `rest` in Å.
+void add_dimer_bars(const World& world, double rest, std::vector<BarRow>& rows);
+
+// Equations 2 and 3.
+void add_law_bars(std::vector<BarRow>& rows);
+
+// The closed paths in space of a report; nothing where no space.toml lies beside its scene.
+std::optional<ClosedPathOptions> find_closed_paths(const ReportOptions& options);
+
+// Random hands and devices on the scene's line, and, where it lies beside it, in space.toml.
+void add_random_bars(const ReportOptions& options, std::vector<BarRow>& rows);
+
+}  // namespace palpa
