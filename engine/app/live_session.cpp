@@ -93,13 +93,18 @@ public:
         draft = contact;
         draft.model.number = number;
         mailbox.send();
+        posted_[slot].contact = number;
     }
     void post(std::size_t slot, const ServoOrder& order) override {
         servos_.orders(slot).post(order);
+        posted_[slot].order = order.number;
     }
+
+    const AllPostNumbers& posted() const noexcept { return posted_; }
 
 private:
     ServoBank& servos_;
+    AllPostNumbers posted_{};
 };
 
 LiveSession::LiveSession(const SceneDescription& scene, const ViewSettings& view,
@@ -110,13 +115,16 @@ LiveSession::LiveSession(const SceneDescription& scene, const ViewSettings& view
       servos_(devices.size()),
       line_(std::make_unique<Line>(servos_)),
       simulation_(scene, describe(devices), *line_),
-      ticks_(std::make_unique<Ticks<ServoTick>>()),
-      journal_ticks_(std::make_unique<Ticks<LiveTick>>()),
+      ticks_(std::make_unique<Ticks>()),
+      journal_queue_(devices.size(), line_->posted()),
       view_(view),
       poses_(devices.size()),
       atoms_(list_atoms(simulation_.world())),
       framed_(framed_atoms(scene.view, simulation_.world())),
       recorder_(scene, simulation_.devices()) {
+    simulation_.await_renewals_by([this] {
+        if (renewing_.valid()) renewing_.wait();
+    });
     for (HandOrder& order : orders_) order.granted_ticks = ticks_of(scene.period_ms);
     start_servo();
     simulation_thread_ = std::thread([this] { run_simulation(); });
@@ -270,7 +278,7 @@ void LiveSession::run_servo() {
             std::ranges::copy(servos_.ticks(), last.begin());
             std::ranges::transform(servos_.ticks(), ticks.begin(), &LiveTick::tick);
             ticks_->push(std::span<const ServoTick>(ticks).first(count));
-            journal_ticks_->push(servos_.ticks());
+            journal_queue_.push(servos_.ticks());
         }
         for (std::size_t slot = 0; slot < count; ++slot) {
             devices_[slot].device->show(last[slot].tick.contact);
@@ -303,7 +311,8 @@ void LiveSession::run_simulation() {
         } else if (!settles && (!is_paused || step_once_)) {
             step_once_ = false;
             play(PublishEvent{});
-            play(StepEvent{});
+            play(StepEvent{{}, take_renewal()});
+            start_renewal();
         } else if (settles || !simulation_.all_stand_still()) {
             play(HoldEvent{});
         }
@@ -341,8 +350,7 @@ void LiveSession::play(const LiveEvent& event) {
     simulation_.play(event, poses_);
     if (auto* const step = std::get_if<StepEvent>(&played.event))
         step->took_us = simulation_.world().resource<StepReport>().took_us;
-    const std::lock_guard lock(event_mutex_);
-    events_.push_back(std::move(played));
+    journal_queue_.push(std::move(played), line_->posted());
 }
 
 void LiveSession::obey(const Command& command) {
@@ -380,6 +388,27 @@ void LiveSession::adopt_edit() {
         make(waiting_edits_.front());
         waiting_edits_.pop_front();
     }
+}
+
+// Whether the pending one is made. A step or an edit may have waited for it, and used it.
+bool LiveSession::take_renewal() {
+    if (renewing_.valid()) {
+        if (renewing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
+        renewing_.get();
+    }
+    return simulation_.has_renewal();
+}
+
+void LiveSession::start_renewal() {
+    if (renewing_.valid()) {
+        if (renewing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+        renewing_.get();
+    }
+    if (!simulation_.awaits_renewal()) return;
+    renewing_ = std::async(std::launch::async, [this] {
+        lower_priority();
+        simulation_.make_renewal();
+    });
 }
 
 void LiveSession::change_device(const DeviceEvent& change, const LiveDevice& device) {
@@ -440,14 +469,8 @@ void LiveSession::run_recorder() {
     }
 }
 
-// Events first: what a tick uses was posted by one of before.
 void LiveSession::record_what_happened() {
-    std::vector<PlayedEvent> events;
-    {
-        const std::lock_guard lock(event_mutex_);
-        events.swap(events_);
-    }
-    if (journal_ticks_->dropped() > 0) {
+    if (journal_queue_.dropped() > 0) {
         recorder_.lose();
         if (recorder_.is_recording() && recording_problem_.empty())
             recording_problem_ =
@@ -455,13 +478,7 @@ void LiveSession::record_what_happened() {
                 "not be exact";
     }
     try {
-        for (const PlayedEvent& event : events) recorder_.add(event);
-        std::array<LiveTick, most_hands> ticks;
-        while (journal_ticks_->pop(ticks[0])) {
-            for (std::size_t slot = 1; slot < hands();)
-                slot += journal_ticks_->pop(ticks[slot]) ? 1 : 0;
-            recorder_.add(std::span(ticks).first(hands()));
-        }
+        journal_queue_.hand_to(recorder_);
     } catch (const LoadError& error) {  // a full disk
         recording_problem_ = error.what();
         recorder_.give_up();

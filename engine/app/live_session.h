@@ -9,6 +9,7 @@
 #include "render/frame_scene.h"
 #include "scene/description.h"
 #include "session/commands.h"
+#include "session/journal_queue.h"
 #include "session/live_simulation.h"
 #include "session/servo_bank.h"
 #include "session/session_recorder.h"
@@ -113,13 +114,14 @@ private:
     void obey(const Command& command);
     void make(const EditDescription& edit);
     void adopt_edit();
+    bool take_renewal();
+    void start_renewal();
     void change_device(const DeviceEvent& change, const LiveDevice& device);
     void post_frame_if_wanted();
     void record_what_happened();
 
     static constexpr std::size_t ring_size = 8192;  // 4 s or more of ticks
-    template <class Value>
-    using Ticks = Ring<Value, ring_size>;
+    using Ticks = Ring<ServoTick, ring_size>;
 
     LiveClock machine_clock_;
     LiveClock& clock_;
@@ -128,8 +130,8 @@ private:
     ServoBank servos_;
     std::unique_ptr<Line> line_;
     LiveSimulation simulation_;
-    std::unique_ptr<Ticks<ServoTick>> ticks_;
-    std::unique_ptr<Ticks<LiveTick>> journal_ticks_;
+    std::unique_ptr<Ticks> ticks_;
+    JournalQueue journal_queue_;
     Mailbox<LiveFrame> frames_;
     std::atomic<bool> frame_wanted_{true};
     std::atomic<std::uint64_t> overruns_{0};
@@ -155,10 +157,9 @@ private:
     LiveClock::Moment settled_{};  // after a reset, until the hand rests
     AtomRange framed_;
     std::future<void> building_;  // of a long edit
+    std::future<void> renewing_;  // of a model of second order
     std::deque<EditDescription> waiting_edits_;
 
-    std::mutex event_mutex_;
-    std::vector<PlayedEvent> events_;  // for the journal
     std::mutex recorder_mutex_;
     SessionRecorder recorder_;
     std::string recording_problem_;  // since the last call of end_recording()

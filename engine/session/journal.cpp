@@ -191,7 +191,10 @@ private:
                 double took_us = 0;
                 if (!read_word(take_word(), took_us) || !std::isfinite(took_us) || took_us < 0)
                     fail("a step has no time", "microseconds");
-                played.event = StepEvent{took_us};
+                bool adopts_renewal = false;
+                if (!rest_.empty() && !read_word(take_word(), adopts_renewal))
+                    fail("a step does not say whether it adopts a renewal", "0, 1 or nothing");
+                played.event = StepEvent{took_us, adopts_renewal};
                 break;
             }
             case 'h':
@@ -362,7 +365,7 @@ void JournalWriter::add(const PlayedEvent& played) {
     const LiveEvent& event = played.event;
     text_ += fmt::format("{} {}", event_kinds[event.index()], fmt::join(played.poses, " "));
     if (const auto* const step = std::get_if<StepEvent>(&event)) {
-        text_ += fmt::format(" {}", step->took_us.value_or(0));
+        text_ += fmt::format(" {}{}", step->took_us.value_or(0), step->adopts_renewal ? " 1" : "");
     } else if (const auto* const command = std::get_if<CommandEvent>(&event)) {
         text_ += fmt::format(" {}", as_json(*command).dump());
     } else if (const auto* const adopted = std::get_if<AdoptEvent>(&event)) {

@@ -26,6 +26,7 @@ struct HandDevice {
 struct PublishEvent {};
 struct StepEvent {
     std::optional<double> took_us{};  // wall time, where it is played again
+    bool adopts_renewal = false;      // begins with the pending renewal of second order
 };
 // Whatever hands do meanwhile moves nothing, and they feel nothing.
 struct HoldEvent {};

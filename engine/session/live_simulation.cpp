@@ -34,10 +34,13 @@ void set_period(const SceneDescription& scene, World& world) {
         [&](Entity, Contact& contact) { contact.answer.model.period_s = period_s; });
 }
 
-// Where forces must be exact, real time is what limits the work for it, unless the scene does.
-SceneDescription limited_by_period(SceneDescription scene) {
+// No step waits for a renewal of second order. Where forces must be exact by another method, real
+// time is what limits the work for it, unless the scene does.
+SceneDescription as_live(SceneDescription scene) {
     constexpr double share = 0.8;
-    if (scene.coupling.feel_within_pN && !scene.statics.budget_us)
+    scene.statics.renews_beside = true;
+    const bool is_second_order = method_of(scene.statics) == RelaxMethod::SecondOrder;
+    if (scene.coupling.feel_within_pN && !scene.statics.budget_us && !is_second_order)
         scene.statics.budget_us = share * 1e3 * scene.period_ms;
     return scene;
 }
@@ -49,7 +52,7 @@ LiveSimulation::LiveSimulation(const SceneDescription& scene, std::vector<HandDe
     : scene_(scene),
       devices_(std::move(devices)),
       line_(line),
-      world_(load_world(limited_by_period(scene))),
+      world_(load_world(as_live(scene))),
       edits_(scene),
       poses_(devices_.size()),
       felt_(devices_.size()),
@@ -68,6 +71,10 @@ bool LiveSimulation::all_stand_still() const noexcept {
 void LiveSimulation::play(const LiveEvent& event, std::span<const HandPose> poses) {
     PALPA_ASSERT(poses.size() == poses_.size());
     std::ranges::copy(poses, poses_.begin());
+    const bool is_step = std::holds_alternative<StepEvent>(event) ||
+                         std::holds_alternative<PublishEvent>(event) ||
+                         std::holds_alternative<HoldEvent>(event);
+    if (!is_step) await_renewal();
     std::visit([this](const auto& one) { play(one); }, event);
 }
 
@@ -80,7 +87,8 @@ void LiveSimulation::play(const PublishEvent& /*event*/) {
 void LiveSimulation::play(const StepEvent& event) {
     if (draft_) return;  // or the edit would undo what the step did
     for (const EditDescription& due : edits_.take_due(time_s_)) edit(due, false);
-    const StepReport& report = step_world(world_, {poses_, felt_, event.took_us});
+    const StepReport& report =
+        step_world(world_, {poses_, felt_, event.took_us, event.adopts_renewal, await_});
     readout_.step_ms = 1e-3 * report.took_us;
     ++readout_.steps;
     time_s_ += world_.resource<Clock>().period_s;
@@ -148,7 +156,7 @@ void LiveSimulation::obey(const Reset& reset) {
     if (reset.start_angstrom) scene_.hand.start_angstrom = reset.start_angstrom;
     const std::vector<std::uint32_t> last_starts = list_starts();
     try {
-        world_ = load_world(limited_by_period(scene_));
+        world_ = load_world(as_live(scene_));
     } catch (const LoadError& error) {  // the files changed meanwhile: what runs, runs on
         readout_.problem = error.what();
         return;
@@ -199,7 +207,27 @@ void LiveSimulation::play(const AdoptEvent& event) {
     publish_edit(event.settles);
 }
 
+void LiveSimulation::await_renewal() const {
+    if (await_) await_();
+}
+
+bool LiveSimulation::awaits_renewal() const noexcept {
+    const SecondOrder* const second = world_.find_resource<SecondOrder>();
+    return second && second->statics.pending && !second->statics.pending->made;
+}
+
+bool LiveSimulation::has_renewal() const noexcept {
+    const SecondOrder* const second = world_.find_resource<SecondOrder>();
+    return second && second->statics.pending && second->statics.pending->made;
+}
+
+void LiveSimulation::make_renewal() {
+    SecondOrder& second = world_.resource<SecondOrder>();
+    make_pending(model_of(world_), second.settings, second.statics);
+}
+
 void LiveSimulation::edit(const EditDescription& edit, bool settles) {
+    await_renewal();
     try {
         history_.apply(world_, edit);
     } catch (const LoadError& error) {

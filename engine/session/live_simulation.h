@@ -11,6 +11,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -46,6 +47,14 @@ public:
     bool takes_long(const EditDescription& edit) const noexcept;
     void build_draft() noexcept;
 
+    // A renewal of second order that a step has asked for and nobody has made: make_renewal() by
+    // any one thread, beside steps, and a StepEvent that adopts it. `await` waits for that thread;
+    // it is called before anything else touches what the thread uses.
+    bool awaits_renewal() const noexcept;
+    void make_renewal();
+    bool has_renewal() const noexcept;  // one is made, and not yet adopted
+    void await_renewals_by(std::function<void()> await) { await_ = std::move(await); }
+
     const World& world() const noexcept { return world_; }
     const SceneDescription& scene() const noexcept { return scene_; }
     std::span<const HandDevice> devices() const noexcept { return devices_; }
@@ -66,6 +75,7 @@ private:
     void obey(const LiveSettings& settings);
     void obey(const Pause& pause);
     void obey(const Reset& reset);
+    void await_renewal() const;
     void edit(const EditDescription& edit, bool settles);
     void refuse(const EditDescription& edit, std::string why);
     void publish_edit(bool settles);
@@ -88,6 +98,7 @@ private:
         std::string refusal;           // or why it cannot be
     };
     std::optional<Draft> draft_;
+    std::function<void()> await_;
     EditPlayer edits_;
     double time_s_ = 0;  // of the steps so far
     std::vector<HandPose> poses_;

@@ -378,8 +378,8 @@ SecondOrder build_second_order(const StaticsDescription& s, const RelaxSettings&
     second.settings.forces = settings.step.forces;
     second.settings.near_reach = s.near_angstrom;
     second.settings.renew_hand = s.renew_angstrom;
-    second.delay_s = 1e-3 * s.renewal_ms;
-    second.settings.renews_at_once = s.renewal_ms == 0;
+    if (!s.renews_beside) second.delay_s = 1e-3 * s.renewal_ms;
+    second.settings.renews_at_once = !s.renews_beside && s.renewal_ms == 0;
     second.statics =
         build_second_order_statics(model_of(world), find_held_parts(world, second.hands));
     return second;
@@ -658,7 +658,7 @@ void move_held(World& world, const Vec3& by) {
 
 RelaxStepReport relax_step(World& world) {
     choose_active(world, {});
-    return relax_mobile(world);
+    return relax_mobile(world, {});
 }
 
 void put_state(World& world, const TorsionState& state) {

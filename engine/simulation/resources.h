@@ -114,14 +114,10 @@ struct SecondOrder {
     SecondOrderStatics statics;
     std::vector<Entity> hands;  // in the order in which the statics have them
 
-    // Declared time from the request of a renewal to its use. Until then steps go on with the old
-    // model.
-    double delay_s = 0;
-    struct Pending {
-        Renewal renewal;
-        std::uint64_t due;  // step of the clock
-    };
-    std::optional<Pending> pending;
+    // Until a pending renewal is used, steps go on with the old model: for a declared time, or
+    // until the step's input says so.
+    std::optional<double> delay_s;
+    std::uint64_t due = 0;  // step of the clock, where a delay is declared
 };
 
 // How the scene came to its start.

@@ -63,6 +63,7 @@ const StepReport& step_world(World& world, const StepInput& input) noexcept {
     for (const System system : systems) {
         system(world, input);
         if (report.finite) continue;
+        if (input.await_renewal) input.await_renewal();
         if (system != follow_hands) go_back(before, world);  // which has moved nothing then
         break;
     }

@@ -218,13 +218,47 @@ double find_relative_age(const SecondOrderSettings& settings, const TorsionState
         find_largest_move(linear.at.positions, state.positions) / settings.renew_atom);
 }
 
+RenewalRequest request_renewal(const SecondOrderSettings& settings, const TorsionState& state,
+                               const SecondOrderStatics& statics) {
+    RenewalRequest request{state, 0, {}, {}};
+    if (!statics.linear) return request;
+    request.age = find_relative_age(settings, state, statics);
+    const LinearisedModel& linear = *statics.linear;
+    request.felt = statics.value.gradient.tail(linear.hands());
+    request.at_rest =
+        request.felt + linear.response.transpose() * statics.value.gradient.head(linear.mobile());
+    return request;
+}
+
+void adopt_renewal(const SecondOrderSettings& settings, const Renewal& renewal,
+                   SecondOrderStatics& statics) {
+    if (!renewal.linear) return;
+    statics.linear = renewal.linear;
+    statics.near = renewal.linear->near;
+    statics.at = Eigen::VectorXd::Zero(renewal.linear->coordinates.size());
+    statics.value = {renewal.linear->at.energy(), renewal.linear->gradient};
+    statics.pairs.clear();
+    statics.is_settled =
+        renewal.relaxed.rms_force <= settings.relaxed || renewal.relaxed.end == RelaxEnd::Stuck;
+    constexpr double at_rest = 0.002;  // Å
+    statics.is_at_rest = renewal.relaxed.largest_move < at_rest;
+    if (renewal.error) {
+        constexpr double least_age = 0.3;
+        const double age = std::max(renewal.error_age, least_age);
+        const double growth = renewal.model_error / (age * age);
+        statics.error_growth =
+            statics.error_growth > 0 ? 0.5 * (statics.error_growth + growth) : growth;
+    }
+    ++statics.renewed;
+}
+
 // ---- one step ----------------------------------------------------------------------------------
 
 class Step {
 public:
     Step(const TorsionModel& model, const SecondOrderSettings& settings, TorsionState& state,
-         SecondOrderStatics& statics)
-        : model_(model), settings_(settings), state_(state), statics_(statics) {
+         SecondOrderStatics& statics, const AwaitFunction& await)
+        : model_(model), settings_(settings), state_(state), statics_(statics), await_(await) {
         for (const HandHold& hand : hands()) places_.push_back(find_place(model, state, hand));
     }
 
@@ -236,6 +270,8 @@ public:
         const double way = find_length(hands(), left());
         if (prepare_still(way)) follow(way);
         describe(start, before);
+        if (wants_renewal_ && report_.is_finite && !statics_.pending)
+            statics_.pending = {request_renewal(settings_, state_, statics_), {}};
         return report_;
     }
 
@@ -260,16 +296,31 @@ private:
                 springs[*hand.spring].place = state_.springs[*hand.spring].place;
         }
         if (springs == state_.springs) return true;
+        if (statics_.pending && !adopt(finish_pending())) return false;
         state_.springs = std::move(springs);
-        return renew(true);
+        return adopt(make_now());
     }
 
     // False where the caller makes it later, and where it is not finite.
     bool renew(bool at_once) {
-        report_.wants_renewal = !at_once;
-        if (!at_once) return false;
-        const Renewal renewal = make_renewal(
-            model_, settings_, request_renewal(settings_, state_, statics_), statics_.renewals);
+        wants_renewal_ = !at_once;
+        return at_once && adopt(statics_.pending ? finish_pending() : make_now());
+    }
+
+    Renewal make_now() {
+        return make_renewal(model_, settings_, request_renewal(settings_, state_, statics_),
+                            statics_.renewals);
+    }
+
+    Renewal finish_pending() {
+        if (await_) await_();
+        make_pending(model_, settings_, statics_);
+        Renewal made = std::move(*statics_.pending->made);
+        statics_.pending.reset();
+        return made;
+    }
+
+    bool adopt(const Renewal& renewal) {
         report_.is_renewed = true;
         report_.is_finite = renewal.linear != nullptr;
         report_.full_evaluations += renewal.relaxed.evaluations;
@@ -324,7 +375,7 @@ private:
             const double length = find_length(hands(), rest);
             is_there = length <= stride;
             const Eigen::VectorXd by = is_there ? rest : Eigen::VectorXd(rest * (stride / length));
-            const bool must_renew = report_.wants_renewal && is_beyond(by);
+            const bool must_renew = wants_renewal_ && is_beyond(by);
             if (!must_renew && try_stride(by)) continue;
             is_there = false;
             if (!renew(true)) return;
@@ -373,7 +424,9 @@ private:
     const SecondOrderSettings& settings_;
     TorsionState& state_;
     SecondOrderStatics& statics_;
+    const AwaitFunction& await_;
     std::vector<HandPlace> places_;  // where hands want what they hold
+    bool wants_renewal_ = false;     // by the caller, later
     SecondOrderReport report_;
 };
 
@@ -421,42 +474,24 @@ void start_second_order(const TorsionModel& model, const SecondOrderSettings& se
 }
 
 SecondOrderReport step_second_order(const TorsionModel& model, const SecondOrderSettings& settings,
-                                    TorsionState& state, SecondOrderStatics& statics) {
-    return Step(model, settings, state, statics).run();
+                                    TorsionState& state, SecondOrderStatics& statics,
+                                    const AwaitFunction& await) {
+    return Step(model, settings, state, statics, await).run();
 }
 
-RenewalRequest request_renewal(const SecondOrderSettings& settings, const TorsionState& state,
-                               const SecondOrderStatics& statics) {
-    RenewalRequest request{state, 0, {}, {}};
-    if (!statics.linear) return request;
-    request.age = find_relative_age(settings, state, statics);
-    const LinearisedModel& linear = *statics.linear;
-    request.felt = statics.value.gradient.tail(linear.hands());
-    request.at_rest =
-        request.felt + linear.response.transpose() * statics.value.gradient.head(linear.mobile());
-    return request;
+void make_pending(const TorsionModel& model, const SecondOrderSettings& settings,
+                  SecondOrderStatics& statics) {
+    PendingRenewal& pending = *statics.pending;
+    if (!pending.made)
+        pending.made = make_renewal(model, settings, std::move(pending.request), statics.renewals);
 }
 
-void adopt_renewal(const SecondOrderSettings& settings, const Renewal& renewal,
+void adopt_pending(const TorsionModel& model, const SecondOrderSettings& settings,
                    SecondOrderStatics& statics) {
-    if (!renewal.linear) return;
-    statics.linear = renewal.linear;
-    statics.near = renewal.linear->near;
-    statics.at = Eigen::VectorXd::Zero(renewal.linear->coordinates.size());
-    statics.value = {renewal.linear->at.energy(), renewal.linear->gradient};
-    statics.pairs.clear();
-    statics.is_settled =
-        renewal.relaxed.rms_force <= settings.relaxed || renewal.relaxed.end == RelaxEnd::Stuck;
-    constexpr double at_rest = 0.002;  // Å
-    statics.is_at_rest = renewal.relaxed.largest_move < at_rest;
-    if (renewal.error) {
-        constexpr double least_age = 0.3;
-        const double age = std::max(renewal.error_age, least_age);
-        const double growth = renewal.model_error / (age * age);
-        statics.error_growth =
-            statics.error_growth > 0 ? 0.5 * (statics.error_growth + growth) : growth;
-    }
-    ++statics.renewed;
+    make_pending(model, settings, statics);
+    const PendingRenewal pending = std::move(*statics.pending);
+    statics.pending.reset();
+    adopt_renewal(settings, *pending.made, statics);
 }
 
 Vec6 find_hand_pull(const SecondOrderStatics& statics, std::size_t hand) noexcept {

@@ -9,6 +9,7 @@
 #include "statics/relax_joints.h"
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -34,8 +35,8 @@ struct SecondOrderSettings {
     // While a renewal is awaited, a hand that goes farther than this from the point (Å) does not
     // wait for it: there is one within the step.
     double farthest_hand = 0.3;
-    // Renewals take place within the step. Otherwise the step asks for them, goes on with the old
-    // model, and the caller makes them (make_renewal) and hands them over (adopt_renewal).
+    // Renewals take place within the step. Otherwise the step asks for them (`pending`) and goes on
+    // with the old model until the caller adopts them.
     bool renews_at_once = true;
     // Where hands stand still, the model is renewed after so many steps, so that what is felt
     // comes to the rest of the whole energy.
@@ -85,10 +86,15 @@ struct [[nodiscard]] Renewal {
 Renewal make_renewal(const TorsionModel& model, const SecondOrderSettings& settings,
                      RenewalRequest request, RenewalMemory& memory);
 
+// A renewal that a step has asked for, until it is used.
+struct PendingRenewal {
+    RenewalRequest request;
+    std::optional<Renewal> made;
+};
+
 struct [[nodiscard]] SecondOrderReport {
     bool is_finite = true;  // else the state is where it was at the last renewal, or before
     bool is_renewed = false;
-    bool wants_renewal = false;
     double energy = 0;        // kcal/mol, by the model
     double rms_force = 0;     // along the mobile coordinates
     double age = 0;           // Å: the way of the farthest hand from the point of linearisation
@@ -107,6 +113,7 @@ struct [[nodiscard]] SecondOrderReport {
 // What steps keep from one to the next.
 struct SecondOrderStatics {
     RenewalMemory renewals;
+    std::optional<PendingRenewal> pending;  // only where renewals do not take place at once
 
     std::shared_ptr<const LinearisedModel> linear;  // none before the first step
     Eigen::VectorXd at;                             // where the state is, about it
@@ -130,17 +137,24 @@ SecondOrderStatics build_second_order_statics(const TorsionModel& model, HeldPar
 void start_second_order(const TorsionModel& model, const SecondOrderSettings& settings,
                         const TorsionState& state, SecondOrderStatics& statics);
 
-// Follows the hands to where the state has the bases and spring ends that they move. All other
-// coordinates of the state are those of the last step.
-SecondOrderReport step_second_order(const TorsionModel& model, const SecondOrderSettings& settings,
-                                    TorsionState& state, SecondOrderStatics& statics);
+// Called before a pending renewal is used: waits for the thread that makes it, if there is one.
+using AwaitFunction = std::function<void()>;
 
-// For renewals that are made elsewhere: after a step that wants one, then as soon as it is there.
-// The new model belongs to where the hands were at the request. The next step follows from there
-// to where they are, by strides. One that is not finite changes nothing.
-RenewalRequest request_renewal(const SecondOrderSettings& settings, const TorsionState& state,
-                               const SecondOrderStatics& statics);
-void adopt_renewal(const SecondOrderSettings& settings, const Renewal& renewal,
+// Follows the hands to where the state has the bases and spring ends that they move. All other
+// coordinates of the state are those of the last step. A step that cannot go on with the old model
+// uses the pending renewal before its time.
+SecondOrderReport step_second_order(const TorsionModel& model, const SecondOrderSettings& settings,
+                                    TorsionState& state, SecondOrderStatics& statics,
+                                    const AwaitFunction& await = {});
+
+// Makes the pending renewal where it is not made yet. Steps and copies of hand pulls may go on
+// meanwhile in another thread; nothing may copy or replace the statics.
+void make_pending(const TorsionModel& model, const SecondOrderSettings& settings,
+                  SecondOrderStatics& statics);
+
+// Makes and adopts it. The new model belongs to where the hands were at the request: the next step
+// follows from there to where they are, by strides. One that is not finite changes nothing.
+void adopt_pending(const TorsionModel& model, const SecondOrderSettings& settings,
                    SecondOrderStatics& statics);
 
 // Torque about the point that a hand moves, zero where it does not turn it, and force, of the model

@@ -199,6 +199,36 @@ TEST_CASE("measured times that steer a choice are part of the journal", "[app][t
     CHECK(std::ranges::min(times) > 0);
 }
 
+TEST_CASE("renewals that a thread of its own makes are played again to the bit",
+          "[app][threads][journal]") {
+    const test::TemporaryFolder folder;
+    const std::filesystem::path recording = folder.path() / "recording";
+    {
+        const std::vector<std::string> settings{"method=second-order", "period_ms=4",
+                                                "A_d=0.5e8"};
+        TwoMice live(read_scene(test::in_project("tests/data/two_peptides"), settings), 1);
+        live.session->begin_recording(recording);
+        for (const double side : {1, -1, 1}) {
+            live.session->move_hand(Vec3(0.03 * side, 0.02, 0));
+            REQUIRE(live.wait_for_steps(30));
+        }
+        live.edit(PinEdit{{"resting:3 CA"}});  // while one may be under way
+        live.session->move_hand(Vec3(-0.03, 0, 0));
+        REQUIRE(live.wait_for_steps(30));
+        live.edit(UndoEdit{});
+        live.session->move_hand(Vec3(0.02, 0, 0));
+        REQUIRE(live.wait_for_steps(30));
+        live.session->end_recording();
+    }
+    check_same(recording, 500);
+    const Journal journal = parse_journal(read_text_file(recording / "journal.txt"), "j");
+    const auto adopts = std::ranges::count_if(journal.events, [](const PlayedEvent& event) {
+        const auto* const step = std::get_if<StepEvent>(&event.event);
+        return step && step->adopts_renewal;
+    });
+    CHECK(adopts > 5);
+}
+
 TEST_CASE("edits that take longer than a step are played again to the bit",
           "[app][threads][journal]") {
     const test::TemporaryFolder folder;

@@ -79,7 +79,7 @@ TEST_CASE("a journal reads as it was written, to the last bit", "[session][journ
     settings.period_ms = 14;
     const EditDescription edit{0, 1, RestraintEdit{{"a:25 CA"}, {{{1, 2, 3}}}, 7, 0.5}, {}};
     for (const LiveEvent& event : std::vector<LiveEvent>{
-             PublishEvent{}, StepEvent{123.4}, HoldEvent{}, CommandEvent{settings},
+             PublishEvent{}, StepEvent{123.4, true}, HoldEvent{}, CommandEvent{settings},
              CommandEvent{Pause{false}}, CommandEvent{StepOnce{}}, CommandEvent{Reset{}},
              CommandEvent{Reset{5.5}}, CommandEvent{edit, true, true}, AdoptEvent{true},
              AdoptEvent{}, DeviceEvent{1, omni}})
@@ -116,6 +116,7 @@ TEST_CASE("a journal reads as it was written, to the last bit", "[session][journ
     REQUIRE(journal.events.size() == 12);
     CHECK(journal.events[4].poses == std::vector<std::uint64_t>{1, 2});
     CHECK(std::get<StepEvent>(journal.events[1].event).took_us == 123.4);
+    CHECK(std::get<StepEvent>(journal.events[1].event).adopts_renewal);
     CHECK(command_of<LiveSettings>(journal, 3) == settings);
     CHECK_FALSE(command_of<Pause>(journal, 4).paused);
     CHECK_FALSE(command_of<Reset>(journal, 6).start_angstrom);

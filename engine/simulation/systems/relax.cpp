@@ -71,34 +71,33 @@ RelaxStepReport minimise_all(World& world) {
     return report;
 }
 
-// A renewal belongs to the state at its request; it is used when its declared time has passed.
-void request_renewal(World& world, SecondOrder& second) {
-    if (second.pending) return;
-    const Clock& clock = world.resource<Clock>();
-    const auto steps = static_cast<std::uint64_t>(std::ceil(second.delay_s / clock.period_s));
-    second.pending = {make_renewal(model_of(world), second.settings,
-                                   request_renewal(second.settings, world.resource<TorsionState>(),
-                                                   second.statics),
-                                   second.statics.renewals),
-                      clock.steps + std::max<std::uint64_t>(steps, 1)};
-}
-
-bool adopt_due(const World& world, SecondOrder& second) {
-    if (!second.pending || world.resource<Clock>().steps < second.pending->due) return false;
-    adopt_renewal(second.settings, second.pending->renewal, second.statics);
-    second.pending.reset();
+// A renewal belongs to the state at its request.
+bool adopt_due(const World& world, const StepInput& input, SecondOrder& second) {
+    const bool is_due = second.delay_s ? world.resource<Clock>().steps >= second.due
+                                       : input.adopts_renewal;
+    if (!second.statics.pending || !is_due) return false;
+    adopt_pending(model_of(world), second.settings, second.statics);
     return true;
 }
 
+void note_due(const World& world, SecondOrder& second) {
+    const Clock& clock = world.resource<Clock>();
+    const auto steps =
+        static_cast<std::uint64_t>(std::ceil(second.delay_s.value_or(0) / clock.period_s));
+    second.due = clock.steps + std::max<std::uint64_t>(steps, 1);
+}
+
 // All joints and bases follow the hands by second order.
-RelaxStepReport follow_by_second_order(World& world, SecondOrder& second) {
+RelaxStepReport follow_by_second_order(World& world, const StepInput& input,
+                                       SecondOrder& second) {
     const TorsionModel& model = model_of(world);
     TorsionState& state = world.resource<TorsionState>();
     const double before = second.statics.value.energy;
-    const bool is_adopted = adopt_due(world, second);
-    const SecondOrderReport step = step_second_order(model, second.settings, state, second.statics);
-    if (step.is_renewed) second.pending.reset();  // it is of an older state
-    if (step.wants_renewal) request_renewal(world, second);
+    const bool is_adopted = adopt_due(world, input, second);
+    const bool was_pending = second.statics.pending.has_value();
+    const SecondOrderReport step =
+        step_second_order(model, second.settings, state, second.statics, input.await_renewal);
+    if (!was_pending || step.is_renewed) note_due(world, second);
     RelaxStepReport report;
     report.energy_change = -step.released;
     report.hand_work = step.energy + step.released - before;
@@ -117,10 +116,10 @@ RelaxStepReport follow_by_second_order(World& world, SecondOrder& second) {
 
 }  // namespace
 
-void relax(World& world, const StepInput& /*input*/) {
+void relax(World& world, const StepInput& input) {
     if (!has_mobile(world)) return;
     StepReport& report = world.resource<StepReport>();
-    report.relaxed = relax_mobile(world);
+    report.relaxed = relax_mobile(world, input);
     report.finite = report.relaxed->is_finite;
     if (!report.finite) return;
     copy_positions(world);
@@ -133,11 +132,11 @@ void relax(World& world, const StepInput& /*input*/) {
     });
 }
 
-RelaxStepReport relax_mobile(World& world) {
+RelaxStepReport relax_mobile(World& world, const StepInput& input) {
     if (AdaptiveState* const adaptive = world.find_resource<AdaptiveState>())
         return relax_active(world, *adaptive);
     if (SecondOrder* const second = world.find_resource<SecondOrder>())
-        return follow_by_second_order(world, *second);
+        return follow_by_second_order(world, input, *second);
     return minimise_all(world);
 }
 
@@ -161,8 +160,8 @@ void restore_mobile(const MobileCoordinates& saved, World& world) {
         state = world.resource<Solver>().safe;
         // A model of where that went wrong is of no use.
         if (SecondOrder* const second = world.find_resource<SecondOrder>()) {
-            second->statics.linear.reset();
-            second->pending.reset();
+            HeldParts held = second->statics.renewals.lineariser.held;
+            second->statics = build_second_order_statics(model_of(world), std::move(held));
         }
     }
     copy_positions(world);

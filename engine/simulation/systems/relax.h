@@ -12,7 +12,7 @@ namespace palpa {
 void relax(World& world, const StepInput& input);
 
 // The same for measurements outside of a step.
-RelaxStepReport relax_mobile(World& world);
+RelaxStepReport relax_mobile(World& world, const StepInput& input);
 
 // Where mechanics and springs are: what a step that fails goes back to.
 struct MobileCoordinates {

@@ -2,6 +2,7 @@
 #pragma once
 #include "haptics/exchange.h"
 
+#include <functional>
 #include <optional>
 #include <span>
 
@@ -14,6 +15,10 @@ struct StepInput {
     std::span<const HandPose> hands;
     std::span<const ContactModel> felt;
     std::optional<double> took_us = {};  // wall time of this step, where it is played again
+    // Where a thread of its own makes renewals of second order: whether this step begins with the
+    // pending one; and waits for that thread.
+    bool adopts_renewal = false;
+    std::function<void()> await_renewal = {};
 };
 
 }  // namespace palpa
