@@ -204,8 +204,7 @@ TEST_CASE("renewals that a thread of its own makes are played again to the bit",
     const test::TemporaryFolder folder;
     const std::filesystem::path recording = folder.path() / "recording";
     {
-        const std::vector<std::string> settings{"method=second-order", "period_ms=4",
-                                                "A_d=0.5e8"};
+        const std::vector<std::string> settings{"method=second-order", "period_ms=4", "A_d=0.5e8"};
         TwoMice live(read_scene(test::in_project("tests/data/two_peptides"), settings), 1);
         live.session->begin_recording(recording);
         for (const double side : {1, -1, 1}) {

@@ -274,9 +274,8 @@ TEST_CASE("a pending renewal made beside steps in another thread gives the same 
             const bool is_due = k % 6 == 0 && statics.pending;
             if (is_due) adopt_pending(c.model, c.settings, statics);
             if (is_threaded && statics.pending && !statics.pending->made) {
-                maker = std::async(std::launch::async, [&] {
-                    make_pending(c.model, c.settings, statics);
-                });
+                maker = std::async(std::launch::async,
+                                   [&] { make_pending(c.model, c.settings, statics); });
             }
             // A jump leaves the region of the old model, and has to use the renewal.
             c.move_hand(Vec3(k == 40 ? 0.5 : 0.02, 0, 0));

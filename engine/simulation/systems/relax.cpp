@@ -73,8 +73,8 @@ RelaxStepReport minimise_all(World& world) {
 
 // A renewal belongs to the state at its request.
 bool adopt_due(const World& world, const StepInput& input, SecondOrder& second) {
-    const bool is_due = second.delay_s ? world.resource<Clock>().steps >= second.due
-                                       : input.adopts_renewal;
+    const bool is_due =
+        second.delay_s ? world.resource<Clock>().steps >= second.due : input.adopts_renewal;
     if (!second.statics.pending || !is_due) return false;
     adopt_pending(model_of(world), second.settings, second.statics);
     return true;
@@ -88,8 +88,7 @@ void note_due(const World& world, SecondOrder& second) {
 }
 
 // All joints and bases follow the hands by second order.
-RelaxStepReport follow_by_second_order(World& world, const StepInput& input,
-                                       SecondOrder& second) {
+RelaxStepReport follow_by_second_order(World& world, const StepInput& input, SecondOrder& second) {
     const TorsionModel& model = model_of(world);
     TorsionState& state = world.resource<TorsionState>();
     const double before = second.statics.value.energy;
