@@ -340,7 +340,7 @@ class RelaxationLog {
 public:
     void add(const RelaxStepReport& relaxed) {
         if (relaxed.model_age && relaxed.is_renewed) ++sum_.renewals;
-        if (relaxed.released > snap) {
+        if (relaxed.released > least_snap) {
             ++sum_.snaps;
             sum_.released += relaxed.released;
         }
@@ -357,7 +357,6 @@ public:
     }
 
 private:
-    static constexpr double snap = 1;       // kcal/mol
     static constexpr double least = 0.001;  // pN, of the first bin
     static constexpr double width = 0.02;   // of a bin, of the logarithm
 

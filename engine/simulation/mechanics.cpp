@@ -378,6 +378,7 @@ SecondOrder build_second_order(const StaticsDescription& s, const RelaxSettings&
     second.settings.forces = settings.step.forces;
     second.settings.near_reach = s.near_angstrom;
     second.settings.renew_hand = s.renew_angstrom;
+    second.most_evaluations = second.settings.evaluations;
     if (!s.renews_beside) second.delay_s = 1e-3 * s.renewal_ms;
     second.settings.renews_at_once = !s.renews_beside && s.renewal_ms == 0;
     second.statics =
@@ -621,6 +622,7 @@ World build_mechanics_world(const SceneDescription& scene, TorsionModel model,
     world.set(hand, Hand{});
     world.set(hand, Grip{});
     world.set_resource(AtomTable{});
+    world.set_resource(Clock{scene.period_ms * 1e-3});  // a renewal is due after a time
     StartReport report;
     report.joints = model.tree.bodies.joints();
     world.set_resource(report);

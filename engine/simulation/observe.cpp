@@ -72,7 +72,25 @@ void estimate_error(World& world) {
         accuracy->add_estimate(*estimate->last_pN, estimate->felt_pN, estimate->evaluations);
 }
 
+namespace {
+
+void note_evaluations(const World& world, const StepReport& report, SecondOrder& second) {
+    constexpr double of_period = 0.8, newest = 0.1;
+    if (second.delay_s || report.relaxed->is_renewed || report.relaxed->steps == 0) return;
+    const double us = report.took_us / static_cast<double>(report.relaxed->steps);
+    second.evaluation_us += (second.evaluation_us > 0 ? newest : 1) * (us - second.evaluation_us);
+    const double fit =
+        of_period * 1e6 * world.resource<Clock>().period_s / std::max(second.evaluation_us, 1.0);
+    second.settings.evaluations = static_cast<std::size_t>(
+        std::clamp(fit, 1.0, static_cast<double>(second.most_evaluations)));
+}
+
+}  // namespace
+
 void note_time(World& world) {
+    SecondOrder* const second = world.find_resource<SecondOrder>();
+    if (second && world.resource<StepReport>().relaxed)
+        note_evaluations(world, world.resource<StepReport>(), *second);
     AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();
     const StepReport& report = world.resource<StepReport>();
     if (!adaptive || !adaptive->budget || !report.relaxed || report.relaxed->is_estimating) return;

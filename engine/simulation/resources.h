@@ -108,6 +108,9 @@ struct ErrorEstimate {
     std::size_t evaluations = 0;  // that it took
 };
 
+// A renewal that sets more energy free than this (kcal/mol) is a snap: a minimum had vanished.
+inline constexpr double least_snap = 1;
+
 // Where everything mobile follows the hands by second order.
 struct SecondOrder {
     SecondOrderSettings settings;
@@ -118,6 +121,20 @@ struct SecondOrder {
     // until the step's input says so.
     std::optional<double> delay_s;
     std::uint64_t due = 0;  // step of the clock, where a delay is declared
+
+    // In real time, where no delay is declared, a step has as many evaluations of the model as fit
+    // into most of the period: by how long each of the last took, wall time.
+    std::size_t most_evaluations = 0;
+    double evaluation_us = 0;
+
+    // The last time that a minimum had vanished: energy that renewals set free (kcal/mol), the
+    // atom that went farthest, and the clock's step.
+    struct Snap {
+        std::uint32_t atom = 0;
+        double released = 0;
+        std::uint64_t step = 0;
+    };
+    std::optional<Snap> snap;
 };
 
 // How the scene came to its start.
@@ -155,7 +172,8 @@ struct [[nodiscard]] RelaxStepReport {
     // renewal's relaxation set free, kcal/mol.
     std::optional<double> model_age;
     double released = 0;
-    bool is_finite = true;  // else all is where the last step left it
+    std::uint32_t snapped_atom = 0;  // that this moved farthest
+    bool is_finite = true;           // else all is where the last step left it
 };
 
 // What the last step found. A step that is not finite has moved nothing.

@@ -1,6 +1,7 @@
 // The energy about a point of linearisation: exact for pairs between held atoms and atoms near
 // them, and to second order for everything else.
 #pragma once
+#include "statics/close_pairs.h"
 #include "statics/fast_second_derivatives.h"
 #include "statics/local_coordinates.h"
 #include "statics/near_pairs.h"
@@ -28,6 +29,7 @@ struct LinearisedModel {
     LocalCoordinates coordinates;
     Eigen::VectorXd gradient;  // of the whole energy there; hands last: minus the forces on them
     NearPairs near;
+    ClosePairs close;  // of those that Q has
 
     // Of Q at the point. Single precision is enough for the product with a small move.
     double rest_energy = 0;  // kcal/mol

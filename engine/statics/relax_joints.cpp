@@ -9,12 +9,6 @@
 namespace palpa {
 namespace {
 
-double rms_of(const Coordinates& values) {
-    return values.size() == 0
-               ? 0
-               : std::sqrt(values.squaredNorm() / static_cast<double>(values.size()));
-}
-
 // How much each coordinate yields alone: the inverse of the sum of squared lever arms of the atoms
 // that it moves, as if each atom were held by a spring of 1 kcal/mol/Å^2.
 Coordinates find_compliance(const TorsionModel& model, const TorsionState& state) {
@@ -123,6 +117,12 @@ private:
 };
 
 }  // namespace
+
+double rms_of(const Coordinates& values) noexcept {
+    return values.size() == 0
+               ? 0
+               : std::sqrt(values.squaredNorm() / static_cast<double>(values.size()));
+}
 
 JointRelaxReport relax_joints(const TorsionModel& model, const RelaxSettings& settings,
                               TorsionState& state, QuasiStatics& statics,

@@ -9,6 +9,9 @@
 
 namespace palpa {
 
+// Root of the mean square; 0 of none.
+double rms_of(const Coordinates& values) noexcept;
+
 struct RelaxSettings {
     RelaxMethod method = RelaxMethod::InverseMass;
     QuasiStaticSettings step;   // forces of all methods, the rest of QuasiStatic

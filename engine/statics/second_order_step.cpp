@@ -2,13 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 namespace palpa {
 namespace {
 
-double rms_of(const Eigen::VectorXd& v) {
-    return v.size() > 0 ? std::sqrt(v.squaredNorm() / static_cast<double>(v.size())) : 0;
+std::uint32_t find_farthest(std::span<const Vec3> before, std::span<const Vec3> after) {
+    std::uint32_t farthest = 0;
+    double most = 0;
+    for (std::uint32_t atom = 0; atom < before.size(); ++atom) {
+        const double way = (after[atom] - before[atom]).squaredNorm();
+        if (way > most) std::tie(farthest, most) = std::tuple(atom, way);
+    }
+    return farthest;
 }
 
 // ---- hands -------------------------------------------------------------------------------------
@@ -324,7 +331,9 @@ private:
         report_.is_renewed = true;
         report_.is_finite = renewal.linear != nullptr;
         report_.full_evaluations += renewal.relaxed.evaluations;
-        report_.released += renewal.relaxed.energy_before - renewal.relaxed.energy_after;
+        const double released = renewal.relaxed.energy_before - renewal.relaxed.energy_after;
+        if (released > report_.released) report_.farthest_relaxed = renewal.farthest_atom;
+        report_.released += released;
         if (renewal.error) report_.renewal_error = renewal.error;
         adopt_renewal(settings_, renewal, statics_);
         if (report_.is_finite) place();
@@ -388,16 +397,17 @@ private:
         return next > settings_.farthest_hand && next > find_length(hands(), d);
     }
 
-    // False, and everything is as it was, where an atom would leave the region of the model. With a
-    // model that is new nothing better can be had: then the hand alone goes on, before everything
-    // relaxes on the whole energy.
+    // False, and everything is as it was, where an atom would leave the region of the model, or
+    // come too close to another. With a model that is new nothing better can be had: then the hand
+    // alone goes on, before everything relaxes on the whole energy.
     bool try_stride(const Eigen::VectorXd& by) {
         const Eigen::VectorXd at = statics_.at;
         const ModelValue value = statics_.value;
         follow_linearly(model_, settings_, by, state_, statics_);
         relax_model(model_, settings_, state_, statics_);
         if (is_finite(statics_) &&
-            find_largest_move(linear().at.positions, state_.positions) < settings_.farthest)
+            find_largest_move(linear().at.positions, state_.positions) < settings_.farthest &&
+            !are_too_close(linear().close, state_.positions))
             return true;
         ++statics_.discarded;
         const bool is_new = at.squaredNorm() == 0;
@@ -435,7 +445,9 @@ private:
 Renewal make_renewal(const TorsionModel& model, const SecondOrderSettings& settings,
                      RenewalRequest request, RenewalMemory& memory) {
     Renewal renewal;
+    const std::vector<Vec3> before = request.state.positions;
     renewal.relaxed = relax_fully(model, settings, request.state, memory);
+    renewal.farthest_atom = find_farthest(before, request.state.positions);
     if (renewal.relaxed.end == RelaxEnd::NotFinite || !std::isfinite(request.state.energy()))
         return renewal;
     auto linear = std::make_shared<LinearisedModel>();
@@ -486,12 +498,13 @@ void make_pending(const TorsionModel& model, const SecondOrderSettings& settings
         pending.made = make_renewal(model, settings, std::move(pending.request), statics.renewals);
 }
 
-void adopt_pending(const TorsionModel& model, const SecondOrderSettings& settings,
-                   SecondOrderStatics& statics) {
+Renewal adopt_pending(const TorsionModel& model, const SecondOrderSettings& settings,
+                      SecondOrderStatics& statics) {
     make_pending(model, settings, statics);
-    const PendingRenewal pending = std::move(*statics.pending);
+    Renewal renewal = std::move(*statics.pending->made);
     statics.pending.reset();
-    adopt_renewal(settings, *pending.made, statics);
+    adopt_renewal(settings, renewal, statics);
+    return renewal;
 }
 
 Vec6 find_hand_pull(const SecondOrderStatics& statics, std::size_t hand) noexcept {

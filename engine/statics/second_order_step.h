@@ -9,6 +9,7 @@
 #include "statics/relax_joints.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -76,6 +77,7 @@ struct RenewalRequest {
 struct [[nodiscard]] Renewal {
     std::shared_ptr<const LinearisedModel> linear;  // none where anything was not finite
     JointRelaxReport relaxed;
+    std::uint32_t farthest_atom = 0;  // of those that this moved
     // The force on the hands that the old model had, less the right one, kcal/mol/Å; the part of it
     // that is the model's own, not what it had yet to relax; and the old model's age.
     std::optional<double> error;
@@ -108,6 +110,7 @@ struct [[nodiscard]] SecondOrderReport {
     // By how much relaxation at renewals lowered the energy, kcal/mol. At a snap, where a minimum
     // has vanished, this is what it sets free.
     double released = 0;
+    std::uint32_t farthest_relaxed = 0;  // the atom that it moved farthest
 };
 
 // What steps keep from one to the next.
@@ -154,8 +157,8 @@ void make_pending(const TorsionModel& model, const SecondOrderSettings& settings
 
 // Makes and adopts it. The new model belongs to where the hands were at the request: the next step
 // follows from there to where they are, by strides. One that is not finite changes nothing.
-void adopt_pending(const TorsionModel& model, const SecondOrderSettings& settings,
-                   SecondOrderStatics& statics);
+Renewal adopt_pending(const TorsionModel& model, const SecondOrderSettings& settings,
+                      SecondOrderStatics& statics);
 
 // Torque about the point that a hand moves, zero where it does not turn it, and force, of the model
 // on what the hand moves after a step; kcal/mol and kcal/mol/Å.

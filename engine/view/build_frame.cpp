@@ -152,6 +152,18 @@ void add_signs(const World& world, Entity hand, const ContactModel& contact, Fra
     add_torque(as_float(angstrom_nN * contact.torque_newton_metre), held, frame, labels);
 }
 
+// For a second and a half, so that it can be read.
+void add_last_snap(const World& world, FrameScene& frame, std::vector<ViewLabel>& labels) {
+    constexpr double shown_s = 1.5;
+    const SecondOrder* const second = world.find_resource<SecondOrder>();
+    if (!second || !second->snap) return;
+    const Clock& clock = world.resource<Clock>();
+    const auto steps = static_cast<double>(clock.steps - second->snap->step);
+    if (steps * clock.period_s > shown_s) return;
+    add_snap(as_float(world.resource<AtomTable>().positions[second->snap->atom]),
+             second->snap->released, frame, labels);
+}
+
 }  // namespace
 
 glm::vec3 as_float(const Vec3& v) {
@@ -174,6 +186,7 @@ FrameScene build_frame(const World& world, std::span<const ContactModel> contact
     const std::vector<Entity> hands = find_hands(world);
     for (std::size_t i = 0; settings.force_arrow && i < contacts.size(); ++i)
         add_signs(world, hands[i], contacts[i], frame, words);
+    add_last_snap(world, frame, words);
     if (labels) *labels = std::move(words);
     return frame;
 }

@@ -229,6 +229,22 @@ void add_hydrogen_bonds(const AtomTable& atoms, std::span<const HydrogenBond> bo
     }
 }
 
+void add_snap(const glm::vec3& place, double released, FrameScene& frame,
+              std::vector<ViewLabel>& labels) {
+    constexpr float radius = 1.1F, thick = 0.06F;  // Å
+    constexpr int pieces = 24;                     // of a ring, every other one drawn
+    for (const glm::vec3 axis : {glm::vec3(1, 0, 0), glm::vec3(0, 1, 0)}) {
+        const auto [first, second] = across(axis);
+        const auto on_ring = [&, &x = first, &y = second](int piece) {
+            const float angle = 2 * pi * static_cast<float>(piece) / pieces;
+            return place + radius * (std::cos(angle) * x + std::sin(angle) * y);
+        };
+        for (int i = 0; i < pieces; i += 2)
+            add_stick(on_ring(i), on_ring(i + 1), thick, force_colour, snap_pick, frame);
+    }
+    labels.push_back({place, fmt::format("snap, {:.0f} kcal/mol set free", released)});
+}
+
 void add_wish(const glm::vec3& place, const glm::vec3& wish, const glm::vec3& towards_eye,
               FrameScene& frame) {
     constexpr float shown_from = 0.1F, dash = 0.22F, thread = 0.035F;  // Å

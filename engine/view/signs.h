@@ -1,6 +1,6 @@
 // Shapes that are no atoms: the force and the torque on the molecule in hand, where the hand wants
-// it, and its hydrogen bonds; and the words beside them. All but the bonds are drawn on top of
-// atoms.
+// it, its hydrogen bonds, and snaps; and the words beside them. All but the bonds are drawn on top
+// of atoms.
 #pragma once
 #include "molecule/atoms.h"
 #include "render/frame_scene.h"
@@ -17,7 +17,7 @@ namespace palpa {
 // What these shapes are picked as. Atoms, and bonds by their first atom, are picked by their index.
 inline constexpr std::uint32_t arrow_pick = UINT32_MAX - 1, wish_pick = UINT32_MAX - 2,
                                torque_pick = UINT32_MAX - 3, hydrogen_bond_pick = UINT32_MAX - 4,
-                               first_sign_pick = hydrogen_bond_pick;
+                               snap_pick = UINT32_MAX - 5, first_sign_pick = snap_pick;
 
 // A few words beside a place of the picture; a tick's may be left out where there is no room.
 struct ViewLabel {
@@ -53,6 +53,11 @@ void add_torque(const glm::vec3& torque_angstrom_nN, const HeldMolecule& held, F
 // to four are written beside them, of more only the shortest's.
 void add_hydrogen_bonds(const AtomTable& atoms, std::span<const HydrogenBond> bonds,
                         FrameScene& frame, std::vector<ViewLabel>& labels);
+
+// Two dashed rings about an atom that went far where a minimum had vanished, and the energy that
+// was set free, kcal/mol.
+void add_snap(const glm::vec3& place, double released, FrameScene& frame,
+              std::vector<ViewLabel>& labels);
 
 // Where the hand wants what it has at `place`: a dashed thread to a ring that faces the eye, whose
 // length tells of the force. Nothing where they are closer than 0.1 Å.

@@ -11,6 +11,7 @@
 #include <future>
 #include <numeric>
 #include <random>
+#include <span>
 #include <vector>
 
 using namespace palpa;
@@ -243,7 +244,7 @@ TEST_CASE("renewals that come late leave the force near that of complete relaxat
     double worst = 0, largest = 0;
     for (std::size_t k = 1; k <= 60; ++k) {
         if (statics.pending && k >= due) {
-            adopt_pending(c.model, c.settings, statics);
+            (void)adopt_pending(c.model, c.settings, statics);
             ++late;
         }
         const bool was_pending = statics.pending.has_value();
@@ -262,6 +263,43 @@ TEST_CASE("renewals that come late leave the force near that of complete relaxat
     CHECK(worst < 0.03 * largest);
 }
 
+TEST_CASE("atoms that a model has as parabolas do not come too close", "[statics][second-order]") {
+    const HeldPair c;
+    const LinearisedModel linear = c.linearised();
+    const std::vector<Vec3>& positions = c.state.positions;
+    const std::vector<std::uint32_t>& body_of = c.model.tree.bodies.body_of;
+    // One by one, by the definition.
+    const FastAtoms& fast = c.model.fast.atoms;
+    const auto left_out = std::span(fast.left_out).first(fast.first_replaced);
+    const auto half = static_cast<std::uint32_t>(positions.size() / 2);
+    std::size_t expected = 0;
+    for (std::uint32_t a = 0; a < positions.size(); ++a) {
+        for (std::uint32_t b = a + 1; b < positions.size(); ++b) {
+            const bool is_excluded = std::ranges::any_of(left_out, [&](const auto& pair) {
+                return (pair[0] == a && pair[1] == b) || (pair[0] == b && pair[1] == a);
+            });
+            const bool is_exact = (a < half) != (b < half);
+            expected += (positions[a] - positions[b]).norm() <= 4.5 && body_of[a] != body_of[b] &&
+                        !is_excluded && !is_exact;
+        }
+    }
+    CHECK(linear.close.pairs.size() == expected);
+    REQUIRE(expected > 50);
+    CHECK_FALSE(are_too_close(linear.close, positions));
+    for (std::size_t i = 0; i < expected; i += 7) {
+        const auto& [a, b] = linear.close.pairs[i];
+        std::vector<Vec3> nearer = positions;
+        const double distance = (positions[a] - positions[b]).norm();
+        const double radii = fast.half_rmin[a] + fast.half_rmin[b];
+        const auto put = [&](double apart) {
+            nearer[a] = positions[b] + apart / distance * (positions[a] - positions[b]);
+            return are_too_close({{{a, b}}, {linear.close.least_squares[i]}}, nearer);
+        };
+        CHECK(put(0.799 * std::min(distance, radii)));
+        CHECK_FALSE(put(0.801 * std::min(distance, radii)));
+    }
+}
+
 TEST_CASE("a pending renewal made beside steps in another thread gives the same bits",
           "[statics][second-order]") {
     const auto walk = [](bool is_threaded) {
@@ -272,7 +310,7 @@ TEST_CASE("a pending renewal made beside steps in another thread gives the same 
         for (std::size_t k = 1; k <= 60; ++k) {
             std::future<void> maker;
             const bool is_due = k % 6 == 0 && statics.pending;
-            if (is_due) adopt_pending(c.model, c.settings, statics);
+            if (is_due) (void)adopt_pending(c.model, c.settings, statics);
             if (is_threaded && statics.pending && !statics.pending->made) {
                 maker = std::async(std::launch::async,
                                    [&] { make_pending(c.model, c.settings, statics); });

@@ -226,6 +226,34 @@ TEST_CASE("hydrogen bonds of what is hidden are not drawn", "[view]") {
     CHECK(dashes() == 0);
 }
 
+TEST_CASE("a snap is marked at its atom for a second and a half", "[view][signs]") {
+    World world = load_world(test::water_scene());
+    const ViewSettings settings = shown_as(Representation::BallAndStick);
+    std::vector<ViewLabel> labels;
+    const auto marks_after = [&](double s) {
+        Clock& clock = world.resource<Clock>();
+        clock.steps = 100 + static_cast<std::uint64_t>(s / clock.period_s);
+        std::vector<glm::vec3> places;
+        for (const ConeShape& cone : build_frame(world, {}, settings, &labels).cones) {
+            if (cone.pick == snap_pick) places.push_back(0.5F * (cone.a + cone.b));
+        }
+        return places;
+    };
+    SecondOrder second;
+    world.set_resource(second);
+    CHECK(marks_after(0).empty());
+    second.snap = {4, 12.3, 100};
+    world.set_resource(second);
+
+    const std::vector<glm::vec3> places = marks_after(1.4);
+
+    REQUIRE(places.size() >= 10);
+    const glm::vec3 atom = as_float(world.resource<AtomTable>().positions[4]);
+    for (const glm::vec3& place : places) CHECK(glm::distance(place, atom) < 1.5F);
+    CHECK(labels.back().text == "snap, 12 kcal/mol set free");
+    CHECK(marks_after(1.6).empty());
+}
+
 TEST_CASE("a hand that holds nothing has no arrow and no bonds, and all is drawn as it is",
           "[view]") {
     World world = load_world(test::water_scene());

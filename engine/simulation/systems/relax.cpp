@@ -71,13 +71,12 @@ RelaxStepReport minimise_all(World& world) {
     return report;
 }
 
-// A renewal belongs to the state at its request.
-bool adopt_due(const World& world, const StepInput& input, SecondOrder& second) {
+// A renewal belongs to the state at its request. Nothing where none is used.
+std::optional<Renewal> adopt_due(const World& world, const StepInput& input, SecondOrder& second) {
     const bool is_due =
         second.delay_s ? world.resource<Clock>().steps >= second.due : input.adopts_renewal;
-    if (!second.statics.pending || !is_due) return false;
-    adopt_pending(model_of(world), second.settings, second.statics);
-    return true;
+    if (!second.statics.pending || !is_due) return {};
+    return adopt_pending(model_of(world), second.settings, second.statics);
 }
 
 void note_due(const World& world, SecondOrder& second) {
@@ -87,29 +86,51 @@ void note_due(const World& world, SecondOrder& second) {
     second.due = clock.steps + std::max<std::uint64_t>(steps, 1);
 }
 
+// Renewals set energy free one after the other until all is at rest.
+void note_snap(const World& world, const RelaxStepReport& report, SecondOrder& second) {
+    constexpr double together_s = 0.3;
+    if (report.released <= least_snap) return;
+    const Clock& clock = world.resource<Clock>();
+    const bool goes_on =
+        second.snap &&
+        static_cast<double>(clock.steps - second.snap->step) * clock.period_s < together_s;
+    second.snap = {report.snapped_atom, report.released + (goes_on ? second.snap->released : 0),
+                   clock.steps};
+}
+
 // All joints and bases follow the hands by second order.
 RelaxStepReport follow_by_second_order(World& world, const StepInput& input, SecondOrder& second) {
     const TorsionModel& model = model_of(world);
     TorsionState& state = world.resource<TorsionState>();
     const double before = second.statics.value.energy;
-    const bool is_adopted = adopt_due(world, input, second);
+    const std::optional<Renewal> adopted = adopt_due(world, input, second);
     const bool was_pending = second.statics.pending.has_value();
     const SecondOrderReport step =
         step_second_order(model, second.settings, state, second.statics, input.await_renewal);
     if (!was_pending || step.is_renewed) note_due(world, second);
     RelaxStepReport report;
-    report.energy_change = -step.released;
-    report.hand_work = step.energy + step.released - before;
+    report.released = step.released;
+    report.snapped_atom = step.farthest_relaxed;
+    if (adopted) {
+        const double released = adopted->relaxed.energy_before - adopted->relaxed.energy_after;
+        if (released > step.released) report.snapped_atom = adopted->farthest_atom;
+        report.released += released;
+        report.evaluations += adopted->relaxed.evaluations;
+    }
+    report.energy_change = -report.released;
+    report.hand_work = step.energy + report.released - before;
     report.largest_move = step.largest_move;
-    report.evaluations = step.full_evaluations + step.model_evaluations;
+    report.evaluations += step.full_evaluations + step.model_evaluations;
     report.active = static_cast<std::size_t>(model.coordinates);
     report.steps = step.model_evaluations;
-    report.is_renewed = step.is_renewed || is_adopted;
+    report.is_renewed = step.is_renewed || adopted;
     report.model_age = step.age;
     report.estimated_error_pN = units::piconewton_per_kcal_per_mol_angstrom * step.error_estimate;
-    report.released = step.released;
     report.is_finite = step.is_finite;
-    if (report.is_finite) world.resource<Solver>().safe = state;
+    if (report.is_finite) {
+        world.resource<Solver>().safe = state;
+        note_snap(world, report, second);
+    }
     return report;
 }
 

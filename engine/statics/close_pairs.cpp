@@ -1,0 +1,64 @@
+#include "statics/close_pairs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+
+namespace palpa {
+namespace {
+
+using Pair = std::array<std::uint32_t, 2>;
+
+Pair ordered(std::uint32_t a, std::uint32_t b) { return {std::min(a, b), std::max(a, b)}; }
+
+std::vector<Pair> list_left_out(const FastAtoms& atoms) {
+    std::vector<Pair> pairs;
+    for (std::size_t i = 0; i < atoms.first_replaced; ++i)
+        pairs.push_back(ordered(atoms.left_out[i][0], atoms.left_out[i][1]));
+    std::ranges::sort(pairs);
+    return pairs;
+}
+
+}  // namespace
+
+ClosePairs build_close_pairs(const TorsionModel& model, std::span<const Vec3> positions,
+                             std::span<const std::uint32_t> held, double reach) {
+    constexpr double too_close = 0.8;
+    const std::vector<std::uint32_t>& body_of = model.tree.bodies.body_of;
+    const std::vector<double>& half_rmin = model.fast.atoms.half_rmin;
+    const std::vector<Pair> left_out = list_left_out(model.fast.atoms);
+    std::vector<bool> is_held(positions.size(), false);
+    for (const std::uint32_t atom : held) is_held[atom] = true;
+    std::vector<std::uint32_t> by_x(positions.size());
+    std::iota(by_x.begin(), by_x.end(), 0U);
+    std::ranges::sort(by_x, {}, [&](std::uint32_t atom) { return positions[atom].x(); });
+    ClosePairs close;
+    for (std::size_t i = 0; i < by_x.size(); ++i) {
+        const std::uint32_t a = by_x[i];
+        for (std::size_t j = i + 1; j < by_x.size(); ++j) {
+            const std::uint32_t b = by_x[j];
+            const Vec3 between = positions[b] - positions[a];
+            if (between.x() > reach) break;
+            const double square = between.squaredNorm();
+            if (square > reach * reach || body_of[a] == body_of[b] || is_held[a] != is_held[b])
+                continue;
+            if (std::ranges::binary_search(left_out, ordered(a, b))) continue;
+            close.pairs.push_back(ordered(a, b));
+            const double least =
+                too_close * std::min(std::sqrt(square), half_rmin[a] + half_rmin[b]);
+            close.least_squares.push_back(least * least);
+        }
+    }
+    return close;
+}
+
+bool are_too_close(const ClosePairs& close, std::span<const Vec3> positions) noexcept {
+    for (std::size_t i = 0; i < close.pairs.size(); ++i) {
+        const auto& [a, b] = close.pairs[i];
+        if ((positions[a] - positions[b]).squaredNorm() < close.least_squares[i]) return true;
+    }
+    return false;
+}
+
+}  // namespace palpa
