@@ -98,9 +98,10 @@ std::optional<RelaxedStiffness> find_relaxed_stiffness(const World& world, Entit
     RelaxedStiffness result;
     result.matrix = scaled(bound_stiffness(relaxed, frozen, softest),
                            scales(arm_angstrom * units::metre_per_angstrom, 1));
-    // A model that is too old still allows a stride.
-    result.reach_angstrom = std::max(second->settings.farthest_hand - find_age(*second, *columns),
-                                     second->settings.stride);
+    // A model that is too old still allows a stride where it is renewed within the step.
+    const SecondOrderSettings& settings = second->settings;
+    result.reach_angstrom = std::max(settings.farthest_hand - find_age(*second, *columns),
+                                     settings.renews_at_once ? settings.stride : 0);
     return result;
 }
 

@@ -264,8 +264,8 @@ void adopt_renewal(const SecondOrderSettings& settings, const Renewal& renewal,
 class Step {
 public:
     Step(const TorsionModel& model, const SecondOrderSettings& settings, TorsionState& state,
-         SecondOrderStatics& statics, const AwaitFunction& await)
-        : model_(model), settings_(settings), state_(state), statics_(statics), await_(await) {
+         SecondOrderStatics& statics)
+        : model_(model), settings_(settings), state_(state), statics_(statics) {
         for (const HandHold& hand : hands()) places_.push_back(find_place(model, state, hand));
     }
 
@@ -320,7 +320,6 @@ private:
     }
 
     Renewal finish_pending() {
-        if (await_) await_();
         make_pending(model_, settings_, statics_);
         Renewal made = std::move(*statics_.pending->made);
         statics_.pending.reset();
@@ -384,10 +383,12 @@ private:
             const double length = find_length(hands(), rest);
             is_there = length <= stride;
             const Eigen::VectorXd by = is_there ? rest : Eigen::VectorXd(rest * (stride / length));
-            const bool must_renew = wants_renewal_ && is_beyond(by);
-            if (!must_renew && try_stride(by)) continue;
+            report_.lags = wants_renewal_ && is_beyond(by);
+            if (report_.lags) return;
+            if (try_stride(by)) continue;
             is_there = false;
-            if (!renew(true)) return;
+            report_.lags = !settings_.renews_at_once;
+            if (!renew(settings_.renews_at_once)) return;
         }
     }
 
@@ -416,6 +417,9 @@ private:
         statics_.pairs.clear();
         if (is_new) statics_.at.tail(linear().hands()) += by;
         place();
+        if (is_new && !settings_.renews_at_once)
+            evaluate_model(model_, settings_.forces, linear(), statics_.at, statics_.near, state_,
+                           statics_.value);
         return false;
     }
 
@@ -434,7 +438,6 @@ private:
     const SecondOrderSettings& settings_;
     TorsionState& state_;
     SecondOrderStatics& statics_;
-    const AwaitFunction& await_;
     std::vector<HandPlace> places_;  // where hands want what they hold
     bool wants_renewal_ = false;     // by the caller, later
     SecondOrderReport report_;
@@ -486,9 +489,8 @@ void start_second_order(const TorsionModel& model, const SecondOrderSettings& se
 }
 
 SecondOrderReport step_second_order(const TorsionModel& model, const SecondOrderSettings& settings,
-                                    TorsionState& state, SecondOrderStatics& statics,
-                                    const AwaitFunction& await) {
-    return Step(model, settings, state, statics, await).run();
+                                    TorsionState& state, SecondOrderStatics& statics) {
+    return Step(model, settings, state, statics).run();
 }
 
 void make_pending(const TorsionModel& model, const SecondOrderSettings& settings,

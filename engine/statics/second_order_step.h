@@ -10,7 +10,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -33,8 +32,7 @@ struct SecondOrderSettings {
     // The model is renewed if a hand or an atom has gone so far from the point of linearisation
     // (Å). A stride that takes an atom beyond `farthest` is repeated with a new model.
     double renew_hand = 0.1, renew_atom = 0.3, farthest = 0.45;
-    // While a renewal is awaited, a hand that goes farther than this from the point (Å) does not
-    // wait for it: there is one within the step.
+    // While a renewal is pending, no hand goes farther than this from the point (Å).
     double farthest_hand = 0.3;
     // Renewals take place within the step. Otherwise the step asks for them (`pending`) and goes on
     // with the old model until the caller adopts them.
@@ -97,6 +95,7 @@ struct PendingRenewal {
 struct [[nodiscard]] SecondOrderReport {
     bool is_finite = true;  // else the state is where it was at the last renewal, or before
     bool is_renewed = false;
+    bool lags = false;        // hands have not come to where they were to go
     double energy = 0;        // kcal/mol, by the model
     double rms_force = 0;     // along the mobile coordinates
     double age = 0;           // Å: the way of the farthest hand from the point of linearisation
@@ -140,18 +139,14 @@ SecondOrderStatics build_second_order_statics(const TorsionModel& model, HeldPar
 void start_second_order(const TorsionModel& model, const SecondOrderSettings& settings,
                         const TorsionState& state, SecondOrderStatics& statics);
 
-// Called before a pending renewal is used: waits for the thread that makes it, if there is one.
-using AwaitFunction = std::function<void()>;
-
 // Follows the hands to where the state has the bases and spring ends that they move. All other
-// coordinates of the state are those of the last step. A step that cannot go on with the old model
-// uses the pending renewal before its time.
+// coordinates of the state are those of the last step. Where the old model reaches no farther and
+// a renewal is pending, hands stay where it reaches: so no step waits.
 SecondOrderReport step_second_order(const TorsionModel& model, const SecondOrderSettings& settings,
-                                    TorsionState& state, SecondOrderStatics& statics,
-                                    const AwaitFunction& await = {});
+                                    TorsionState& state, SecondOrderStatics& statics);
 
-// Makes the pending renewal where it is not made yet. Steps and copies of hand pulls may go on
-// meanwhile in another thread; nothing may copy or replace the statics.
+// Makes the pending renewal where it is not made yet. Another thread may make steps meanwhile, with
+// springs that no hand moves as they were; nothing may copy or replace the statics.
 void make_pending(const TorsionModel& model, const SecondOrderSettings& settings,
                   SecondOrderStatics& statics);
 

@@ -8,6 +8,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
 
 namespace palpa {
 namespace {
@@ -98,15 +101,40 @@ void note_snap(const World& world, const RelaxStepReport& report, SecondOrder& s
                    clock.steps};
 }
 
+// Where hands have what they hold.
+std::vector<MoleculePose> find_places(const World& world, const SecondOrder& second) {
+    std::vector<MoleculePose> places;
+    for (const Entity hand : second.hands) {
+        const Grip& grip = grip_of(world, hand);
+        places.push_back({held_place(world, hand), Quat::Identity()});
+        if (grip.base >= 0 && grip.spring < 0)
+            places.back().orientation =
+                world.resource<TorsionState>().turns[static_cast<std::size_t>(grip.base)];
+    }
+    return places;
+}
+
+// Hands that lag have what they hold where it is, not where it was to be.
+void hold_back(World& world, const SecondOrder& second, std::span<const MoleculePose> wanted) {
+    const std::vector<MoleculePose> found = find_places(world, second);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        MoleculePose& pose = world.find<Grip>(second.hands[i])->pose;
+        pose.place_angstrom += found[i].place_angstrom - wanted[i].place_angstrom;
+        const Quat back = found[i].orientation * wanted[i].orientation.conjugate();
+        pose.orientation = (back * pose.orientation).normalized();
+    }
+}
+
 // All joints and bases follow the hands by second order.
 RelaxStepReport follow_by_second_order(World& world, const StepInput& input, SecondOrder& second) {
     const TorsionModel& model = model_of(world);
     TorsionState& state = world.resource<TorsionState>();
     const double before = second.statics.value.energy;
     const std::optional<Renewal> adopted = adopt_due(world, input, second);
+    const std::vector<MoleculePose> wanted = find_places(world, second);
     const bool was_pending = second.statics.pending.has_value();
-    const SecondOrderReport step =
-        step_second_order(model, second.settings, state, second.statics, input.await_renewal);
+    const SecondOrderReport step = step_second_order(model, second.settings, state, second.statics);
+    if (step.lags) hold_back(world, second, wanted);
     if (!was_pending || step.is_renewed) note_due(world, second);
     RelaxStepReport report;
     report.released = step.released;
