@@ -119,12 +119,48 @@ HWY_INLINE Row load_row(const FrozenPoints::Column& column, std::size_t at) {
                       HWY_ATTR { return hn::Load(floats, column.data() + at + k * lane_count); });
 }
 
-// Nothing beside the sums of a frozen field.
-struct NothingFollows {
+// Some pairs: of the curvature a third; `well` is 12 epsilon s6.
+struct Pairs {
+    std::array<V, 3> d;
+    V gradient, curvature, s6, well, coulomb;
+};
+
+// Nothing besides the sums of a frozen field.
+struct NothingBesides {
     HWY_INLINE void begin_point(std::size_t /*i*/) {}
-    HWY_INLINE void add(std::size_t /*sixteen*/, std::size_t /*at*/, const std::array<V, 3>& /*d*/,
-                        V /*gradient*/, V /*curvature*/) {}
+    HWY_INLINE void add(std::size_t /*sixteen*/, std::size_t /*at*/, const Pairs& /*pairs*/) {}
     HWY_INLINE void end_part() {}
+};
+
+class Energies {
+public:
+    HWY_INLINE Energies() {
+        van_der_waals_ = electrostatic_ = hn::Zero(doubles);
+        part_van_der_waals_ = part_electrostatic_ = hn::Zero(floats);
+    }
+
+    HWY_INLINE void begin_point(std::size_t /*i*/) {}
+
+    HWY_INLINE void add(std::size_t /*sixteen*/, std::size_t /*at*/, const Pairs& pairs) {
+        part_van_der_waals_ =
+            hn::MulAdd(pairs.well, hn::Sub(pairs.s6, all(2)), part_van_der_waals_);
+        part_electrostatic_ = hn::Add(part_electrostatic_, pairs.coulomb);
+    }
+
+    HWY_INLINE void end_part() {
+        van_der_waals_ = hn::Add(van_der_waals_, both_halves(part_van_der_waals_));
+        electrostatic_ = hn::Add(electrostatic_, both_halves(part_electrostatic_));
+        part_van_der_waals_ = part_electrostatic_ = hn::Zero(floats);
+    }
+
+    void write(EnergyJobSum& sum) const {
+        sum.van_der_waals = sum_of(van_der_waals_) / 12;
+        sum.electrostatic = sum_of(electrostatic_);
+    }
+
+private:
+    V part_van_der_waals_, part_electrostatic_;
+    W van_der_waals_, electrostatic_;  // twelve times the former
 };
 
 // What points that follow add, of one point of the group with the others. With D how far the one
@@ -142,8 +178,7 @@ public:
         for (V& x : part_) x = hn::Zero(floats);
     }
 
-    HWY_INLINE void add(std::size_t sixteen, std::size_t at, const std::array<V, 3>& d, V gradient,
-                        V curvature) {
+    HWY_INLINE void add(std::size_t sixteen, std::size_t at, const Pairs& pairs) {
         const std::array<FrozenPoints::Column, 9>& others = points_.sixteens[sixteen];
         std::array<V, 9> D;
         for (std::size_t k = 0; k < 9; ++k)
@@ -153,17 +188,17 @@ public:
         };
         std::array<V, 3> along;
         for (std::size_t c = 0; c < 3; ++c) {
-            along[c] = product(d.data(), D.data() + 3 * c);
-            part_[c] = hn::MulAdd(gradient, along[c], part_[c]);
+            along[c] = product(pairs.d.data(), D.data() + 3 * c);
+            part_[c] = hn::MulAdd(pairs.gradient, along[c], part_[c]);
         }
-        const V third = hn::Mul(all(3), curvature);
+        const V third = hn::Mul(all(3), pairs.curvature);
         std::size_t k = 3;
         for (std::size_t c = 0; c < 3; ++c) {
             const V bent = hn::Mul(third, along[c]);
             for (std::size_t e = c; e < 3; ++e, ++k) {
                 part_[k] = hn::MulAdd(bent, along[e], part_[k]);
-                part_[k] =
-                    hn::NegMulAdd(gradient, product(D.data() + 3 * c, D.data() + 3 * e), part_[k]);
+                part_[k] = hn::NegMulAdd(pairs.gradient,
+                                         product(D.data() + 3 * c, D.data() + 3 * e), part_[k]);
             }
         }
     }
@@ -191,10 +226,10 @@ private:
 };
 
 // d from the environment's points to the group's: as in field/pair_field.cpp.
-template <class Follow>
+template <class Besides>
 HWY_INLINE void add_pairs(const Point& point, const FrozenPoints& others, std::size_t at,
                           const Row& epsilon12, const Row& rmin, Nearest& nearest, Partial& sum,
-                          std::size_t sixteen, Follow& follow) {
+                          std::size_t sixteen, Besides& besides) {
     const auto difference = [&](V own_high, V own_low, std::size_t axis) HWY_ATTR {
         const Row high = load_row(others.high[axis], at), low = load_row(others.low[axis], at);
         return row_of([&](std::size_t k) HWY_ATTR {
@@ -244,7 +279,8 @@ HWY_INLINE void add_pairs(const Point& point, const FrozenPoints& others, std::s
         sum.kyy = hn::MulAdd(cy, dy[k], sum.kyy);
         sum.kyz = hn::MulAdd(cy, dz[k], sum.kyz);
         sum.kzz = hn::MulAdd(cz, dz[k], sum.kzz);
-        follow.add(sixteen, at + k * lane_count, {dx[k], dy[k], dz[k]}, gradient[k], curvature[k]);
+        besides.add(sixteen, at + k * lane_count,
+                    {{dx[k], dy[k], dz[k]}, gradient[k], curvature[k], s6[k], well[k], coulomb[k]});
     }
 }
 
@@ -253,10 +289,10 @@ constexpr std::size_t most_sixteens = 64 * lane_count / 16 > 0 ? 64 * lane_count
 
 // `motion`: from where the group was to where it is as seen from the field's origin. `points`: the
 // field's, or these elsewhere.
-template <class Follow>
+template <class Besides>
 HWY_INLINE FrozenJobSum sum_pairs(const FrozenField& field, std::span<const FrozenPoints> points,
                                   std::span<const Vec3> group, const RigidMotion& motion,
-                                  Follow& follow) {
+                                  Besides& besides) {
     Total total;
     Nearest nearest;
     for (std::size_t i = 0; i < group.size(); ++i) {
@@ -271,7 +307,7 @@ HWY_INLINE FrozenJobSum sum_pairs(const FrozenField& field, std::span<const Froz
         const FrozenNumbers* const numbers =
             own.row < 0 ? nullptr
                         : field.numbers.data() + static_cast<std::size_t>(own.row) * points.size();
-        follow.begin_point(i);
+        besides.begin_point(i);
         for (std::size_t p = 0; p < points.size();) {
             const std::size_t end = std::min(p + most_sixteens, points.size());
             Partial part;
@@ -279,7 +315,7 @@ HWY_INLINE FrozenJobSum sum_pairs(const FrozenField& field, std::span<const Froz
                 for (; p < end; ++p) {
                     for (std::size_t at = 0; at < 16; at += abreast * lane_count) {
                         add_pairs(point, points[p], at, load_row(numbers[p].epsilon12, at),
-                                  load_row(numbers[p].rmin, at), nearest, part, p, follow);
+                                  load_row(numbers[p].rmin, at), nearest, part, p, besides);
                     }
                 }
             } else {
@@ -294,12 +330,12 @@ HWY_INLINE FrozenJobSum sum_pairs(const FrozenField& field, std::span<const Froz
                                   row_of([&](std::size_t k) HWY_ATTR {
                                       return hn::Add(point.half_rmin, radius[k]);
                                   }),
-                                  nearest, part, p, follow);
+                                  nearest, part, p, besides);
                     }
                 }
             }
             total.add(part, place);
-            follow.end_part();
+            besides.end_part();
         }
         total.end_point();
     }
@@ -310,8 +346,17 @@ HWY_INLINE FrozenJobSum sum_pairs(const FrozenField& field, std::span<const Froz
 
 FrozenJobSum sum_field(const FrozenField& field, std::span<const Vec3> group,
                        const RigidMotion& motion) {
-    NothingFollows nothing;
+    NothingBesides nothing;
     return sum_pairs(field, field.points, group, motion, nothing);
+}
+
+EnergyJobSum sum_with_energies(const FrozenField& field, std::span<const Vec3> group,
+                               const RigidMotion& motion) {
+    Energies energies;
+    EnergyJobSum sum;
+    sum.of_pairs = sum_pairs(field, field.points, group, motion, energies);
+    energies.write(sum);
+    return sum;
 }
 
 // Of points that are where they are in `memory`, the group's as seen from the field's origin.
@@ -333,6 +378,7 @@ namespace palpa {
 namespace {
 
 HWY_EXPORT(sum_field);
+HWY_EXPORT(sum_with_energies);
 HWY_EXPORT(sum_following);
 
 FrozenField::Points copy_points(const FieldPoints& points) {
@@ -391,8 +437,11 @@ const ReplacedPair* find_replaced(const FrozenField& field, std::uint32_t a, std
 std::int32_t add_row(FrozenField& field, std::size_t i) {
     const FrozenField::Points& own = field.group_numbers;
     const FrozenField::Points& others = field.environment;
+    const bool may_be_replaced = std::ranges::any_of(field.replaced, [&](const ReplacedPair& pair) {
+        return pair.a == own.type[i] || pair.b == own.type[i];
+    });
     const bool is_replaced =
-        !field.replaced.empty() &&
+        may_be_replaced &&
         std::any_of(others.type.begin(), others.type.end(), [&](std::uint32_t type) {
             return find_replaced(field, own.type[i], type) != nullptr;
         });
@@ -550,6 +599,26 @@ FrozenSum evaluate_frozen_field(const FrozenField& field, std::span<const Vec3> 
         }
     }
     return evaluate_in_double(field, group, motion);
+}
+
+FieldSum evaluate_field_and_energies(const FrozenField& field,
+                                     std::span<const Vec3> group) noexcept {
+    PALPA_ASSERT(group.size() == field.group.size());
+    const RigidMotion from_origin{Mat3::Identity(), -field.origin};
+    if (is_near(group, from_origin) && is_near(field.environment.positions, from_origin)) {
+        const EnergyJobSum result =
+            HWY_DYNAMIC_DISPATCH(sum_with_energies)(field, group, from_origin);
+        constexpr double nearest = nearest_single_precision;
+        if (result.of_pairs.nearest2 > nearest * nearest) {
+            const FrozenSum& sum = result.of_pairs.sum;
+            return {result.van_der_waals, result.electrostatic, sum.force,
+                    sum.torque + field.origin.cross(sum.force), sum.stiffness};
+        }
+    }
+    return evaluate_pair_field(
+        view(field.group_numbers, group, 0, group.size()),
+        view(field.environment, field.environment.positions, 0, field.environment.positions.size()),
+        {field.coulomb_constant, field.replaced});
 }
 
 FollowingPoints build_following_points(std::vector<Mat3> group, std::vector<Mat3> environment) {

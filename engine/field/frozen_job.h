@@ -12,6 +12,11 @@ struct FrozenJobSum {
     float nearest2 = std::numeric_limits<float>::infinity();  // Å^2
 };
 
+struct EnergyJobSum {
+    FrozenJobSum of_pairs;
+    double van_der_waals = 0, electrostatic = 0;  // kcal/mol
+};
+
 struct FollowingJobSum {
     FrozenJobSum of_pairs;
     Vec3 along = Vec3::Zero();

@@ -2,6 +2,7 @@
 
 #include "core/assertion.h"
 #include "core/text.h"
+#include "field/frozen_field.h"
 
 #include <algorithm>
 #include <numeric>
@@ -223,6 +224,25 @@ FieldSum field_on(const World& world, Entity hand, const FieldPoints& group) {
             group, points_of(world.resource<AtomTable>(), range), pair_rule(world));
         sum = is_first ? part : sum + part;
         is_first = false;
+    }
+    return sum;
+}
+
+bool has_fast_pairs(const World& world, Entity hand) noexcept {
+    const Grip* const grip = world.find<Grip>(hand);
+    return grip && !is_mobile(*grip) &&
+           world.resource<Interactions>().precision == PairPrecision::Fast &&
+           held_range(world, hand).count * count_environment(world, hand) >= fewest_fast_pairs;
+}
+
+FieldSum fast_field_on_held(const World& world, Entity hand) {
+    if (!has_fast_pairs(world, hand)) return field_on_held(world, hand);
+    const FieldPoints group = held_points(world, hand);
+    FieldSum sum;
+    for (const AtomRange& range : environment_of(world, hand)) {
+        const FrozenField field = build_frozen_field(
+            group, points_of(world.resource<AtomTable>(), range), pair_rule(world));
+        sum = sum + evaluate_field_and_energies(field, group.positions);
     }
     return sum;
 }

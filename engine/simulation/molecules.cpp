@@ -76,7 +76,8 @@ void set_interactions(World& world) {
     const SceneFile& file = world.resource<SceneFile>();
     world.set_resource(Interactions{
         file.scene.force_field.coulomb_constant,
-        build_replaced_pairs(*file.force_field, world.resource<AtomTable>().type_names)});
+        build_replaced_pairs(*file.force_field, world.resource<AtomTable>().type_names),
+        file.scene.statics.pairs});
 }
 
 void set_shape(World& world, Entity entity) {

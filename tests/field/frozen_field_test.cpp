@@ -49,7 +49,7 @@ PointSet random_points(std::mt19937& random, int x_count, int y_count, int z_cou
 
 // What errors are measured by: every pair's numbers, all positive.
 struct Magnitude {
-    double force = 0, torque = 0, stiffness = 0;
+    double force = 0, torque = 0, stiffness = 0, van_der_waals = 0, electrostatic = 0;
 };
 Magnitude sum_magnitudes(const PointSet& group, const PointSet& environment, const Vec3& origin) {
     Magnitude sum;
@@ -65,6 +65,8 @@ Magnitude sum_magnitudes(const PointSet& group, const PointSet& environment, con
             sum.force += force;
             sum.torque += force * std::max(1.0, (group.positions[i] - origin).norm());
             sum.stiffness += (well * (156 * s6 + 84) + 2 * charges) / (r * r);
+            sum.van_der_waals += well * (s6 + 2);
+            sum.electrostatic += charges;
         }
     }
     return sum;
@@ -129,6 +131,15 @@ TEST_CASE("a frozen field agrees with the reference on every kind of processor",
         // And where a hand feels it, in what it feels.
         CHECK((sum.force - expected.force).norm() < 2e-5 * expected.force.norm());
         CHECK((sum.stiffness - expected.stiffness).norm() < 2e-5 * expected.stiffness.norm());
+
+        const FieldSum with_energies = evaluate_field_and_energies(field, group.positions);
+        CHECK(std::abs(with_energies.van_der_waals - expected.van_der_waals) <
+              1e-6 * scale.van_der_waals);
+        CHECK(std::abs(with_energies.electrostatic - expected.electrostatic) <
+              1e-6 * scale.electrostatic);
+        CHECK(with_energies.force == sum.force);
+        CHECK(with_energies.torque == sum.torque);
+        CHECK(with_energies.stiffness == sum.stiffness);
     }
     use_processor_kind(list_processor_kinds().front());
 }
@@ -163,6 +174,8 @@ TEST_CASE("the frozen field of nothing, or on nothing, is none", "[field][frozen
 
     CHECK(evaluate_frozen_field(of_none, some.positions).force == Vec3(Vec3::Zero()));
     CHECK(evaluate_frozen_field(on_none, none.positions).stiffness == Mat3(Mat3::Zero()));
+    CHECK(evaluate_field_and_energies(of_none, some.positions).energy() == 0);
+    CHECK(evaluate_field_and_energies(on_none, none.positions).energy() == 0);
 }
 
 TEST_CASE("a group that is moved and turned feels what one that stands there feels",
@@ -220,7 +233,10 @@ TEST_CASE("where single precision does not do, a frozen field is the reference's
     const FieldSum expected =
         evaluate_pair_field(group.view(), environment.view(), {coulomb_constant});
     const Nearness near = find_nearness(group, environment, {coulomb_constant});
+    const FieldSum with_energies = evaluate_field_and_energies(field, group.positions);
 
+    CHECK(with_energies.energy() == expected.energy());
+    CHECK(with_energies.torque == expected.torque);
     CHECK((sum.force - expected.force).norm() <= 1e-12 * expected.force.norm());
     CHECK((sum.stiffness - expected.stiffness).norm() <= 1e-12 * expected.stiffness.norm());
     CHECK(sum.clearance == Approx(near.clearance).margin(1e-12));

@@ -3,6 +3,7 @@
 #include "charmm/force_field.h"
 #include "core/machine.h"
 #include "core/text.h"
+#include "core/units.h"
 #include "core/version.h"
 #include "devices/emulated_omni.h"
 #include "experiments/emulated_hand.h"
@@ -15,7 +16,9 @@
 #include "simulation/held.h"
 #include "simulation/load.h"
 #include "simulation/probe.h"
+#include "simulation/resources.h"
 #include "simulation/step.h"
+#include "simulation/systems/publish_contact.h"
 #include "tools/bench/adaptive.h"
 #include "tools/bench/answer.h"
 #include "tools/bench/kernel.h"
@@ -33,9 +36,20 @@
 #include <cstddef>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 namespace palpa {
 namespace {
+
+// What a step tells of the force with what the first hand holds at `distance` along its line; of
+// what moves by itself, what rigid molecules would feel there. kcal/mol/Å.
+double find_step_force(World& world, double distance) {
+    if (is_mobile(grip_of(world, first_hand(world))))
+        return force_along_line_at(world, distance).force;
+    move_grabbed(world, distance);
+    return build_local_contact(world, first_hand(world), {}).model.force_newton.x() /
+           units::newton_per_kcal_per_mol_angstrom;
+}
 
 // One simulation step, while the hand sweeps back and forth over 10 mm.
 BenchRow bench_step(const std::string& scene_name, World world) {
@@ -61,11 +75,20 @@ BenchRow bench_step(const std::string& scene_name, World world) {
         const double slope = (force_along_line_at(world, distance + h).energy -
                               force_along_line_at(world, distance - h).energy) /
                              (2 * h);
-        const double force = force_along_line_at(world, distance).force;
+        const double force = find_step_force(world, distance);
         worst = std::max(worst, std::abs(force + slope) / std::max(std::abs(force), 1.0));
     }
     row.error = worst;
     return row;
+}
+
+// And with all pairs in double, where steps have them in single precision.
+void bench_steps(const std::string& scene_name, const World& world, std::vector<BenchRow>& rows) {
+    rows.push_back(bench_step(scene_name, world));
+    if (!has_fast_pairs(world, first_hand(world))) return;
+    World in_double = world;
+    in_double.resource<Interactions>().precision = PairPrecision::Double;
+    rows.push_back(bench_step(scene_name + "/double", std::move(in_double)));
 }
 
 // The scene as `palpa run` plays it, 10 s at its own period, without a recording.
@@ -203,7 +226,7 @@ int bench_command(const BenchOptions& options) {
             load_world(read_scene(path, options.settings));
             return std::string();
         }));
-        rows.push_back(bench_step(name, load_world(scene, on_stage)));
+        bench_steps(name, load_world(scene, on_stage), rows);
         rows.push_back(bench_lockstep(name, scene));
     }
     if (options.tree) bench_polymers(rows);

@@ -172,7 +172,7 @@ Pull find_pull(const World& world, Entity hand, const LocalField& field) {
         pull.energy = find_energy(world);
         return pull;
     }
-    const FieldSum sum = field_on_held(world, hand);
+    const FieldSum sum = fast_field_on_held(world, hand);
     pull.force = sum.force;
     pull.torque = sum.torque_about(centre);
     pull.stiffness = sum.stiffness;
