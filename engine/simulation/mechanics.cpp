@@ -621,6 +621,7 @@ World build_mechanics_world(const SceneDescription& scene, TorsionModel model,
     world.set(hand, Hand{});
     world.set(hand, Grip{});
     world.set_resource(AtomTable{});
+    world.set_resource(Clock{scene.period_ms * 1e-3});  // a renewal is due after a time
     StartReport report;
     report.joints = model.tree.bodies.joints();
     world.set_resource(report);
