@@ -308,29 +308,34 @@ void bench_ways(const std::string& name, const BenchStart& start, const TorsionS
     rows.push_back(std::move(whole));
 }
 
-// A scene, everything in it at rest, and the truths there.
+// A scene, the truths of it, and its state: as loaded, or completely relaxed where that is needed.
 struct AnswerStart {
     explicit AnswerStart(const SceneDescription& scene)
         : connectivity(load_system(scene).connectivity),
           start(load_start(scene, connectivity)),
           truths(build_truths(start)),
-          rest(start.world.resource<TorsionState>()) {
-        (void)truths.all_pairs.relax(rest);
+          state(start.world.resource<TorsionState>()) {}
+
+    const TorsionState& rest() {
+        if (!is_at_rest) (void)truths.all_pairs.relax(state);
+        is_at_rest = true;
+        return state;
     }
 
     Connectivity connectivity;
     BenchStart start;
     Truths truths;
-    TorsionState rest;
+    TorsionState state;
+    bool is_at_rest = false;
 };
 
 std::vector<AnswerPose> list_poses(const AnswerPoseSettings& settings, AnswerStart& at) {
     if (settings.file) {
-        return read_poses(*settings.file, at.truths, model_of(at.start.world), at.rest,
+        return read_poses(*settings.file, at.truths, model_of(at.start.world), at.state,
                           settings.count);
     }
     std::vector<AnswerPose> poses =
-        find_poses(at.truths, at.rest, settings.count.value_or(usual_answer_poses));
+        find_poses(at.truths, at.rest(), settings.count.value_or(usual_answer_poses));
     if (settings.save_to) {
         write_text_file(*settings.save_to, format_rest_poses(rest_poses_of(at.truths, poses)),
                         settings.existing);
@@ -389,7 +394,8 @@ Answers bench_answer(const std::string& scene_name, const SceneDescription& scen
     const std::string name = "answer/" + scene_name;
     Answers answers = measure_at(at, settings.poses);
     add_rows(name, answers, rows);
-    if (!settings.no_ways) bench_ways(name + "/way", at.start, at.rest, at.truths.all_pairs, rows);
+    if (!settings.no_ways)
+        bench_ways(name + "/way", at.start, at.rest(), at.truths.all_pairs, rows);
     return answers;
 }
 

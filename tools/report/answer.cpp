@@ -122,7 +122,10 @@ std::optional<std::filesystem::path> find_poses_file(const std::filesystem::path
 
 // "1.4, 4.9" of median and nine of ten.
 std::string both(double median, double ninety) {
-    return fmt::format("{:.3g}, {:.3g}", median, ninety);
+    const auto digits = [](double value) {
+        return value < 100 ? fmt::format("{:.2g}", value) : fmt::format("{:.0f}", value);
+    };
+    return fmt::format("{}, {}", digits(median), digits(ninety));
 }
 
 // Of one step and after 10 and 100 ms.
@@ -210,8 +213,9 @@ ReportSection report_answers(const ReportOptions& options) {
         "At {} completely relaxed pose{} the hand moves by 0.1 Å along x, y and z. The error is "
         "that of the change of the force on it, against complete relaxation on all pairs and "
         "relative to the change, or to 20 pN if it is less. {} moves were snaps and are left out. "
-        "Methods with a cutoff are judged by complete relaxation with the same cutoff as well: the "
-        "rest of their error is the cutoff's. mN are those at the handle, by A_f = {:.3g}.",
+        "Methods with a cutoff are also judged by complete relaxation with the same cutoff: what "
+        "is "
+        "left of their error is the cutoff's. mN are those at the handle, by A_f = {:.3g}.",
         answers.poses, answers.poses == 1 ? "" : "s", snaps, scene.coupling.A_f);
     section.body = draw_figure(plot_answers(answers),
                                "Left the median over poses and axes, right nine of ten. A line "
