@@ -10,7 +10,7 @@ from pathlib import Path
 PROGRAM = os.environ["PALPA_PROGRAM"]
 ROOT = Path(os.environ["PALPA_ROOT"])
 SECTIONS = ("figure-1", "figure-4", "figure-5", "figure-6", "acceptance", "stability", "energy",
-            "hard", "figures-7-8", "figure-9", "speed", "kernels")
+            "hard", "figures-7-8", "figure-9", "speed", "answer", "kernels")
 
 
 def report(*arguments, **options):

@@ -111,13 +111,13 @@ double bring_to_rest(const BenchStart& start, World& fast, World& exact) {
 }
 
 // Where all joints are at rest, and where they go when the hand moves.
-struct RestPose {
+struct ReferencePose {
     TorsionState rest;
     double rms_force;
     LocalEnd same_steps, at_rest;
 };
 
-std::vector<RestPose> build_poses(const BenchStart& start, int count) {
+std::vector<ReferencePose> build_poses(const BenchStart& start, int count) {
     World guide =
         build_variant(start, {everything, {}, JointWeights::Acceleration, PairPrecision::Fast});
     World exact =
@@ -126,7 +126,7 @@ std::vector<RestPose> build_poses(const BenchStart& start, int count) {
     const double reach = find_reach(start.scene);
     constexpr double long_stride = 0.05;  // Å
     double gone = 0;
-    std::vector<RestPose> poses;
+    std::vector<ReferencePose> poses;
     for (int i = 0; i < count; ++i) {
         const double to = reach * i / count;
         while (std::abs(to - gone) > 1e-9) {
@@ -135,7 +135,7 @@ std::vector<RestPose> build_poses(const BenchStart& start, int count) {
             (void)relax_step(guide);
             gone += step;
         }
-        RestPose pose;
+        ReferencePose pose;
         pose.rms_force = bring_to_rest(start, guide, exact);
         pose.rest = exact.resource<TorsionState>();
         const Vec3 before = find_force(exact);
@@ -164,13 +164,13 @@ struct Result {
 };
 
 struct References {
-    std::vector<RestPose> poses;
+    std::vector<ReferencePose> poses;
     std::vector<Vec3> path;  // forces along the stroke
 };
 
-std::vector<Vec3> changes_of(std::span<const RestPose> poses, LocalEnd RestPose::* end) {
+std::vector<Vec3> changes_of(std::span<const ReferencePose> poses, LocalEnd ReferencePose::* end) {
     std::vector<Vec3> changes;
-    for (const RestPose& pose : poses) changes.push_back((pose.*end).change);
+    for (const ReferencePose& pose : poses) changes.push_back((pose.*end).change);
     return changes;
 }
 
@@ -179,15 +179,16 @@ Result run_variant(const BenchStart& start, const References& references, const 
     World world = build_variant(start, variant);
     std::vector<Vec3> changes;
     std::vector<double> neglected;
-    for (const RestPose& pose : references.poses) {
+    for (const ReferencePose& pose : references.poses) {
         const LocalEnd end = play_local(start, pose.rest, world);
         changes.push_back(end.change);
         neglected.push_back(end.neglected);
         result.local_position.push_back(rms_distance(end.positions, pose.same_steps.positions));
     }
     result.local_force =
-        relative_errors(changes, changes_of(references.poses, &RestPose::same_steps));
-    result.local_rest = relative_errors(changes, changes_of(references.poses, &RestPose::at_rest));
+        relative_errors(changes, changes_of(references.poses, &ReferencePose::same_steps));
+    result.local_rest =
+        relative_errors(changes, changes_of(references.poses, &ReferencePose::at_rest));
     for (std::size_t i = 0; i < neglected.size(); ++i) {
         result.neglected_force.push_back({neglected[i], result.local_force[i]});
         result.neglected_position.push_back({neglected[i], result.local_position[i]});
@@ -208,8 +209,8 @@ void add_rows(const std::string& name, const Result& result, const References& r
                         unit == "pN" ? "relative" : std::string(unit), scale * rms_of(samples),
                         std::string(unit), std::string(against)});
     };
-    const std::vector<Vec3> same = changes_of(references.poses, &RestPose::same_steps);
-    const std::vector<Vec3> rest = changes_of(references.poses, &RestPose::at_rest);
+    const std::vector<Vec3> same = changes_of(references.poses, &ReferencePose::same_steps);
+    const std::vector<Vec3> rest = changes_of(references.poses, &ReferencePose::at_rest);
     add("local-force", result.local_force,
         units::piconewton_per_kcal_per_mol_angstrom * rms_norm(same), "pN",
         fmt::format("{}, as many steps: {:.0f} pN", exact,

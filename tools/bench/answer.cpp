@@ -1,10 +1,10 @@
 #include "tools/bench/answer.h"
 
-#include "core/load_error.h"
-#include "core/units.h"
+#include "experiments/rest_poses.h"
 #include "simulation/held.h"
 #include "simulation/load.h"
 #include "tools/bench/stroke.h"
+#include "tools/bench/truth.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -18,153 +18,37 @@
 namespace palpa {
 namespace {
 
-constexpr double pose_way = 3;         // Å
-constexpr double hand_move = 0.1;      // Å
-constexpr double truth_stride = 0.02;  // Å, of the hand between two complete relaxations
-constexpr double pN = units::piconewton_per_kcal_per_mol_angstrom;
-constexpr double least_change_pN = 20;  // errors are relative to no less
-constexpr std::array times_ms{0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0};
-
-// ---- truth -------------------------------------------------------------------------------------
-
-// Complete relaxation on all pairs, with second derivatives at every end.
-class Truth {
-public:
-    Truth(const TorsionModel& model, const SecondOrder& second) : model_(model) {
-        settings_ = second.settings;
-        settings_.forces.nonbonded.cutoff = NonbondedSettings{}.cutoff;
-        settings_.forces.nonbonded.electrostatics = NonbondedSettings{}.electrostatics;
-        settings_.forces.nonbonded.van_der_waals = NonbondedSettings{}.van_der_waals;
-        settings_.rest = settings_.relaxed = 1e-3;
-        settings_.least_relaxation = 0;
-        settings_.most_relaxation = 3000;
-        memory_.lineariser = build_lineariser(model, second.statics.renewals.lineariser.held);
-        memory_.full = build_quasi_statics(model);
-    }
-
-    const HandHold& hand() const { return memory_.lineariser.held.hands.front(); }
-    const LinearisedModel& linear() const { return *memory_.last; }
-    const SecondOrderSettings& settings() const { return settings_; }
-
-    // The force on the hand at rest, pN, and the state there.
-    Vec3 relax(TorsionState& state) {
-        const Renewal renewal = make_renewal(model_, settings_, {state, 0, {}, {}}, memory_);
-        if (!renewal.linear) throw LoadError({}, "a pose is not finite");
-        evaluations_ += renewal.relaxed.evaluations;
-        rms_ = renewal.relaxed.rms_force;
-        state = renewal.linear->at;
-        return pN * force(*renewal.linear);
-    }
-
-    // Moves the hand by strides.
-    Vec3 follow(TorsionState& state, const Vec3& by, double stride) {
-        const auto count = static_cast<int>(std::lround(by.norm() / stride));
-        Vec3 found = Vec3::Zero();
-        for (int i = 0; i < count; ++i) {
-            move(state, by / count);
-            found = relax(state);
-        }
-        return found;
-    }
-
-    void move(TorsionState& state, const Vec3& by) const {
-        if (hand().spring) {
-            state.springs[*hand().spring].place += by;
-        } else {
-            shift_base(model_, hand().molecule, by, state);
-        }
-    }
-
-    double rms() const { return rms_; }  // that was left at the last end
-    std::size_t evaluations() const { return evaluations_; }
-
-private:
-    Vec3 force(const LinearisedModel& linear) const {
-        const Eigen::Index turns = hand().turns ? 3 : 0;
-        return -linear.gradient.segment<3>(linear.mobile() + turns);
-    }
-
-    const TorsionModel& model_;
-    SecondOrderSettings settings_;
-    RenewalMemory memory_;
-    double rms_ = 0;
-    std::size_t evaluations_ = 0;
-};
-
-struct Move {
-    Vec3 by;      // Å
-    Vec3 change;  // of the force, pN
-    bool is_snap = false;
-};
-
-struct AnswerPose {
-    TorsionState state;
-    std::shared_ptr<const LinearisedModel> linear;
-    std::vector<Move> moves;
-};
-
-Move find_move(Truth& truth, const TorsionState& pose, const Vec3& at_pose, const Vec3& by) {
-    TorsionState state = pose;
-    Move move{by, truth.follow(state, by, truth_stride) - at_pose};
-    state = pose;
-    const Vec3 finer = truth.follow(state, by, truth_stride / 2) - at_pose;
-    constexpr double alike = 0.05;
-    move.is_snap = (finer - move.change).norm() > alike * std::max(finer.norm(), least_change_pN);
-    return move;
-}
-
-std::vector<AnswerPose> build_poses(Truth& truth, TorsionState state, int count) {
-    std::vector<AnswerPose> poses;
-    for (int i = 0; i < count; ++i) {
-        if (i > 0) (void)truth.follow(state, {pose_way / count, 0, 0}, truth_stride);
-        const Vec3 force = truth.relax(state);
-        AnswerPose pose{state, std::make_shared<const LinearisedModel>(truth.linear()), {}};
-        for (int axis = 0; axis < 3; ++axis)
-            pose.moves.push_back(find_move(truth, state, force, hand_move * Vec3::Unit(axis)));
-        say(fmt::format(
-            "pose {} of {}: {:.0f} pN, rms {:.1g}, changes of {:.0f}, {:.0f} and {:.0f} "
-            "pN{}",
-            i + 1, count, force.norm(), truth.rms(), pose.moves[0].change.norm(),
-            pose.moves[1].change.norm(), pose.moves[2].change.norm(),
-            std::ranges::any_of(pose.moves, &Move::is_snap) ? ", a snap" : ""));
-        poses.push_back(std::move(pose));
-    }
-    return poses;
-}
+constexpr std::array times_ms{0.2, 0.3,  0.5,  0.7,  1.0,  1.5,  2.0,  3.0,  5.0,
+                              7.0, 10.0, 15.0, 20.0, 30.0, 50.0, 70.0, 100.0};
+constexpr std::array table_times_ms{0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0};
 
 // ---- methods -----------------------------------------------------------------------------------
 
-// After so much time the force had so much error.
-struct Answer {
+// Of the force, after so much time.
+struct Change {
     double us;
-    double relative, error_pN;
+    Vec3 change_pN;
 };
-using Answers = std::vector<Answer>;
-
-Answer judge(double us, const Vec3& change, const Move& move) {
-    const double error = (change - move.change).norm();
-    return {us, error / std::max(move.change.norm(), least_change_pN), error};
-}
+using Changes = std::vector<Change>;
 
 // Steps of a world until the time is spent; the first one moves the hand.
-Answers answer_by_steps(World& world, int settling, const AnswerPose& pose, const Move& move) {
-    put(pose.state, world);
-    for (int i = 0; i < settling; ++i) (void)relax_step(world);
+Changes change_by_steps(World& world, const TorsionState& pose, const Vec3& by) {
+    put(pose, world);
     const Vec3 before = pN * find_force(world);
-    Answers answers;
-    for (double us = 0; answers.empty() || us < 1e3 * times_ms.back();) {
+    Changes changes;
+    for (double us = 0; changes.empty() || us < 1e3 * times_ms.back();) {
         us += 1e6 * seconds_of([&] {
-                  if (answers.empty()) move_held(world, move.by);
+                  if (changes.empty()) move_held(world, by);
                   (void)relax_step(world);
               });
-        answers.push_back(judge(us, pN * find_force(world) - before, move));
+        changes.push_back({us, pN * find_force(world) - before});
     }
-    return answers;
+    return changes;
 }
 
 // Newton's step by the second derivatives at the pose, then evaluations of the whole energy.
-Answers answer_in_full(const TorsionModel& model, const Truth& truth, const AnswerPose& pose,
-                       const Move& move) {
+Changes change_in_full(const TorsionModel& model, const Truth& truth, const RestStart& pose,
+                       const Vec3& by) {
     const LinearisedModel& linear = *pose.linear;
     TorsionState state = pose.state;
     QuasiStatics statics = build_quasi_statics(model);
@@ -179,140 +63,171 @@ Answers answer_in_full(const TorsionModel& model, const Truth& truth, const Answ
         truth.hand().spring ? static_cast<std::int32_t>(*truth.hand().spring) : -1};
     const Vec3 before = pN * find_force_on_held(model, state, held);
     const auto begin = std::chrono::steady_clock::now();
-    Answers answers;
+    Changes changes;
     Eigen::VectorXd at = Eigen::VectorXd::Zero(linear.coordinates.size());
-    at.segment<3>(linear.mobile() + (truth.hand().turns ? 3 : 0)) = move.by;
+    at.segment<3>(linear.mobile() + (truth.hand().turns ? 3 : 0)) = by;
     at.head(linear.mobile()) = linear.response * at.tail(linear.hands());
     place_about(model, linear.coordinates, linear.at, at, state);
     (void)relax_joints(model, settings, state, statics, [&](const RelaxProgress&) {
         const std::chrono::duration<double, std::micro> us =
             std::chrono::steady_clock::now() - begin;
-        answers.push_back(
-            judge(us.count(), pN * find_force_on_held(model, state, held) - before, move));
+        changes.push_back({us.count(), pN * find_force_on_held(model, state, held) - before});
         return us.count() < 1e3 * times_ms.back();
     });
-    return answers;
+    return changes;
 }
 
 struct Method {
     std::string name;
     std::optional<World> world;  // none: in full
-    std::size_t step = 0;        // the answer that is one step's
-    int settling = 0;            // steps before, since the poses are at rest with all pairs
+    std::size_t step = 0;        // the change that is one step's
+    bool has_cutoff = false;     // begins at rest with that, and is judged by it, too
 };
 
-SceneDescription second_order_scene(SceneDescription scene) {
-    scene.statics.method = RelaxMethod::SecondOrder;
-    return scene;
-}
-
-std::vector<Method> build_methods(const BenchStart& start) {
+std::vector<Method> build_methods(const BenchStart& start, double cutoff) {
     const auto build = [&](const SceneDescription& scene) {
         return build_mechanics_world(scene, model_of(start.world), held_part(start.world));
     };
-    std::vector<Method> methods;
-    methods.push_back({"default", build(start.scene)});
-    for (const double reach : {4.0, 6.0, 10.0}) {
-        SceneDescription scene = second_order_scene(start.scene);
+    const auto near = [&](double reach, std::optional<double> pairs_end) {
+        SceneDescription scene = with_cutoff(second_order_scene(start.scene), pairs_end);
         scene.statics.near_angstrom = reach;
-        methods.push_back({fmt::format("near={}", reach), build(scene)});
-    }
-    SceneDescription cutoff = second_order_scene(start.scene);
-    cutoff.statics.cutoff_angstrom = 12;
-    methods.push_back({"near=6/cutoff=12", build(cutoff), 0, 40});
-    methods.push_back({"full-second-order", {}, 2});
-    SceneDescription bfgs = start.scene;
+        return build(scene);
+    };
+    const auto paper = [&](std::size_t active, std::optional<double> pairs_end) {
+        return build_variant(start,
+                             {active, pairs_end, JointWeights::Acceleration, PairPrecision::Fast});
+    };
+    SceneDescription bfgs = with_cutoff(start.scene, {});
     bfgs.statics.method = RelaxMethod::InverseMass;
     bfgs.statics.steps = 1;
+    const std::string with = fmt::format("/cutoff={}", cutoff);
+    std::vector<Method> methods;
+    methods.push_back(
+        {"default", build(start.scene), 0, start.scene.statics.cutoff_angstrom.has_value()});
+    for (const double reach : {4.0, 6.0, 10.0})
+        methods.push_back({fmt::format("near={}", reach), near(reach, {})});
+    methods.push_back({"near=6" + with, near(6, cutoff), 0, true});
+    methods.push_back({"full-second-order", {}, 2});
     methods.push_back({"bfgs", build(bfgs)});
-    const auto add_paper = [&](std::string name, std::size_t active, std::optional<double> reach) {
-        methods.push_back(
-            {std::move(name), build_variant(start, {active, reach, JointWeights::Acceleration,
-                                                    PairPrecision::Fast})});
-    };
-    add_paper("paper-40", 40, {});
-    add_paper("paper-all", everything, {});
-    add_paper("paper-all/cutoff=12", everything, 12);
+    methods.push_back({"paper-40", paper(40, {})});
+    methods.push_back({"paper-all", paper(everything, {})});
+    methods.push_back({"paper-all" + with, paper(everything, cutoff), 0, true});
     return methods;
+}
+
+// ---- curves ------------------------------------------------------------------------------------
+
+// Of all moves.
+struct Errors {
+    std::vector<double> relative, in_pN;
+
+    void add(const Vec3& change_pN, const RestMove& move) {
+        const double error = (change_pN - move.change_pN).norm();
+        relative.push_back(error / std::max(move.change_pN.norm(), least_change_pN));
+        in_pN.push_back(error);
+    }
+
+    AnswerErrors summary() const {
+        return {quantile(relative, 0.5), quantile(relative, 0.9), quantile(in_pN, 0.5),
+                quantile(in_pN, 0.9)};
+    }
+};
+
+// What a method made of moves, judged by one truth.
+struct Judgement {
+    std::vector<double> step_us;
+    Errors of_step;
+    std::array<Errors, times_ms.size()> in_time;
+    std::size_t moves = 0, snaps = 0;
+
+    void add(const Changes& changes, std::size_t step, const RestMove& move) {
+        if (move.is_snap) {
+            ++snaps;
+            return;
+        }
+        ++moves;
+        const Change& at_step = changes[std::min(step, changes.size() - 1)];
+        step_us.push_back(at_step.us);
+        of_step.add(at_step.change_pN, move);
+        for (std::size_t t = 0; t < times_ms.size(); ++t) {
+            // The last one that was there in time.
+            const Change* last = nullptr;
+            for (const Change& change : changes) {
+                if (change.us <= 1e3 * times_ms[t]) last = &change;
+            }
+            if (last) in_time[t].add(last->change_pN, move);
+        }
+    }
+};
+
+AnswerCurve curve_of(const std::string& method, const Judgement& judged) {
+    AnswerCurve curve{.method = method, .moves = judged.moves, .snaps = judged.snaps};
+    if (judged.moves == 0) return curve;
+    curve.step_us = judged.step_us;
+    curve.of_step = judged.of_step.summary();
+    for (std::size_t t = 0; t < times_ms.size(); ++t) {
+        // Where half of the moves have no answer yet there is none.
+        const Errors& errors = judged.in_time[t];
+        if (2 * errors.relative.size() >= judged.moves)
+            curve.in_time.push_back({times_ms[t], errors.summary()});
+    }
+    return curve;
+}
+
+void measure(Method& method, const TorsionModel& model, const Truths& truths,
+             std::span<const AnswerPose> poses, std::vector<AnswerCurve>& curves) {
+    say(method.name);
+    Judgement by_all_pairs, by_own;
+    for (const AnswerPose& pose : poses) {
+        const RestStart& from = method.has_cutoff ? pose.with_cutoff : pose.all_pairs;
+        const std::size_t moves = std::min(pose.all_pairs.moves.size(), from.moves.size());
+        for (std::size_t i = 0; i < moves; ++i) {
+            const RestMove &move = pose.all_pairs.moves[i], &own = from.moves[i];
+            if (move.is_snap && own.is_snap) {
+                by_all_pairs.add({}, method.step, move);
+                by_own.add({}, method.step, own);
+                continue;
+            }
+            const Changes changes = method.world
+                                        ? change_by_steps(*method.world, from.state, move.by)
+                                        : change_in_full(model, truths.all_pairs, from, move.by);
+            by_all_pairs.add(changes, method.step, move);
+            by_own.add(changes, method.step, own);
+        }
+    }
+    curves.push_back(curve_of(method.name, by_all_pairs));
+    if (method.has_cutoff)
+        curves.push_back(curve_of(method.name + std::string(own_cutoff_suffix), by_own));
 }
 
 // ---- rows --------------------------------------------------------------------------------------
 
-struct Errors {
-    std::vector<double> relative, in_pN;
-
-    void add(const Answer& answer) {
-        relative.push_back(answer.relative);
-        in_pN.push_back(answer.error_pN);
-    }
-};
-
-void add_errors(const Errors& errors, std::size_t snaps, double A_f, BenchRow& row) {
-    const double newton_per_pN = 1e-12 * A_f;
-    row.error = quantile(errors.in_pN, 0.5);
+void add_errors(const AnswerErrors& errors, const AnswerCurve& curve, double newton_per_pN,
+                BenchRow& row) {
+    row.error = errors.median_pN;
     row.error_unit = "pN";
-    row.reference = fmt::format("complete relaxation; {} snaps left out", snaps);
-    row.more = {{"error_median", quantile(errors.relative, 0.5)},
-                {"error_90", quantile(errors.relative, 0.9)},
-                {"error_90_pN", quantile(errors.in_pN, 0.9)},
-                {"error_median_N", newton_per_pN * quantile(errors.in_pN, 0.5)},
-                {"error_90_N", newton_per_pN * quantile(errors.in_pN, 0.9)}};
+    row.reference = fmt::format("complete relaxation{}; {} snaps left out",
+                                curve.is_own() ? " with the same cutoff" : "", curve.snaps);
+    row.more = {{"error_median", errors.median},
+                {"error_90", errors.ninety},
+                {"error_90_pN", errors.ninety_pN},
+                {"error_median_N", newton_per_pN * errors.median_pN},
+                {"error_90_N", newton_per_pN * errors.ninety_pN}};
 }
 
-// The last answer that was there in time; nothing but the frozen change before the first.
-std::optional<Answer> answer_after(const Answers& answers, double ms) {
-    std::optional<Answer> last;
-    for (const Answer& answer : answers) {
-        if (answer.us <= 1e3 * ms) last = answer;
-    }
-    return last;
-}
-
-void bench_one(const std::string& name, Method& method, const TorsionModel& model,
-               const Truth& truth, std::span<const AnswerPose> poses, double A_f,
-               std::vector<BenchRow>& rows, std::string& table) {
-    say(fmt::format("{}", name));
-    BenchRow row{name, {}, "us"};
-    Errors of_step;
-    std::array<Errors, times_ms.size()> in_time;
-    std::size_t snaps = 0, moves = 0;
-    for (const AnswerPose& pose : poses) {
-        for (const Move& move : pose.moves) {
-            if (move.is_snap) {
-                ++snaps;
-                continue;
-            }
-            ++moves;
-            const Answers answers =
-                method.world ? answer_by_steps(*method.world, method.settling, pose, move)
-                             : answer_in_full(model, truth, pose, move);
-            const Answer& step = answers[std::min(method.step, answers.size() - 1)];
-            row.samples.push_back(step.us);
-            of_step.add(step);
-            for (std::size_t t = 0; t < times_ms.size(); ++t) {
-                if (const auto answer = answer_after(answers, times_ms[t])) in_time[t].add(*answer);
-            }
+void add_rows(const std::string& name, const Answers& answers, std::vector<BenchRow>& rows) {
+    for (const AnswerCurve& curve : answers.curves) {
+        if (curve.moves == 0) continue;
+        const std::string own_name = name + "/" + curve.method;
+        BenchRow row{own_name, curve.step_us, "us"};
+        add_errors(curve.of_step, curve, answers.newton_per_pN, row);
+        rows.push_back(std::move(row));
+        for (const AnswerCurve::Point& point : curve.in_time) {
+            BenchRow at{fmt::format("{}/ms={}", own_name, point.ms), {point.ms}, "ms"};
+            add_errors(point.errors, curve, answers.newton_per_pN, at);
+            rows.push_back(std::move(at));
         }
     }
-    if (moves == 0) return;
-    add_errors(of_step, snaps, A_f, row);
-    table +=
-        fmt::format("| {} | {:.2f} | {:.1f} | {:.1f} | {:.1f} |", name.substr(name.rfind('/') + 1),
-                    1e-3 * quantile(row.samples, 0.5), 100 * quantile(of_step.relative, 0.5),
-                    100 * quantile(of_step.relative, 0.9), quantile(of_step.in_pN, 0.5));
-    rows.push_back(std::move(row));
-    for (std::size_t t = 0; t < times_ms.size(); ++t) {
-        // Where half of the moves have no answer yet there is none.
-        if (2 * in_time[t].relative.size() < moves) {
-            table += " |";
-            continue;
-        }
-        BenchRow at{fmt::format("{}/ms={}", name, times_ms[t]), {times_ms[t]}, "ms"};
-        add_errors(in_time[t], snaps, A_f, at);
-        rows.push_back(std::move(at));
-        table += fmt::format(" {:.1f} |", 100 * quantile(in_time[t].relative, 0.5));
-    }
-    table += "\n";
 }
 
 // ---- ways --------------------------------------------------------------------------------------
@@ -327,15 +242,14 @@ struct WayErrors {
     std::vector<double> relative, squares, force_squares;
 };
 
-void bench_way(const std::string& name, const Way& way, const BenchStart& start,
-               const TorsionState& rest, Truth& truth, World& world, WayErrors& all,
-               std::vector<BenchRow>& rows) {
+void bench_way(const std::string& name, const Way& way, const TorsionState& rest, Truth& truth,
+               World& world, WayErrors& all, std::vector<BenchRow>& rows) {
     constexpr double step = 0.02, spacing = 0.1;  // Å
     put(rest, world);
     double seconds = 0;
     std::size_t renewals = 0, snaps = 0;
     WayErrors own;
-    for (int i = 1; i <= std::lround(pose_way / step); ++i) {
+    for (int i = 1; i <= std::lround(way_angstrom / step); ++i) {
         RelaxStepReport report;
         seconds += seconds_of([&] {
             move_held(world, step * way.direction);
@@ -363,7 +277,6 @@ void bench_way(const std::string& name, const Way& way, const BenchStart& start,
     say(fmt::format("{}: median {:.2f} %, 90 % {:.2f} %, rms {:.2f} %, {:.2f} s, {}", row.name,
                     100 * row.more[0].second, 100 * row.more[1].second, 100 * row.more[2].second,
                     seconds, row.reference));
-    (void)start;
     rows.push_back(std::move(row));
     const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
         to.insert(to.end(), from.begin(), from.end());
@@ -383,7 +296,7 @@ void bench_ways(const std::string& name, const BenchStart& start, const TorsionS
         for (const double sign : {1.0, -1.0}) {
             const Way way{fmt::format("{}{}", sign > 0 ? '+' : '-', "xyz"[axis]),
                           sign * Vec3::Unit(axis)};
-            bench_way(name, way, start, rest, truth, world, all, rows);
+            bench_way(name, way, rest, truth, world, all, rows);
         }
     }
     for (std::size_t i = first; i < rows.size(); ++i)
@@ -395,33 +308,95 @@ void bench_ways(const std::string& name, const BenchStart& start, const TorsionS
     rows.push_back(std::move(whole));
 }
 
+// A scene, the truths of it, and its state: as loaded, or completely relaxed where that is needed.
+struct AnswerStart {
+    explicit AnswerStart(const SceneDescription& scene)
+        : connectivity(load_system(scene).connectivity),
+          start(load_start(scene, connectivity)),
+          truths(build_truths(start)),
+          state(start.world.resource<TorsionState>()) {}
+
+    const TorsionState& rest() {
+        if (!is_at_rest) (void)truths.all_pairs.relax(state);
+        is_at_rest = true;
+        return state;
+    }
+
+    Connectivity connectivity;
+    BenchStart start;
+    Truths truths;
+    TorsionState state;
+    bool is_at_rest = false;
+};
+
+std::vector<AnswerPose> list_poses(const AnswerPoseSettings& settings, AnswerStart& at) {
+    if (settings.file) {
+        return read_poses(*settings.file, at.truths, model_of(at.start.world), at.state,
+                          settings.count);
+    }
+    std::vector<AnswerPose> poses =
+        find_poses(at.truths, at.rest(), settings.count.value_or(usual_answer_poses));
+    if (settings.save_to) {
+        write_text_file(*settings.save_to, format_rest_poses(rest_poses_of(at.truths, poses)),
+                        settings.existing);
+    }
+    return poses;
+}
+
+Answers measure_at(AnswerStart& at, const AnswerPoseSettings& settings) {
+    Answers answers{{}, 1e-12 * at.start.scene.coupling.A_f, 0};
+    if (settings.count == 0) return answers;
+    const std::vector<AnswerPose> poses = list_poses(settings, at);
+    answers.poses = poses.size();
+    for (Method& method : build_methods(at.start, at.truths.cutoff))
+        measure(method, model_of(at.start.world), at.truths, poses, answers.curves);
+    return answers;
+}
+
 }  // namespace
 
-std::string bench_answer(const std::string& scene_name, const SceneDescription& scene,
-                         const AnswerBenchSettings& settings, std::vector<BenchRow>& rows) {
-    const Connectivity connectivity = load_system(scene).connectivity;
-    const BenchStart start = load_start(scene, connectivity);
-    const TorsionModel& model = model_of(start.world);
-    const World second =
-        build_mechanics_world(second_order_scene(scene), model, held_part(start.world));
-    Truth truth(model, second.resource<SecondOrder>());
-    TorsionState rest = start.world.resource<TorsionState>();
-    (void)truth.relax(rest);
-    const std::string name = "answer/" + scene_name;
-    std::string table = "| method | step, ms | median, % | 90 %, % | median, pN |";
-    for (const double ms : times_ms) table += fmt::format(" {} ms |", ms);
-    table += "\n| --- | --- | --- | --- | --- |";
-    for (std::size_t t = 0; t < times_ms.size(); ++t) table += " --- |";
+std::string format_markdown(const Answers& answers) {
+    std::string table =
+        "| method | one step, ms | median, % | nine of ten, % | median, pN | nine of ten, pN | "
+        "median, mN at the hand |";
+    for (const double ms : table_times_ms) table += fmt::format(" % after {} ms |", ms);
+    table += "\n|";
+    for (std::size_t column = 0; column < 7 + table_times_ms.size(); ++column) table += " --- |";
     table += "\n";
-    if (settings.poses > 0) {
-        const std::vector<AnswerPose> poses = build_poses(truth, rest, settings.poses);
-        for (Method& method : build_methods(start)) {
-            bench_one(name + "/" + method.name, method, model, truth, poses, scene.coupling.A_f,
-                      rows, table);
+    for (const AnswerCurve& curve : answers.curves) {
+        if (curve.moves == 0) continue;
+        const AnswerErrors& e = curve.of_step;
+        table += fmt::format("| {} | {:.2f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.3g} |",
+                             curve.method, 1e-3 * quantile(curve.step_us, 0.5), 100 * e.median,
+                             100 * e.ninety, e.median_pN, e.ninety_pN,
+                             1e3 * answers.newton_per_pN * e.median_pN);
+        for (const double ms : table_times_ms) {
+            const auto point = std::ranges::find(curve.in_time, ms, &AnswerCurve::Point::ms);
+            table += point == curve.in_time.end()
+                         ? " |"
+                         : fmt::format(" {:.1f} |", 100 * point->errors.median);
         }
+        table += "\n";
     }
-    if (!settings.no_ways) bench_ways(name + "/way", start, rest, truth, rows);
     return table;
+}
+
+bool AnswerCurve::is_own() const { return method.ends_with(own_cutoff_suffix); }
+
+Answers measure_answers(const SceneDescription& scene, const AnswerPoseSettings& settings) {
+    AnswerStart at(scene);
+    return measure_at(at, settings);
+}
+
+Answers bench_answer(const std::string& scene_name, const SceneDescription& scene,
+                     const AnswerBenchSettings& settings, std::vector<BenchRow>& rows) {
+    AnswerStart at(scene);
+    const std::string name = "answer/" + scene_name;
+    Answers answers = measure_at(at, settings.poses);
+    add_rows(name, answers, rows);
+    if (!settings.no_ways)
+        bench_ways(name + "/way", at.start, at.rest(), at.truths.all_pairs, rows);
+    return answers;
 }
 
 }  // namespace palpa

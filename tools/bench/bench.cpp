@@ -1,12 +1,14 @@
 #include "tools/bench/bench.h"
 
 #include "charmm/force_field.h"
+#include "core/files.h"
 #include "core/machine.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "core/version.h"
 #include "devices/emulated_omni.h"
 #include "experiments/emulated_hand.h"
+#include "experiments/rest_poses.h"
 #include "formats/psf.h"
 #include "formats/structure.h"
 #include "gpu/device.h"
@@ -27,6 +29,7 @@
 #include "tools/bench/statics.h"
 #include "tools/bench/tree.h"
 #include "tools/commands/progress.h"
+#include "tools/report/answer.h"
 #include "view/build_frame.h"
 #include "view/orbit_camera.h"
 
@@ -162,6 +165,13 @@ void bench_render(const std::string& scene_name, const World& world, std::vector
     }
 }
 
+void write_picture(const Answers& answers, const std::filesystem::path& path, Existing existing) {
+    write_text_file(
+        path,
+        std::string(answer_picture_mark) + draw_svg(plot_answers(answers), answer_picture_size),
+        existing);
+}
+
 nlohmann::ordered_json as_json(const BenchRow& row) {
     nlohmann::ordered_json json;
     json["name"] = row.name;
@@ -179,6 +189,14 @@ nlohmann::ordered_json as_json(const BenchRow& row) {
 }  // namespace
 
 int bench_command(const BenchOptions& options) {
+    AnswerBenchSettings answer_settings = options.answer_settings;
+    if (const auto& poses = answer_settings.poses.save_to)
+        answer_settings.poses.existing = check_output(*poses, rest_poses_mark, options.overwrites);
+    Existing existing_plot = Existing::Refuse;
+    if (options.plot) {
+        existing_plot = check_output(*options.plot, answer_picture_mark, options.overwrites);
+        check_gnuplot();
+    }
     std::vector<BenchRow> rows;
     std::string tables;
     bench_files(options, rows);
@@ -208,7 +226,9 @@ int bench_command(const BenchOptions& options) {
             continue;
         }
         if (options.answer) {
-            tables += bench_answer(name, scene, options.answer_settings, rows);
+            const Answers answers = bench_answer(name, scene, answer_settings, rows);
+            tables += format_markdown(answers);
+            if (options.plot) write_picture(answers, *options.plot, existing_plot);
             continue;
         }
         if (options.adaptive) {

@@ -28,6 +28,8 @@ struct BenchOptions {
     std::optional<int> poses;  // of either
     bool answer = false;       // error of the force at the hand against time, likewise
     AnswerBenchSettings answer_settings;
+    std::optional<std::filesystem::path> plot;  // SVG of it
+    bool overwrites = false;                    // earlier files of this command
     bool json = false;
 };
 

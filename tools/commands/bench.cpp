@@ -42,10 +42,26 @@ void add_adaptive_options(CLI::App& bench, BenchOptions& options) {
             ->excludes(adaptive)
             ->needs("scenes");
     bench
-        .add_option("--poses", options.poses,
-                    "along the stroke: 3 unless given, 10 with --answer, whose 0 is only the ways")
+        .add_option(
+            "--poses", options.poses,
+            "along the stroke: 3 unless given, 10 with --answer (all of --poses-file), whose 0 is "
+            "only the ways")
         ->check(in_range(0, 1000));
     bench.add_flag("--no-ways", options.answer_settings.no_ways, "only the poses")->needs(answer);
+    AnswerPoseSettings& poses = options.answer_settings.poses;
+    CLI::Option* const poses_file =
+        bench
+            .add_option("--poses-file", poses.file,
+                        "take the poses of --answer from this file, all or the first --poses")
+            ->needs(answer);
+    bench
+        .add_option("--save-poses", poses.save_to,
+                    "write the poses that --answer finds, for --poses-file")
+        ->excludes(poses_file)
+        ->needs(answer);
+    bench.add_option("--plot", options.plot, "draw what --answer measures into this SVG file")
+        ->needs(answer);
+    add_overwrite_flag(bench, options.overwrites);
     bench
         .add_option("--stroke-steps", options.adaptive_settings.stroke_moves,
                     "of the hand by 0.005 Å, half of them back; 200 unless given")
@@ -74,13 +90,23 @@ void add_bench(CLI::App& program, ProgramCommand& chosen) {
         }
         if (owned->table && !owned->adaptive && !owned->answer)
             throw CLI::RequiredError("--table: --adaptive or --answer");
-        if (owned->poses) owned->answer_settings.poses = *owned->poses;
+        AnswerPoseSettings& poses = owned->answer_settings.poses;
+        const bool has_file = poses.file || poses.save_to || owned->plot;
+        if (has_file && owned->scenes.size() != 1)
+            throw CLI::ValidationError("--poses-file, --save-poses, --plot", "expected one scene");
+        if (has_file && owned->poses == 0)
+            throw CLI::ValidationError("--poses", "expected 1 or more with a file");
+        if (poses.save_to && poses.save_to == owned->plot)
+            throw CLI::ValidationError("--plot", "expected another file than --save-poses");
+        poses.count = owned->poses;
         if (owned->poses) owned->adaptive_settings.poses = std::max(1, *owned->poses);
         chosen = [owned] { return bench_command(*owned); };
     });
     describe(bench, "Look and measure",
              {"palpa bench scenes/water scenes/hiv", "palpa bench --kernel",
-              "palpa bench scenes/hiv/flexible.toml --adaptive --table"});
+              "palpa bench scenes/hiv/flexible.toml --adaptive --table",
+              "palpa bench scenes/hiv/flexible.toml --answer --poses-file "
+              "scenes/hiv/flexible-poses.txt --plot answer.svg"});
     bench.add_option("scenes", options.scenes, "scene folders or files");
     bench.add_option("--load", options.structures,
                      "structure files (.pdb, .cif, .crd, .psf): time the reading of each");

@@ -93,14 +93,19 @@ std::string format_data(const std::string& name, const std::vector<std::vector<d
     return text + "EOD\n";
 }
 
-std::string draw_figure(const std::string& script, const std::string& caption, PlotSize size) {
-    const std::string svg = run_gnuplot(
-        fmt::format("set terminal svg size {},{} font 'sans-serif,12'\nset grid lc rgb '#dddddd'\n",
-                    size.width, size.height) +
-        script);
+std::string draw_svg(const std::string& script, PlotSize size) {
+    const std::string svg =
+        run_gnuplot(fmt::format("set terminal svg size {},{} background '#ffffff' font "
+                                "'sans-serif,12'\nset grid lc rgb '#dddddd'\n",
+                                size.width, size.height) +
+                    script);
     const std::size_t begin = svg.find("<svg");
     if (begin == std::string::npos) throw std::runtime_error("gnuplot drew nothing");
-    return "<figure>\n" + svg.substr(begin) + "<figcaption>" + escaped(caption) +
+    return svg.substr(begin);
+}
+
+std::string draw_figure(const std::string& script, const std::string& caption, PlotSize size) {
+    return "<figure>\n" + draw_svg(script, size) + "<figcaption>" + escaped(caption) +
            "</figcaption>\n</figure>\n";
 }
 

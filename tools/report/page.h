@@ -46,8 +46,11 @@ struct PlotSize {
     int width = 900, height = 380;
 };
 
-// What gnuplot makes of a script, as an <svg> element with this text below. Throws LoadError where
-// there is no gnuplot, and std::runtime_error with its words where it does not like the script.
+// What gnuplot makes of a script, as an <svg> element. Throws LoadError where there is no gnuplot,
+// and std::runtime_error with its words where it does not like the script.
+std::string draw_svg(const std::string& script, PlotSize size = {});
+
+// The same with this text below.
 std::string draw_figure(const std::string& script, const std::string& caption, PlotSize size = {});
 
 // `facts`: of the run, name and value.

@@ -40,6 +40,7 @@ std::vector<SectionFunction> list_sections(const ReportOptions& options) {
     if (std::filesystem::exists(options.flexible)) {
         sections.push_back(report_figure_9);
         sections.push_back(report_speed);
+        sections.push_back(report_answers);
         sections.push_back(report_kernels);
     } else {
         sections.push_back(report_without_flexible);

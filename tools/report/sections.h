@@ -44,6 +44,8 @@ ReportSection report_figures_7_and_8(const ReportOptions& options);
 // report_flexible.cpp
 ReportSection report_figure_9(const ReportOptions& options);
 ReportSection report_speed(const ReportOptions& options);
+// report_answer.cpp
+ReportSection report_answers(const ReportOptions& options);
 // report_kernel.cpp
 ReportSection report_kernels(const ReportOptions& options);
 
