@@ -58,9 +58,8 @@ Changes change_in_full(const TorsionModel& model, const Truth& truth, const Rest
     settings.precondition = [&](const Coordinates& v) -> Coordinates {
         return find_response(linear.factor, v);
     };
-    const HeldInState held{
-        truth.hand().molecule,
-        truth.hand().spring ? static_cast<std::int32_t>(*truth.hand().spring) : -1};
+    const std::optional<std::size_t> spring = truth.hand().spring;
+    const HeldInState held{truth.hand().molecule, spring ? static_cast<std::int32_t>(*spring) : -1};
     const Vec3 before = pN * find_force_on_held(model, state, held);
     const auto begin = std::chrono::steady_clock::now();
     Changes changes;

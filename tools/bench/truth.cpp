@@ -130,8 +130,8 @@ Vec3 Truth::follow(TorsionState& state, const Vec3& by, double stride) {
 }
 
 void Truth::move(TorsionState& state, const Vec3& by) const {
-    if (hand().spring) {
-        state.springs[*hand().spring].place += by;
+    if (const std::optional<std::size_t> spring = hand().spring) {
+        state.springs[*spring].place += by;
     } else {
         shift_base(model_, hand().molecule, by, state);
     }

@@ -134,11 +134,11 @@ std::vector<std::vector<std::string>> list_answers(const Answers& answers) {
         {"method", "time", "error, %: median, nine of ten", "pN", "mN at the handle"}};
     const auto add = [&](const AnswerCurve& curve, const std::string& time,
                          const AnswerErrors& errors) {
-        const double mN = 1e3 * answers.newton_per_pN;
+        const double millinewton = 1e3 * answers.newton_per_pN;
         table.push_back({escaped(title_of(curve)), time,
                          both(100 * errors.median, 100 * errors.ninety),
                          both(errors.median_pN, errors.ninety_pN),
-                         both(mN * errors.median_pN, mN * errors.ninety_pN)});
+                         both(millinewton * errors.median_pN, millinewton * errors.ninety_pN)});
     };
     for (const AnswerCurve& curve : answers.curves) {
         if (curve.moves == 0) continue;
