@@ -300,6 +300,37 @@ TEST_CASE("atoms that a model has as parabolas do not come too close", "[statics
     }
 }
 
+TEST_CASE("a hand that jumps waits for renewals, stride by stride, and comes to the same force",
+          "[statics][second-order]") {
+    HeldPair c;
+    c.settings.renews_at_once = false;
+    SecondOrderStatics statics = build_second_order_statics(c.model, c.held);
+    REQUIRE(step_second_order(c.model, c.settings, c.state, statics).is_finite);
+    const std::uint32_t pivot = c.model.bases[0].pivot;
+    const Vec3 goal = c.state.positions[pivot] + Vec3(1, 0, 0);
+    std::size_t adopted = 0, lagging = 0;
+    for (int k = 0; k < 300; ++k) {
+        if (k % 3 == 2 && statics.pending) {
+            (void)adopt_pending(c.model, c.settings, statics);
+            ++adopted;
+        }
+        const Vec3 before = c.state.positions[pivot];
+        c.move_hand(goal - before);
+        const SecondOrderReport report = step_second_order(c.model, c.settings, c.state, statics);
+        REQUIRE(report.is_finite);
+        CHECK_FALSE(report.is_renewed);
+        // Not beyond the region of the model, and what stays behind says so.
+        CHECK(report.age <= c.settings.farthest_hand + c.settings.stride);
+        CHECK(report.lags == ((goal - c.state.positions[pivot]).norm() > 1e-9));
+        lagging += report.lags ? 1 : 0;
+    }
+    CHECK(lagging > 3);
+    CHECK(adopted > 3);
+    CHECK((goal - c.state.positions[pivot]).norm() < 1e-9);
+    const Vec3 expected = relaxed_force(c);
+    CHECK((hand_force(statics) - expected).norm() < 0.01 * (1 + expected.norm()));
+}
+
 TEST_CASE("a pending renewal made beside steps in another thread gives the same bits",
           "[statics][second-order]") {
     const auto walk = [](bool is_threaded) {

@@ -1,8 +1,10 @@
 #include "tools/bench/answer.h"
 
 #include "experiments/rest_poses.h"
+#include "haptics/gains.h"
 #include "simulation/held.h"
 #include "simulation/load.h"
+#include "simulation/resources.h"
 #include "tools/bench/stroke.h"
 #include "tools/bench/truth.h"
 
@@ -343,7 +345,8 @@ std::vector<AnswerPose> list_poses(const AnswerPoseSettings& settings, AnswerSta
 }
 
 Answers measure_at(AnswerStart& at, const AnswerPoseSettings& settings) {
-    Answers answers{{}, 1e-12 * at.start.scene.coupling.A_f, 0};
+    const ForceLaw& law = at.start.world.resource<Coupling>().laws.force;
+    Answers answers{{}, 1e-12 * force_gain(law, 0), 0};
     if (settings.count == 0) return answers;
     const std::vector<AnswerPose> poses = list_poses(settings, at);
     answers.poses = poses.size();

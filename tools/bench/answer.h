@@ -55,7 +55,7 @@ struct AnswerCurve {
 
 struct Answers {
     std::vector<AnswerCurve> curves;
-    double newton_per_pN = 0;  // at the handle, by A_f
+    double newton_per_pN = 0;  // at the handle, by the gain of weak forces
     std::size_t poses = 0;
 };
 

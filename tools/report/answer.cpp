@@ -215,8 +215,9 @@ ReportSection report_answers(const ReportOptions& options) {
         "relative to the change, or to 20 pN if it is less. {} moves were snaps and are left out. "
         "Methods with a cutoff are also judged by complete relaxation with the same cutoff: what "
         "is "
-        "left of their error is the cutoff's. mN are those at the handle, by A_f = {:.3g}.",
-        answers.poses, answers.poses == 1 ? "" : "s", snaps, scene.coupling.A_f);
+        "left of their error is the cutoff's. mN are those at the handle, by the gain of weak "
+        "forces, {:.3g}.",
+        answers.poses, answers.poses == 1 ? "" : "s", snaps, 1e12 * answers.newton_per_pN);
     section.body = draw_figure(plot_answers(answers),
                                "Left the median over poses and axes, right nine of ten. A line "
                                "begins where half of the moves have an answer.",
