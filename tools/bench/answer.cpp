@@ -5,6 +5,7 @@
 #include "simulation/held.h"
 #include "simulation/load.h"
 #include "simulation/resources.h"
+#include "tools/bench/real_time_way.h"
 #include "tools/bench/stroke.h"
 #include "tools/bench/truth.h"
 
@@ -238,11 +239,6 @@ struct Way {
     Vec3 direction;
 };
 
-// Each 0.1 Å along a way, what the steps felt and what complete relaxation of their state gives.
-struct WayErrors {
-    std::vector<double> relative, squares, force_squares;
-};
-
 void bench_way(const std::string& name, const Way& way, const TorsionState& rest, Truth& truth,
                World& world, WayErrors& all, std::vector<BenchRow>& rows) {
     constexpr double step = 0.02, spacing = 0.1;  // Å
@@ -260,31 +256,15 @@ void bench_way(const std::string& name, const Way& way, const TorsionState& rest
         snaps += report.released > 1 ? 1 : 0;
         if (i % std::lround(spacing / step) != 0) continue;
         TorsionState state = world.resource<TorsionState>();
-        const Vec3 felt = pN * find_force(world), expected = truth.relax(state);
-        own.relative.push_back((felt - expected).norm() /
-                               std::max(expected.norm(), least_change_pN));
-        own.squares.push_back((felt - expected).squaredNorm());
-        own.force_squares.push_back(expected.squaredNorm());
+        own.add(pN * find_force(world), truth.relax(state));
     }
-    const auto rms = [](const WayErrors& errors) {
-        return std::sqrt(mean_of(errors.squares) / mean_of(errors.force_squares));
-    };
     BenchRow row{fmt::format("{}/{}", name, way.name), {1e3 * seconds}, "ms"};
-    row.more = {{"error_median", quantile(own.relative, 0.5)},
-                {"error_90", quantile(own.relative, 0.9)},
-                {"error_rms", rms(own)}};
+    add_way_errors(own, row);
     row.reference =
         fmt::format("{} renewals, {} with more than 1 kcal/mol set free", renewals, snaps);
-    say(fmt::format("{}: median {:.2f} %, 90 % {:.2f} %, rms {:.2f} %, {:.2f} s, {}", row.name,
-                    100 * row.more[0].second, 100 * row.more[1].second, 100 * row.more[2].second,
-                    seconds, row.reference));
+    say(fmt::format("{}: {}, {:.2f} s, {}", row.name, describe(own), seconds, row.reference));
     rows.push_back(std::move(row));
-    const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
-        to.insert(to.end(), from.begin(), from.end());
-    };
-    append(all.relative, own.relative);
-    append(all.squares, own.squares);
-    append(all.force_squares, own.force_squares);
+    all.add(own);
 }
 
 void bench_ways(const std::string& name, const BenchStart& start, const TorsionState& rest,
@@ -302,9 +282,7 @@ void bench_ways(const std::string& name, const BenchStart& start, const TorsionS
     }
     for (std::size_t i = first; i < rows.size(); ++i)
         whole.samples.push_back(rows[i].samples.front());
-    whole.more = {{"error_median", quantile(all.relative, 0.5)},
-                  {"error_90", quantile(all.relative, 0.9)},
-                  {"error_rms", std::sqrt(mean_of(all.squares) / mean_of(all.force_squares))}};
+    add_way_errors(all, whole);
     whole.reference = "complete relaxation of the state, each 0.1 A";
     rows.push_back(std::move(whole));
 }
@@ -396,8 +374,10 @@ Answers bench_answer(const std::string& scene_name, const SceneDescription& scen
     const std::string name = "answer/" + scene_name;
     Answers answers = measure_at(at, settings.poses);
     add_rows(name, answers, rows);
-    if (!settings.no_ways)
+    if (!settings.no_ways) {
         bench_ways(name + "/way", at.start, at.rest(), at.truths.all_pairs, rows);
+        bench_real_time_way(name + "/real-time", scene, at.truths.all_pairs, rows);
+    }
     return answers;
 }
 

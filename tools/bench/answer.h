@@ -68,17 +68,16 @@ Answers measure_answers(const SceneDescription& scene, const AnswerPoseSettings&
 
 // The same as rows, and the error along ways:
 //
-//   answer/SCENE/METHOD            us of one step, and its error_median and error_90
-//   answer/SCENE/METHOD/ms=T       error_median and error_90 after so much time, the median in pN
-//   as
-//                                  the row's error
-//   answer/SCENE/METHOD/own        both again, of methods with a cutoff: against complete
-//   relaxation answer/SCENE/METHOD/own/ms=T   with the same cutoff answer/SCENE/way               3
-//   Å along both directions of each axis by the scene's own steps:
-//                                  the force against complete relaxation of the state, each 0.1 Å.
-//                                  error_median, error_90, and error_rms relative to the rms force;
-//                                  samples are ms of each way
-//   answer/SCENE/way/DIRECTION     each of them
+//   answer/SCENE/METHOD           us of one step, and its error_median and error_90
+//   answer/SCENE/METHOD/ms=T      both after so much time; the row's error is the median in pN
+//   answer/SCENE/METHOD/own       of methods with a cutoff: against rest with the same cutoff
+//   answer/SCENE/METHOD/own/ms=T
+//   answer/SCENE/way              3 Å along both directions of each axis by the scene's own steps:
+//                                 the force against complete relaxation of the state, each 0.1 Å.
+//                                 error_median, error_90, and error_rms relative to the rms force;
+//                                 samples are ms of each way
+//   answer/SCENE/way/DIRECTION    each of them
+//   answer/SCENE/real-time        tools/bench/real_time_way.h
 //
 // METHOD is `default`, as the scene has it; with all pairs `near=R`, `full-second-order`, `bfgs`,
 // `paper-40`, `paper-all`; and `near=6/cutoff=C` and `paper-all/cutoff=C`, with the scene's cutoff

@@ -203,4 +203,34 @@ std::vector<AnswerPose> read_poses(const std::filesystem::path& path, Truths& tr
     return poses;
 }
 
+void WayErrors::add(const Vec3& felt_pN, const Vec3& expected_pN) {
+    const double error = (felt_pN - expected_pN).norm();
+    relative.push_back(error / std::max(expected_pN.norm(), least_change_pN));
+    squares.push_back(error * error);
+    force_squares.push_back(expected_pN.squaredNorm());
+}
+
+void WayErrors::add(const WayErrors& others) {
+    const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
+        to.insert(to.end(), from.begin(), from.end());
+    };
+    append(relative, others.relative);
+    append(squares, others.squares);
+    append(force_squares, others.force_squares);
+}
+
+double WayErrors::rms() const { return std::sqrt(mean_of(squares) / mean_of(force_squares)); }
+
+std::string describe(const WayErrors& errors) {
+    return fmt::format("median {:.2f} %, 90 % {:.2f} %, rms {:.2f} %",
+                       100 * quantile(errors.relative, 0.5), 100 * quantile(errors.relative, 0.9),
+                       100 * errors.rms());
+}
+
+void add_way_errors(const WayErrors& errors, BenchRow& row) {
+    row.more = {{"error_median", quantile(errors.relative, 0.5)},
+                {"error_90", quantile(errors.relative, 0.9)},
+                {"error_rms", errors.rms()}};
+}
+
 }  // namespace palpa

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace palpa {
@@ -47,6 +48,19 @@ private:
     RenewalMemory memory_;
     double rms_ = 0;
 };
+
+// Along a way: how far the force on the hand is from that of complete relaxation of the same state.
+struct WayErrors {
+    std::vector<double> relative, squares, force_squares;
+
+    void add(const Vec3& felt_pN, const Vec3& expected_pN);
+    void add(const WayErrors& others);
+    double rms() const;  // relative to the rms force
+};
+
+std::string describe(const WayErrors& errors);
+// As error_median, error_90 and error_rms.
+void add_way_errors(const WayErrors& errors, BenchRow& row);
 
 // At rest, and what moves of the hand change there.
 struct RestStart {
