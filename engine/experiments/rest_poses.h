@@ -2,14 +2,14 @@
 // there: a text file, since finding them takes minutes. Lines of words between blanks:
 //
 //   # Palpa poses 1
-//   scene ATOMS BODIES MOLECULES SPRINGS CUTOFF    of its torsion model; Å
-//   pose                                           each, then these lines twice:
-//   rest PAIRS ENERGY FX FY FZ                     PAIRS: all, then cutoff; kcal/mol, pN on the
-//   hand angles A ...                                   of each body's joint, rad base QW QX QY QZ
-//   X Y Z                         of each molecule: turn, and shift in Å spring X Y Z of each:
-//   where it is fixed, Å move X Y Z FX FY FZ SNAP                       one or more: of the hand,
-//   Å; change of the force, pN;
-//                                                  1 where shorter strides end elsewhere, else 0
+//   scene ATOMS BODIES MOLECULES SPRINGS CUTOFF   of its torsion model; Å
+//   pose                            each; then, with PAIRS all and with PAIRS cutoff:
+//   rest PAIRS ENERGY FX FY FZ      kcal/mol; pN, on the hand
+//   angles A ...                    of each body's joint, rad
+//   base QW QX QY QZ X Y Z          of each molecule: turn; shift, Å
+//   spring X Y Z                    of each: where it is fixed, Å
+//   move X Y Z FX FY FZ SNAP        one or more: of the hand, Å; change of the force, pN; 1 where
+//                                   shorter strides end elsewhere, else 0
 //
 // `cutoff` is complete relaxation with forces that end at CUTOFF, `all` with all pairs. Angles are
 // written to 1e-10 rad, energies and forces to 1e-6.

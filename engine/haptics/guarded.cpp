@@ -54,8 +54,8 @@ double update_allowance(const LocalContactModel& contact, GuardedState& state) n
     return state.allowance_angstrom;
 }
 
-// How far the molecule may go along a way (Å) before it leaves the place where the contact model
-// was made by more than that model reaches; the clearance comes on top.
+// How far the molecule may go along a way (Å) before it leaves the region in which the contact
+// model holds; the clearance comes on top.
 double find_reach(const LocalContactModel& contact, const Vec3& way,
                   const GuardedState& state) noexcept {
     const ContactModel& model = contact.model;
@@ -63,7 +63,8 @@ double find_reach(const LocalContactModel& contact, const Vec3& way,
     if (!model.relaxed || length == 0) return std::numeric_limits<double>::infinity();
     const double clearance = contact.field.has_atoms ? state.at_place.clearance_angstrom : 0;
     const double reach = model.relaxed->reach_angstrom + clearance;
-    const Vec3 gone = state.molecule.place_angstrom - model.molecule.place_angstrom;
+    const Vec3 gone = state.molecule.place_angstrom - model.molecule.place_angstrom +
+                      model.relaxed->gone_angstrom;
     // Where the way leaves the sphere; from outside of it, its nearest point at least.
     const double back = -gone.dot(way) / length;
     const double square = back * back + reach * reach - gone.squaredNorm();

@@ -24,8 +24,10 @@ struct RelaxedStiffness {
     // -d(torque about the reference atom, force)/d(turn, place): N m, N and N/m, of what the
     // molecule may do; symmetric. Zero for turns where the handle turns nothing.
     Mat6 matrix = Mat6::Zero();
-    // How far it may go from the contact model's place, Å, before this holds no more.
+    // How far it may go, Å, from the contact model's place less `gone_angstrom`, before this holds
+    // no more.
     double reach_angstrom = 0;
+    Vec3 gone_angstrom = Vec3::Zero();
 };
 
 // What the simulation tells the servo, every step, of the molecule in the hand. SI but for places.

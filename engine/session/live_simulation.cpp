@@ -12,6 +12,7 @@
 #include "simulation/systems/follow_hands.h"
 
 #include <algorithm>
+#include <new>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -71,10 +72,6 @@ bool LiveSimulation::all_stand_still() const noexcept {
 void LiveSimulation::play(const LiveEvent& event, std::span<const HandPose> poses) {
     PALPA_ASSERT(poses.size() == poses_.size());
     std::ranges::copy(poses, poses_.begin());
-    const bool is_step = std::holds_alternative<StepEvent>(event) ||
-                         std::holds_alternative<PublishEvent>(event) ||
-                         std::holds_alternative<HoldEvent>(event);
-    if (!is_step) await_renewal();
     std::visit([this](const auto& one) { play(one); }, event);
 }
 
@@ -114,6 +111,7 @@ void LiveSimulation::play(const CommandEvent& event) {
         obey(*anew);
     } else if (const auto* const change = std::get_if<EditDescription>(&event.command)) {
         if (!event.is_long) return edit(*change, event.settles);
+        await_renewal();
         draft_ = Draft{world_, *change, {}, {}};
         readout_.edit_under_way = edit_names[change->action.index()];
     }
@@ -155,6 +153,7 @@ void LiveSimulation::obey(const Pause& pause) {
 void LiveSimulation::obey(const Reset& reset) {
     if (reset.start_angstrom) scene_.hand.start_angstrom = reset.start_angstrom;
     const std::vector<std::uint32_t> last_starts = list_starts();
+    await_renewal();
     try {
         world_ = load_world(as_live(scene_));
     } catch (const LoadError& error) {  // the files changed meanwhile: what runs, runs on
@@ -198,6 +197,7 @@ void LiveSimulation::build_draft() noexcept {
 
 void LiveSimulation::play(const AdoptEvent& event) {
     if (!draft_) return;  // the scene was loaded anew meanwhile
+    await_renewal();
     build_draft();
     Draft draft = std::move(*draft_);
     draft_.reset();
@@ -221,9 +221,13 @@ bool LiveSimulation::has_renewal() const noexcept {
     return second && second->statics.pending && second->statics.pending->made;
 }
 
-void LiveSimulation::make_renewal() {
+void LiveSimulation::make_renewal() noexcept {
     SecondOrder& second = world_.resource<SecondOrder>();
-    make_pending(model_of(world_), second.settings, second.statics);
+    try {
+        make_pending(model_of(world_), second.settings, second.statics);
+    } catch (const std::bad_alloc&) {
+        second.statics.pending->made = Renewal{};  // of no use, like one that is not finite
+    }
 }
 
 void LiveSimulation::edit(const EditDescription& edit, bool settles) {

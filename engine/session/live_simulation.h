@@ -49,9 +49,9 @@ public:
 
     // A renewal of second order that a step has asked for and nobody has made: make_renewal() by
     // any one thread, beside steps, and a StepEvent that adopts it. `await` waits for that thread;
-    // it is called before anything else touches what the thread uses.
+    // it is called before an edit, a reset or a system touches what the thread uses.
     bool awaits_renewal() const noexcept;
-    void make_renewal();
+    void make_renewal() noexcept;
     bool has_renewal() const noexcept;  // one is made, and not yet adopted
     void await_renewals_by(std::function<void()> await) { await_ = std::move(await); }
 

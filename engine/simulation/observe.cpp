@@ -4,6 +4,7 @@
 #include "simulation/held.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -78,11 +79,13 @@ void note_evaluations(const World& world, const StepReport& report, SecondOrder&
     constexpr double of_period = 0.8, newest = 0.1;
     if (second.delay_s || report.relaxed->is_renewed || report.relaxed->steps == 0) return;
     const double us = report.took_us / static_cast<double>(report.relaxed->steps);
-    second.evaluation_us += (second.evaluation_us > 0 ? newest : 1) * (us - second.evaluation_us);
-    const double fit =
-        of_period * 1e6 * world.resource<Clock>().period_s / std::max(second.evaluation_us, 1.0);
-    second.settings.evaluations = static_cast<std::size_t>(
-        std::clamp(fit, 1.0, static_cast<double>(second.most_evaluations)));
+    double& mean_us = second.evaluation_us;
+    // One step that the machine interrupts says little.
+    mean_us += mean_us > 0 ? newest * (std::min(us, 2 * mean_us) - mean_us) : us;
+    const double fit = of_period * 1e6 * world.resource<Clock>().period_s / std::max(mean_us, 1.0);
+    // With one alone nothing relaxes.
+    second.settings.evaluations = static_cast<std::size_t>(std::lround(
+        std::clamp(fit, 2.0, std::max(2.0, static_cast<double>(second.most_evaluations)))));
 }
 
 }  // namespace

@@ -69,11 +69,16 @@ Mat6 stiffness_of(const Eigen::MatrixXd& all, const HandColumns& columns, const 
     return 0.5 * units::newton_per_metre_per_kcal_per_mol_angstrom2 * (own + own.transpose());
 }
 
+// The hand's place, from that of the point of linearisation, Å.
+Vec3 find_shift(const SecondOrder& second, const HandColumns& columns) {
+    return second.statics.at.segment<3>(second.statics.linear->mobile() + columns.shift());
+}
+
 // How far the hand is from the point of linearisation, Å.
 double find_age(const SecondOrder& second, const HandColumns& columns) {
     const Eigen::Index mobile = second.statics.linear->mobile();
     const Eigen::VectorXd& at = second.statics.at;
-    const double shift = at.segment<3>(mobile + columns.shift()).norm();
+    const double shift = find_shift(second, columns).norm();
     if (!columns.turns) return shift;
     return std::max(shift, arm_angstrom * at.segment<3>(mobile + columns.first).norm());
 }
@@ -98,10 +103,14 @@ std::optional<RelaxedStiffness> find_relaxed_stiffness(const World& world, Entit
     RelaxedStiffness result;
     result.matrix = scaled(bound_stiffness(relaxed, frozen, softest),
                            scales(arm_angstrom * units::metre_per_angstrom, 1));
-    // A model that is too old still allows a stride where it is renewed within the step.
     const SecondOrderSettings& settings = second->settings;
-    result.reach_angstrom = std::max(settings.farthest_hand - find_age(*second, *columns),
-                                     settings.renews_at_once ? settings.stride : 0);
+    if (settings.renews_at_once) {  // within the step, also beyond the region
+        result.reach_angstrom =
+            std::max(settings.farthest_hand - find_age(*second, *columns), settings.stride);
+    } else {
+        result.reach_angstrom = settings.farthest_hand;
+        result.gone_angstrom = find_shift(*second, *columns);
+    }
     return result;
 }
 

@@ -23,7 +23,7 @@ std::vector<Pair> list_left_out(const FastAtoms& atoms) {
 }  // namespace
 
 ClosePairs build_close_pairs(const TorsionModel& model, std::span<const Vec3> positions,
-                             std::span<const std::uint32_t> held, double reach) {
+                             std::span<const std::uint32_t> held, double near_reach, double reach) {
     constexpr double too_close = 0.8;
     const std::vector<std::uint32_t>& body_of = model.tree.bodies.body_of;
     const std::vector<double>& half_rmin = model.fast.atoms.half_rmin;
@@ -41,8 +41,8 @@ ClosePairs build_close_pairs(const TorsionModel& model, std::span<const Vec3> po
             const Vec3 between = positions[b] - positions[a];
             if (between.x() > reach) break;
             const double square = between.squaredNorm();
-            if (square > reach * reach || body_of[a] == body_of[b] || is_held[a] != is_held[b])
-                continue;
+            const bool is_exact = is_held[a] != is_held[b] && square < near_reach * near_reach;
+            if (square > reach * reach || body_of[a] == body_of[b] || is_exact) continue;
             if (std::ranges::binary_search(left_out, ordered(a, b))) continue;
             close.pairs.push_back(ordered(a, b));
             const double least =

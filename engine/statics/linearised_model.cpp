@@ -62,7 +62,8 @@ bool linearise(const TorsionModel& model, const ForceSettings& settings, double 
     linear.near = build_near_pairs(model, state.positions, lineariser.held.atoms, reach);
     // Å: farther atoms, of which each goes half an ångström at most, do not come too close.
     constexpr double close_reach = 4.5;
-    linear.close = build_close_pairs(model, state.positions, lineariser.held.atoms, close_reach);
+    linear.close =
+        build_close_pairs(model, state.positions, lineariser.held.atoms, reach, close_reach);
     update_derivatives(model, settings, state, lineariser);
     const SecondDerivatives& all = lineariser.all;
     separate_rest(model, settings, lineariser, linear);

@@ -264,8 +264,8 @@ void adopt_renewal(const SecondOrderSettings& settings, const Renewal& renewal,
 class Step {
 public:
     Step(const TorsionModel& model, const SecondOrderSettings& settings, TorsionState& state,
-         SecondOrderStatics& statics)
-        : model_(model), settings_(settings), state_(state), statics_(statics) {
+         SecondOrderStatics& statics, const AwaitFunction& await)
+        : model_(model), settings_(settings), state_(state), statics_(statics), await_(await) {
         for (const HandHold& hand : hands()) places_.push_back(find_place(model, state, hand));
     }
 
@@ -320,6 +320,7 @@ private:
     }
 
     Renewal finish_pending() {
+        if (await_) await_();
         make_pending(model_, settings_, statics_);
         Renewal made = std::move(*statics_.pending->made);
         statics_.pending.reset();
@@ -359,9 +360,11 @@ private:
         const double way = find_length(hands(), statics_.at.tail(linear().hands()));
         const double farthest = find_largest_move(linear().at.positions, state_.positions);
         if (!statics_.is_settled || farthest > settings_.renew_atom) return true;
-        if (!settings_.tolerance) return way >= settings_.renew_hand;
-        constexpr double near = 0.7;
-        return way >= settings_.farthest_hand || error_estimate() > near * *settings_.tolerance;
+        // Hands that stay at the end of the region are to have another.
+        constexpr double near = 0.7, near_end = 0.8;
+        const double end = near_end * settings_.farthest_hand;
+        if (!settings_.tolerance) return way >= std::min(settings_.renew_hand, end);
+        return way >= end || error_estimate() > near * *settings_.tolerance;
     }
 
     double error_estimate() const {
@@ -438,6 +441,7 @@ private:
     const SecondOrderSettings& settings_;
     TorsionState& state_;
     SecondOrderStatics& statics_;
+    const AwaitFunction& await_;
     std::vector<HandPlace> places_;  // where hands want what they hold
     bool wants_renewal_ = false;     // by the caller, later
     SecondOrderReport report_;
@@ -489,8 +493,9 @@ void start_second_order(const TorsionModel& model, const SecondOrderSettings& se
 }
 
 SecondOrderReport step_second_order(const TorsionModel& model, const SecondOrderSettings& settings,
-                                    TorsionState& state, SecondOrderStatics& statics) {
-    return Step(model, settings, state, statics).run();
+                                    TorsionState& state, SecondOrderStatics& statics,
+                                    const AwaitFunction& await) {
+    return Step(model, settings, state, statics, await).run();
 }
 
 void make_pending(const TorsionModel& model, const SecondOrderSettings& settings,

@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -139,14 +140,19 @@ SecondOrderStatics build_second_order_statics(const TorsionModel& model, HeldPar
 void start_second_order(const TorsionModel& model, const SecondOrderSettings& settings,
                         const TorsionState& state, SecondOrderStatics& statics);
 
+// Waits for the thread that makes the pending renewal, if there is one.
+using AwaitFunction = std::function<void()>;
+
 // Follows the hands to where the state has the bases and spring ends that they move. All other
 // coordinates of the state are those of the last step. Where the old model reaches no farther and
-// a renewal is pending, hands stay where it reaches: so no step waits.
+// a renewal is pending, hands stay where it reaches. Steps wait for another thread only where
+// springs that no hand moves are not as they were.
 SecondOrderReport step_second_order(const TorsionModel& model, const SecondOrderSettings& settings,
-                                    TorsionState& state, SecondOrderStatics& statics);
+                                    TorsionState& state, SecondOrderStatics& statics,
+                                    const AwaitFunction& await = {});
 
-// Makes the pending renewal where it is not made yet. Another thread may make steps meanwhile, with
-// springs that no hand moves as they were; nothing may copy or replace the statics.
+// Makes the pending renewal where it is not made yet. Another thread may make steps meanwhile;
+// nothing may copy or replace the statics.
 void make_pending(const TorsionModel& model, const SecondOrderSettings& settings,
                   SecondOrderStatics& statics);
 

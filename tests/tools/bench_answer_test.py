@@ -54,7 +54,7 @@ class BenchAnswer(unittest.TestCase):
     def test_has_every_method_and_direction(self):
         names = {*ALL_PAIRS, *CUTOFF, *(name + "/own" for name in CUTOFF)}
         self.assertEqual({name for name in self.rows
-                          if "ms=" not in name and not name.startswith("way")}, names)
+                          if "ms=" not in name and not name.startswith(("way", "real-time"))}, names)
         for name in names:
             with self.subTest(name=name):
                 for row in self.rows[name], self.rows[name + "/ms=100"]:
@@ -65,6 +65,10 @@ class BenchAnswer(unittest.TestCase):
                                            row["error_90_N"] * row["error"])
         ways = {"way"} | {f"way/{sign}{axis}" for sign in "+-" for axis in "xyz"}
         self.assertEqual({name for name in self.rows if name.startswith("way")}, ways)
+        real_time = self.rows["real-time"]
+        self.assertGreater(real_time["age_90"], 0)
+        for key in "missed_share", "error_median", "error_90", "error_rms":
+            self.assertGreaterEqual(real_time[key], 0)
 
     def test_what_relaxes_on_the_whole_energy_finds_the_truth(self):
         self.assertLess(self.rows["full-second-order/ms=100"]["error_median"], 0.02)

@@ -92,7 +92,7 @@ void note_due(const World& world, SecondOrder& second) {
 // Renewals set energy free one after the other until all is at rest.
 void note_snap(const World& world, const RelaxStepReport& report, SecondOrder& second) {
     constexpr double together_s = 0.3;
-    if (report.released <= least_snap) return;
+    if (!(report.released > least_snap)) return;
     const Clock& clock = world.resource<Clock>();
     const bool goes_on =
         second.snap &&
@@ -131,9 +131,11 @@ RelaxStepReport follow_by_second_order(World& world, const StepInput& input, Sec
     TorsionState& state = world.resource<TorsionState>();
     const double before = second.statics.value.energy;
     const std::optional<Renewal> adopted = adopt_due(world, input, second);
+    if (adopted && !adopted->linear) return {.is_finite = false};
     const std::vector<MoleculePose> wanted = find_places(world, second);
     const bool was_pending = second.statics.pending.has_value();
-    const SecondOrderReport step = step_second_order(model, second.settings, state, second.statics);
+    const SecondOrderReport step =
+        step_second_order(model, second.settings, state, second.statics, input.await_renewal);
     if (step.lags) hold_back(world, second, wanted);
     if (!was_pending || step.is_renewed) note_due(world, second);
     RelaxStepReport report;
