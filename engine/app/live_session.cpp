@@ -12,6 +12,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -404,10 +405,11 @@ void LiveSession::start_renewal() {
         if (renewing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
         renewing_.get();
     }
-    if (!simulation_.awaits_renewal()) return;
-    renewing_ = std::async(std::launch::async, [this] {
+    std::function<void()> make = simulation_.find_renewal_task();
+    if (!make) return;
+    renewing_ = std::async(std::launch::async, [make = std::move(make)] {
         lower_priority();
-        simulation_.make_renewal();
+        make();
     });
 }
 

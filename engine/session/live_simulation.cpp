@@ -211,23 +211,21 @@ void LiveSimulation::await_renewal() const {
     if (await_) await_();
 }
 
-bool LiveSimulation::awaits_renewal() const noexcept {
-    const SecondOrder* const second = world_.find_resource<SecondOrder>();
-    return second && second->statics.pending && !second->statics.pending->made;
-}
-
 bool LiveSimulation::has_renewal() const noexcept {
     const SecondOrder* const second = world_.find_resource<SecondOrder>();
     return second && second->statics.pending && second->statics.pending->made;
 }
 
-void LiveSimulation::make_renewal() noexcept {
-    SecondOrder& second = world_.resource<SecondOrder>();
-    try {
-        make_pending(model_of(world_), second.settings, second.statics);
-    } catch (const std::bad_alloc&) {
-        second.statics.pending->made = Renewal{};  // of no use, like one that is not finite
-    }
+std::function<void()> LiveSimulation::find_renewal_task() noexcept {
+    SecondOrder* const second = world_.find_resource<SecondOrder>();
+    if (!second || !second->statics.pending || second->statics.pending->made) return {};
+    return [second, &model = model_of(world_)] {
+        try {
+            make_pending(model, second->settings, second->statics);
+        } catch (const std::bad_alloc&) {
+            second->statics.pending->made = Renewal{};  // of no use, like one that is not finite
+        }
+    };
 }
 
 void LiveSimulation::edit(const EditDescription& edit, bool settles) {

@@ -47,11 +47,10 @@ public:
     bool takes_long(const EditDescription& edit) const noexcept;
     void build_draft() noexcept;
 
-    // A renewal of second order that a step has asked for and nobody has made: make_renewal() by
-    // any one thread, beside steps, and a StepEvent that adopts it. `await` waits for that thread;
+    // Makes a renewal of second order that a step has asked for, by any one thread, beside steps;
+    // a StepEvent then adopts it. Empty where there is none to make. `await` waits for that thread;
     // it is called before an edit, a reset or a system touches what the thread uses.
-    bool awaits_renewal() const noexcept;
-    void make_renewal() noexcept;
+    std::function<void()> find_renewal_task() noexcept;
     bool has_renewal() const noexcept;  // one is made, and not yet adopted
     void await_renewals_by(std::function<void()> await) { await_ = std::move(await); }
 
