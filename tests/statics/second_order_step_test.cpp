@@ -2,6 +2,7 @@
 
 #include "tests/support/torsion_case.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
@@ -331,6 +332,48 @@ TEST_CASE("a hand that jumps waits for renewals, stride by stride, and comes to 
     CHECK((goal - c.state.positions[pivot]).norm() < 1e-9);
     const Vec3 expected = relaxed_force(c);
     CHECK((hand_force(statics) - expected).norm() < 0.01 * (1 + expected.norm()));
+}
+
+// A rod on a joint along z, its end on a spring to a fixed place and on one that a hand holds:
+// E = const - r |c| at rest, where c = k1 a + k2 x in the plane. Where the hand makes c small the
+// rod turns over, and what the hand feels is as soft as -r k2^2/|c|.
+TEST_CASE("a rod turns over under the hand as its closed form says", "[statics][second-order]") {
+    constexpr double r = 1.5, k1 = 1, k2 = 1.3;
+    const double aside = GENERATE(1.0, 0.3, 0.1);
+    test::TorsionCase rod;
+    const Vec3 up(0, 0, 1);
+    rod.positions = {-up, Vec3::Zero(), r * Vec3::UnitX(), Vec3(-1, 0, -1)};
+    rod.masses.assign(4, 12);
+    rod.bodies.bodies = {{}, {0, {0, 1}}};
+    rod.bodies.body_of = {0, 1, 1, 0};
+    const TorsionModel model = test::forceless_model(rod, BaseFreedom::Held);
+    TorsionState state = build_torsion_state(model);
+    Vec3 x(1, aside, 0);
+    state.springs = {{.atoms = {2}, .k = k1, .place = Vec3(1, 0, 0)},
+                     {.atoms = {2}, .k = k2, .place = x}};
+    const SecondOrderSettings settings;
+    SecondOrderStatics statics =
+        build_second_order_statics(model, {{{.molecule = 0, .spring = 1}}, {2}});
+    bool was_soft = false;
+    for (int k = 0; k < 150; ++k) {
+        REQUIRE(step_second_order(model, settings, state, statics).is_finite);
+        const Vec3 c = k1 * Vec3(1, 0, 0) + k2 * x;
+        const Vec3 expected = k2 * (r * c.normalized() - x);
+        CHECK((hand_force(statics) - expected).norm() < 0.02);
+        if (statics.at.isZero()) {  // the model was made here
+            const Vec3 end = statics.linear->at.positions[2];
+            CHECK(end.cross(c).norm() < 0.02 * r * c.norm());
+            const Vec3 across = up.cross(c).normalized();
+            const double softened = r * k2 * k2 / c.norm();
+            const Mat3 K = k2 * Mat3::Identity() - softened * across * across.transpose();
+            CHECK((statics.linear->relaxed_stiffness - K).norm() < 0.02 * K.norm());
+            was_soft = was_soft || K.eigenvalues().real().minCoeff() < -k2;
+        }
+        x.x() -= 0.02;
+        state.springs[1].place = x;
+    }
+    CHECK(was_soft);
+    CHECK(state.positions[2].x() < 0);
 }
 
 TEST_CASE("a hand that nothing holds back drags both molecules without a force",

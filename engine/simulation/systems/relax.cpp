@@ -131,14 +131,15 @@ RelaxStepReport follow_by_second_order(World& world, const StepInput& input, Sec
     TorsionState& state = world.resource<TorsionState>();
     const double before = second.statics.value.energy;
     const std::optional<Renewal> adopted = adopt_due(world, input, second);
-    if (adopted && !adopted->linear) return {.is_finite = false};
+    RelaxStepReport report;
+    report.is_finite = !adopted || adopted->linear;
+    if (!report.is_finite) return report;
     const std::vector<MoleculePose> wanted = find_places(world, second);
     const bool was_pending = second.statics.pending.has_value();
     const SecondOrderReport step =
         step_second_order(model, second.settings, state, second.statics, input.await_renewal);
     if (step.lags) hold_back(world, second, wanted);
     if (!was_pending || step.is_renewed) note_due(world, second);
-    RelaxStepReport report;
     report.released = step.released;
     report.snapped_atom = step.farthest_relaxed;
     if (adopted) {
