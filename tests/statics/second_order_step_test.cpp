@@ -2,8 +2,6 @@
 
 #include "tests/support/torsion_case.h"
 
-#include <Eigen/Eigenvalues>
-#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -354,25 +352,31 @@ TEST_CASE("a rod turns over under the hand as its closed form says", "[statics][
     const SecondOrderSettings settings;
     SecondOrderStatics statics =
         build_second_order_statics(model, {{{.molecule = 0, .spring = 1}}, {2}});
-    bool was_soft = false;
+    Lineariser lineariser = build_lineariser(model, statics.renewals.lineariser.held);
+    double softest = 0;
     for (int k = 0; k < 150; ++k) {
         REQUIRE(step_second_order(model, settings, state, statics).is_finite);
         const Vec3 c = k1 * Vec3(1, 0, 0) + k2 * x;
         const Vec3 expected = k2 * (r * c.normalized() - x);
-        CHECK((hand_force(statics) - expected).norm() < 0.05);  // of about 2
-        if (statics.at.isZero()) {                              // the model was made here
-            const Vec3 end = statics.linear->at.positions[2];
-            CHECK(end.cross(c).norm() < 0.02 * r * c.norm());
-            const Vec3 across = up.cross(c).normalized();
-            const double softened = r * k2 * k2 / c.norm();
-            const Mat3 K = k2 * Mat3::Identity() - softened * across * across.transpose();
-            CHECK((statics.linear->relaxed_stiffness - K).norm() < 0.02 * K.norm());
-            was_soft = was_soft || K.eigenvalues().real().minCoeff() < -0.3 * k2;
-        }
+        CHECK((hand_force(statics) - expected).norm() < 0.1);  // of 2 to 4
+
+        TorsionState rest = state;
+        RelaxSettings to_rest;
+        to_rest.force_tolerance = 1e-9;
+        QuasiStatics full = build_quasi_statics(model);
+        (void)relax_joints(model, to_rest, rest, full);
+        CHECK((rest.positions[2] - r * c.normalized()).norm() < 1e-6);
+        LinearisedModel linear;
+        REQUIRE(linearise(model, settings.forces, settings.near_reach, rest, lineariser, linear));
+        const Vec3 across = up.cross(c).normalized();
+        const double softened = r * k2 * k2 / c.norm();
+        const Mat3 K = k2 * Mat3::Identity() - softened * across * across.transpose();
+        CHECK((linear.relaxed_stiffness - K).norm() < 1e-5 * K.norm());
+        softest = std::max(softest, softened);
         x.x() -= 0.02;
         state.springs[1].place = x;
     }
-    CHECK(was_soft);
+    CHECK(softest > 0.9 * r * k2 / aside);
     CHECK(state.positions[2].x() < 0);
 }
 
@@ -392,8 +396,10 @@ TEST_CASE("a hand that nothing holds back drags both molecules without a force",
     for (int k = 0; k < 50; ++k) {
         c.move_hand(Vec3(0.02, 0, 0));
         REQUIRE(step_second_order(c.model, c.settings, c.state, statics).is_finite);
-        CHECK(hand_force(statics).norm() < 0.01);
+        CHECK(hand_force(statics).norm() < 0.15);  // 10 pN
     }
+    for (int k = 0; k < 60; ++k) (void)step_second_order(c.model, c.settings, c.state, statics);
+    CHECK(hand_force(statics).norm() < 0.01);
     // They may turn, but keep their shape and stay side by side.
     const std::vector<Vec3>& end = c.state.positions;
     for (std::size_t a = 0; a < start.size(); a += 5) {
