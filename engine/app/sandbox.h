@@ -178,7 +178,7 @@ private:
         SteadyClock::time_point when;
     };
     std::optional<Wanted> wanted_;
-    std::string held_address_;  // as told last
+    std::string held_address_;  // as shown last
     AddPanel add_panel_;
     // Of an edit that is on its way, to be said once the molecule is there, or gone.
     struct Announced {

@@ -32,8 +32,8 @@ struct CholeskyFactor {
 };
 
 // Where a matrix is not positive definite: its first `pivot` rows and columns are, with one more
-// they are not. What is left of the diagonal there is `value`: the curvature along the coordinate
-// where those before yield.
+// they are not. The reduced diagonal element there is `value`: the curvature along the coordinate
+// where those before it relax.
 struct CholeskyFailure {
     std::size_t pivot = 0;
     double value = 0;

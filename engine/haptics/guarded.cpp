@@ -98,10 +98,10 @@ double passivity_scaling(const GuardedState& state) noexcept {
 // fades: nobody would have done the work.
 Vec3 find_extra_travel(const GuardedSettings& settings, const Vec3& handle_m, const Vec3& moved_m,
                        const GuardedState& state) noexcept {
-    constexpr double felt_newton = 0.1, owed_J = 0.1e-3;
+    constexpr double felt_newton = 0.1, allowed_gain_J = 0.1e-3;
     const Vec3 force = state.at_place.force_newton + state.blend_residual_newton;
     const double free = 1 - hand_force(settings.force_law, force).norm() / felt_newton;
-    if (!(free > 0) || state.energy_balance_J > owed_J) return Vec3::Zero();
+    if (!(free > 0) || state.energy_balance_J > allowed_gain_J) return Vec3::Zero();
     return free * extra_travel(settings.workspace, handle_m, moved_m, settings.half_workspace_m,
                                servo_tick_s);
 }
@@ -163,9 +163,9 @@ struct Followed {
 // With one gain, no atom further than `most` (Å), and what it owes (Å) besides. Takes what it goes
 // from the allowance.
 Followed follow_handle(const GuardedSettings& settings, const Surroundings& around,
-                       const GuardedGain& gain, const HandleStep& asked, const Vec3& owed,
+                       const GuardedGain& gain, const HandleStep& asked, const Vec3& remainder,
                        double most, GuardedState& state) noexcept {
-    const Vec3 way = units::angstrom_per_metre * (gain.inverse * asked.moved_m) + owed;
+    const Vec3 way = units::angstrom_per_metre * (gain.inverse * asked.moved_m) + remainder;
     const Vec3 turn = rotation_vector_of(asked.turned);
     const double radius = around.contact.field.radius;
     const double length = way.norm() + turn.norm() * radius;
@@ -184,7 +184,7 @@ Followed follow_handle(const GuardedSettings& settings, const Surroundings& arou
 
 // What the last step went too far or not far enough (Å), now that it is known what held at its end:
 // a way is the mean of both ends', or it would drift.
-Vec3 find_owed(const GuardedGain& gain, const GuardedState& state) noexcept {
+Vec3 find_remainder(const GuardedGain& gain, const GuardedState& state) noexcept {
     if (state.stepped_m.isZero()) return Vec3::Zero();
     const Mat3 mean = 0.5 * (state.began_with + gain.inverse);
     return units::angstrom_per_metre * ((mean - state.went_with) * state.stepped_m);
@@ -355,16 +355,16 @@ GuardedTick step_guarded(const GuardedSettings& settings, const LocalContactMode
     const bool turns = model.turns_with_handle && !is_clutched;
     const HandleStep asked{wanted, turns ? handle.turned : Quat::Identity()};
     const double most = update_allowance(contact, state);
-    const Vec3 owed = find_owed(gain, state);
+    const Vec3 remainder = find_remainder(gain, state);
     const Mat3 began_with = gain.inverse;
     const MoleculePose from = state.molecule;
     const LocalForce at_from = state.at_place;
-    Followed done = follow_handle(settings, around, gain, asked, owed, most, state);
+    Followed done = follow_handle(settings, around, gain, asked, remainder, most, state);
     if (const std::optional<GuardedGain> better = find_better_gain(settings, gain, state)) {
         state.molecule = from;
         state.at_place = at_from;
         gain = *better;
-        done = follow_handle(settings, around, gain, asked, owed, most, state);
+        done = follow_handle(settings, around, gain, asked, remainder, most, state);
     }
     const auto& [share, followed] = done;
     tick.displacement_gain = gain.A_d;

@@ -18,10 +18,10 @@ namespace {
 
 std::string_view name_of(Motion motion) { return motion_names[static_cast<std::size_t>(motion)]; }
 
-// The molecule that a field names; null where the problem is told.
+// The molecule that a field names; null where a problem is reported.
 const MoleculeDescription* find_named(const SceneDescription& scene, Problems& problems,
                                       const std::string& key, const std::string& name) {
-    if (name.empty()) return nullptr;  // told already
+    if (name.empty()) return nullptr;  // already reported
     std::vector<std::string_view> names;
     for (const MoleculeDescription& molecule : scene.molecules) {
         if (molecule.name == name) return &molecule;
@@ -83,7 +83,7 @@ void check_start(const HandTables& by, bool along_x, Problems& problems) {
     }
 }
 
-// What the hand holds; null where that is told to be wrong.
+// What the hand holds; null where a problem is reported.
 const MoleculeDescription* check_hold(const SceneDescription& scene, const HandTables& by,
                                       Problems& problems) {
     const std::string from = by.grab_key + ".measured_from";

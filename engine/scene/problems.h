@@ -1,4 +1,4 @@
-// What is wrong with a scene, gathered, so that the first problem in the file is told and not the
+// What is wrong with a scene, gathered, so that the first problem in the file is reported, not the
 // first one in our list; and where its fields stand.
 #pragma once
 #include "core/load_error.h"

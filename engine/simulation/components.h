@@ -68,7 +68,7 @@ struct Hand {
     bool turns = false;            // rigid molecules as it is turned
 };
 
-// What a hand holds, and how it moves it. Places are told from `anchor`.
+// What a hand holds, and how it moves it. Places are measured from `anchor`.
 struct Grip {
     Entity molecule;
     // Where a spring holds some of its atoms, these, counted from its first, and the spring's k

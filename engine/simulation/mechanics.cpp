@@ -641,7 +641,7 @@ void start_mechanics(World& world) {
             if (grip.base >= 0 && grip.spring < 0)
                 adaptive->statics.is_guided[static_cast<std::size_t>(grip.base)] = 1;
         });
-        // What has no numbers is told by the first step.
+        // The first step reports what is not finite.
         (void)update_adaptive_forces(model, adaptive->settings, state, adaptive->statics);
         return;
     }
