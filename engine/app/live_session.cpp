@@ -12,7 +12,6 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -123,9 +122,6 @@ LiveSession::LiveSession(const SceneDescription& scene, const ViewSettings& view
       atoms_(list_atoms(simulation_.world())),
       framed_(framed_atoms(scene.view, simulation_.world())),
       recorder_(scene, simulation_.devices()) {
-    simulation_.await_renewals_by([this] {
-        if (renewing_.valid()) renewing_.wait();
-    });
     for (HandOrder& order : orders_) order.granted_ticks = ticks_of(scene.period_ms);
     start_servo();
     simulation_thread_ = std::thread([this] { run_simulation(); });
@@ -312,8 +308,8 @@ void LiveSession::run_simulation() {
         } else if (!settles && (!is_paused || step_once_)) {
             step_once_ = false;
             play(PublishEvent{});
-            play(StepEvent{{}, take_renewal()});
-            start_renewal();
+            play(StepEvent{{}, simulation_.has_renewal()});
+            simulation_.start_renewal();
         } else if (settles || !simulation_.all_stand_still()) {
             play(HoldEvent{});
         }
@@ -389,28 +385,6 @@ void LiveSession::adopt_edit() {
         make(waiting_edits_.front());
         waiting_edits_.pop_front();
     }
-}
-
-// Whether the pending one is made. A step or an edit may have waited for it, and used it.
-bool LiveSession::take_renewal() {
-    if (renewing_.valid()) {
-        if (renewing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
-        renewing_.get();
-    }
-    return simulation_.has_renewal();
-}
-
-void LiveSession::start_renewal() {
-    if (renewing_.valid()) {
-        if (renewing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
-        renewing_.get();
-    }
-    std::function<void()> make = simulation_.find_renewal_task();
-    if (!make) return;
-    renewing_ = std::async(std::launch::async, [make = std::move(make)] {
-        lower_priority();
-        make();
-    });
 }
 
 void LiveSession::change_device(const DeviceEvent& change, const LiveDevice& device) {

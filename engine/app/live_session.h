@@ -114,8 +114,6 @@ private:
     void obey(const Command& command);
     void make(const EditDescription& edit);
     void adopt_edit();
-    bool take_renewal();
-    void start_renewal();
     void change_device(const DeviceEvent& change, const LiveDevice& device);
     void post_frame_if_wanted();
     void record_what_happened();
@@ -157,7 +155,6 @@ private:
     LiveClock::Moment settled_{};  // after a reset, until the hand rests
     AtomRange framed_;
     std::future<void> building_;  // of a long edit
-    std::future<void> renewing_;  // of a model of second order
     std::deque<EditDescription> waiting_edits_;
 
     std::mutex recorder_mutex_;

@@ -12,7 +12,6 @@
 #include "simulation/systems/follow_hands.h"
 
 #include <algorithm>
-#include <new>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -84,8 +83,9 @@ void LiveSimulation::play(const PublishEvent& /*event*/) {
 void LiveSimulation::play(const StepEvent& event) {
     if (draft_) return;  // or the edit would undo what the step did
     for (const EditDescription& due : edits_.take_due(time_s_)) edit(due, false);
-    const StepReport& report =
-        step_world(world_, {poses_, felt_, event.took_us, event.adopts_renewal, await_});
+    const StepReport& report = step_world(
+        world_,
+        {poses_, felt_, event.took_us, event.adopts_renewal, [this] { renewals_.await(); }});
     readout_.step_ms = 1e-3 * report.took_us;
     ++readout_.steps;
     time_s_ += world_.resource<Clock>().period_s;
@@ -111,7 +111,7 @@ void LiveSimulation::play(const CommandEvent& event) {
         obey(*anew);
     } else if (const auto* const change = std::get_if<EditDescription>(&event.command)) {
         if (!event.is_long) return edit(*change, event.settles);
-        await_renewal();
+        renewals_.await();
         draft_ = Draft{world_, *change, {}, {}};
         readout_.edit_under_way = edit_names[change->action.index()];
     }
@@ -153,7 +153,7 @@ void LiveSimulation::obey(const Pause& pause) {
 void LiveSimulation::obey(const Reset& reset) {
     if (reset.start_angstrom) scene_.hand.start_angstrom = reset.start_angstrom;
     const std::vector<std::uint32_t> last_starts = list_starts();
-    await_renewal();
+    renewals_.await();
     try {
         world_ = load_world(as_live(scene_));
     } catch (const LoadError& error) {  // the files changed meanwhile: what runs, runs on
@@ -197,7 +197,7 @@ void LiveSimulation::build_draft() noexcept {
 
 void LiveSimulation::play(const AdoptEvent& event) {
     if (!draft_) return;  // the scene was loaded anew meanwhile
-    await_renewal();
+    renewals_.await();
     build_draft();
     Draft draft = std::move(*draft_);
     draft_.reset();
@@ -207,29 +207,18 @@ void LiveSimulation::play(const AdoptEvent& event) {
     publish_edit(event.settles);
 }
 
-void LiveSimulation::await_renewal() const {
-    if (await_) await_();
+void LiveSimulation::start_renewal() {
+    if (SecondOrder* const second = world_.find_resource<SecondOrder>())
+        renewals_.start_if_pending(model_of(world_), second->settings, second->statics);
 }
 
-bool LiveSimulation::has_renewal() const noexcept {
+bool LiveSimulation::has_renewal() {
     const SecondOrder* const second = world_.find_resource<SecondOrder>();
-    return second && second->statics.pending && second->statics.pending->made;
-}
-
-std::function<void()> LiveSimulation::find_renewal_task() noexcept {
-    SecondOrder* const second = world_.find_resource<SecondOrder>();
-    if (!second || !second->statics.pending || second->statics.pending->made) return {};
-    return [second, &model = model_of(world_)] {
-        try {
-            make_pending(model, second->settings, second->statics);
-        } catch (const std::bad_alloc&) {
-            second->statics.pending->made = Renewal{};  // of no use, like one that is not finite
-        }
-    };
+    return second && renewals_.is_ready(second->statics);
 }
 
 void LiveSimulation::edit(const EditDescription& edit, bool settles) {
-    await_renewal();
+    renewals_.await();
     try {
         history_.apply(world_, edit);
     } catch (const LoadError& error) {

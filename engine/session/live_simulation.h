@@ -8,10 +8,10 @@
 #include "session/edit_player.h"
 #include "session/live_events.h"
 #include "simulation/edit.h"
+#include "statics/renewal_worker.h"
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -47,12 +47,10 @@ public:
     bool takes_long(const EditDescription& edit) const noexcept;
     void build_draft() noexcept;
 
-    // Makes a renewal of second order that a step has asked for, by any one thread, beside steps;
-    // a StepEvent then adopts it. Empty where there is none to make. `await` waits for that thread;
-    // it is called before an edit, a reset or a system touches what the thread uses.
-    std::function<void()> find_renewal_task() noexcept;
-    bool has_renewal() const noexcept;  // one is made, and not yet adopted
-    void await_renewals_by(std::function<void()> await) { await_ = std::move(await); }
+    // A thread of its own makes the renewal of second order that a step has asked for; a StepEvent
+    // then adopts it. Edits and resets wait for that thread.
+    void start_renewal();
+    bool has_renewal();  // one is made, and not yet adopted
 
     const World& world() const noexcept { return world_; }
     const SceneDescription& scene() const noexcept { return scene_; }
@@ -74,7 +72,6 @@ private:
     void obey(const LiveSettings& settings);
     void obey(const Pause& pause);
     void obey(const Reset& reset);
-    void await_renewal() const;
     void edit(const EditDescription& edit, bool settles);
     void refuse(const EditDescription& edit, std::string why);
     void publish_edit(bool settles);
@@ -88,6 +85,7 @@ private:
     std::vector<HandDevice> devices_;
     ServoLine& line_;
     World world_;
+    RenewalWorker renewals_;  // of the world
     EditHistory history_;
     // A long edit, on its way.
     struct Draft {
@@ -97,7 +95,6 @@ private:
         std::string refusal;           // or why it cannot be
     };
     std::optional<Draft> draft_;
-    std::function<void()> await_;
     EditPlayer edits_;
     double time_s_ = 0;  // of the steps so far
     std::vector<HandPose> poses_;

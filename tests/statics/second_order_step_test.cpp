@@ -1,5 +1,6 @@
 #include "statics/second_order_step.h"
 
+#include "statics/renewal_worker.h"
 #include "tests/support/torsion_case.h"
 
 #include <algorithm>
@@ -8,7 +9,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <future>
 #include <numeric>
 #include <random>
 #include <span>
@@ -451,24 +451,18 @@ TEST_CASE("a pending renewal made beside steps in another thread gives the same 
         HeldPair c;
         c.settings.renews_at_once = false;
         SecondOrderStatics statics = build_second_order_statics(c.model, c.held);
+        RenewalWorker worker;
         std::vector<double> forces;
         for (std::size_t k = 1; k <= 60; ++k) {
-            std::future<void> maker;
-            const bool is_due = k % 6 == 0 && statics.pending;
-            if (is_due) (void)adopt_pending(c.model, c.settings, statics);
-            if (is_threaded && statics.pending && !statics.pending->made) {
-                maker = std::async(std::launch::async,
-                                   [&] { make_pending(c.model, c.settings, statics); });
-            }
+            if (k % 6 == 0 && statics.pending) (void)adopt_pending(c.model, c.settings, statics);
+            if (is_threaded) worker.start_if_pending(c.model, c.settings, statics);
             // Another spring is no longer that of the renewal under way, which has to end first.
             if (k == 30 || k == 31) c.state.springs[1].place += Vec3(0, 0.05, 0);
             c.move_hand(Vec3(k == 40 ? 0.5 : 0.02, 0, 0));
             const SecondOrderReport report =
-                step_second_order(c.model, c.settings, c.state, statics, [&] {
-                    if (maker.valid()) maker.wait();
-                });
+                step_second_order(c.model, c.settings, c.state, statics, [&] { worker.await(); });
             REQUIRE(report.is_finite);
-            if (maker.valid()) maker.wait();
+            worker.await();
             const Vec3 force = hand_force(statics);
             forces.insert(forces.end(), {force.x(), force.y(), force.z()});
         }

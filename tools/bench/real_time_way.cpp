@@ -1,13 +1,12 @@
 #include "tools/bench/real_time_way.h"
 
-#include "platform/thread.h"
 #include "simulation/held.h"
 #include "simulation/load.h"
 #include "simulation/step.h"
+#include "statics/renewal_worker.h"
 
 #include <fmt/format.h>
 #include <chrono>
-#include <future>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -16,37 +15,6 @@ namespace palpa {
 namespace {
 
 constexpr double period_s = 1e-3, speed_angstrom_per_s = 1, spacing_angstrom = 0.1;
-
-// Makes the pending renewal of a world, one at a time.
-class RenewalWorker {
-public:
-    explicit RenewalWorker(World& world) : world_(world) {}
-
-    void await() {
-        if (maker_.valid()) maker_.get();
-    }
-
-    // Whether the next step is to adopt one.
-    bool is_ready() {
-        if (maker_.valid() && maker_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
-            maker_.get();
-        const auto& pending = world_.resource<SecondOrder>().statics.pending;
-        return !maker_.valid() && pending && pending->made;
-    }
-
-    void start_if_wanted() {
-        SecondOrder& second = world_.resource<SecondOrder>();
-        if (maker_.valid() || !second.statics.pending || second.statics.pending->made) return;
-        maker_ = std::async(std::launch::async, [this, &second] {
-            lower_priority();
-            make_pending(model_of(world_), second.settings, second.statics);
-        });
-    }
-
-private:
-    World& world_;
-    std::future<void> maker_;
-};
 
 struct Place {
     TorsionState state;
@@ -65,7 +33,8 @@ Played play(World& world) {
         std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(period_s));
     const Entity hand = first_hand(world);
     const MoleculePose start = grip_of(world, hand).pose;
-    RenewalWorker worker(world);
+    SecondOrder& second = world.resource<SecondOrder>();
+    RenewalWorker worker;
     Played played;
     double next_place = spacing_angstrom;
     Clock::time_point due = Clock::now();
@@ -77,14 +46,15 @@ Played play(World& world) {
         pose.start = contact_of(world, hand).answer.model.start;
         const ContactModel felt = contact_of(world, hand).answer.model;
         const StepReport& report = step_world(
-            world, {{&pose, 1}, {&felt, 1}, {}, worker.is_ready(), [&] { worker.await(); }});
+            world,
+            {{&pose, 1}, {&felt, 1}, {}, worker.is_ready(second.statics), [&] { worker.await(); }});
         played.step_ms.push_back(1e-3 * report.took_us);
         played.ages.push_back(report.relaxed->model_age.value_or(0));
         if (way >= next_place) {
             next_place += spacing_angstrom;
             played.places.push_back({world.resource<TorsionState>(), pN * find_force(world)});
         }
-        worker.start_if_wanted();
+        worker.start_if_pending(model_of(world), second.settings, second.statics);
         const Clock::time_point now = Clock::now();
         played.missed += now > due ? 1 : 0;
         due = std::max(due, now);  // late: the clock goes on from here

@@ -1,0 +1,36 @@
+#include "statics/renewal_worker.h"
+
+#include "platform/thread.h"
+
+#include <chrono>
+#include <new>
+
+namespace palpa {
+
+void RenewalWorker::start_if_pending(const TorsionModel& model, const SecondOrderSettings& settings,
+                                     SecondOrderStatics& statics) {
+    if (is_busy() || !statics.pending || statics.pending->made) return;
+    making_ = std::async(std::launch::async, [&model, &settings, &statics] {
+        lower_priority();
+        try {
+            make_pending(model, settings, statics);
+        } catch (const std::bad_alloc&) {
+            statics.pending->made = Renewal{};  // of no use, like one that is not finite
+        }
+    });
+}
+
+bool RenewalWorker::is_ready(const SecondOrderStatics& statics) {
+    return !is_busy() && statics.pending && statics.pending->made;
+}
+
+void RenewalWorker::await() {
+    if (making_.valid()) making_.get();
+}
+
+bool RenewalWorker::is_busy() {
+    return making_.valid() &&
+           making_.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
+}
+
+}  // namespace palpa
