@@ -76,10 +76,10 @@ std::optional<LiveMolecule> live_molecule(const ServoState& state) noexcept {
     return LiveMolecule{guarded.molecule, guarded.start};
 }
 
-}  // namespace
-
-ServoTick step_servo(const ServoSettings& settings, ServoState& state, Exchange& exchange,
-                     const DeviceReading& reading, double now_s, LiveMolecules live) noexcept {
+// With the contact model that was taken last; `is_new`: for this tick.
+ServoTick step_with_taken(const ServoSettings& settings, ServoState& state, Exchange& exchange,
+                          bool is_new, const DeviceReading& reading, double now_s,
+                          LiveMolecules live) noexcept {
     PALPA_ASSERT(settings.delay_ticks >= 0 && settings.delay_ticks <= max_servo_delay_ticks);
     follow_safety(settings.safety, state);
     HandleStep handle = take_reading(state, reading);
@@ -93,7 +93,6 @@ ServoTick step_servo(const ServoSettings& settings, ServoState& state, Exchange&
         state.turn = (handle.turned * state.turn).normalized();
     }
 
-    const bool is_new = exchange.contact.take();
     const LocalContactModel& contact = exchange.contact.taken();
     if (is_new) state.contact = contact.model;
     follow_stillness(state.contact, state);
@@ -152,14 +151,28 @@ ServoTick step_servo(const ServoSettings& settings, ServoState& state, Exchange&
     return tick;
 }
 
+}  // namespace
+
+ServoTick step_servo(const ServoSettings& settings, ServoState& state, Exchange& exchange,
+                     const DeviceReading& reading, double now_s, LiveMolecules live) noexcept {
+    const bool is_new = exchange.contact.take();
+    return step_with_taken(settings, state, exchange, is_new, reading, now_s, live);
+}
+
 void step_servos(std::span<ServoHand> hands, double now_s) noexcept {
     PALPA_ASSERT(hands.size() <= most_hands);
     std::array<std::optional<LiveMolecule>, most_hands> live;
-    for (std::size_t i = 0; i < hands.size(); ++i) live[i] = live_molecule(hands[i].state);
+    // Before any hand posts its pose: no hand may feel what the simulation found from poses of this
+    // tick, or the tick could not be played again.
+    std::array<bool, most_hands> is_new{};
+    for (std::size_t i = 0; i < hands.size(); ++i) {
+        is_new[i] = hands[i].exchange.contact.take();
+        live[i] = live_molecule(hands[i].state);
+    }
     for (std::size_t i = 0; i < hands.size(); ++i) {
         ServoHand& hand = hands[i];
-        hand.tick = step_servo(hand.settings, hand.state, hand.exchange, hand.reading, now_s,
-                               std::span(live).first(hands.size()));
+        hand.tick = step_with_taken(hand.settings, hand.state, hand.exchange, is_new[i],
+                                    hand.reading, now_s, std::span(live).first(hands.size()));
         live[i] = live_molecule(hand.state);
     }
 }
