@@ -2,10 +2,12 @@
 // and exclusions. Built once, from a structure and a force field; constant after that.
 #pragma once
 #include "charmm/cmap_map.h"
+#include "charmm/solvation.h"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -127,6 +129,7 @@ struct Topology {
     LennardJonesTable lennard_jones;    // of plain pairs
     LennardJonesTable lennard_jones14;  // of pairs three bonds apart
     Exclusions exclusions;
+    std::optional<Solvation> solvation;  // none in vacuum
 
     std::size_t size() const noexcept { return charge.size(); }
 };
