@@ -268,18 +268,15 @@ std::optional<std::uint32_t> ModelAtoms::in_model(std::uint32_t number_in_table)
     return static_cast<std::uint32_t>(found - in_table.begin());
 }
 
-void put_in_table(const ModelAtoms& atoms, const std::vector<Vec3>& positions,
-                  std::vector<Vec3>& table) {
-    if (atoms.in_table.empty()) {
-        table = positions;
-        return;
-    }
-    for (const std::uint32_t atom : atoms.mobile) table[atoms.in_table[atom]] = positions[atom];
+void put_in_table(const TorsionModel& model, const ModelAtoms& atoms,
+                  const std::vector<Vec3>& positions, std::vector<Vec3>& table) {
+    for (const std::uint32_t atom : model.mobile_atoms)
+        table[atoms.number_in_table(atom)] = positions[atom];
 }
 
 std::vector<Vec3> reference_positions(const World& world) {
     std::vector<Vec3> positions = world.resource<AtomTable>().positions;
-    put_in_table(model_atoms_of(world), model_of(world).reference, positions);
+    put_in_table(model_of(world), model_atoms_of(world), model_of(world).reference, positions);
     return positions;
 }
 
@@ -345,7 +342,7 @@ void copy_positions(World& world) {
     const ModelAtoms& atoms = model_atoms_of(world);
     AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();
     if (!adaptive || !atoms.in_table.empty()) {
-        put_in_table(atoms, state.positions, positions);
+        put_in_table(model_of(world), atoms, state.positions, positions);
         return;
     }
     AdaptiveStatics& statics = adaptive->statics;

@@ -245,21 +245,15 @@ void check_one_piece(const TextPlace& place, const Molecule& held,
     }
 }
 
-// What bases that nothing moves do to each other is constant.
-void join_fixed(std::span<const HeldPart> held, TorsionModel& model) {
-    const TorsionBodies& bodies = model.tree.bodies;
-    std::optional<std::uint32_t> first;
-    for (std::uint32_t i = 0; i < bodies.body_of.size(); ++i) {
-        const std::uint32_t body = bodies.body_of[i], molecule = model.tree.molecule_of[body];
-        if (!bodies.is_base(body) ||
-            std::ranges::any_of(
-                held,
-                [&](const HeldPart& part) { return !part.spring && part.base == molecule; }) ||
-            model.bases[molecule].freedom != BaseFreedom::Held)
-            continue;
-        if (!first) first = body;
-        model.fast.atoms.groups[i] = *first;
+// Bases that are held, but by no hand.
+void fix_held(std::span<const HeldPart> held, TorsionModel& model) {
+    std::vector<std::uint8_t> is_fixed;
+    for (const MoleculeBase& base : model.bases)
+        is_fixed.push_back(base.freedom == BaseFreedom::Held ? 1 : 0);
+    for (const HeldPart& part : held) {
+        if (!part.spring) is_fixed[part.base] = 0;
     }
+    fix_bases(is_fixed, model);
 }
 
 // ---- springs ---------------------------------------------------------------------------------
@@ -464,9 +458,6 @@ void cut_plan(const Region& region, Plan& plan) {
     }
     plan.bodies = std::move(cut.bodies);
     plan.bases = std::move(bases);
-    for (std::uint32_t i = 0; i < region.atoms.size(); ++i) {
-        if (region.is_inside[region.atoms[i]] != 0) plan.atoms.mobile.push_back(i);
-    }
 }
 
 Plan plan_mechanics(World& world) {
@@ -536,7 +527,7 @@ TorsionModel build_model(World& world, const Plan& plan, std::vector<MoleculeBas
 
 void set_mechanics(const SceneDescription& scene, TorsionModel model, ModelAtoms atoms,
                    std::span<const HeldPart> held, World& world) {
-    join_fixed(held, model);
+    fix_held(held, model);
     TorsionState state = build_torsion_state(model);
     std::size_t next = 0;
     world.each<Grip>([&](Entity, Grip& grip) {
@@ -664,7 +655,7 @@ bool has_left_region(const World& world) noexcept {
     if (!centre || centre->stays) return false;
     const std::vector<Vec3>&now = world.resource<TorsionState>().positions,
           &reference = model_of(world).reference;
-    return std::ranges::any_of(model_atoms_of(world).mobile, [&](std::uint32_t atom) {
+    return std::ranges::any_of(model_of(world).mobile_atoms, [&](std::uint32_t atom) {
         return (now[atom] - reference[atom]).squaredNorm() > region_margin * region_margin;
     });
 }
@@ -682,12 +673,6 @@ void renew_region(World& world) noexcept {
 void relax_and_build_mechanics(World& world, const RelaxProgressFunction& on_relax) {
     const SceneDescription& scene = world.resource<SceneFile>().scene;
     const Plan plan = plan_mechanics(world);
-    if (plan.bodies.bodies.empty()) {
-        throw LoadError(
-            scene.place_of("joints.region_angstrom"),
-            "nothing that may move is in reach of what is held; expected a residue of a "
-            "molecule with shape = \"flexible\" or motion = \"free\"");
-    }
     const std::vector<HeldPart> held = find_held(world, plan);
 
     // At first nobody holds anything.
@@ -711,7 +696,7 @@ void relax_and_build_mechanics(World& world, const RelaxProgressFunction& on_rel
                         "the energy at the start is not finite; expected atoms apart from each "
                         "other, and charges and parameters of molecules");
     }
-    put_in_table(plan.atoms, rest.positions, world.resource<AtomTable>().positions);
+    put_in_table(loose, plan.atoms, rest.positions, world.resource<AtomTable>().positions);
     TorsionModel model = build_model(world, plan, plan.bases);
     set_mechanics(scene, std::move(model), plan.atoms, held, world);
     copy_positions(world);
@@ -723,7 +708,9 @@ World build_mechanics_world(const SceneDescription& scene, TorsionModel model,
     const Entity hand = world.create();
     world.set(hand, Hand{});
     world.set(hand, Grip{});
-    world.set_resource(AtomTable{});
+    AtomTable atoms;
+    atoms.positions = model.reference;
+    world.set_resource(std::move(atoms));
     world.set_resource(Clock{scene.period_ms * 1e-3});  // a renewal is due after a time
     StartReport report;
     report.joints = model.tree.bodies.joints();

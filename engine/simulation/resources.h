@@ -64,8 +64,6 @@ struct Clock {
 struct ModelAtoms {
     // Of each of its atoms the table's number, rising. Empty: it has all, by the same numbers.
     std::vector<std::uint32_t> in_table;
-    // Where it does not have all, those of its own numbers that may move.
-    std::vector<std::uint32_t> mobile;
 
     std::uint32_t number_in_table(std::uint32_t in_model) const noexcept {
         return in_table.empty() ? in_model : in_table[in_model];
@@ -74,9 +72,9 @@ struct ModelAtoms {
     std::optional<std::uint32_t> in_model(std::uint32_t number_in_table) const noexcept;
 };
 
-// Writes what the model has to the table's places: where it does not have all, only what may move.
-void put_in_table(const ModelAtoms& atoms, const std::vector<Vec3>& positions,
-                  std::vector<Vec3>& table);
+// Writes the places of mobile atoms to the table's.
+void put_in_table(const TorsionModel& model, const ModelAtoms& atoms,
+                  const std::vector<Vec3>& positions, std::vector<Vec3>& table);
 
 // The mobile molecules as torsion bodies; without atoms where there are none. Copies of a world
 // share it.

@@ -25,7 +25,8 @@ std::vector<Pair> list_left_out(const FastAtoms& atoms) {
 ClosePairs build_close_pairs(const TorsionModel& model, std::span<const Vec3> positions,
                              std::span<const std::uint32_t> held, double near_reach, double reach) {
     constexpr double too_close = 0.8;
-    const std::vector<std::uint32_t>& body_of = model.tree.bodies.body_of;
+    // What does not move against each other is of one group.
+    const std::vector<std::uint32_t>& group_of = model.fast.atoms.groups;
     const std::vector<double>& half_rmin = model.fast.atoms.half_rmin;
     const std::vector<Pair> left_out = list_left_out(model.fast.atoms);
     std::vector<bool> is_held(positions.size(), false);
@@ -42,7 +43,7 @@ ClosePairs build_close_pairs(const TorsionModel& model, std::span<const Vec3> po
             if (between.x() > reach) break;
             const double square = between.squaredNorm();
             const bool is_exact = is_held[a] != is_held[b] && square < near_reach * near_reach;
-            if (square > reach * reach || body_of[a] == body_of[b] || is_exact) continue;
+            if (square > reach * reach || group_of[a] == group_of[b] || is_exact) continue;
             if (std::ranges::binary_search(left_out, ordered(a, b))) continue;
             close.pairs.push_back(ordered(a, b));
             const double least =

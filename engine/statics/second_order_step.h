@@ -129,6 +129,7 @@ struct SecondOrderStatics {
     double error_growth = 0;      // of errors at renewals, kcal/mol/Å per squared age
     TorsionState trial;
     ModelValue trial_value;
+    std::vector<Vec3> start;  // memory: where the step began
 
     std::size_t renewed = 0, discarded = 0;  // renewals; strides that were repeated
     std::size_t model_evaluations = 0;
