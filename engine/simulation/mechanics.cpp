@@ -378,6 +378,7 @@ SecondOrder build_second_order(const StaticsDescription& s, const RelaxSettings&
     second.settings.forces = settings.step.forces;
     second.settings.near_reach = s.near_angstrom;
     second.settings.renew_hand = s.renew_angstrom;
+    if (s.responses > 0) second.settings.responses = static_cast<std::size_t>(s.responses);
     second.most_evaluations = second.settings.evaluations;
     if (!s.renews_beside) second.delay_s = 1e-3 * s.renewal_ms;
     second.settings.renews_at_once = !s.renews_beside && s.renewal_ms == 0;
