@@ -156,13 +156,14 @@ void visit_statics(FieldVisitor& v, StaticsDescription& s) {
             .lowest = 0.02,
             .highest = 0.3},
            s.renew_angstrom);
-    v.integer({.key = "responses",
-               .meaning = "second-order: a step seeks the answer among so many combined moves, the "
-                          "responses to the hand and to forces on atoms near it, and costs "
-                          "accordingly; 0: among all degrees of freedom",
-               .lowest = 0,
-               .highest = 3000},
-              s.responses);
+    v.integer(
+        {.key = "responses",
+         .meaning = "second-order: for each hand a step seeks the answer among so many combined "
+                    "moves, responses to the hand and to the forces that these leave near "
+                    "it; 0: among all degrees of freedom, which costs more",
+         .lowest = 0,
+         .highest = 3000},
+        s.responses);
     v.real({.key = "renewal_ms",
             .meaning = "second-order: declared time from the request of a linearisation to its "
                        "use; 0: within the step",

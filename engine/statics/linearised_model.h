@@ -88,7 +88,8 @@ Lineariser build_lineariser(const TorsionModel& model, HeldParts held);
 struct LineariseSettings {
     ForceSettings forces;
     double near_reach = 6;  // Å: pairs of held atoms with atoms so near are exact
-    // The answer is sought in the span of so many responses; unset: among all coordinates.
+    // The answer is sought in the span of so many responses for each hand; unset: among all
+    // coordinates.
     std::optional<std::size_t> responses;
 };
 

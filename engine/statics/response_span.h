@@ -10,7 +10,8 @@
 
 namespace palpa {
 
-// At most `count` responses by the model's factor, those to the hands whatever their number. The
+// At most `count` responses for each hand, by the model's factor, those to the hands themselves in
+// any case. The
 // forces are the model's, for moves of each hand by 0.1 Å along and between the axes. `mixed`:
 // second derivatives of the energy by mobile coordinates and hands.
 ResponseSpan build_response_span(const TorsionModel& model, const ForceSettings& settings,
