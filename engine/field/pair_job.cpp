@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 
 // Of a lambda that runs in the innermost loop; other compilers know no such word there.
 #undef PALPA_INLINED
@@ -53,16 +54,38 @@ struct Switching {
     V scale, offset, slope_scale;
 };
 
+// The same with a second derivative that is continuous:
+//   S = 1 - y^3 (10 - 15 y + 6 y^2),  S'/r = -60 y^2 (1 - y)^2/(c^2 - m^2)
+struct SmoothSwitching : Switching {
+    explicit HWY_INLINE SmoothSwitching(const PairScheme& scheme) : Switching(scheme) {
+        slope_scale = hn::Mul(slope_scale, all(5));
+    }
+    // 1 from c on, where neither is anything.
+    HWY_INLINE V place(V r2) const { return hn::Min(Switching::place(r2), all(1)); }
+    HWY_INLINE V value(V y) const {
+        const V p = hn::MulAdd(hn::MulAdd(y, all(6), all(-15)), y, all(10));
+        return hn::NegMulAdd(hn::Mul(hn::Mul(y, y), y), p, all(1));
+    }
+    HWY_INLINE V slope(V y) const {
+        const V both = hn::NegMulAdd(y, y, y);
+        return hn::Mul(slope_scale, hn::Mul(both, both));
+    }
+};
+
 // The forms of forces/pair_law.h, put so that no two large numbers cancel in single precision.
 template <ElectrostaticCutoff End, bool DistanceDielectric>
 class Electrostatics {
 public:
-    static constexpr bool ends = End != ElectrostaticCutoff::None;
+    // Whether pairs have to be cut off at c: CubicShift is nothing from there on by itself.
+    static constexpr bool ends =
+        End != ElectrostaticCutoff::None && End != ElectrostaticCutoff::CubicShift;
+    static constexpr bool takes_root = !DistanceDielectric;
 
     explicit HWY_INLINE Electrostatics(const PairScheme& scheme) : switching_(scheme) {
         const double c = scheme.cutoff, m = scheme.switch_from, width = c * c - m * m;
         inverse_c_ = all(1 / c);
         inverse_c2_ = all(1 / (c * c));
+        inverse_c2_4_ = all(4 / (c * c));
         if constexpr (End == ElectrostaticCutoff::ForceSwitch) {
             // The energy before m is U moved by C0; after it, by x = r - m > 0,
             //   C0 + 1/r + integral over (1 - S)/r^2 = C0 + 1/r + x^3 p(x)/r
@@ -100,6 +123,15 @@ public:
             terms.a = hn::Add(terms.a, steepness(energy));
             terms.b = hn::MulAdd(hn::Mul(once, all(4)), inverse_c2_, terms.b);
             if constexpr (WithEnergy) terms.electrostatic = hn::Add(terms.electrostatic, energy);
+        } else if constexpr (End == ElectrostaticCutoff::CubicShift) {
+            // For U = q/r^n and left = 1 - (r/c)^2: -r (U left^3)' = U left^2 (n + (6 - n) (r/c)^2)
+            const V left = hn::Max(hn::NegMulAdd(r2, inverse_c2_, all(1)), hn::Zero(floats));
+            const V twice = hn::Mul(hn::Mul(u, left), left);
+            terms.a = hn::Add(terms.a, steepness(twice));
+            terms.b =
+                hn::MulAdd(twice, DistanceDielectric ? inverse_c2_4_ : inverse_c2_5(), terms.b);
+            if constexpr (WithEnergy)
+                terms.electrostatic = hn::MulAdd(twice, left, terms.electrostatic);
         } else if constexpr (End == ElectrostaticCutoff::ForceShift) {
             terms.a = hn::Add(terms.a, u);
             terms.b = hn::NegMulAdd(u, inverse_c2_, terms.b);
@@ -121,6 +153,8 @@ private:
     // -r U'/U.
     static HWY_INLINE V steepness(V u) { return DistanceDielectric ? hn::Add(u, u) : u; }
 
+    HWY_INLINE V inverse_c2_5() const { return hn::Add(inverse_c2_4_, inverse_c2_); }
+
     // 1 + x^3 p(x)
     HWY_INLINE V after_m(V r2, V inverse_r) const {
         const V x = hn::Max(hn::MulSub(r2, inverse_r, m_), hn::Zero(floats));
@@ -130,7 +164,7 @@ private:
     }
 
     Switching switching_;
-    V inverse_c_, inverse_c2_;
+    V inverse_c_, inverse_c2_, inverse_c2_4_;
     V m_ = hn::Zero(floats), p0_ = m_, p1_ = m_, p2_ = m_, p3_ = m_, shift_ = m_;
 };
 
@@ -138,7 +172,12 @@ private:
 template <VanDerWaalsCutoff End>
 class VanDerWaals {
 public:
-    static constexpr bool ends = End != VanDerWaalsCutoff::None;
+    // As of electrostatics; SmoothSwitch is nothing from c on.
+    static constexpr bool ends =
+        End != VanDerWaalsCutoff::None && End != VanDerWaalsCutoff::SmoothSwitch;
+
+    // Whether 1/r is used, not only its square.
+    static constexpr bool takes_root = End != VanDerWaalsCutoff::SmoothSwitch;
 
     explicit HWY_INLINE VanDerWaals(const PairScheme& scheme) : switching_(scheme) {
         const double c3 = std::pow(scheme.cutoff, 3), m3 = std::pow(scheme.switch_from, 3);
@@ -159,11 +198,12 @@ public:
             set_force_switched<WithEnergy>(inverse_r, inverse_r2, epsilon12, rmin, terms);
             return;
         }
-        const V s = hn::Mul(rmin, inverse_r), s2 = hn::Mul(s, s);
+        const V s = hn::Mul(rmin, inverse_r);
+        const V s2 = takes_root ? hn::Mul(s, s) : hn::Mul(hn::Mul(rmin, rmin), inverse_r2);
         const V s6 = hn::Mul(hn::Mul(s2, s2), s2), well = hn::Mul(epsilon12, s6);
         terms.a = hn::MulSub(well, s6, well);
         terms.b = hn::Zero(floats);
-        if constexpr (End == VanDerWaalsCutoff::Switch) {
+        if constexpr (End == VanDerWaalsCutoff::Switch || End == VanDerWaalsCutoff::SmoothSwitch) {
             const V y = switching_.place(r2), value = switching_.value(y);
             const V energy = hn::Mul(well, hn::Sub(s6, all(2)));
             terms.a = hn::Mul(terms.a, value);
@@ -197,7 +237,8 @@ private:
         }
     }
 
-    Switching switching_;
+    std::conditional_t<End == VanDerWaalsCutoff::SmoothSwitch, SmoothSwitching, Switching>
+        switching_;
     V k12_, k12_end_, k6_, k6_end_, inverse_c6_, inverse_c3_, inverse_m6_, inverse_m3_;
 };
 
@@ -428,7 +469,13 @@ private:
                 sums.nearest2 = hn::Min(sums.nearest2, counted2);
                 // A pair that does not count may be at one place.
                 const V r2 = IsMasked ? hn::Max(distance2, all(1e-2)) : distance2;
-                const V inverse_r = inverse_root(r2), inverse_r2 = hn::Mul(inverse_r, inverse_r);
+                V inverse_r = hn::Zero(floats), inverse_r2;
+                if constexpr (Electrostatics::takes_root || VanDerWaals::takes_root) {
+                    inverse_r = inverse_root(r2);
+                    inverse_r2 = hn::Mul(inverse_r, inverse_r);
+                } else {
+                    inverse_r2 = inverse(r2);
+                }
                 Terms terms{hn::Zero(floats), hn::Zero(floats), sums.van_der_waals,
                             sums.electrostatic};
                 van_der_waals.template set<WithEnergy>(r2, inverse_r, inverse_r2, epsilon12, rmin,
@@ -501,10 +548,20 @@ JobSum sum_with_electrostatics(const PairJob& job) {
             return sum_with_dielectric<ElectrostaticEnd, Switch>(job);
         case ForceSwitch:
             return sum_with_dielectric<ElectrostaticEnd, ForceSwitch>(job);
+        case SmoothSwitch:  // with CubicShift alone
         case None:
             break;
     }
     return sum_with_dielectric<ElectrostaticEnd, None>(job);
+}
+
+// The two ends that are smooth to the second derivative go together.
+JobSum sum_smooth_ends(const PairJob& job) {
+    using enum ElectrostaticCutoff;
+    using SmoothVanDerWaals = VanDerWaals<VanDerWaalsCutoff::SmoothSwitch>;
+    if (job.scheme->distance_dielectric)
+        return sum_with_laws<Electrostatics<CubicShift, true>, SmoothVanDerWaals>(job);
+    return sum_with_laws<Electrostatics<CubicShift, false>, SmoothVanDerWaals>(job);
 }
 
 JobSum sum_job(const PairJob& job) {
@@ -518,6 +575,8 @@ JobSum sum_job(const PairJob& job) {
             return sum_with_electrostatics<ForceShift>(job);
         case ForceSwitch:
             return sum_with_electrostatics<ForceSwitch>(job);
+        case CubicShift:
+            return sum_smooth_ends(job);
         case None:
             break;
     }

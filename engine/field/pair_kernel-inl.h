@@ -50,6 +50,22 @@ HWY_INLINE V inverse_root(V x) {
 #endif
 }
 
+// 1/x to the last bit or two: with h = 1 - x e, 1/(1 - h) = 1 + h + h^2 + ...
+HWY_INLINE V inverse(V x) {
+    const V e = hn::ApproximateReciprocal(x);
+    const V h = hn::NegMulAdd(x, e, all(1));
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+    return hn::MulAdd(e, h, e);  // 14 bits to begin with
+#else
+    const V first = hn::MulAdd(hn::Mul(e, h), hn::Add(h, all(1)), e);
+#if HWY_ARCH_ARM
+    return hn::MulAdd(first, hn::NegMulAdd(x, first, all(1)), first);  // 8 bits
+#else
+    return first;
+#endif
+#endif
+}
+
 // The two halves of some floats, in double; of a single one, the upper half is nothing.
 #if HWY_TARGET == HWY_SCALAR
 HWY_INLINE W lower_half(V v) { return hn::PromoteTo(doubles, v); }

@@ -115,6 +115,8 @@ PairKernelSum add_cluster_pair_forces(const ClusterList& list, const PairScheme&
     PALPA_ASSERT(!scheme.distance_dielectric ||
                  (scheme.electrostatics != ElectrostaticCutoff::ForceShift &&
                   scheme.electrostatics != ElectrostaticCutoff::ForceSwitch));
+    PALPA_ASSERT((scheme.electrostatics == ElectrostaticCutoff::CubicShift) ==
+                 (scheme.van_der_waals == VanDerWaalsCutoff::SmoothSwitch));
     PALPA_ASSERT(!is_outdated(list, positions) && forces.size() == positions.size());
     const bool fits = place_atoms(list, positions, workspace);
     std::vector<JobSum> sums(threads.count);

@@ -20,6 +20,7 @@ struct PairScheme {
     double coulomb = 0;  // C/eps, kcal Å/mol/e^2
     // A dielectric of eps r: E = C q q'/(eps r^2). Not with ForceShift or ForceSwitch.
     bool distance_dielectric = false;
+    // CubicShift goes with SmoothSwitch alone, and that with nothing else.
     ElectrostaticCutoff electrostatics = ElectrostaticCutoff::None;
     VanDerWaalsCutoff van_der_waals = VanDerWaalsCutoff::None;
     double switch_from = 10;  // m, Å

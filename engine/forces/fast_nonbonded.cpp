@@ -154,6 +154,16 @@ FastAtoms build_fast_atoms(const Topology& topology) {
     return atoms;
 }
 
+bool has_fast_form(const NonbondedSettings& settings) noexcept {
+    if (settings.solvation != SolvationEnd::None ||
+        (settings.electrostatics == ElectrostaticCutoff::CubicShift) !=
+            (settings.van_der_waals == VanDerWaalsCutoff::SmoothSwitch))
+        return false;
+    // In single precision too little would be left of this energy between m and c.
+    return !(settings.distance_dielectric &&
+             settings.electrostatics == ElectrostaticCutoff::ForceSwitch);
+}
+
 NonbondedEnergy add_fast_nonbonded_forces(const Topology& topology, const FastAtoms& atoms,
                                           const NonbondedSettings& settings, double skin,
                                           std::span<const Vec3> positions, FastPairs& pairs,
@@ -161,9 +171,7 @@ NonbondedEnergy add_fast_nonbonded_forces(const Topology& topology, const FastAt
                                           const PairThreads& threads) {
     PALPA_ASSERT(!find_problem(settings));
     PALPA_ASSERT(positions.size() == topology.size() && forces.size() == topology.size());
-    // In single precision too little would be left of its energy between m and c.
-    if (settings.distance_dielectric &&
-        settings.electrostatics == ElectrostaticCutoff::ForceSwitch) {
+    if (!has_fast_form(settings)) {
         if (threads.beside) threads.beside();
         ++pairs.in_double;
         return add_nonbonded_forces(topology, settings, positions, forces);

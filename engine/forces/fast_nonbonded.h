@@ -35,6 +35,9 @@ struct FastAtoms {
 
 FastAtoms build_fast_atoms(const Topology& topology);
 
+// Whether single precision does for them.
+bool has_fast_form(const NonbondedSettings& settings) noexcept;
+
 // The list at hand and the kernel's memory; the settings say whether it is one of all pairs.
 struct FastPairs {
     ClusterList list;
@@ -60,9 +63,8 @@ struct FastPairs {
 // does, and returns their energies, zero unless asked for. Settings must be sound. A list with a
 // cutoff holds pairs up to `skin` (Å) beyond it; `pairs`, empty before the first call and of one
 // topology and cutoff ever after, is updated when outdated. Pairs with replaced numbers are
-// summed in double. So is everything where single precision does not do: switched forces of
-// a dielectric that grows with the distance; atoms as close or as far apart as field/pair_kernel.h
-// says.
+// summed in double. So is everything where single precision does not do: settings without a
+// fast form; atoms as close or as far apart as field/pair_kernel.h says.
 NonbondedEnergy add_fast_nonbonded_forces(const Topology& topology, const FastAtoms& atoms,
                                           const NonbondedSettings& settings, double skin,
                                           std::span<const Vec3> positions, FastPairs& pairs,

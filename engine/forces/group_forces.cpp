@@ -138,6 +138,7 @@ EnergyTerms add_group_forces(const Topology& topology, const NonbondedSettings& 
     const NonbondedEnergy plain = add_plain(topology, settings, group_forces, positions, forces);
     energy.lj = plain.van_der_waals;
     energy.coulomb = plain.electrostatic;
+    energy.solvation += plain.solvation;
     return energy;
 }
 

@@ -136,7 +136,8 @@ bool update_fast_second_derivatives(const TorsionModel& model, const LocalCoordi
         return false;
     };
     const PairScheme scheme = scheme_of(settings);
-    if (!has_hessian_kernel(scheme)) return use_reference();
+    if (!has_hessian_kernel(scheme) || settings.solvation != SolvationEnd::None)
+        return use_reference();
     const Vec3 origin = middle_of(state.positions);
     update_motions(model, fast.ordered, state, memory.motions);
     std::vector<Vec6> screws;

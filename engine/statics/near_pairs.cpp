@@ -68,17 +68,15 @@ NearPairs build_near_pairs(const TorsionModel& model, std::span<const Vec3> posi
 double add_near_forces(const TorsionModel& model, const ForceSettings& settings, NearPairs& near,
                        std::span<const Vec3> positions, std::span<Vec3> forces) {
     const Topology& topology = model.topology;
-    const auto energy_of = [](const NonbondedEnergy& sum) {
-        return sum.van_der_waals + sum.electrostatic;
-    };
     if (is_fast(settings)) {
         const std::optional<NonbondedEnergy> sum =
             add_tile_forces(topology, settings.nonbonded, near.tiles, near.workspace, near.others,
                             positions, forces, PairResult::ForcesAndEnergies);
-        if (sum) return energy_of(*sum);
+        if (sum) return sum->sum();
     }
-    return energy_of(add_pairs_in_double(topology, settings.nonbonded, near.tiles, near.others,
-                                         positions, forces));
+    return add_pairs_in_double(topology, settings.nonbonded, near.tiles, near.others, positions,
+                               forces)
+        .sum();
 }
 
 }  // namespace palpa

@@ -58,8 +58,7 @@ public:
                const TorsionState& state)
         : model_(model),
           state_(state),
-          law_(settings),
-          coulomb_(settings.coulomb_constant / settings.dielectric),
+          law_(model.topology, settings),
           excluded_(find_excluded(model.topology)),
           is_left_out_(model.topology.size(), 0) {}
 
@@ -78,25 +77,20 @@ private:
     void add_atom(std::uint32_t i, std::uint32_t body, const Vec3& point, std::vector<Mat6>& row) {
         const Topology& topology = model_.topology;
         const std::vector<std::uint32_t>& body_of = model_.tree.bodies.body_of;
-        const double charge = coulomb_ * topology.charge[i];
-        const LennardJonesPair* const numbers = topology.lennard_jones.row(topology.type[i]);
         for (const std::uint32_t j : excluded_[i]) is_left_out_[j] = 1;
         for (std::uint32_t j = 0; j < topology.size(); ++j) {
             if (body_of[j] == body || is_left_out_[j] != 0) continue;
             const Vec3 x_i = state_.positions[i] - point, x_j = state_.positions[j] - point;
             const double r2 = (x_i - x_j).squaredNorm();
             if (r2 >= law_.reach2()) continue;
-            row[body_of[j]] += pair_block(
-                x_i, x_j,
-                law_.evaluate(r2, charge * topology.charge[j], numbers[topology.type[j]]));
+            row[body_of[j]] += pair_block(x_i, x_j, law_.plain(i, j, r2));
         }
         for (const std::uint32_t j : excluded_[i]) is_left_out_[j] = 0;
     }
 
     const TorsionModel& model_;
     const TorsionState& state_;
-    PairHessianLaw law_;
-    double coulomb_;
+    TopologyPairHessian law_;
     std::vector<std::vector<std::uint32_t>> excluded_;
     std::vector<std::uint8_t> is_left_out_;  // of the atom at hand
 };
@@ -108,8 +102,7 @@ public:
                  const TorsionState& state, std::span<const std::array<std::uint32_t, 2>> pairs)
         : model_(model),
           state_(state),
-          law_(settings),
-          coulomb_(settings.coulomb_constant / settings.dielectric),
+          law_(model.topology, settings),
           of_body_(model.tree.bodies.bodies.size()) {
         const std::vector<std::uint32_t>& body_of = model.tree.bodies.body_of;
         for (const auto& [i, j] : pairs) {
@@ -123,24 +116,18 @@ public:
 
     void update_row(std::uint32_t body, const Vec3& point, std::vector<Mat6>& row) const {
         row.assign(of_body_.size(), Mat6::Zero());
-        const Topology& topology = model_.topology;
         for (const auto& [i, j] : of_body_[body]) {
             const Vec3 x_i = state_.positions[i] - point, x_j = state_.positions[j] - point;
             const double r2 = (x_i - x_j).squaredNorm();
             if (r2 >= law_.reach2()) continue;
-            const LennardJonesPair& numbers =
-                topology.lennard_jones.row(topology.type[i])[topology.type[j]];
-            row[model_.tree.bodies.body_of[j]] += pair_block(
-                x_i, x_j,
-                law_.evaluate(r2, coulomb_ * topology.charge[i] * topology.charge[j], numbers));
+            row[model_.tree.bodies.body_of[j]] += pair_block(x_i, x_j, law_.plain(i, j, r2));
         }
     }
 
 private:
     const TorsionModel& model_;
     const TorsionState& state_;
-    PairHessianLaw law_;
-    double coulomb_;
+    TopologyPairHessian law_;
     std::vector<std::vector<std::array<std::uint32_t, 2>>> of_body_;
 };
 
