@@ -10,8 +10,8 @@ from pathlib import Path
 PROGRAM = os.environ["PALPA_PROGRAM"]
 ROOT = Path(os.environ["PALPA_ROOT"])
 PEPTIDES = ROOT / "tests" / "data" / "two_peptides"
-ALL_PAIRS = ("default", "near=4", "near=6", "near=10", "full-second-order", "bfgs", "paper-40",
-             "paper-all")
+ALL_PAIRS = ("default", "near=4", "near=6", "near=10", "responses=all", "responses=8",
+             "full-second-order", "bfgs", "paper-40", "paper-all")
 CUTOFF = "near=6/cutoff=12", "paper-all/cutoff=12"
 
 
@@ -72,6 +72,10 @@ class BenchAnswer(unittest.TestCase):
 
     def test_what_relaxes_on_the_whole_energy_finds_the_truth(self):
         self.assertLess(self.rows["full-second-order/ms=100"]["error_median"], 0.02)
+
+    def test_a_span_of_responses_answers_as_all_coordinates_do(self):
+        few, every = self.rows["default"], self.rows["responses=all"]
+        self.assertLess(abs(few["error_median"] - every["error_median"]), 0.01)
 
     def test_a_cutoff_is_judged_by_both_truths(self):
         by_all, by_own = self.rows["near=6/cutoff=12"], self.rows["near=6/cutoff=12/own"]
