@@ -22,7 +22,7 @@
 #define HWY_TARGET_INCLUDE "field/pair_job.cpp"
 #include <hwy/foreach_target.h>  // before highway.h
 
-#include "field/pair_kernel-inl.h"
+#include "field/cluster_kernel-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace palpa::HWY_NAMESPACE {
@@ -58,7 +58,7 @@ struct Switching {
 //   S = 1 - y^3 (10 - 15 y + 6 y^2),  S'/r = -60 y^2 (1 - y)^2/(c^2 - m^2)
 struct SmoothSwitching : Switching {
     explicit HWY_INLINE SmoothSwitching(const PairScheme& scheme) : Switching(scheme) {
-        slope_scale = hn::Mul(slope_scale, all(5));
+        slope_scale = hn::Mul(slope_scale, all(-5.0 / 12));
     }
     // 1 from c on, where neither is anything.
     HWY_INLINE V place(V r2) const { return hn::Min(Switching::place(r2), all(1)); }
@@ -66,9 +66,10 @@ struct SmoothSwitching : Switching {
         const V p = hn::MulAdd(hn::MulAdd(y, all(6), all(-15)), y, all(10));
         return hn::NegMulAdd(hn::Mul(hn::Mul(y, y), y), p, all(1));
     }
-    HWY_INLINE V slope(V y) const {
+    // Of `energy`, 12 times too large, what its slope takes: -energy/12 S'/r.
+    HWY_INLINE V taken(V energy, V y) const {
         const V both = hn::NegMulAdd(y, y, y);
-        return hn::Mul(slope_scale, hn::Mul(both, both));
+        return hn::Mul(hn::Mul(slope_scale, energy), hn::Mul(both, both));
     }
 };
 
@@ -127,7 +128,8 @@ public:
             // For U = q/r^n and left = 1 - (r/c)^2: -r (U left^3)' = U left^2 (n + (6 - n) (r/c)^2)
             const V left = hn::Max(hn::NegMulAdd(r2, inverse_c2_, all(1)), hn::Zero(floats));
             const V twice = hn::Mul(hn::Mul(u, left), left);
-            terms.a = hn::Add(terms.a, steepness(twice));
+            terms.a =
+                DistanceDielectric ? hn::MulAdd(twice, all(2), terms.a) : hn::Add(terms.a, twice);
             terms.b =
                 hn::MulAdd(twice, DistanceDielectric ? inverse_c2_4_ : inverse_c2_5(), terms.b);
             if constexpr (WithEnergy)
@@ -207,7 +209,11 @@ public:
             const V y = switching_.place(r2), value = switching_.value(y);
             const V energy = hn::Mul(well, hn::Sub(s6, all(2)));
             terms.a = hn::Mul(terms.a, value);
-            terms.b = hn::Mul(hn::Mul(energy, all(-1.0 / 12)), switching_.slope(y));
+            if constexpr (End == VanDerWaalsCutoff::SmoothSwitch) {
+                terms.b = switching_.taken(energy, y);
+            } else {
+                terms.b = hn::Mul(hn::Mul(energy, all(-1.0 / 12)), switching_.slope(y));
+            }
             if constexpr (WithEnergy)
                 terms.van_der_waals = hn::MulAdd(energy, value, terms.van_der_waals);
         } else if constexpr (WithEnergy) {
@@ -252,59 +258,6 @@ struct Rows {
     alignas(64) float fx[cluster_size][lane_count], fy[cluster_size][lane_count],
         fz[cluster_size][lane_count];
 };
-
-// As many atoms as there are lanes: some of one cluster, or two clusters.
-HWY_INLINE V load_columns(const ClusterAtoms::Column& first,
-                          [[maybe_unused]] const ClusterAtoms::Column& second, std::size_t column) {
-#if HWY_MAX_BYTES == 64
-    const HalfFloats half;
-    return hn::Combine(floats, hn::Load(half, second.data()), hn::Load(half, first.data()));
-#else
-    return hn::Load(floats, first.data() + column);
-#endif
-}
-
-HWY_INLINE void subtract(W force, double* sums) {
-    hn::Store(hn::Sub(hn::Load(doubles, sums), force), doubles, sums);
-}
-
-// Takes from the forces on the columns what their rows got.
-HWY_INLINE void subtract_from_columns(V force, std::array<double, cluster_size>& first,
-                                      std::array<double, cluster_size>& second,
-                                      std::size_t column) {
-    subtract(lower_half(force), first.data() + column);
-    if constexpr (lane_count > cluster_size) {
-        subtract(upper_half(force), second.data());
-    } else if constexpr (lane_count > 1) {
-        subtract(upper_half(force), first.data() + column + lane_count / 2);
-    }
-}
-
-// Adds gradient times distance to the force on a column and to that on a row.
-HWY_INLINE void add_force(V gradient, V distance, V& on_column, float* on_row) {
-#if HWY_NATIVE_FMA
-    on_column = hn::MulAdd(gradient, distance, on_column);
-    hn::Store(hn::MulAdd(gradient, distance, hn::Load(floats, on_row)), floats, on_row);
-#else
-    const V force = hn::Mul(gradient, distance);
-    on_column = hn::Add(on_column, force);
-    hn::Store(hn::Add(hn::Load(floats, on_row), force), floats, on_row);
-#endif
-}
-
-// Pairs of a row that count.
-HWY_INLINE M load_mask(std::uint64_t first, std::uint64_t second, std::uint32_t row,
-                       std::size_t column) {
-    std::uint8_t bits[8] = {};
-    const std::uint64_t of_first = first >> (8 * row) & 0xff;
-    if constexpr (lane_count > cluster_size) {
-        bits[0] = static_cast<std::uint8_t>(of_first);
-        bits[1] = static_cast<std::uint8_t>(second >> (8 * row));
-    } else {
-        bits[0] = static_cast<std::uint8_t>(of_first >> column);
-    }
-    return hn::LoadMaskBits(floats, bits);
-}
 
 template <class Electrostatics, class VanDerWaals, bool WithEnergy>
 class Kernel {
@@ -373,14 +326,6 @@ private:
         }
         flush_rows(c);
         nearest2_ = sums.nearest2;
-    }
-
-    static HWY_INLINE std::uint32_t rows_of(std::uint64_t pairs) {
-        pairs |= pairs >> 4;
-        pairs |= pairs >> 2;
-        pairs |= pairs >> 1;
-        pairs &= 0x0101010101010101U;
-        return static_cast<std::uint32_t>(pairs * 0x0102040810204080U >> 56);
     }
 
     HWY_INLINE void load_rows(std::size_t c) {

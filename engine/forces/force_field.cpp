@@ -133,8 +133,10 @@ EnergyTerms add_fast_forces(const Topology& topology, const FastForceField& fast
                             std::span<Vec3> forces, PairResult result, std::size_t threads) {
     EnergyTerms energy;
     energy.solvation = find_lone_solvation(topology, settings.solvation);
+    const NonbondedSettings beside =
+        has_fast_form(settings) ? without_solvation(settings) : settings;
     const auto add_others = [&] {
-        energy += add_fast_terms(topology, topology, fast.bonded, settings, positions, forces);
+        energy += add_fast_terms(topology, topology, fast.bonded, beside, positions, forces);
     };
     // The other terms of a protein's atom take about as long as two tiles of pairs.
     add_pairs(add_fast_nonbonded_forces(topology, fast.atoms, settings, skin, positions, pairs,

@@ -199,6 +199,11 @@ NonbondedSettings eef1_settings(SolvationEnd solvation) noexcept {
             .solvation = solvation};
 }
 
+NonbondedSettings without_solvation(NonbondedSettings settings) noexcept {
+    settings.solvation = SolvationEnd::None;
+    return settings;
+}
+
 std::optional<std::string_view> find_problem(const NonbondedSettings& settings) noexcept {
     if (!(settings.dielectric > 0)) return "the dielectric must be above 0";
     const bool switches = settings.electrostatics == ElectrostaticCutoff::Switch ||

@@ -37,6 +37,9 @@ struct NonbondedSettings {
 // with other ends of electrostatics, whole groups at a time, and of Lennard-Jones.
 NonbondedSettings eef1_settings(SolvationEnd solvation = SolvationEnd::Smooth) noexcept;
 
+// The same but for solvation, which they have none of then.
+NonbondedSettings without_solvation(NonbondedSettings settings) noexcept;
+
 // What makes settings unusable, as a sentence for a message; none where they are sound.
 std::optional<std::string_view> find_problem(const NonbondedSettings& settings) noexcept;
 

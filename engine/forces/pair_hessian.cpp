@@ -159,12 +159,17 @@ PairHessian TopologyPairHessian::evaluate(const LennardJonesTable& lennard_jones
                                           double r2) const noexcept {
     PairHessian sum = law_.evaluate(r2, coulomb * topology_.charge[i] * topology_.charge[j],
                                     lennard_jones.row(topology_.type[i])[topology_.type[j]]);
-    if (r2 < solvation_.reach2) {
-        const SolvationPair pair = solvation_.evaluate(r2, solvation_atom(*topology_.solvation, i),
-                                                       solvation_atom(*topology_.solvation, j));
-        sum += {pair.first, pair.second};
-    }
+    if (r2 < solvation_.reach2) sum += solvation(i, j, r2);
     return sum;
+}
+
+PairHessian TopologyPairHessian::solvation(std::uint32_t i, std::uint32_t j,
+                                           double r2) const noexcept {
+    if (r2 >= solvation_.reach2) return {};
+    const Solvation& numbers = *topology_.solvation;
+    const SolvationPair pair =
+        solvation_.evaluate(r2, solvation_atom(numbers, i), solvation_atom(numbers, j));
+    return {pair.first, pair.second};
 }
 
 }  // namespace palpa

@@ -59,6 +59,9 @@ public:
         return evaluate(topology_.lennard_jones14, coulomb14_, i, j, r2);
     }
 
+    // Of solvation alone.
+    PairHessian solvation(std::uint32_t i, std::uint32_t j, double r2) const noexcept;
+
     double reach2() const noexcept { return reach2_; }  // Å^2, from where on pairs have nothing
 
 private:

@@ -42,8 +42,8 @@ void separate_rest(const TorsionModel& model, const ForceSettings& settings, Lin
     evaluate_near(model, settings, linear, origin, linear.near, scratch, near);
     linear.rest_energy = linear.at.energy() - near.energy;
     linear.rest_gradient = linear.gradient - near.gradient;
-    update_pair_derivatives(model, linear.coordinates, linear.near.all, settings.nonbonded,
-                            linear.at, lineariser.near);
+    update_pair_derivatives(model, linear.coordinates, linear.near.all, linear.near.solvated,
+                            settings.nonbonded, linear.at, lineariser.near);
     lineariser.rest = lineariser.all.all - lineariser.near.all;
     linear.rest = lineariser.rest.cast<float>();
 }
