@@ -9,15 +9,6 @@
 
 namespace palpa {
 
-// One entry per atom; what one takes of another's water is
-//   strength volume' exp(-((r - radius)/lambda)^2)/r^2.
-struct SolvationParameters {
-    std::span<const double> volume;          // Å^3
-    std::span<const double> strength;        // kcal/mol/Å
-    std::span<const double> inverse_lambda;  // 1/Å
-    std::span<const double> radius;          // Å
-};
-
 // The atoms of a cluster as the kernel wants them; a coordinate is high + low as in `ClusterAtoms`.
 struct alignas(64) SolvationCluster {
     using Column = ClusterAtoms::Column;

@@ -1,6 +1,8 @@
 // Solvation in what statics makes of the force field: the model that is exact near the hand, and
 // work where something moves.
+#include "field/processor.h"
 #include "statics/adaptive_step.h"
+#include "statics/fast_second_derivatives.h"
 #include "statics/linearised_model.h"
 #include "statics/near_pairs.h"
 #include "statics/relax_joints.h"
@@ -14,6 +16,7 @@
 #include <cstdint>
 #include <numeric>
 #include <random>
+#include <string>
 #include <vector>
 
 using namespace palpa;
@@ -140,4 +143,47 @@ TEST_CASE("work where something moves has all solvation", "[statics][adaptive][s
     }
     CHECK(c.state.terms.solvation < 0);
     if (fast) CHECK(statics.memory.fast_pairs.in_double == 0);
+}
+
+TEST_CASE("fast second derivatives with solvation are those of the double sums",
+          "[statics][hessian][fast][solvation]") {
+    const std::vector<std::string> kinds = list_processor_kinds();
+    const std::string kind = kinds[GENERATE(range(0, 4)) % kinds.size()];
+    INFO(kind);
+    // All of it, and solvation alone, of which single precision takes no digits for the rest.
+    test::FlexibleCase peptides =
+        test::with_copy(test::solvated(test::tetrapeptide()), {14, 9, -6});
+    const bool is_alone = GENERATE(false, true);
+    if (is_alone) {
+        std::ranges::fill(peptides.topology.charge, 0);
+        for (LennardJonesPair& pair : peptides.topology.lennard_jones.pairs) pair.epsilon = 0;
+    }
+    const TorsionModel model =
+        test::model_of(peptides, {BaseFreedom::Turning, BaseFreedom::Free}, test::all_joints);
+    TorsionState state = test::state_after(model, 0.03, 21);
+    state.springs.push_back({.atoms = {70, 82, 64}, .k = 15, .place = {1, -2, 20}});
+    const LocalCoordinates coordinates =
+        build_local_coordinates(model, std::vector<HandHold>{{.molecule = 0}});
+    const FastSecondDerivatives fast = build_fast_second_derivatives(model, coordinates);
+    const auto both_of = [&](const NonbondedSettings& settings) {
+        std::array<SecondDerivatives, 2> both;
+        SecondDerivativesMemory memory;
+        use_processor_kind(kind);
+        CHECK(update_fast_second_derivatives(model, coordinates, fast, settings, state, memory,
+                                             both[0]));
+        use_processor_kind(kinds.front());
+        update_second_derivatives(model, coordinates, fast.paths, settings, state, both[1]);
+        return both;
+    };
+    const auto largest = [](const Eigen::MatrixXd& m) { return m.cwiseAbs().maxCoeff(); };
+
+    const auto water = both_of(eef1_settings());
+    const auto vacuum = both_of(eef1_settings(SolvationEnd::None));
+
+    for (const auto& both : {water, vacuum})
+        CHECK(largest(both[0].all - both[1].all) < 1e-6 * largest(both[1].all));
+    const Eigen::MatrixXd fast_part = water[0].all - vacuum[0].all;
+    const Eigen::MatrixXd part = water[1].all - vacuum[1].all;
+    CHECK(largest(part) > 1);
+    if (is_alone) CHECK(largest(fast_part - part) < 1e-6 * largest(part));
 }
