@@ -51,7 +51,7 @@ struct SolvatedHand {
     LinearisedModel linearised() const {
         Lineariser lineariser = build_lineariser(model, held);
         LinearisedModel linear;
-        REQUIRE(linearise(model, settings, 8, state, lineariser, linear));
+        REQUIRE(linearise(model, {settings, 8, {}}, state, lineariser, linear));
         return linear;
     }
 };
