@@ -51,7 +51,7 @@ struct StaticsDescription {
     // between two linearisations.
     double near_angstrom = 6;
     double renew_angstrom = 0.1;
-    std::int64_t responses = 24;  // of second order, in whose span a step answers; 0: all
+    std::int64_t responses = 0;  // of second order, in whose span a step answers; 0: all
     double renewal_ms = 0;       // declared: from the request of a linearisation to its use
     bool renews_beside = false;  // a thread of its own, as a live session has it; no key
     PairPrecision pairs = PairPrecision::Fast;

@@ -160,7 +160,7 @@ void visit_statics(FieldVisitor& v, StaticsDescription& s) {
         {.key = "responses",
          .meaning = "second-order: for each hand a step seeks the answer among so many combined "
                     "moves, responses to the hand and to the forces that these leave near "
-                    "it; 0: among all degrees of freedom, which costs more",
+                    "it, which costs less in a stiff pocket; 0: among all degrees of freedom",
          .lowest = 0,
          .highest = 3000},
         s.responses);

@@ -124,10 +124,10 @@ void follow_to_rest(const TorsionModel& model, const ForceSettings& forces, Tors
     update_forces(model, forces, memory, state);
     const double start = state.energy();
     tally.highest_start = std::max(tally.highest_start, start);
-    constexpr int strides = 20;
+    constexpr int strides = 20, most_periods = 80;
     constexpr double stride = 0.05;  // Å
     bool is_resting = false;
-    for (int i = 0; i < most_steps && !is_resting; ++i) {
+    for (int i = 0; i < most_periods && !is_resting; ++i) {
         const bool is_moving = i < 2 * strides;
         const double way = i < strides ? stride : -stride;
         if (is_moving) state.springs.front().place += way * Vec3::UnitX();
@@ -181,7 +181,7 @@ void relax_conformations(std::string_view name, const test::FlexibleCase& c, std
                             });
         relax_conformations(forces.fast ? "second order under a hand, fast pairs"
                                         : "second order under a hand, pairs in double",
-                            model, count, least.second_order,
+                            model, count / 10, least.second_order,
                             [&](const TorsionState& start, Tally& tally) {
                                 follow_to_rest(model, forces, start, tally);
                             });
