@@ -427,7 +427,7 @@ TEST_CASE("a scene is in vacuum unless it names a solvent", "[scene][read]") {
     CHECK(parse_scene(scene("eef1-sb"), file).force_field.solvent == Solvent::Eef1Sb);
     CHECK_FALSE(parse_scene(base, file).molecules[0].structural_water);
     CHECK_THAT(error_of(scene("water")),
-               Contains("'force_field.solvent' is \"water\"") && Contains("eef1-sb"));
+               Contains("'force_field.solvent' is the text \"water\"") && Contains("eef1-sb"));
 
     const std::string structural = replaced(scene("eef1-sb"), "[molecules.fixed]\n",
                                             "[molecules.fixed]\nstructural_water = true\n");
