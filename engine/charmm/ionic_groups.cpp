@@ -201,10 +201,12 @@ std::vector<IonicGroup> find_ionic_groups(std::span<const AtomName> names,
                 [&](std::size_t i) -> std::string_view { return names[first + i].atom; },
                 [&](std::size_t i) { return types[first + i]; });
             if (!found) continue;
-            IonicGroup group{known.kind, {}, 0, known.full_charge};
-            for (const std::size_t i : *found) {
-                group.atoms.push_back(static_cast<std::uint32_t>(first + i));
-                group.charge += charge[first + i];
+            IonicGroup group{known.kind, {}, 0, known.full_charge, true};
+            for (std::size_t k = 0; k < found->size(); ++k) {
+                const std::size_t i = first + (*found)[k];
+                group.atoms.push_back(static_cast<std::uint32_t>(i));
+                group.charge += charge[i];
+                if (!is_about(charge[i], known.atoms[k].charge)) group.has_neutral_charges = false;
             }
             std::ranges::sort(group.atoms);
             groups.push_back(std::move(group));

@@ -18,8 +18,9 @@ struct IonicGroup {
     std::vector<std::uint32_t> atoms;  // rising
     double charge = 0;                 // e, the sum of its atoms
     double full_charge = 0;            // e, what that is in vacuum: 1 or -1
+    bool has_neutral_charges = false;  // every atom has EEF1-SB's charge, to 0.01 e
 
-    bool is_neutral() const noexcept;  // to 0.01 e
+    bool is_neutral() const noexcept;  // the sum is 0, to 0.01 e
     bool is_full() const noexcept;
 };
 
@@ -29,11 +30,11 @@ std::vector<IonicGroup> find_ionic_groups(std::span<const AtomName> names,
                                           std::span<const std::string_view> types,
                                           std::span<const double> charge);
 
-// The force field that EEF1-SB goes with, of CHARMM36's or CHARMM36m's: in templates and patches
-// that have an ionic group, full or neutral, its charges are EEF1-SB's (PROP: EEF1.1's), it
-// is one charge group, and the charge that the template states is what comes of it; Asp's CB is of
-// type CT2, and the dihedral CT1 CT2 CC OC has the terms of CT1 CT2A CC OC unless it has some of
-// its own; the NBFIX of NC2 and OC is gone. All else stays, the backbone too.
+// The force field that EEF1-SB goes with, of CHARMM36's or CHARMM36m's. In templates and patches
+// that have an ionic group, full or neutral, its charges are EEF1-SB's (PROP: EEF1.1's), it is one
+// charge group, and the charge that the template states is what comes of it. Asp's CB is of type
+// CT2, and the dihedral CT1 CT2 CC OC has the terms of CT1 CT2A CC OC unless it has some of its
+// own. The NBFIX of NC2 and OC is gone. All else stays, the backbone too.
 ForceField neutralise_ionic_groups(ForceField force_field);
 
 // The model and the origin of the numbers, for the titles of files, in lines.

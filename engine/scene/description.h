@@ -20,6 +20,7 @@ namespace palpa {
 struct ForceFieldDescription {
     std::vector<std::filesystem::path> files;
     double coulomb_constant = units::charmm_coulomb_constant;  // kcal Å/mol/e^2
+    Solvent solvent = Solvent::None;
 };
 
 struct MoleculeDescription {
@@ -30,6 +31,7 @@ struct MoleculeDescription {
     std::string reference_atom;  // that stands for the molecule's place: "OH2", or "25 CG"
     Motion motion = Motion::Fixed;
     Shape shape = Shape::Rigid;
+    bool structural_water = false;  // its waters are part of the structure, in implicit water
 };
 
 // Which bonds of flexible molecules turn.

@@ -21,6 +21,12 @@ void visit_force_field(FieldVisitor& v, ForceFieldDescription& f) {
             .lowest = 0,
             .highest = 1e6},
            f.coulomb_constant);
+    choose(v,
+           {.key = "solvent",
+            .meaning = "what stands for the water around: none, or EEF1-SB's implicit water, with "
+                       "neutral charges of ionic groups (`palpa prepare --solvent eef1-sb`), a "
+                       "dielectric of 1.5 r and ends of its own at 9 and 9.5 Å"},
+           solvent_names, f.solvent);
     v.leave_table();
 }
 
@@ -53,6 +59,10 @@ void visit_molecule(FieldVisitor& v, MoleculeDescription& m) {
            {.key = "shape",
             .meaning = "whether its joints turn by themselves, those that [joints] names"},
            shape_names, m.shape);
+    v.flag({.key = "structural_water",
+            .meaning = "with `force_field.solvent`: its waters are part of the structure, without "
+                       "volume or solvation energy; any others are refused there"},
+           m.structural_water);
     v.leave_table();
 }
 

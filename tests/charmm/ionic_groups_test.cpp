@@ -100,10 +100,17 @@ TEST_CASE("with neutral charges two peptides have the energies that CHARMM print
               Approx(energy).margin(0.5e-5).epsilon(0));
         CHECK(charged_of(connectivity).empty());
         CHECK(groups_of(connectivity).size() == 4);
+        for (const IonicGroup& group : groups_of(connectivity)) {
+            CHECK(group.is_neutral());
+            CHECK(group.has_neutral_charges);
+        }
         // Full charges are far from it.
         const Connectivity before = build_connectivity(full, structure);
         CHECK(std::abs(electrostatic_energy(before, structure.positions) - energy) > 10);
-        for (const IonicGroup& group : groups_of(before)) CHECK(group.is_full());
+        for (const IonicGroup& group : groups_of(before)) {
+            CHECK(group.is_full());
+            CHECK_FALSE(group.has_neutral_charges);
+        }
         CHECK(charged_of(before).size() == 2);
     }
 }
