@@ -400,12 +400,16 @@ private:
             const Eigen::VectorXd by = is_there ? rest : Eigen::VectorXd(rest * (stride / length));
             report_.lags = wants_renewal_ && is_beyond(by);
             if (report_.lags) return;
+            const bool is_new = is_at_point();
             if (try_stride(by)) continue;
-            is_there = false;
+            // A state that a new model cannot hold relaxes on in the steps that follow.
+            is_there = is_there && is_new;
             report_.lags = !settings_.renews_at_once;
             if (!renew(settings_.renews_at_once)) return;
         }
     }
+
+    bool is_at_point() const { return statics_.at.squaredNorm() == 0; }
 
     bool is_beyond(const Eigen::VectorXd& by) const {
         const Eigen::VectorXd d = statics_.at.tail(linear().hands());
@@ -426,8 +430,8 @@ private:
             !are_too_close(linear().close, state_.positions))
             return true;
         ++statics_.discarded;
-        const bool is_new = at.squaredNorm() == 0;
         statics_.at = at;
+        const bool is_new = is_at_point();
         statics_.value = value;
         statics_.pairs.clear();
         if (is_new) statics_.at.tail(linear().hands()) += by;

@@ -181,7 +181,7 @@ void relax_conformations(std::string_view name, const test::FlexibleCase& c, std
                             });
         relax_conformations(forces.fast ? "second order under a hand, fast pairs"
                                         : "second order under a hand, pairs in double",
-                            model, count / 10, least.second_order,
+                            model, std::min<std::size_t>(count, 50), least.second_order,
                             [&](const TorsionState& start, Tally& tally) {
                                 follow_to_rest(model, forces, start, tally);
                             });
