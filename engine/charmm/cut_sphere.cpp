@@ -79,6 +79,19 @@ Exclusions cut_exclusions(const Exclusions& whole, std::span<const std::uint32_t
     return kept;
 }
 
+std::vector<double> cut_values(const std::vector<double>& whole,
+                               std::span<const std::uint32_t> atoms) {
+    std::vector<double> kept;
+    for (const std::uint32_t atom : atoms) kept.push_back(whole[atom]);
+    return kept;
+}
+
+Solvation cut_solvation(const Solvation& whole, std::span<const std::uint32_t> atoms) {
+    return {cut_values(whole.volume, atoms), cut_values(whole.dg_ref, atoms),
+            cut_values(whole.dg_free, atoms), cut_values(whole.lambda, atoms),
+            cut_values(whole.radius, atoms)};
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> find_sphere(const Connectivity& connectivity,
@@ -118,6 +131,7 @@ Topology cut_topology(const Topology& whole, std::span<const std::uint32_t> atom
     kept.lennard_jones = whole.lennard_jones;
     kept.lennard_jones14 = whole.lennard_jones14;
     kept.exclusions = cut_exclusions(whole.exclusions, atoms, cut);
+    if (whole.solvation) kept.solvation = cut_solvation(*whole.solvation, atoms);
     return kept;
 }
 

@@ -27,7 +27,7 @@ std::vector<std::uint32_t> find_sphere(const Connectivity& connectivity,
 
 // Those atoms of a topology, rising, with the terms, exclusions and pairs three bonds apart among
 // them: what reaches out is left out. Pairs stay excluded though the bonds that join them be cut.
-// Tables of types and maps stay whole.
+// Tables of types and maps stay whole, and solvation goes along.
 Topology cut_topology(const Topology& whole, std::span<const std::uint32_t> atoms);
 
 // A ball of the whole; pieces of chain are molecules of their own.

@@ -124,9 +124,9 @@ double first_period_ms(std::size_t atoms) {
 // A scene on its way from a first try to the one that is written.
 struct Tuning {
     SystemCopy copy;
-    std::string title;      // of files
-    bool is_turned = true;  // the way out is +x
-    Structure rest;         // the copy's atoms where their joints came to rest
+    std::string title, topology_title;  // of files
+    bool is_turned = true;              // the way out is +x
+    Structure rest;                     // the copy's atoms where their joints came to rest
     Vec3 way = Vec3::UnitX();
     SceneText text;
     SceneTuning tuning;
@@ -142,7 +142,7 @@ struct Tuning {
         std::vector<TextFile> all{{"scene.toml", scene()},
                                   {text.structure, format_crd(rest, title)}};
         if (!copy.joined.empty()) {
-            all.push_back({text.topology, format_psf(copy.connectivity, title)});
+            all.push_back({text.topology, format_psf(copy.connectivity, topology_title)});
         }
         return all;
     }
@@ -230,12 +230,14 @@ void report_scene(const Played& played, const Tuning& tuning, Report& report) {
         report.add(heading, fmt::format("bonded to each other, so one molecule there: {}",
                                         fmt::join(names, ", ")));
     }
-    report.add(
-        heading,
-        fmt::format("{} joints turn, in vacuum with full charges; brought to rest: {:.2f} to "
-                    "{:.2f} kcal/mol in {} steps, moved {:.2f} Å at most (relaxed.crd)",
-                    tuning.joints, tuning.relaxed.energy_before, tuning.relaxed.energy_after,
-                    tuning.relaxed.steps, tuning.relaxed.largest_move));
+    report.add(heading,
+               fmt::format("{} joints turn, in {}; brought to rest: {:.2f} to "
+                           "{:.2f} kcal/mol in {} steps, moved {:.2f} Å at most (relaxed.crd)",
+                           tuning.joints,
+                           tuning.text.solvent == Solvent::None ? "vacuum with full charges"
+                                                                : "EEF1-SB's implicit water",
+                           tuning.relaxed.energy_before, tuning.relaxed.energy_after,
+                           tuning.relaxed.steps, tuning.relaxed.largest_move));
     if (tuning.relaxed.end != RelaxEnd::Converged) {
         report.add(heading, fmt::format("not yet at rest: an rms force of {:.3g} kcal/mol per "
                                         "radian and Å is left; palpa relax goes on",
@@ -311,6 +313,8 @@ TunedScene tune_scene(PreparedSystem& system, const std::string& grab, bool is_a
     Tuning tuning;
     tuning.copy = copy_for_scene(system, grab);
     tuning.title = title;
+    tuning.topology_title = topology_title(system, title);
+    tuning.text.solvent = system.solvent;
     tuning.is_turned = !is_aligned;
     tuning.rest = tuning.copy.structure;
     tuning.text.title = name;

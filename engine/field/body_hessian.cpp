@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <tuple>
 #include <utility>
 
@@ -127,11 +128,34 @@ void find_first_blocks(const BodyTreeView& tree, HessianPlan& plan) {
     }
 }
 
-void add_numbers(const PairParameters& parameters, HessianPlan& plan) {
+// By place, zero where there is no solvation: volume, strength, scale and offset.
+class SolvationNumbers {
+public:
+    explicit SolvationNumbers(const SolvationParameters& parameters) : parameters_(parameters) {}
+
+    std::array<float, 4> of(std::uint32_t atom) const {
+        if (parameters_.volume.empty()) return {};
+        const double scale = std::sqrt(std::numbers::log2e) * parameters_.inverse_lambda[atom];
+        return {static_cast<float>(parameters_.volume[atom]),
+                static_cast<float>(parameters_.strength[atom]), static_cast<float>(scale),
+                static_cast<float>(scale * parameters_.radius[atom])};
+    }
+
+private:
+    const SolvationParameters& parameters_;
+};
+
+void add_numbers(const PairParameters& parameters, const SolvationNumbers& solvation,
+                 HessianPlan& plan) {
     for (const std::uint32_t atom : plan.atoms) {
         plan.charge.push_back(static_cast<float>(parameters.charge[atom]));
         plan.sqrt_epsilon.push_back(static_cast<float>(parameters.sqrt_epsilon[atom]));
         plan.half_rmin.push_back(static_cast<float>(parameters.half_rmin[atom]));
+        const auto [volume, strength, scale, offset] = solvation.of(atom);
+        plan.volume.push_back(volume);
+        plan.strength.push_back(strength);
+        plan.scale.push_back(scale);
+        plan.offset.push_back(offset);
     }
     for (const HessianPanel& panel : plan.panels) {
         auto& of_panel = plan.row_numbers.emplace_back();
@@ -143,6 +167,11 @@ void add_numbers(const PairParameters& parameters, HessianPlan& plan) {
                 of_panel[k].epsilon12.at[lane] =
                     static_cast<float>(12 * parameters.sqrt_epsilon[atom]);
                 of_panel[k].half_rmin.at[lane] = static_cast<float>(parameters.half_rmin[atom]);
+                const auto [volume, strength, scale, offset] = solvation.of(atom);
+                of_panel[k].volume.at[lane] = volume;
+                of_panel[k].strength.at[lane] = strength;
+                of_panel[k].scale.at[lane] = scale;
+                of_panel[k].offset.at[lane] = offset;
             }
         }
     }
@@ -337,6 +366,7 @@ bool is_sound(const HessianSums& sums) {
 }  // namespace
 
 HessianPlan build_hessian_plan(const BodyTreeView& tree, const PairParameters& parameters,
+                               const SolvationParameters& solvation,
                                std::span<const std::array<std::uint32_t, 2>> left_out,
                                std::size_t first_replaced) {
     HessianPlan plan;
@@ -344,7 +374,7 @@ HessianPlan build_hessian_plan(const BodyTreeView& tree, const PairParameters& p
     choose_slots(tree, plan);
     add_panels(plan);
     find_first_blocks(tree, plan);
-    add_numbers(parameters, plan);
+    add_numbers(parameters, SolvationNumbers(solvation), plan);
     std::vector<std::uint32_t> column_of(parameters.charge.size(), no_number);
     for (std::uint32_t c = 0; c < plan.columns.size(); ++c) {
         for (std::uint32_t a = plan.columns[c].first_atom; a < plan.columns[c].end_atom; ++a)
@@ -356,7 +386,11 @@ HessianPlan build_hessian_plan(const BodyTreeView& tree, const PairParameters& p
 }
 
 bool has_hessian_kernel(const PairScheme& scheme) noexcept {
-    if (scheme.distance_dielectric) return false;
+    if (scheme.distance_dielectric) {
+        return scheme.electrostatics == ElectrostaticCutoff::CubicShift &&
+               scheme.van_der_waals == VanDerWaalsCutoff::SmoothSwitch;
+    }
+    if (scheme.solvation_end > 0) return false;
     return (scheme.electrostatics == ElectrostaticCutoff::None &&
             scheme.van_der_waals == VanDerWaalsCutoff::None) ||
            (scheme.electrostatics == ElectrostaticCutoff::ForceSwitch &&

@@ -1,6 +1,6 @@
-// Second derivatives of Lennard-Jones and Coulomb energies between rigid bodies that are joined in
-// trees: pairs in single precision, as wide as the processor allows. The reference implementation
-// in double is statics/second_derivatives.h.
+// Second derivatives of Lennard-Jones, Coulomb and solvation energies between rigid bodies that are
+// joined in trees: pairs in single precision, as wide as the processor allows. The reference
+// implementation in double is statics/second_derivatives.h.
 //
 // Let E_ij be a function of u = r^2/2, T_i the matrix that turns a screw (math/spatial.h) into the
 // velocity of atom i, and d the vector from j to i. The block of two bodies is
@@ -108,9 +108,11 @@ struct HessianPlan {
     // Of each place and lane of a panel, and of each atom of the columns: what never changes.
     struct Numbers {
         LaneFloats charge, epsilon12, half_rmin;
+        LaneFloats volume, strength, scale, offset;  // as of SolvationCluster
     };
     std::vector<std::array<Numbers, hessian_places>> row_numbers;
     std::vector<float> charge, sqrt_epsilon, half_rmin;
+    std::vector<float> volume, strength, scale, offset;
 
     // Of motions, the last may be not full.
     std::size_t blocks() const noexcept {
@@ -121,6 +123,7 @@ struct HessianPlan {
 // `left_out`: pairs that no combined numbers are for, each once, either way round; from
 // `first_replaced` on they are to be taken in double. Pairs within one body are left out anyway.
 HessianPlan build_hessian_plan(const BodyTreeView& tree, const PairParameters& parameters,
+                               const SolvationParameters& solvation,
                                std::span<const std::array<std::uint32_t, 2>> left_out,
                                std::size_t first_replaced);
 
@@ -161,7 +164,8 @@ struct HessianSums {
     } workspace;
 };
 
-// Whether the kernel has such a scheme: none of both, or both forces switched.
+// Whether the kernel has such a scheme: none of both, or both forces switched, with a constant
+// dielectric; and both smooth ends with one that grows with the distance, which may have solvation.
 bool has_hessian_kernel(const PairScheme& scheme) noexcept;
 
 // False where a sum is not finite, as of atoms at one place. `screws` of each motion as the caller

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 
 // Of a lambda that runs in the innermost loop; other compilers know no such word there.
 #undef PALPA_INLINED
@@ -21,7 +22,7 @@
 #define HWY_TARGET_INCLUDE "field/pair_job.cpp"
 #include <hwy/foreach_target.h>  // before highway.h
 
-#include "field/pair_kernel-inl.h"
+#include "field/cluster_kernel-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace palpa::HWY_NAMESPACE {
@@ -53,16 +54,39 @@ struct Switching {
     V scale, offset, slope_scale;
 };
 
+// The same with a second derivative that is continuous:
+//   S = 1 - y^3 (10 - 15 y + 6 y^2),  S'/r = -60 y^2 (1 - y)^2/(c^2 - m^2)
+struct SmoothSwitching : Switching {
+    explicit HWY_INLINE SmoothSwitching(const PairScheme& scheme) : Switching(scheme) {
+        slope_scale = hn::Mul(slope_scale, all(-5.0 / 12));
+    }
+    // 1 from c on, where neither is anything.
+    HWY_INLINE V place(V r2) const { return hn::Min(Switching::place(r2), all(1)); }
+    HWY_INLINE V value(V y) const {
+        const V p = hn::MulAdd(hn::MulAdd(y, all(6), all(-15)), y, all(10));
+        return hn::NegMulAdd(hn::Mul(hn::Mul(y, y), y), p, all(1));
+    }
+    // Of `energy`, 12 times too large, what its slope takes: -energy/12 S'/r.
+    HWY_INLINE V taken(V energy, V y) const {
+        const V both = hn::NegMulAdd(y, y, y);
+        return hn::Mul(hn::Mul(slope_scale, energy), hn::Mul(both, both));
+    }
+};
+
 // The forms of forces/pair_law.h, put so that no two large numbers cancel in single precision.
 template <ElectrostaticCutoff End, bool DistanceDielectric>
 class Electrostatics {
 public:
-    static constexpr bool ends = End != ElectrostaticCutoff::None;
+    // Whether pairs have to be cut off at c: CubicShift is nothing from there on by itself.
+    static constexpr bool ends =
+        End != ElectrostaticCutoff::None && End != ElectrostaticCutoff::CubicShift;
+    static constexpr bool takes_root = !DistanceDielectric;
 
     explicit HWY_INLINE Electrostatics(const PairScheme& scheme) : switching_(scheme) {
         const double c = scheme.cutoff, m = scheme.switch_from, width = c * c - m * m;
         inverse_c_ = all(1 / c);
         inverse_c2_ = all(1 / (c * c));
+        inverse_c2_4_ = all(4 / (c * c));
         if constexpr (End == ElectrostaticCutoff::ForceSwitch) {
             // The energy before m is U moved by C0; after it, by x = r - m > 0,
             //   C0 + 1/r + integral over (1 - S)/r^2 = C0 + 1/r + x^3 p(x)/r
@@ -100,6 +124,16 @@ public:
             terms.a = hn::Add(terms.a, steepness(energy));
             terms.b = hn::MulAdd(hn::Mul(once, all(4)), inverse_c2_, terms.b);
             if constexpr (WithEnergy) terms.electrostatic = hn::Add(terms.electrostatic, energy);
+        } else if constexpr (End == ElectrostaticCutoff::CubicShift) {
+            // For U = q/r^n and left = 1 - (r/c)^2: -r (U left^3)' = U left^2 (n + (6 - n) (r/c)^2)
+            const V left = hn::Max(hn::NegMulAdd(r2, inverse_c2_, all(1)), hn::Zero(floats));
+            const V twice = hn::Mul(hn::Mul(u, left), left);
+            terms.a =
+                DistanceDielectric ? hn::MulAdd(twice, all(2), terms.a) : hn::Add(terms.a, twice);
+            terms.b =
+                hn::MulAdd(twice, DistanceDielectric ? inverse_c2_4_ : inverse_c2_5(), terms.b);
+            if constexpr (WithEnergy)
+                terms.electrostatic = hn::MulAdd(twice, left, terms.electrostatic);
         } else if constexpr (End == ElectrostaticCutoff::ForceShift) {
             terms.a = hn::Add(terms.a, u);
             terms.b = hn::NegMulAdd(u, inverse_c2_, terms.b);
@@ -121,6 +155,8 @@ private:
     // -r U'/U.
     static HWY_INLINE V steepness(V u) { return DistanceDielectric ? hn::Add(u, u) : u; }
 
+    HWY_INLINE V inverse_c2_5() const { return hn::Add(inverse_c2_4_, inverse_c2_); }
+
     // 1 + x^3 p(x)
     HWY_INLINE V after_m(V r2, V inverse_r) const {
         const V x = hn::Max(hn::MulSub(r2, inverse_r, m_), hn::Zero(floats));
@@ -130,7 +166,7 @@ private:
     }
 
     Switching switching_;
-    V inverse_c_, inverse_c2_;
+    V inverse_c_, inverse_c2_, inverse_c2_4_;
     V m_ = hn::Zero(floats), p0_ = m_, p1_ = m_, p2_ = m_, p3_ = m_, shift_ = m_;
 };
 
@@ -138,7 +174,12 @@ private:
 template <VanDerWaalsCutoff End>
 class VanDerWaals {
 public:
-    static constexpr bool ends = End != VanDerWaalsCutoff::None;
+    // As of electrostatics; SmoothSwitch is nothing from c on.
+    static constexpr bool ends =
+        End != VanDerWaalsCutoff::None && End != VanDerWaalsCutoff::SmoothSwitch;
+
+    // Whether 1/r is used, not only its square.
+    static constexpr bool takes_root = End != VanDerWaalsCutoff::SmoothSwitch;
 
     explicit HWY_INLINE VanDerWaals(const PairScheme& scheme) : switching_(scheme) {
         const double c3 = std::pow(scheme.cutoff, 3), m3 = std::pow(scheme.switch_from, 3);
@@ -159,15 +200,20 @@ public:
             set_force_switched<WithEnergy>(inverse_r, inverse_r2, epsilon12, rmin, terms);
             return;
         }
-        const V s = hn::Mul(rmin, inverse_r), s2 = hn::Mul(s, s);
+        const V s = hn::Mul(rmin, inverse_r);
+        const V s2 = takes_root ? hn::Mul(s, s) : hn::Mul(hn::Mul(rmin, rmin), inverse_r2);
         const V s6 = hn::Mul(hn::Mul(s2, s2), s2), well = hn::Mul(epsilon12, s6);
         terms.a = hn::MulSub(well, s6, well);
         terms.b = hn::Zero(floats);
-        if constexpr (End == VanDerWaalsCutoff::Switch) {
+        if constexpr (End == VanDerWaalsCutoff::Switch || End == VanDerWaalsCutoff::SmoothSwitch) {
             const V y = switching_.place(r2), value = switching_.value(y);
             const V energy = hn::Mul(well, hn::Sub(s6, all(2)));
             terms.a = hn::Mul(terms.a, value);
-            terms.b = hn::Mul(hn::Mul(energy, all(-1.0 / 12)), switching_.slope(y));
+            if constexpr (End == VanDerWaalsCutoff::SmoothSwitch) {
+                terms.b = switching_.taken(energy, y);
+            } else {
+                terms.b = hn::Mul(hn::Mul(energy, all(-1.0 / 12)), switching_.slope(y));
+            }
             if constexpr (WithEnergy)
                 terms.van_der_waals = hn::MulAdd(energy, value, terms.van_der_waals);
         } else if constexpr (WithEnergy) {
@@ -197,7 +243,8 @@ private:
         }
     }
 
-    Switching switching_;
+    std::conditional_t<End == VanDerWaalsCutoff::SmoothSwitch, SmoothSwitching, Switching>
+        switching_;
     V k12_, k12_end_, k6_, k6_end_, inverse_c6_, inverse_c3_, inverse_m6_, inverse_m3_;
 };
 
@@ -211,59 +258,6 @@ struct Rows {
     alignas(64) float fx[cluster_size][lane_count], fy[cluster_size][lane_count],
         fz[cluster_size][lane_count];
 };
-
-// As many atoms as there are lanes: some of one cluster, or two clusters.
-HWY_INLINE V load_columns(const ClusterAtoms::Column& first,
-                          [[maybe_unused]] const ClusterAtoms::Column& second, std::size_t column) {
-#if HWY_MAX_BYTES == 64
-    const HalfFloats half;
-    return hn::Combine(floats, hn::Load(half, second.data()), hn::Load(half, first.data()));
-#else
-    return hn::Load(floats, first.data() + column);
-#endif
-}
-
-HWY_INLINE void subtract(W force, double* sums) {
-    hn::Store(hn::Sub(hn::Load(doubles, sums), force), doubles, sums);
-}
-
-// Takes from the forces on the columns what their rows got.
-HWY_INLINE void subtract_from_columns(V force, std::array<double, cluster_size>& first,
-                                      std::array<double, cluster_size>& second,
-                                      std::size_t column) {
-    subtract(lower_half(force), first.data() + column);
-    if constexpr (lane_count > cluster_size) {
-        subtract(upper_half(force), second.data());
-    } else if constexpr (lane_count > 1) {
-        subtract(upper_half(force), first.data() + column + lane_count / 2);
-    }
-}
-
-// Adds gradient times distance to the force on a column and to that on a row.
-HWY_INLINE void add_force(V gradient, V distance, V& on_column, float* on_row) {
-#if HWY_NATIVE_FMA
-    on_column = hn::MulAdd(gradient, distance, on_column);
-    hn::Store(hn::MulAdd(gradient, distance, hn::Load(floats, on_row)), floats, on_row);
-#else
-    const V force = hn::Mul(gradient, distance);
-    on_column = hn::Add(on_column, force);
-    hn::Store(hn::Add(hn::Load(floats, on_row), force), floats, on_row);
-#endif
-}
-
-// Pairs of a row that count.
-HWY_INLINE M load_mask(std::uint64_t first, std::uint64_t second, std::uint32_t row,
-                       std::size_t column) {
-    std::uint8_t bits[8] = {};
-    const std::uint64_t of_first = first >> (8 * row) & 0xff;
-    if constexpr (lane_count > cluster_size) {
-        bits[0] = static_cast<std::uint8_t>(of_first);
-        bits[1] = static_cast<std::uint8_t>(second >> (8 * row));
-    } else {
-        bits[0] = static_cast<std::uint8_t>(of_first >> column);
-    }
-    return hn::LoadMaskBits(floats, bits);
-}
 
 template <class Electrostatics, class VanDerWaals, bool WithEnergy>
 class Kernel {
@@ -332,14 +326,6 @@ private:
         }
         flush_rows(c);
         nearest2_ = sums.nearest2;
-    }
-
-    static HWY_INLINE std::uint32_t rows_of(std::uint64_t pairs) {
-        pairs |= pairs >> 4;
-        pairs |= pairs >> 2;
-        pairs |= pairs >> 1;
-        pairs &= 0x0101010101010101U;
-        return static_cast<std::uint32_t>(pairs * 0x0102040810204080U >> 56);
     }
 
     HWY_INLINE void load_rows(std::size_t c) {
@@ -428,7 +414,13 @@ private:
                 sums.nearest2 = hn::Min(sums.nearest2, counted2);
                 // A pair that does not count may be at one place.
                 const V r2 = IsMasked ? hn::Max(distance2, all(1e-2)) : distance2;
-                const V inverse_r = inverse_root(r2), inverse_r2 = hn::Mul(inverse_r, inverse_r);
+                V inverse_r = hn::Zero(floats), inverse_r2;
+                if constexpr (Electrostatics::takes_root || VanDerWaals::takes_root) {
+                    inverse_r = inverse_root(r2);
+                    inverse_r2 = hn::Mul(inverse_r, inverse_r);
+                } else {
+                    inverse_r2 = inverse(r2);
+                }
                 Terms terms{hn::Zero(floats), hn::Zero(floats), sums.van_der_waals,
                             sums.electrostatic};
                 van_der_waals.template set<WithEnergy>(r2, inverse_r, inverse_r2, epsilon12, rmin,
@@ -501,10 +493,20 @@ JobSum sum_with_electrostatics(const PairJob& job) {
             return sum_with_dielectric<ElectrostaticEnd, Switch>(job);
         case ForceSwitch:
             return sum_with_dielectric<ElectrostaticEnd, ForceSwitch>(job);
+        case SmoothSwitch:  // with CubicShift alone
         case None:
             break;
     }
     return sum_with_dielectric<ElectrostaticEnd, None>(job);
+}
+
+// The two ends that are smooth to the second derivative go together.
+JobSum sum_smooth_ends(const PairJob& job) {
+    using enum ElectrostaticCutoff;
+    using SmoothVanDerWaals = VanDerWaals<VanDerWaalsCutoff::SmoothSwitch>;
+    if (job.scheme->distance_dielectric)
+        return sum_with_laws<Electrostatics<CubicShift, true>, SmoothVanDerWaals>(job);
+    return sum_with_laws<Electrostatics<CubicShift, false>, SmoothVanDerWaals>(job);
 }
 
 JobSum sum_job(const PairJob& job) {
@@ -518,6 +520,8 @@ JobSum sum_job(const PairJob& job) {
             return sum_with_electrostatics<ForceShift>(job);
         case ForceSwitch:
             return sum_with_electrostatics<ForceSwitch>(job);
+        case CubicShift:
+            return sum_smooth_ends(job);
         case None:
             break;
     }

@@ -50,6 +50,37 @@ HWY_INLINE V inverse_root(V x) {
 #endif
 }
 
+// 1/x to the last bit or two: with h = 1 - x e, 1/(1 - h) = 1 + h + h^2 + ...
+HWY_INLINE V inverse(V x) {
+    const V e = hn::ApproximateReciprocal(x);
+    const V h = hn::NegMulAdd(x, e, all(1));
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+    return hn::MulAdd(e, h, e);  // 14 bits to begin with
+#else
+    const V first = hn::MulAdd(hn::Mul(e, h), hn::Add(h, all(1)), e);
+#if HWY_ARCH_ARM
+    return hn::MulAdd(first, hn::NegMulAdd(x, first, all(1)), first);  // 8 bits
+#else
+    return first;
+#endif
+#endif
+}
+
+// 2^(-x^2) to 1e-7, for x^2 below 100: with n whole and f within a half of zero, 2^n p(f).
+HWY_INLINE V power_of_minus_square(V x) {
+    const hn::RebindToSigned<Floats> integers;
+    const V whole = all(12582912);  // 1.5 * 2^23: what is added to it is rounded to a whole number
+    const V shifted = hn::NegMulAdd(x, x, whole);
+    const V f = hn::NegMulSub(x, x, hn::Sub(shifted, whole));
+    V p = hn::MulAdd(f, all(0.0013390863364533504), all(0.009676031918326564));
+    p = hn::MulAdd(p, f, all(0.05550357114219461));
+    p = hn::MulAdd(p, f, all(0.24022107485308208));
+    p = hn::MulAdd(p, f, all(0.6931471880262287));
+    p = hn::MulAdd(p, f, all(1.0000000754548972));
+    const auto exponent = hn::ShiftLeft<23>(hn::BitCast(integers, shifted));
+    return hn::BitCast(floats, hn::Add(hn::BitCast(integers, p), exponent));
+}
+
 // The two halves of some floats, in double; of a single one, the upper half is nothing.
 #if HWY_TARGET == HWY_SCALAR
 HWY_INLINE W lower_half(V v) { return hn::PromoteTo(doubles, v); }

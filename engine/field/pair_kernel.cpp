@@ -1,7 +1,7 @@
 #include "field/pair_kernel.h"
 
 #include "core/assertion.h"
-#include "field/grid.h"
+#include "field/cluster_sums.h"
 #include "field/pair_job.h"
 
 #include <algorithm>
@@ -14,90 +14,17 @@
 #include <utility>
 
 namespace palpa {
-namespace {
-
-// Whether all are near enough to the origin.
-bool place_atoms(const ClusterList& list, std::span<const Vec3> positions,
-                 PairWorkspace& workspace) noexcept {
-    bool fits = true;
-    for (std::size_t c = 0; c < list.clusters(); ++c) {
-        ClusterAtoms& atoms = workspace.atoms[c];
-        for (std::size_t k = 0; k < cluster_size; ++k) {
-            const std::uint32_t atom = list.atoms[c * cluster_size + k];
-            if (atom == no_atom) continue;
-            const Vec3 place = positions[atom] - workspace.origin;
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                const double x = place(static_cast<Eigen::Index>(axis));
-                fits = fits & (std::abs(x) < farthest_single_precision);
-                const double high = rounded_to_grid(x);
-                atoms.high[axis][k] = static_cast<float>(high);
-                atoms.low[axis][k] = static_cast<float>(x - high);
-            }
-        }
-    }
-    return fits;
-}
-
-// The first cluster of a thread's share: all tiles and what the first thread does besides, in equal
-// parts.
-std::size_t first_cluster(const ClusterList& list, const PairThreads& threads,
-                          std::size_t thread) noexcept {
-    if (thread == 0) return 0;
-    if (thread == threads.count) return list.clusters();
-    const auto tiles_before = [&](std::size_t c) {
-        return list.first_plain[c] + list.first_masked[c];
-    };
-    const std::size_t besides = threads.beside_tiles;
-    const std::size_t before = (tiles_before(list.clusters()) + besides) * thread / threads.count;
-    const std::size_t wanted = before - std::min(before, besides);
-    std::size_t low = 0, high = list.clusters();
-    while (low < high) {
-        const std::size_t middle = (low + high) / 2;
-        if (tiles_before(middle) < wanted) {
-            low = middle + 1;
-        } else {
-            high = middle;
-        }
-    }
-    return low;
-}
-
-void add_cluster_forces(const ClusterList& list, const PairWorkspace& workspace,
-                        std::size_t threads, std::span<Vec3> forces) noexcept {
-    for (std::size_t c = 0; c < list.clusters(); ++c) {
-        for (std::size_t k = 0; k < cluster_size; ++k) {
-            const std::uint32_t atom = list.atoms[c * cluster_size + k];
-            if (atom == no_atom) continue;
-            for (std::size_t t = 0; t < threads; ++t) {
-                const auto& on = workspace.forces[t][c].on;
-                forces[atom] += Vec3(on[0][k], on[1][k], on[2][k]);
-            }
-        }
-    }
-}
-
-}  // namespace
-
 PairWorkspace build_pair_workspace(const ClusterList& list, const PairParameters& parameters,
                                    PairWorkspace storage) {
     PairWorkspace workspace = std::move(storage);
     workspace.atoms.assign(list.clusters() + 1, {});
-    Vec3 low = Vec3::Zero(), high = Vec3::Zero();
-    for (std::size_t i = 0; i < list.positions.size(); ++i) {
-        const Vec3& place = list.positions[i];
-        low = i == 0 ? place : low.cwiseMin(place);
-        high = i == 0 ? place : high.cwiseMax(place);
-    }
-    workspace.origin = 0.5 * (low + high);
-    if (!workspace.origin.allFinite()) workspace.origin = Vec3::Zero();
+    workspace.origin = find_cluster_origin(list);
     for (std::size_t p = 0; p < list.atoms.size(); ++p) {
         ClusterAtoms& atoms = workspace.atoms[p / cluster_size];
         const std::size_t k = p % cluster_size;
         const std::uint32_t atom = list.atoms[p];
         if (atom == no_atom) {
-            // Far from all atoms and from each other; without charge and well.
-            for (auto& high_column : atoms.high)
-                high_column[k] = 4e4F + 16 * static_cast<float>(p % (2 * cluster_size));
+            place_filler(p, atoms);  // without charge and well
             continue;
         }
         atoms.charge[k] = static_cast<float>(parameters.charge[atom]);
@@ -115,8 +42,10 @@ PairKernelSum add_cluster_pair_forces(const ClusterList& list, const PairScheme&
     PALPA_ASSERT(!scheme.distance_dielectric ||
                  (scheme.electrostatics != ElectrostaticCutoff::ForceShift &&
                   scheme.electrostatics != ElectrostaticCutoff::ForceSwitch));
+    PALPA_ASSERT((scheme.electrostatics == ElectrostaticCutoff::CubicShift) ==
+                 (scheme.van_der_waals == VanDerWaalsCutoff::SmoothSwitch));
     PALPA_ASSERT(!is_outdated(list, positions) && forces.size() == positions.size());
-    const bool fits = place_atoms(list, positions, workspace);
+    const bool fits = place_in_clusters(list, positions, workspace.origin, workspace.atoms);
     std::vector<JobSum> sums(threads.count);
     if (workspace.forces.size() < threads.count) workspace.forces.resize(threads.count);
     const auto run = [&](std::size_t t) {
@@ -142,7 +71,7 @@ PairKernelSum add_cluster_pair_forces(const ClusterList& list, const PairScheme&
     }
     constexpr double nearest = nearest_single_precision;
     if (!fits || !(nearest2 > nearest * nearest)) return {};
-    add_cluster_forces(list, workspace, threads.count, forces);
+    add_cluster_forces(list, workspace.forces, threads.count, forces);
     sum.is_sound = true;
     return sum;
 }

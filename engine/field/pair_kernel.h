@@ -20,10 +20,24 @@ struct PairScheme {
     double coulomb = 0;  // C/eps, kcal Å/mol/e^2
     // A dielectric of eps r: E = C q q'/(eps r^2). Not with ForceShift or ForceSwitch.
     bool distance_dielectric = false;
+    // CubicShift goes with SmoothSwitch alone, and that with nothing else.
     ElectrostaticCutoff electrostatics = ElectrostaticCutoff::None;
     VanDerWaalsCutoff van_der_waals = VanDerWaalsCutoff::None;
     double switch_from = 10;  // m, Å
     double cutoff = 12;       // c, Å
+    // Of solvation, Å: it is switched off smoothly from one to the other. 0: there is none.
+    // add_cluster_pair_forces leaves it to field/solvation_kernel.h.
+    double solvation_begin = 0, solvation_end = 0;
+};
+
+// One entry per atom; what one takes of another's water (EEF1) is
+//   strength volume' exp(-((r - radius)/lambda)^2)/r^2.
+// All empty where there is no solvation.
+struct SolvationParameters {
+    std::span<const double> volume;          // Å^3
+    std::span<const double> strength;        // kcal/mol/Å
+    std::span<const double> inverse_lambda;  // 1/Å
+    std::span<const double> radius;          // Å
 };
 
 // One entry per atom. Every pair follows CHARMM's combination rules; what does not is left out of

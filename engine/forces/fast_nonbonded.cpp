@@ -137,6 +137,24 @@ bool update_near(const Topology& topology, const FastAtoms& atoms,
     return true;
 }
 
+// Without solvation.
+NonbondedEnergy add_fast_pairs(const Topology& topology, const FastAtoms& atoms,
+                               const NonbondedSettings& settings, double skin,
+                               std::span<const Vec3> positions, FastPairs& pairs,
+                               std::span<Vec3> forces, PairResult result,
+                               const PairThreads& threads) {
+    update_list(topology, atoms, settings, skin, positions, pairs);
+    const bool is_near = update_near(topology, atoms, settings, skin, positions, pairs);
+    const std::optional<NonbondedEnergy> energy =
+        add_tile_forces(topology, settings, is_near ? pairs.near.tiles : pairs.list,
+                        is_near ? pairs.near.workspace : pairs.workspace, pairs.replaced, positions,
+                        forces, result, threads);
+    if (energy) return *energy;
+    ++pairs.in_double;
+    if (atoms.groups.empty()) return add_nonbonded_forces(topology, settings, positions, forces);
+    return add_pairs_in_double(topology, settings, pairs.list, pairs.replaced, positions, forces);
+}
+
 }  // namespace
 
 FastAtoms build_fast_atoms(const Topology& topology) {
@@ -151,7 +169,18 @@ FastAtoms build_fast_atoms(const Topology& topology) {
     }
     atoms.first_replaced = atoms.left_out.size();
     add_replaced_pairs(topology, atoms);
+    atoms.solvation = build_fast_solvation_atoms(topology);
     return atoms;
+}
+
+bool has_fast_form(const NonbondedSettings& settings) noexcept {
+    if (settings.solvation == SolvationEnd::Sharp ||
+        (settings.electrostatics == ElectrostaticCutoff::CubicShift) !=
+            (settings.van_der_waals == VanDerWaalsCutoff::SmoothSwitch))
+        return false;
+    // In single precision too little would be left of this energy between m and c.
+    return !(settings.distance_dielectric &&
+             settings.electrostatics == ElectrostaticCutoff::ForceSwitch);
 }
 
 NonbondedEnergy add_fast_nonbonded_forces(const Topology& topology, const FastAtoms& atoms,
@@ -161,23 +190,18 @@ NonbondedEnergy add_fast_nonbonded_forces(const Topology& topology, const FastAt
                                           const PairThreads& threads) {
     PALPA_ASSERT(!find_problem(settings));
     PALPA_ASSERT(positions.size() == topology.size() && forces.size() == topology.size());
-    // In single precision too little would be left of its energy between m and c.
-    if (settings.distance_dielectric &&
-        settings.electrostatics == ElectrostaticCutoff::ForceSwitch) {
+    if (!has_fast_form(settings)) {
         if (threads.beside) threads.beside();
         ++pairs.in_double;
         return add_nonbonded_forces(topology, settings, positions, forces);
     }
-    update_list(topology, atoms, settings, skin, positions, pairs);
-    const bool is_near = update_near(topology, atoms, settings, skin, positions, pairs);
-    const std::optional<NonbondedEnergy> energy =
-        add_tile_forces(topology, settings, is_near ? pairs.near.tiles : pairs.list,
-                        is_near ? pairs.near.workspace : pairs.workspace, pairs.replaced, positions,
-                        forces, result, threads);
-    if (energy) return *energy;
-    ++pairs.in_double;
-    if (atoms.groups.empty()) return add_nonbonded_forces(topology, settings, positions, forces);
-    return add_pairs_in_double(topology, settings, pairs.list, pairs.replaced, positions, forces);
+    NonbondedEnergy energy = add_fast_pairs(topology, atoms, without_solvation(settings), skin,
+                                            positions, pairs, forces, result, threads);
+    if (settings.solvation == SolvationEnd::None) return energy;
+    const double solvation = add_fast_solvation_forces(topology, atoms.solvation, skin, positions,
+                                                       pairs.solvation, forces, threads.count);
+    if (result == PairResult::ForcesAndEnergies) energy.solvation = solvation;
+    return energy;
 }
 
 std::optional<NonbondedEnergy> add_tile_forces(const Topology& topology,
@@ -196,7 +220,8 @@ std::optional<NonbondedEnergy> add_tile_forces(const Topology& topology,
     const PairKernelSum sum =
         add_cluster_pair_forces(list, scheme, positions, workspace, forces, result, threads);
     if (!sum.is_sound) return std::nullopt;
-    const NonbondedEnergy added = add_pair_forces(topology, settings, others, positions, forces);
+    const NonbondedEnergy added =
+        add_pair_forces(topology, without_solvation(settings), others, positions, forces);
     if (result == PairResult::Forces) return NonbondedEnergy{};
     return NonbondedEnergy{sum.van_der_waals + added.van_der_waals,
                            sum.electrostatic + added.electrostatic};

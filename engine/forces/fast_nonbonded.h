@@ -3,6 +3,7 @@
 #pragma once
 #include "charmm/topology.h"
 #include "field/pair_kernel.h"
+#include "forces/fast_solvation.h"
 #include "forces/nonbonded.h"
 #include "math/vec.h"
 
@@ -27,13 +28,22 @@ struct FastAtoms {
     // Sums that end at a cutoff have all near pairs, since there clusters change. The caller's to
     // write.
     std::vector<std::uint32_t> groups;
+    FastSolvationAtoms solvation;
 
+    std::span<const std::array<std::uint32_t, 2>> excluded() const noexcept {
+        return std::span(left_out).first(first_replaced);
+    }
     std::span<const std::array<std::uint32_t, 2>> replaced() const noexcept {
         return std::span(left_out).subspan(first_replaced);
     }
 };
 
 FastAtoms build_fast_atoms(const Topology& topology);
+
+// Whether single precision does for them: not for switched forces of a dielectric that grows with
+// the distance, for one of the two smooth ends without the other, and for the sharp end of
+// solvation.
+bool has_fast_form(const NonbondedSettings& settings) noexcept;
 
 // The list at hand and the kernel's memory; the settings say whether it is one of all pairs.
 struct FastPairs {
@@ -54,15 +64,16 @@ struct FastPairs {
     } near;
     std::vector<Vec3> summed;   // positions of the last sum, Å
     std::size_t in_double = 0;  // sums so far that single precision did not do
+    FastSolvationPairs solvation;
 };
 
 // Adds the forces (kcal/mol/Å) of all pairs but those three bonds apart, as `add_nonbonded_forces`
-// does, and returns their energies, zero unless asked for. Settings must be sound. A list with a
+// does, and returns their energies, zero unless asked for. Where the settings have a fast form, the
+// solvation of those three bonds apart is in it. Settings must be sound. A list with a
 // cutoff holds pairs up to `skin` (Å) beyond it; `pairs`, empty before the first call and of one
 // topology and cutoff ever after, is updated when outdated. Pairs with replaced numbers are
-// summed in double. So is everything where single precision does not do: switched forces of
-// a dielectric that grows with the distance; atoms as close or as far apart as field/pair_kernel.h
-// says.
+// summed in double. So is everything where single precision does not do: settings without a
+// fast form; atoms as close or as far apart as field/pair_kernel.h says.
 NonbondedEnergy add_fast_nonbonded_forces(const Topology& topology, const FastAtoms& atoms,
                                           const NonbondedSettings& settings, double skin,
                                           std::span<const Vec3> positions, FastPairs& pairs,
@@ -70,8 +81,8 @@ NonbondedEnergy add_fast_nonbonded_forces(const Topology& topology, const FastAt
                                           const PairThreads& threads = {});
 
 // The same of the pairs of one list that is not outdated, with a workspace of its own, and of
-// others, which are summed in double. Atoms that stand in neither are not looked at. Nothing where
-// single precision does not do; no forces are added then.
+// others, which are summed in double; without solvation. Atoms that stand in neither are not looked
+// at. Nothing where single precision does not do; no forces are added then.
 std::optional<NonbondedEnergy> add_tile_forces(const Topology& topology,
                                                const NonbondedSettings& settings,
                                                const ClusterList& list, PairWorkspace& workspace,
@@ -80,7 +91,8 @@ std::optional<NonbondedEnergy> add_tile_forces(const Topology& topology,
                                                std::span<Vec3> forces, PairResult result,
                                                const PairThreads& threads = {});
 
-// The very same pairs in double, so that energies can be compared with those of other positions.
+// The very same pairs in double, with solvation where the settings have it, so that energies can be
+// compared with those of other positions.
 NonbondedEnergy add_pairs_in_double(const Topology& topology, const NonbondedSettings& settings,
                                     const ClusterList& list,
                                     std::span<const std::array<std::uint32_t, 2>> others,

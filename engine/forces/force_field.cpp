@@ -3,6 +3,7 @@
 #include "core/assertion.h"
 #include "forces/bonded.h"
 #include "forces/cmap.h"
+#include "forces/solvation.h"
 
 #include <algorithm>
 #include <array>
@@ -13,15 +14,22 @@
 namespace palpa {
 namespace {
 
-constexpr std::array all_terms{&EnergyTerms::bond,         &EnergyTerms::angle,
-                               &EnergyTerms::urey_bradley, &EnergyTerms::dihedral,
-                               &EnergyTerms::improper,     &EnergyTerms::cmap,
-                               &EnergyTerms::lj,           &EnergyTerms::lj14,
-                               &EnergyTerms::coulomb,      &EnergyTerms::coulomb14};
+constexpr std::array all_terms{
+    &EnergyTerms::bond,      &EnergyTerms::angle,    &EnergyTerms::urey_bradley,
+    &EnergyTerms::dihedral,  &EnergyTerms::improper, &EnergyTerms::cmap,
+    &EnergyTerms::lj,        &EnergyTerms::lj14,     &EnergyTerms::coulomb,
+    &EnergyTerms::coulomb14, &EnergyTerms::solvation};
 
 void add_pairs(const NonbondedEnergy& pairs, EnergyTerms& energy) noexcept {
     energy.lj += pairs.van_der_waals;
     energy.coulomb += pairs.electrostatic;
+    energy.solvation += pairs.solvation;
+}
+
+void add_pairs14(const NonbondedEnergy& pairs, EnergyTerms& energy) noexcept {
+    energy.lj14 = pairs.van_der_waals;
+    energy.coulomb14 = pairs.electrostatic;
+    energy.solvation += pairs.solvation;
 }
 
 // All terms but the plain pairs.
@@ -35,9 +43,8 @@ EnergyTerms add_bonded_forces(const Topology& topology, const NonbondedSettings&
     energy.dihedral = add_dihedral_forces(topology.dihedrals, positions, forces);
     energy.improper = add_improper_forces(topology.impropers, positions, forces);
     energy.cmap = add_cmap_forces(topology.cmap_terms, topology.cmap_maps, positions, forces);
-    const NonbondedEnergy pairs14 = add_nonbonded14_forces(topology, settings, positions, forces);
-    energy.lj14 = pairs14.van_der_waals;
-    energy.coulomb14 = pairs14.electrostatic;
+    energy.solvation = find_lone_solvation(topology, settings.solvation);
+    add_pairs14(add_nonbonded14_forces(topology, settings, positions, forces), energy);
     return energy;
 }
 
@@ -115,10 +122,8 @@ EnergyTerms add_fast_terms(const Topology& topology, const Topology& terms,
     energy.dihedral = sums.dihedral;
     energy.improper = sums.improper;
     energy.cmap = add_cmap_forces(terms.cmap_terms, topology.cmap_maps, positions, forces);
-    const NonbondedEnergy pairs14 =
-        add_pair14_forces(topology, settings, terms.exclusions.pairs14, positions, forces);
-    energy.lj14 = pairs14.van_der_waals;
-    energy.coulomb14 = pairs14.electrostatic;
+    add_pairs14(add_pair14_forces(topology, settings, terms.exclusions.pairs14, positions, forces),
+                energy);
     return energy;
 }
 
@@ -127,8 +132,11 @@ EnergyTerms add_fast_forces(const Topology& topology, const FastForceField& fast
                             std::span<const Vec3> positions, FastPairs& pairs,
                             std::span<Vec3> forces, PairResult result, std::size_t threads) {
     EnergyTerms energy;
+    energy.solvation = find_lone_solvation(topology, settings.solvation);
+    const NonbondedSettings beside =
+        has_fast_form(settings) ? without_solvation(settings) : settings;
     const auto add_others = [&] {
-        energy += add_fast_terms(topology, topology, fast.bonded, settings, positions, forces);
+        energy += add_fast_terms(topology, topology, fast.bonded, beside, positions, forces);
     };
     // The other terms of a protein's atom take about as long as two tiles of pairs.
     add_pairs(add_fast_nonbonded_forces(topology, fast.atoms, settings, skin, positions, pairs,

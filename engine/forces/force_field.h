@@ -24,10 +24,11 @@ struct EnergyTerms {
     double lj14 = 0;       // pairs three bonds apart
     double coulomb = 0;    // plain pairs
     double coulomb14 = 0;  // pairs three bonds apart
+    double solvation = 0;  // pairs of both kinds, and what each atom has alone
 
     double total() const noexcept {
         return bond + angle + urey_bradley + dihedral + improper + cmap + lj + lj14 + coulomb +
-               coulomb14;
+               coulomb14 + solvation;
     }
     double magnitude() const noexcept;  // the sum of terms without their signs
     EnergyTerms& operator+=(const EnergyTerms& other) noexcept;
@@ -54,8 +55,8 @@ struct FastForceField {
 
 FastForceField build_fast_force_field(const Topology& topology);
 
-// All terms but the plain pairs, in double: those of `bonded`, which are of `terms`, its maps and
-// its pairs three bonds apart. `topology` has the charges, types and maps.
+// All terms but the plain pairs and what atoms have alone, in double: those of `bonded`, which are
+// of `terms`, its maps and its pairs three bonds apart. `topology` has the charges, types and maps.
 EnergyTerms add_fast_terms(const Topology& topology, const Topology& terms,
                            const FastBonded& bonded, const NonbondedSettings& settings,
                            std::span<const Vec3> positions, std::span<Vec3> forces) noexcept;

@@ -68,9 +68,9 @@ void select_terms(const Topology& topology, TermSelector& selector, Topology& te
 NonbondedEnergy add_plain(const Topology& topology, const NonbondedSettings& settings,
                           GroupForces& group_forces, std::span<const Vec3> positions,
                           std::span<Vec3> forces) {
-    const ClusterList& tiles = group_forces.tiles;
-    if (tiles.atoms.empty())
+    if (!group_forces.is_fast)
         return add_pair_forces(topology, settings, group_forces.pairs, positions, forces);
+    const ClusterList& tiles = group_forces.tiles;
     const std::optional<NonbondedEnergy> energy =
         add_tile_forces(topology, settings, tiles, group_forces.workspace, group_forces.pairs,
                         positions, forces, PairResult::ForcesAndEnergies);
@@ -99,6 +99,14 @@ GroupForces build_fast_group_forces(const Topology& topology, const FastAtoms& a
     }
     // Those that the kernel leaves out because their numbers are replaced.
     selector.select(pairs.replaced, result.pairs, pair_itself);
+    result.is_fast = true;
+    if (pairs.solvation.builds > 0) {
+        result.solvation =
+            select_solvation_tiles(atoms.solvation, pairs.solvation, groups, positions, skin);
+        for (const std::uint32_t atom : result.solvation.tiles.atoms) {
+            if (atom != no_atom) selector.use(atom);
+        }
+    }
     selector.write_atoms();
     return result;
 }
@@ -133,11 +141,18 @@ GroupForces build_group_forces(const Topology& topology, const PairList* list, G
 EnergyTerms add_group_forces(const Topology& topology, const NonbondedSettings& settings,
                              GroupForces& group_forces, std::span<const Vec3> positions,
                              std::span<Vec3> forces) {
-    EnergyTerms energy = add_fast_terms(topology, group_forces.terms, group_forces.bonded, settings,
+    const bool has_tiles = group_forces.is_fast && settings.solvation != SolvationEnd::None;
+    const NonbondedSettings pairwise = has_tiles ? without_solvation(settings) : settings;
+    EnergyTerms energy = add_fast_terms(topology, group_forces.terms, group_forces.bonded, pairwise,
                                         positions, forces);
-    const NonbondedEnergy plain = add_plain(topology, settings, group_forces, positions, forces);
+    const NonbondedEnergy plain = add_plain(topology, pairwise, group_forces, positions, forces);
     energy.lj = plain.van_der_waals;
     energy.coulomb = plain.electrostatic;
+    energy.solvation += plain.solvation;
+    if (has_tiles) {
+        energy.solvation +=
+            add_solvation_tiles(topology, group_forces.solvation, positions, forces);
+    }
     return energy;
 }
 

@@ -19,7 +19,9 @@ struct GroupForces {
 
     ClusterList tiles;  // plain pairs, by the kernel
     PairWorkspace workspace;
+    SolvationTiles solvation;  // by its kernel, with pairs three bonds apart; where tiles are used
     std::vector<std::array<std::uint32_t, 2>> pairs;  // plain pairs in double
+    bool is_fast = false;                             // by kernels, not all in double
 
     bool was_in_double = false;  // the last sum, for pairs too close for the kernel
 

@@ -69,8 +69,8 @@ private:
     void update_list(const std::vector<Vec3>& positions) {
         if (lists > 0 && !is_outdated(list_, positions)) return;
         ++lists;
-        list_ = build_pair_list(topology_.exclusions, settings_.nonbonded.cutoff, settings_.skin,
-                                positions, restraints_.is_fixed, std::move(list_));
+        list_ = build_pair_list(topology_.exclusions, find_reach(settings_.nonbonded),
+                                settings_.skin, positions, restraints_.is_fixed, std::move(list_));
     }
 
     const Topology& topology_;

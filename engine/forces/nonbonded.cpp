@@ -3,12 +3,14 @@
 #include "core/assertion.h"
 #include "field/pair_field.h"
 #include "forces/pair_law.h"
+#include "forces/solvation.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 
 namespace palpa {
@@ -177,7 +179,30 @@ NonbondedEnergy add_listed_pairs(const Topology& topology, const Law& law, doubl
     return total;
 }
 
+void add_given_solvation(const Topology& topology, const NonbondedSettings& settings,
+                         std::span<const std::array<std::uint32_t, 2>> pairs,
+                         std::span<const Vec3> positions, std::span<Vec3> forces,
+                         NonbondedEnergy& energy) noexcept {
+    if (settings.solvation == SolvationEnd::None) return;
+    energy.solvation = add_solvation_forces(topology, settings.solvation, pairs, positions, forces);
+}
+
 }  // namespace
+
+NonbondedSettings eef1_settings(SolvationEnd solvation) noexcept {
+    return {.dielectric = 1.5,
+            .distance_dielectric = true,
+            .electrostatics = ElectrostaticCutoff::CubicShift,
+            .van_der_waals = VanDerWaalsCutoff::SmoothSwitch,
+            .switch_from = 7,
+            .cutoff = 9,
+            .solvation = solvation};
+}
+
+NonbondedSettings without_solvation(NonbondedSettings settings) noexcept {
+    settings.solvation = SolvationEnd::None;
+    return settings;
+}
 
 std::optional<std::string_view> find_problem(const NonbondedSettings& settings) noexcept {
     if (!(settings.dielectric > 0)) return "the dielectric must be above 0";
@@ -198,15 +223,23 @@ bool has_end(const NonbondedSettings& settings) noexcept {
            settings.van_der_waals != VanDerWaalsCutoff::None;
 }
 
+double find_reach(const NonbondedSettings& settings) noexcept {
+    if (!has_end(settings)) return std::numeric_limits<double>::infinity();
+    return std::max(settings.cutoff, find_solvation_reach(settings.solvation));
+}
+
 NonbondedEnergy add_nonbonded_forces(const Topology& topology, const NonbondedSettings& settings,
                                      std::span<const Vec3> positions,
                                      std::span<Vec3> forces) noexcept {
     PALPA_ASSERT(!find_problem(settings));
     PALPA_ASSERT(positions.size() == topology.size() && forces.size() == topology.size());
     const double coulomb = settings.coulomb_constant / settings.dielectric;
-    return with_law(settings, [&](const auto& law) {
+    NonbondedEnergy energy = with_law(settings, [&](const auto& law) {
         return add_pairs(topology, law, coulomb, positions, forces);
     });
+    if (settings.solvation != SolvationEnd::None)
+        energy.solvation = add_solvation_forces(topology, settings.solvation, positions, forces);
+    return energy;
 }
 
 NonbondedEnergy add_nonbonded_forces(const Topology& topology, const NonbondedSettings& settings,
@@ -220,17 +253,23 @@ NonbondedEnergy add_nonbonded_forces(const Topology& topology, const NonbondedSe
                                      const PairList& list, PairRows rows,
                                      std::span<const Vec3> positions,
                                      std::span<Vec3> forces) noexcept {
-    PALPA_ASSERT(!find_problem(settings) && has_end(settings) && settings.cutoff <= list.cutoff);
+    PALPA_ASSERT(!find_problem(settings) && has_end(settings));
+    PALPA_ASSERT(find_reach(settings) <= list.cutoff);
     PALPA_ASSERT(positions.size() == topology.size() && forces.size() == topology.size());
     PALPA_ASSERT(!is_outdated(list, positions));
     const double coulomb = settings.coulomb_constant / settings.dielectric;
-    return with_law(settings, [&](const auto& law) {
+    NonbondedEnergy energy = with_law(settings, [&](const auto& law) {
         if constexpr (std::decay_t<decltype(law)>::ends) {
             return add_listed_pairs(topology, law, coulomb, list, rows, positions, forces);
         } else {
             return NonbondedEnergy{};
         }
     });
+    if (settings.solvation != SolvationEnd::None) {
+        energy.solvation =
+            add_solvation_forces(topology, settings.solvation, list, rows, positions, forces);
+    }
+    return energy;
 }
 
 NonbondedEnergy add_pair_forces(const Topology& topology, const NonbondedSettings& settings,
@@ -239,10 +278,12 @@ NonbondedEnergy add_pair_forces(const Topology& topology, const NonbondedSetting
     PALPA_ASSERT(!find_problem(settings));
     PALPA_ASSERT(positions.size() == topology.size() && forces.size() == topology.size());
     const double coulomb = settings.coulomb_constant / settings.dielectric;
-    return with_law(settings, [&](const auto& law) {
+    NonbondedEnergy energy = with_law(settings, [&](const auto& law) {
         return add_given_pairs(topology, topology.lennard_jones, law, coulomb, pairs, positions,
                                forces);
     });
+    add_given_solvation(topology, settings, pairs, positions, forces, energy);
+    return energy;
 }
 
 NonbondedEnergy add_nonbonded14_forces(const Topology& topology, const NonbondedSettings& settings,
@@ -259,10 +300,12 @@ NonbondedEnergy add_pair14_forces(const Topology& topology, const NonbondedSetti
     PALPA_ASSERT(positions.size() == topology.size() && forces.size() == topology.size());
     const double coulomb =
         settings.coulomb_constant / settings.dielectric * settings.coulomb14_factor;
-    return with_law(settings, [&](const auto& law) {
+    NonbondedEnergy energy = with_law(settings, [&](const auto& law) {
         return add_given_pairs(topology, topology.lennard_jones14, law, coulomb, pairs, positions,
                                forces);
     });
+    add_given_solvation(topology, settings, pairs, positions, forces, energy);
+    return energy;
 }
 
 }  // namespace palpa

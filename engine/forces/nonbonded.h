@@ -1,5 +1,6 @@
-// Lennard-Jones and Coulomb of a topology in double: over all pairs, the reference that faster ways
-// of summing are held against, and over a list of neighbours, for large systems with a cutoff.
+// Lennard-Jones, Coulomb and solvation of a topology's pairs in double: over all pairs, the
+// reference that faster ways of summing are held against, and over a list of neighbours, for large
+// systems with a cutoff.
 #pragma once
 #include "charmm/topology.h"
 #include "core/units.h"
@@ -26,17 +27,35 @@ struct NonbondedSettings {
     VanDerWaalsCutoff van_der_waals = VanDerWaalsCutoff::None;
     double switch_from = 10;  // m, Å, CTONNB
     double cutoff = 12;       // c, Å, CTOFNB
+
+    // Anything but None needs the topology's numbers.
+    SolvationEnd solvation = SolvationEnd::None;
 };
+
+// EEF1-SB: a dielectric of 1.5 r, pairs three bonds apart in full, and smooth ends at 9 Å.
+// (S. Bottaro, K. Lindorff-Larsen, R. B. Best, J. Chem. Theory Comput. 9, 5641 (2013).) Published
+// with other ends of electrostatics, whole groups at a time, and of Lennard-Jones.
+NonbondedSettings eef1_settings(SolvationEnd solvation = SolvationEnd::Smooth) noexcept;
+
+// The same but for solvation, which they have none of then.
+NonbondedSettings without_solvation(NonbondedSettings settings) noexcept;
 
 // What makes settings unusable, as a sentence for a message; none where they are sound.
 std::optional<std::string_view> find_problem(const NonbondedSettings& settings) noexcept;
 
-// Whether no pair acts from the cutoff on: what a list of neighbours needs.
+// Whether electrostatics and Lennard-Jones end at the cutoff: what a list of neighbours needs.
 bool has_end(const NonbondedSettings& settings) noexcept;
+
+// From where on no pair acts, Å: the cutoff, or where solvation ends if that is farther. Infinite
+// without an end.
+double find_reach(const NonbondedSettings& settings) noexcept;
 
 struct NonbondedEnergy {
     double van_der_waals = 0;  // kcal/mol
     double electrostatic = 0;  // kcal/mol
+    double solvation = 0;      // kcal/mol, of the pairs: without what atoms have alone
+
+    double sum() const noexcept { return van_der_waals + electrostatic + solvation; }
 };
 
 // All add forces (kcal/mol/Å) to `forces`, one entry per atom, and return the energy; the settings
@@ -49,7 +68,7 @@ NonbondedEnergy add_nonbonded_forces(const Topology& topology, const NonbondedSe
                                      std::span<const Vec3> positions,
                                      std::span<Vec3> forces) noexcept;
 
-// The pairs of a list that is not outdated and whose cutoff is at least that of the settings, which
+// The pairs of a list that is not outdated and whose cutoff is at least the settings' reach, which
 // must have an end: the same numbers of each pair as above, in the order of the list, four
 // neighbours beside each other. Of all rows, or of some (of several threads, each with forces of
 // its own).
@@ -66,7 +85,8 @@ NonbondedEnergy add_pair_forces(const Topology& topology, const NonbondedSetting
                                 std::span<const std::array<std::uint32_t, 2>> pairs,
                                 std::span<const Vec3> positions, std::span<Vec3> forces) noexcept;
 
-// The pairs three bonds apart, with Lennard-Jones numbers of their own, ended by the same cutoff.
+// The pairs three bonds apart, with Lennard-Jones numbers of their own, ended by the same cutoff,
+// and solvation in full.
 NonbondedEnergy add_nonbonded14_forces(const Topology& topology, const NonbondedSettings& settings,
                                        std::span<const Vec3> positions,
                                        std::span<Vec3> forces) noexcept;

@@ -1,5 +1,6 @@
 #include "forces/pair_hessian.h"
 
+#include "core/assertion.h"
 #include "field/pair_field.h"
 
 #include <algorithm>
@@ -60,6 +61,14 @@ Jet switching_jet(double r2, double m2, double c2) noexcept {
             -12 * (c2 - r2) * (r2 - m2) / width3, -24 * (c2 + m2 - 2 * r2) / width3};
 }
 
+// The one that is smooth to the second derivative.
+Jet smooth_switching_jet(double r2, double m2, double c2) noexcept {
+    if (r2 <= m2) return constant(1);
+    const double range = c2 - m2, y = (r2 - m2) / range, left = 1 - y, slope = 2 / range;
+    return {1 - y * y * y * (10 - y * (15 - 6 * y)), -30 * y * y * left * left * slope,
+            -60 * y * left * (1 - 2 * y) * slope * slope};
+}
+
 // Of an energy whose force is that of `whole` times S.
 PairHessian with_switched_force(const Jet& whole, const Jet& S) noexcept {
     return {whole.first * S.value, whole.second * S.value + whole.first * S.first};
@@ -92,6 +101,10 @@ PairHessian PairHessianLaw::electrostatic(double r2) const noexcept {
             const Jet left = constant(1) + (-1 / c_) * power(1, r2);
             return (whole * left * left).hessian();
         }
+        case ElectrostaticCutoff::CubicShift: {
+            const Jet left = constant(1) + (-1 / c2_) * power(2, r2);
+            return (whole * left * left * left).hessian();
+        }
         case ElectrostaticCutoff::ForceSwitch:
         case ElectrostaticCutoff::None:
             break;
@@ -104,6 +117,8 @@ PairHessian PairHessianLaw::van_der_waals(double r2, const LennardJonesPair& pai
     if (r2 >= c2_) return {};
     if (van_der_waals_ == VanDerWaalsCutoff::Switch)
         return (lennard_jones_jet(r2, pair) * switching_jet(r2, m2_, c2_)).hessian();
+    if (van_der_waals_ == VanDerWaalsCutoff::SmoothSwitch)
+        return (lennard_jones_jet(r2, pair) * smooth_switching_jet(r2, m2_, c2_)).hessian();
     if (r2 <= m2_) return lennard_jones_jet(r2, pair).hessian();
     const double rmin6 = integer_power(pair.rmin, 6);
     const double a = pair.epsilon * rmin6 * rmin6, b = 2 * pair.epsilon * rmin6;
@@ -126,6 +141,35 @@ PairHessian PairHessianLaw::evaluate(double r2, double charges,
     if (pair.epsilon > 0) sum += van_der_waals(outside2, pair);
     if (r2 < core2) sum.second = 0;
     return sum;
+}
+
+TopologyPairHessian::TopologyPairHessian(const Topology& topology,
+                                         const NonbondedSettings& settings) noexcept
+    : topology_(topology),
+      law_(settings),
+      solvation_(settings.solvation),
+      coulomb_(settings.coulomb_constant / settings.dielectric),
+      coulomb14_(coulomb_ * settings.coulomb14_factor),
+      reach2_(std::max(law_.reach2(), solvation_.reach2)) {
+    PALPA_ASSERT(settings.solvation == SolvationEnd::None || topology.solvation);
+}
+
+PairHessian TopologyPairHessian::evaluate(const LennardJonesTable& lennard_jones, double coulomb,
+                                          std::uint32_t i, std::uint32_t j,
+                                          double r2) const noexcept {
+    PairHessian sum = law_.evaluate(r2, coulomb * topology_.charge[i] * topology_.charge[j],
+                                    lennard_jones.row(topology_.type[i])[topology_.type[j]]);
+    if (r2 < solvation_.reach2) sum += solvation(i, j, r2);
+    return sum;
+}
+
+PairHessian TopologyPairHessian::solvation(std::uint32_t i, std::uint32_t j,
+                                           double r2) const noexcept {
+    if (r2 >= solvation_.reach2) return {};
+    const Solvation& numbers = *topology_.solvation;
+    const SolvationPair pair =
+        solvation_.evaluate(r2, solvation_atom(numbers, i), solvation_atom(numbers, j));
+    return {pair.first, pair.second};
 }
 
 }  // namespace palpa

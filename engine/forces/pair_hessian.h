@@ -2,6 +2,9 @@
 #pragma once
 #include "charmm/topology.h"
 #include "forces/nonbonded.h"
+#include "forces/solvation_law.h"
+
+#include <cstdint>
 
 namespace palpa {
 
@@ -39,6 +42,37 @@ private:
     bool distance_dielectric_;
     double reach2_;
     double c_, c2_, m2_;  // cutoff and its square, square of where switching begins, Å
+};
+
+// The second derivatives of a topology's pairs: of all that forces/nonbonded.h sums of them. Both
+// the topology and its solvation must outlive it.
+class TopologyPairHessian {
+public:
+    TopologyPairHessian(const Topology& topology, const NonbondedSettings& settings) noexcept;
+
+    // At the square of the distance of two atoms, Å^2: as a plain pair, and as one three bonds
+    // apart.
+    PairHessian plain(std::uint32_t i, std::uint32_t j, double r2) const noexcept {
+        return evaluate(topology_.lennard_jones, coulomb_, i, j, r2);
+    }
+    PairHessian three_bonds_apart(std::uint32_t i, std::uint32_t j, double r2) const noexcept {
+        return evaluate(topology_.lennard_jones14, coulomb14_, i, j, r2);
+    }
+
+    // Of solvation alone.
+    PairHessian solvation(std::uint32_t i, std::uint32_t j, double r2) const noexcept;
+
+    double reach2() const noexcept { return reach2_; }  // Å^2, from where on pairs have nothing
+
+private:
+    PairHessian evaluate(const LennardJonesTable& lennard_jones, double coulomb, std::uint32_t i,
+                         std::uint32_t j, double r2) const noexcept;
+
+    const Topology& topology_;
+    PairHessianLaw law_;
+    SolvationLaw<> solvation_;
+    double coulomb_, coulomb14_;
+    double reach2_;
 };
 
 }  // namespace palpa

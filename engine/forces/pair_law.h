@@ -46,7 +46,8 @@ public:
           m_(settings.switch_from),
           m2_(m_ * m_),
           inverse_c2_(1.0 / c2_),
-          inverse_width_(1.0 / ((c2_ - m2_) * (c2_ - m2_) * (c2_ - m2_))) {}
+          inverse_width_(1.0 / ((c2_ - m2_) * (c2_ - m2_) * (c2_ - m2_))),
+          inverse_range_(1.0 / (c2_ - m2_)) {}
 
     // At the square of a distance and its inverse root; `charges` is C q q'/eps.
     PairEnergies evaluate(double r2, double inverse_r, double charges,
@@ -78,6 +79,14 @@ private:
         return {whole.energy * S, whole.gradient * S - whole.energy * slope};
     }
 
+    // By the switch whose second derivative is continuous.
+    Radial smoothly_switched(double r2, const Radial& whole) const noexcept {
+        const double y = std::max(0.0, (r2 - m2_) * inverse_range_);
+        const double S = 1.0 - y * y * y * (10.0 - y * (15.0 - 6.0 * y));
+        const double slope = -60.0 * inverse_range_ * y * y * (1.0 - y) * (1.0 - y);  // S'/r
+        return {whole.energy * S, whole.gradient * S - whole.energy * slope};
+    }
+
     Radial electrostatic(double r2, double inverse_r) const noexcept {
         const Radial unit = bare(inverse_r);
         if constexpr (ElectrostaticEnd == ElectrostaticCutoff::None) return unit;
@@ -90,6 +99,10 @@ private:
             const double left = 1.0 - r2 * inverse_c2_;
             return {unit.energy * left * left,
                     unit.gradient * left * left + 4.0 * inverse_c2_ * unit.energy * left};
+        } else if constexpr (ElectrostaticEnd == ElectrostaticCutoff::CubicShift) {
+            const double left = 1.0 - r2 * inverse_c2_, left2 = left * left;
+            return {unit.energy * left2 * left,
+                    unit.gradient * left2 * left + 6.0 * inverse_c2_ * unit.energy * left2};
         } else if constexpr (ElectrostaticEnd == ElectrostaticCutoff::ForceShift) {
             const double left = 1.0 - r2 * inverse_r / c_;
             return {unit.energy * left * left, unit.gradient - unit.energy * inverse_c2_};
@@ -123,6 +136,8 @@ private:
         }
         if constexpr (VanDerWaalsEnd == VanDerWaalsCutoff::Switch) {
             return switched(r2, whole);
+        } else if constexpr (VanDerWaalsEnd == VanDerWaalsCutoff::SmoothSwitch) {
+            return smoothly_switched(r2, whole);
         } else {
             const double inverse_t = std::min(inverse_r, 1.0 / m_);
             const Radial at_t = lennard_jones(inverse_t * inverse_t, pair);
@@ -149,6 +164,7 @@ private:
     double c_, c2_, m_, m2_;  // Å, Å^2
     double inverse_c2_;       // Å^-2
     double inverse_width_;    // 1/(c^2 - m^2)^3, Å^-6
+    double inverse_range_;    // 1/(c^2 - m^2), Å^-2
 };
 
 // `sum` called with the law that the settings ask for.
@@ -167,6 +183,8 @@ auto with_van_der_waals(const NonbondedSettings& settings, const Sum& sum) noexc
             return with_dielectric<ElectrostaticEnd, Switch>(settings, sum);
         case ForceSwitch:
             return with_dielectric<ElectrostaticEnd, ForceSwitch>(settings, sum);
+        case SmoothSwitch:
+            return with_dielectric<ElectrostaticEnd, SmoothSwitch>(settings, sum);
         case None:
             break;
     }
@@ -185,6 +203,8 @@ auto with_law(const NonbondedSettings& settings, const Sum& sum) noexcept {
             return with_van_der_waals<ForceShift>(settings, sum);
         case ForceSwitch:
             return with_van_der_waals<ForceSwitch>(settings, sum);
+        case CubicShift:
+            return with_van_der_waals<CubicShift>(settings, sum);
         case None:
             break;
     }

@@ -84,7 +84,38 @@ private:
     std::vector<bool> used_;
 };
 
+bool stands_at(const Structure& structure, const ResidueRange& residue,
+               const ResidueChoice& choice) {
+    return choice.chain == chain_of(structure, residue.first) &&
+           choice.number == structure.names[residue.first].number;
+}
+
+// Waters that stay whatever becomes of others. Each choice must mean one.
+bool is_structural_water(const Structure& structure, const ResidueRange& residue,
+                         const PrepareSettings& settings) {
+    return is_water(structure.names[residue.first].residue) &&
+           std::ranges::any_of(settings.structural_waters, [&](const ResidueChoice& choice) {
+               return stands_at(structure, residue, choice);
+           });
+}
+
+void check_structural_waters(const Structure& structure, const PrepareSettings& settings) {
+    for (const ResidueChoice& choice : settings.structural_waters) {
+        const bool is_there =
+            std::ranges::any_of(find_residues(structure), [&](const ResidueRange& residue) {
+                return stands_at(structure, residue, choice) &&
+                       is_water(structure.names[residue.first].residue);
+            });
+        if (is_there) continue;
+        throw LoadError({structure.file},
+                        fmt::format("--structural-water {}:{}: no water there; expected "
+                                    "CHAIN:NUMBER of a water of the file",
+                                    choice.chain, choice.number));
+    }
+}
+
 Structure leave_out(const Structure& structure, const PrepareSettings& settings, Report& report) {
+    check_structural_waters(structure, settings);
     std::vector<bool> kept(structure.names.size(), true);
     LeftOut left_out(structure, settings);
     std::set<std::string> names;
@@ -93,7 +124,8 @@ Structure leave_out(const Structure& structure, const PrepareSettings& settings,
     for (const ResidueRange& residue : find_residues(structure)) {
         const std::string& name = structure.names[residue.first].residue;
         names.insert(name);
-        const bool drops_water = is_water(name) && !settings.keeps_waters;
+        const bool drops_water = is_water(name) && !settings.keeps_waters &&
+                                 !is_structural_water(structure, residue, settings);
         const bool drops_ion = is_ion(structure, residue) && !settings.keeps_ions;
         const bool is_named = left_out.contains(residue);
         if (!drops_water && !drops_ion && !is_named) continue;

@@ -3,6 +3,7 @@
 #include "charmm/build_topology.h"
 #include "charmm/complete.h"
 #include "charmm/generate.h"
+#include "charmm/ionic_groups.h"
 #include "charmm/missing.h"
 #include "charmm/used_parameters.h"
 #include "charmm/write_parameters.h"
@@ -21,6 +22,7 @@
 #include "prepare/residue_names.h"
 #include "prepare/residues.h"
 #include "prepare/segments.h"
+#include "prepare/solvent.h"
 
 #include <fmt/format.h>
 #include <cmath>
@@ -45,6 +47,7 @@ struct TypedSystem {
     GenerateSettings settings;
     Connectivity connectivity;
     Topology topology;
+    std::optional<SolvatedSystem> solvated;  // the same atoms in implicit water
 };
 
 TypedSystem type_system(const ForceField& force_field, const NamedResidues& named,
@@ -57,6 +60,8 @@ TypedSystem type_system(const ForceField& force_field, const NamedResidues& name
     system.connectivity =
         build_connectivity(force_field, system.completed.structure, system.settings);
     system.topology = build_topology(system.connectivity, force_field);
+    system.solvated =
+        solvate(force_field, system.completed.structure, system.settings, settings, report);
     return system;
 }
 
@@ -231,6 +236,17 @@ void relax_system(PreparedSystem& system, std::span<const std::uint8_t> is_built
     }
 }
 
+// Hydrogens were turned and clashes relaxed with full charges, so that coordinates are the same
+// with and without a solvent.
+void take_solvated(SolvatedSystem solvated, PreparedSystem& system) {
+    system.solvent = Solvent::Eef1Sb;
+    system.connectivity = std::move(solvated.connectivity);
+    system.topology = std::move(solvated.topology);
+    system.parameters = keep_used_parameters(solvated.force_field, system.connectivity);
+    name_elements(system);
+    report_charge(system);
+}
+
 void create_folder(const std::filesystem::path& folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
@@ -268,7 +284,7 @@ PreparedSystem prepare_system(const ForceField& force_field, const Structure& st
     for (const std::uint32_t atom : system.completed.added) is_added[atom] = 1;
     check_formats(result.structure);
     check_coordinates(result.structure, result.topology, is_added, report);
-    report_charge(result);
+    if (!system.solvated) report_charge(result);
 
     tell(progress, "building missing atoms");
     const std::vector<AtomCoordinate> coordinates =
@@ -281,14 +297,20 @@ PreparedSystem prepare_system(const ForceField& force_field, const Structure& st
     } else {
         warn_of_clash(result, find_closest_contact(result.topology, result.structure.positions));
     }
+    if (system.solvated) take_solvated(std::move(*system.solvated), result);
     if (settings.align) align(result.structure, *settings.align, result.structure.positions);
     return result;
+}
+
+std::string topology_title(const PreparedSystem& system, std::string_view title) {
+    if (system.solvent == Solvent::None) return std::string(title);
+    return fmt::format("{}\n{}", neutral_charges_origin, title);
 }
 
 void write_prepared(const PreparedSystem& system, const std::filesystem::path& folder,
                     std::string_view title, std::span<const TextFile> scene, Existing existing) {
     std::vector<TextFile> files{
-        {folder / "system.psf", format_psf(system.connectivity, title)},
+        {folder / "system.psf", format_psf(system.connectivity, topology_title(system, title))},
         {folder / "system.pdb", format_pdb(with_short_chains(system.structure), title)},
         {folder / "system.crd", format_crd(system.structure, title)},
         {folder / "system.prm", format_parameters(system.parameters, title)},

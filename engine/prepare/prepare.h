@@ -22,7 +22,12 @@ struct PreparedSystem {
     Topology topology;          // likewise
     ForceField parameters;      // what of the force field is used
     Report report;
+    Solvent solvent = Solvent::None;  // that charges and parameters are for
 };
+
+// What a topology file of the system says of itself: `title`, and before it the origin of charges
+// that are not the force field's own.
+std::string topology_title(const PreparedSystem& system, std::string_view title);
 
 // The stages are listed in engine/design.md. Throws LoadError with everything that is missing:
 // residues, atoms, patches and parameters.

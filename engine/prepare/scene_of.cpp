@@ -67,12 +67,12 @@ std::string format_path(const Vec3& way) {
     return text;
 }
 
-std::string format_statics(std::size_t atoms, const SceneTuning& tuning) {
+std::string format_statics(std::size_t atoms, Solvent solvent, const SceneTuning& tuning) {
     std::string text = "\n[statics]\nrest_kcal_per_mol = 0.5\n";
     if (tuning.relax_steps) text += fmt::format("relax_steps = {}\n", *tuning.relax_steps);
     if (atoms <= most_atoms_all_pairs) {
         text += "steps = 2\n";
-    } else {
+    } else if (solvent == Solvent::None) {
         text += "cutoff_angstrom = 12.0\n";
     }
     if (atoms > most_atoms_all_active) text += "active = 100\nweights = \"single\"\n";
@@ -103,6 +103,11 @@ std::string format_scene(const Structure& structure, std::span<const SystemSegme
         "# Written by palpa prepare. Every key: palpa run --keys.\ntitle = {}\nabout = {}\n"
         "made_by = {}\n\n[force_field]\nfiles = [\"system.prm\"]\n",
         in_quotes(text.title), in_quotes(text.about), in_quotes(text.made_by));
+    const bool has_solvent = text.solvent != Solvent::None;
+    if (has_solvent) {
+        scene += fmt::format("solvent = \"{}\"\n",
+                             solvent_names[static_cast<std::size_t>(text.solvent)]);
+    }
     for (const SystemSegment& segment : segments) {
         const std::string name = in_quotes(segment.name);
         const std::uint32_t reference = find_reference(structure, segment, hand);
@@ -112,11 +117,12 @@ std::string format_scene(const Structure& structure, std::span<const SystemSegme
                        name, in_quotes(text.structure), in_quotes(text.topology), name,
                        in_quotes(atom_text(structure, reference)));
         if (segment.kind == SegmentKind::Molecule) scene += "shape = \"flexible\"\n";
+        if (segment.kind == SegmentKind::Water && has_solvent) scene += "structural_water = true\n";
         if (segment.name == hand.segment && hand.atom.empty()) {
             scene += "motion = \"translate-and-turn\"\n";
         }
     }
-    scene += format_statics(structure.names.size(), tuning);
+    scene += format_statics(structure.names.size(), text.solvent, tuning);
     scene += fmt::format("\n[grab]\nmolecule = {}\nmeasured_from = {}\n", in_quotes(hand.segment),
                          in_quotes(find_origin(segments, hand)));
     if (!hand.atom.empty()) scene += fmt::format("atom = {}\n", in_quotes(hand.atom));

@@ -4,6 +4,7 @@
 #include "molecule/atoms.h"
 #include "prepare/hand_choice.h"
 #include "prepare/system_segments.h"
+#include "scene/choices.h"
 
 #include <array>
 #include <cstdint>
@@ -27,6 +28,7 @@ struct SceneTuning {
 struct SceneText {
     std::string title, about, made_by;
     std::string structure = "relaxed.crd", topology = "system.psf";  // file names
+    Solvent solvent = Solvent::None;
 };
 
 // Atoms beyond which forces end at 12 Å, and beyond which few degrees of freedom are active.

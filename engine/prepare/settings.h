@@ -1,5 +1,7 @@
 // What a user may decide when a structure is prepared; everything has a default.
 #pragma once
+#include "scene/choices.h"
+
 #include <optional>
 #include <string>
 #include <utility>
@@ -25,6 +27,8 @@ struct PrepareSettings {
     std::vector<std::pair<ResidueChoice, char>> alternates;  // location to take; else by occupancy
     bool keeps_waters = false;
     bool keeps_ions = true;
+    // Kept though waters be left out; with a solvent they are part of the structure.
+    std::vector<ResidueChoice> structural_waters;
     // Residue names ("MK1"), chains ("chain:B") or residues ("A:101") that are left out.
     std::vector<std::string> without;
 
@@ -37,6 +41,10 @@ struct PrepareSettings {
     bool flips = true;  // amides and imidazoles may be turned over
     bool relaxes = true;
     std::optional<AlignSettings> align;
+
+    // What stands for the water around; unset: EEF1-SB where it covers all of the system, else
+    // none (prepare/solvent.h).
+    std::optional<Solvent> solvent = Solvent::None;
 };
 
 }  // namespace palpa

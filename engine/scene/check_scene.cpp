@@ -239,6 +239,20 @@ void check_ranges(const SceneDescription& scene, Problems& problems) {
           fmt::format("'statics.method' is \"{}\", which moves all joints at once; expected "
                       "second-order or quasi-static with coupling.feel_within_pN",
                       relax_method_names[static_cast<std::size_t>(method_of(scene.statics))]));
+    const bool has_solvent = scene.force_field.solvent != Solvent::None;
+    check(
+        !has_solvent || !scene.statics.cutoff_angstrom, "statics.cutoff_angstrom",
+        fmt::format("'statics.cutoff_angstrom' is {}, and with force_field.solvent = \"{}\" forces "
+                    "end at 9 and 9.5 Å by themselves; expected no cutoff, or solvent = \"none\"",
+                    scene.statics.cutoff_angstrom.value_or(0),
+                    solvent_names[static_cast<std::size_t>(scene.force_field.solvent)]));
+    for (const MoleculeDescription& molecule : scene.molecules) {
+        const std::string key = fmt::format("molecules.{}.structural_water", molecule.name);
+        check(has_solvent || !molecule.structural_water, key,
+              fmt::format("'{}' is true without a solvent, where waters are as all molecules; "
+                          "expected force_field.solvent = \"eef1-sb\", or no such key",
+                          key));
+    }
     check(std::abs(scene.period_ms - std::round(scene.period_ms)) < 1e-9, "run.period_ms",
           fmt::format("'run.period_ms' is {}; expected a whole number of servo ticks of 1 ms",
                       scene.period_ms));

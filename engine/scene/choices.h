@@ -15,6 +15,11 @@ inline constexpr std::array<std::string_view, 6> motion_names{
 enum class Shape { Rigid, Flexible };
 inline constexpr std::array<std::string_view, 2> shape_names{"rigid", "flexible"};
 
+// What stands for the water around the molecules: nothing, or EEF1-SB (charmm/solvation.h), with
+// neutral ionic groups and a dielectric of 1.5 r.
+enum class Solvent { None, Eef1Sb };
+inline constexpr std::array<std::string_view, 2> solvent_names{"none", "eef1-sb"};
+
 enum class PairPrecision { Double, Fast };
 inline constexpr std::array<std::string_view, 2> pair_precision_names{"double", "fast"};
 

@@ -20,6 +20,7 @@ namespace palpa {
 struct ForceFieldDescription {
     std::vector<std::filesystem::path> files;
     double coulomb_constant = units::charmm_coulomb_constant;  // kcal Å/mol/e^2
+    Solvent solvent = Solvent::None;
 };
 
 struct MoleculeDescription {
@@ -30,6 +31,7 @@ struct MoleculeDescription {
     std::string reference_atom;  // that stands for the molecule's place: "OH2", or "25 CG"
     Motion motion = Motion::Fixed;
     Shape shape = Shape::Rigid;
+    bool structural_water = false;  // its waters are part of the structure, in implicit water
 };
 
 // Which bonds of flexible molecules turn.
@@ -52,6 +54,7 @@ struct StaticsDescription {
     // between two linearisations.
     double near_angstrom = 6;
     double renew_angstrom = 0.1;
+    std::int64_t responses = 0;  // of second order, in whose span a step answers; 0: all
     double renewal_ms = 0;       // declared: from the request of a linearisation to its use
     bool renews_beside = false;  // a thread of its own, as a live session has it; no key
     PairPrecision pairs = PairPrecision::Fast;

@@ -21,6 +21,12 @@ void visit_force_field(FieldVisitor& v, ForceFieldDescription& f) {
             .lowest = 0,
             .highest = 1e6},
            f.coulomb_constant);
+    choose(v,
+           {.key = "solvent",
+            .meaning = "what stands for the water around: none, or EEF1-SB's implicit water, with "
+                       "neutral charges of ionic groups (`palpa prepare --solvent eef1-sb`), a "
+                       "dielectric of 1.5 r and ends of its own at 9 and 9.5 Å"},
+           solvent_names, f.solvent);
     v.leave_table();
 }
 
@@ -53,6 +59,10 @@ void visit_molecule(FieldVisitor& v, MoleculeDescription& m) {
            {.key = "shape",
             .meaning = "whether its joints turn by themselves, those that [joints] names"},
            shape_names, m.shape);
+    v.flag({.key = "structural_water",
+            .meaning = "with `force_field.solvent`: its waters are part of the structure, without "
+                       "volume or solvation energy; any others are refused there"},
+           m.structural_water);
     v.leave_table();
 }
 
@@ -163,6 +173,14 @@ void visit_statics(FieldVisitor& v, StaticsDescription& s) {
             .lowest = 0.02,
             .highest = 0.3},
            s.renew_angstrom);
+    v.integer(
+        {.key = "responses",
+         .meaning = "second-order: for each hand a step seeks the answer among so many combined "
+                    "moves, responses to the hand and to the forces that these leave near "
+                    "it, which costs less in a stiff pocket; 0: among all degrees of freedom",
+         .lowest = 0,
+         .highest = 3000},
+        s.responses);
     v.real({.key = "renewal_ms",
             .meaning = "second-order: declared time from the request of a linearisation to its "
                        "use; 0: within the step",

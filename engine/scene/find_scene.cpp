@@ -110,6 +110,9 @@ std::string describe_own_scenes(const std::string& named) {
         for (const SceneEntry& scene : list_scenes(folder)) names.push_back(scene.name);
     }
     if (names.empty()) return {};
+    // Of many not all are named: what a folder shows first goes before its variants.
+    std::ranges::stable_partition(
+        names, [](const std::string& name) { return name.find('/') == std::string::npos; });
     const std::vector<std::string_view> views(names.begin(), names.end());
     std::string wanted = named.starts_with("scenes/") ? named.substr(7) : named;
     if (wanted.ends_with(".toml")) wanted.resize(wanted.size() - 5);

@@ -390,7 +390,9 @@ std::vector<std::string> list_neglected(const SceneDescription& scene, const Wor
                                         s.active, coordinates));
     if (const std::size_t held = world.resource<StartReport>().joints_held; held > 0)
         neglected.push_back(fmt::format("motion of {} joints outside of the region", held));
-    neglected.emplace_back("solvent");
+    neglected.emplace_back(scene.force_field.solvent == Solvent::None
+                               ? "solvent"
+                               : "salt, surface tension and viscosity of EEF1-SB's implicit water");
     neglected.emplace_back("changes of bond lengths and angles");
     return neglected;
 }

@@ -15,6 +15,7 @@
 #include "simulation/mechanics.h"
 #include "simulation/molecules.h"
 #include "simulation/probe.h"
+#include "simulation/solvent.h"
 #include "simulation/sources.h"
 
 #include <fmt/format.h>
@@ -235,8 +236,8 @@ World read_world(const SceneDescription& scene, const StageFunction& on_stage) {
     world.set_resource(StepReport{});
 
     tell(on_stage, "reading the force field");
-    auto force_field =
-        std::make_shared<const ForceField>(read_force_field(scene.force_field.files));
+    auto force_field = std::make_shared<const ForceField>(
+        with_solvent(scene.force_field, read_force_field(scene.force_field.files)));
     SourceFiles files;
     for (const MoleculeDescription& molecule : scene.molecules) {
         tell(on_stage, "reading and typing atoms",
@@ -246,6 +247,7 @@ World read_world(const SceneDescription& scene, const StageFunction& on_stage) {
     }
     world.set_resource(SceneFile{scene, std::move(force_field), scene.coupling});
     set_interactions(world);
+    check_solvent(world);
     return world;
 }
 

@@ -8,6 +8,7 @@
 #include "core/units.h"
 #include "simulation/held.h"
 #include "simulation/region.h"
+#include "simulation/solvent.h"
 #include "simulation/systems/choose_active.h"
 #include "simulation/systems/relax.h"
 
@@ -299,7 +300,9 @@ RelaxSettings build_settings(const SceneDescription& scene) {
     ForceSettings& forces = settings.step.forces;
     forces.fast = s.pairs == PairPrecision::Fast;
     forces.nonbonded.coulomb_constant = scene.force_field.coulomb_constant;
-    if (s.cutoff_angstrom) {
+    if (scene.force_field.solvent != Solvent::None) {
+        forces.nonbonded = solvent_settings(scene.force_field);
+    } else if (s.cutoff_angstrom) {
         constexpr double width = 2;  // Å
         forces.nonbonded.electrostatics = ElectrostaticCutoff::ForceSwitch;
         forces.nonbonded.van_der_waals = VanDerWaalsCutoff::ForceSwitch;
@@ -400,6 +403,7 @@ SecondOrder build_second_order(const StaticsDescription& s, const RelaxSettings&
     second.settings.forces = settings.step.forces;
     second.settings.near_reach = s.near_angstrom;
     second.settings.renew_hand = s.renew_angstrom;
+    if (s.responses > 0) second.settings.responses = static_cast<std::size_t>(s.responses);
     second.most_evaluations = second.settings.evaluations;
     if (!s.renews_beside) second.delay_s = 1e-3 * s.renewal_ms;
     second.settings.renews_at_once = !s.renews_beside && s.renewal_ms == 0;
@@ -408,13 +412,17 @@ SecondOrder build_second_order(const StaticsDescription& s, const RelaxSettings&
     return second;
 }
 
-// Against all pairs, whatever cutoff the steps have.
-ErrorEstimate build_error_estimate(const RelaxSettings& settings, const World& world) {
+// Against all pairs, whatever cutoff the steps have; the ends that go with a solvent are part of
+// its energy.
+ErrorEstimate build_error_estimate(const RelaxSettings& settings, Solvent solvent,
+                                   const World& world) {
     ErrorEstimate estimate;
     ForceSettings& forces = estimate.settings.forces = settings.step.forces;
-    const double coulomb = forces.nonbonded.coulomb_constant;
-    forces.nonbonded = {};
-    forces.nonbonded.coulomb_constant = coulomb;
+    if (solvent == Solvent::None) {
+        const double coulomb = forces.nonbonded.coulomb_constant;
+        forces.nonbonded = {};
+        forces.nonbonded.coulomb_constant = coulomb;
+    }
     estimate.settings.relaxed = 0.1;
     estimate.settings.most_relaxation = 500;
     std::vector<Entity> hands;
@@ -561,7 +569,7 @@ void set_mechanics(const SceneDescription& scene, TorsionModel model, ModelAtoms
             second.settings.tolerance = *within_pN / units::piconewton_per_kcal_per_mol_angstrom;
         world.set_resource(std::move(second));
     } else if (model_of(world).coordinates <= most_second_order_coordinates) {
-        world.set_resource(build_error_estimate(settings, world));
+        world.set_resource(build_error_estimate(settings, scene.force_field.solvent, world));
     }
     start_mechanics(world);
 }
@@ -629,7 +637,9 @@ const BondedTerms& bonded_terms(World& world) {
                         "itself",
                         to_string(from.names[(*out)[0]]), to_string(from.names[(*out)[1]])));
     });
-    terms.topology = std::make_shared<const Topology>(build_topology(*all, force_field));
+    auto topology = std::make_shared<Topology>(build_topology(*all, force_field));
+    topology->solvation = find_solvation(world);
+    terms.topology = std::move(topology);
     terms.connectivity = std::move(all);
     return terms;
 }

@@ -38,8 +38,9 @@ void find_error(World& world) {
         estimate->memory = {build_lineariser(model, estimate->held), build_quasi_statics(model),
                             nullptr};
     }
-    const Renewal rest = make_renewal(
-        model, estimate->settings, {world.resource<TorsionState>(), 0, {}, {}}, *estimate->memory);
+    const Renewal rest =
+        make_renewal(model, estimate->settings, {world.resource<TorsionState>(), 0, 0, {}, {}},
+                     *estimate->memory);
     if (!rest.linear) return;
     const AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();
     const Vec3 felt =

@@ -40,14 +40,29 @@ bool are_near(const AdaptiveStatics& statics, const TorsionState& state,
     return true;
 }
 
-bool is_list_outdated(const AdaptiveSettings& settings, const TorsionState& state,
-                      const AdaptiveStatics& statics) {
+// The same of where the list of solvation has them.
+bool is_solvation_near(const TorsionModel& model, const AdaptiveStatics& statics,
+                       const TorsionState& state, double most) {
+    const FastSolvationPairs& pairs = statics.memory.fast_pairs.solvation;
+    if (pairs.builds == 0) return true;
+    const std::vector<std::uint32_t>& atoms = model.fast.atoms.solvation.atoms;
+    for (std::size_t k = 0; k < atoms.size(); ++k) {
+        if (statics.is_moved[statics.cluster_of[atoms[k]]] == 0) continue;
+        if (!((state.positions[atoms[k]] - pairs.list.positions[k]).norm() <= most)) return false;
+    }
+    return true;
+}
+
+bool is_list_outdated(const TorsionModel& model, const AdaptiveSettings& settings,
+                      const TorsionState& state, const AdaptiveStatics& statics) {
     const ForceSettings& forces = settings.step.forces;
     if (!has_end(forces.nonbonded) || statics.is_whole) return false;
     const std::vector<Vec3>& listed =
         forces.fast ? statics.memory.fast_pairs.list.positions : statics.memory.list.positions;
     // A step must not leave the list's reach.
-    return !are_near(statics, state, listed, 0.5 * forces.skin - settings.step.largest_move);
+    const double most = 0.5 * forces.skin - settings.step.largest_move;
+    return !are_near(statics, state, listed, most) ||
+           !is_solvation_near(model, statics, state, most);
 }
 
 // Whether pairs between clusters may be missing after a move by `room`, Å.
@@ -532,7 +547,7 @@ void turn_base(const TorsionModel& model, std::size_t molecule, const Eigen::Qua
 
 bool update_adaptive_forces(const TorsionModel& model, const AdaptiveSettings& settings,
                             TorsionState& state, AdaptiveStatics& statics) {
-    if (!statics.is_built || is_list_outdated(settings, state, statics) ||
+    if (!statics.is_built || is_list_outdated(model, settings, state, statics) ||
         are_tiles_outdated(settings, state, statics, 0) || !is_within_reach(state.positions))
         return renew(model, settings, state, statics);
     update_across(model, settings, state, statics, statics.across_forces);
@@ -546,7 +561,7 @@ AdaptiveReport step_adaptive(const TorsionModel& model, const AdaptiveSettings& 
     const std::size_t choices = statics.choices;
     AdaptiveReport result;
     QuasiStaticReport& report = result.step;
-    if (!statics.is_built || is_list_outdated(settings, state, statics)) {
+    if (!statics.is_built || is_list_outdated(model, settings, state, statics)) {
         report.is_finite = renew(model, settings, state, statics);
     } else if (is_choice_due(settings, statics)) {
         report.is_finite = choose_anew(model, settings, state, statics);

@@ -10,13 +10,38 @@ namespace palpa {
 namespace {
 
 PairScheme scheme_of(const NonbondedSettings& settings) noexcept {
+    const bool is_solvated = settings.solvation == SolvationEnd::Smooth;
     return {settings.coulomb_constant / settings.dielectric,
             settings.distance_dielectric,
             settings.electrostatics,
             settings.van_der_waals,
             settings.switch_from,
-            settings.cutoff};
+            settings.cutoff,
+            is_solvated ? smooth_solvation_begin : 0,
+            is_solvated ? smooth_solvation_end : 0};
 }
+
+// One entry per atom; empty without solvation.
+class AllSolvation {
+public:
+    explicit AllSolvation(const Topology& topology) {
+        if (!topology.solvation) return;
+        for (std::size_t i = 0; i < topology.size(); ++i) {
+            const SolvationAtom atom = solvation_atom(*topology.solvation, i);
+            volume_.push_back(atom.volume);
+            strength_.push_back(atom.strength);
+            inverse_lambda_.push_back(atom.inverse_lambda);
+            radius_.push_back(atom.radius);
+        }
+    }
+
+    SolvationParameters parameters() const noexcept {
+        return {volume_, strength_, inverse_lambda_, radius_};
+    }
+
+private:
+    std::vector<double> volume_, strength_, inverse_lambda_, radius_;
+};
 
 Vec3 middle_of(std::span<const Vec3> positions) noexcept {
     Vec3 sum = Vec3::Zero();
@@ -28,15 +53,10 @@ Vec3 middle_of(std::span<const Vec3> positions) noexcept {
 std::vector<RadialSlopes> find_replaced(const TorsionModel& model,
                                         const NonbondedSettings& settings,
                                         std::span<const Vec3> positions) {
-    const Topology& topology = model.topology;
-    const PairHessianLaw law(settings);
-    const double coulomb = settings.coulomb_constant / settings.dielectric;
+    const TopologyPairHessian law(model.topology, settings);
     std::vector<RadialSlopes> slopes;
     for (const auto& [i, j] : model.fast.atoms.replaced()) {
-        const PairHessian pair =
-            law.evaluate((positions[i] - positions[j]).squaredNorm(),
-                         coulomb * topology.charge[i] * topology.charge[j],
-                         topology.lennard_jones.row(topology.type[i])[topology.type[j]]);
+        const PairHessian pair = law.plain(i, j, (positions[i] - positions[j]).squaredNorm());
         slopes.push_back({pair.first, pair.second});
     }
     return slopes;
@@ -117,11 +137,12 @@ FastSecondDerivatives build_fast_second_derivatives(const TorsionModel& model,
         motions.push_back(static_cast<std::uint32_t>(coordinates.of(b).size()));
     }
     const FastAtoms& atoms = model.fast.atoms;
+    const AllSolvation solvation(model.topology);
     FastSecondDerivatives fast;
     fast.paths = build_model_paths(model);
     fast.plan = build_hessian_plan({parents, tree.first_atom, tree.atoms, motions},
                                    {model.topology.charge, atoms.sqrt_epsilon, atoms.half_rmin},
-                                   atoms.left_out, atoms.first_replaced);
+                                   solvation.parameters(), atoms.left_out, atoms.first_replaced);
     number_in_order(coordinates, fast);
     return fast;
 }
@@ -136,7 +157,8 @@ bool update_fast_second_derivatives(const TorsionModel& model, const LocalCoordi
         return false;
     };
     const PairScheme scheme = scheme_of(settings);
-    if (!has_hessian_kernel(scheme)) return use_reference();
+    if (!has_hessian_kernel(scheme) || settings.solvation == SolvationEnd::Sharp)
+        return use_reference();
     const Vec3 origin = middle_of(state.positions);
     update_motions(model, fast.ordered, state, memory.motions);
     std::vector<Vec6> screws;

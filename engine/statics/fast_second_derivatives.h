@@ -24,8 +24,9 @@ struct SecondDerivativesMemory {
 };
 
 // The same as update_second_derivatives. Pairs are in single precision if their energies have no
-// cutoff or both forces are switched; for other schemes, and where atoms coincide, the reference
-// implementation does everything. Returns whether single precision was used.
+// cutoff, both forces are switched, or both have the smooth ends of EEF1-SB; for other schemes, and
+// where atoms coincide, the reference implementation does everything. Returns whether single
+// precision was used.
 //
 // Diagonal blocks come from the same numbers as the off-diagonal ones. So moving everything
 // together costs no energy up to double rounding, and soft directions are preserved: for HIV-1

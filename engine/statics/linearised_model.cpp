@@ -1,12 +1,14 @@
 #include "statics/linearised_model.h"
 
+#include "statics/response_span.h"
+
 #include <algorithm>
 #include <utility>
 
 namespace palpa {
 namespace {
 
-// Of near pairs alone, at the positions of the state.
+// Of near pairs alone, at the positions of the state. `at` and the gradient: of all coordinates.
 void evaluate_near(const TorsionModel& model, const ForceSettings& settings,
                    const LinearisedModel& linear, const Eigen::VectorXd& at, NearPairs& near,
                    TorsionState& state, ModelValue& value) {
@@ -40,9 +42,10 @@ void separate_rest(const TorsionModel& model, const ForceSettings& settings, Lin
     evaluate_near(model, settings, linear, origin, linear.near, scratch, near);
     linear.rest_energy = linear.at.energy() - near.energy;
     linear.rest_gradient = linear.gradient - near.gradient;
-    update_pair_derivatives(model, linear.coordinates, linear.near.all, settings.nonbonded,
-                            linear.at, lineariser.near);
-    linear.rest = (lineariser.all.all - lineariser.near.all).cast<float>();
+    update_pair_derivatives(model, linear.coordinates, linear.near.all, linear.near.solvated,
+                            settings.nonbonded, linear.at, lineariser.near);
+    lineariser.rest = lineariser.all.all - lineariser.near.all;
+    linear.rest = lineariser.rest.cast<float>();
 }
 
 }  // namespace
@@ -55,8 +58,36 @@ Lineariser build_lineariser(const TorsionModel& model, HeldParts held) {
     return lineariser;
 }
 
-bool linearise(const TorsionModel& model, const ForceSettings& settings, double reach,
+Eigen::VectorXd ResponseSpan::reduce(const Eigen::VectorXd& gradient) const {
+    const Eigen::Index hands = gradient.size() - basis.rows();
+    Eigen::VectorXd reduced(basis.cols() + hands);
+    reduced << basis.transpose() * gradient.head(basis.rows()), gradient.tail(hands);
+    return reduced;
+}
+
+Eigen::VectorXd ResponseSpan::expand(const Eigen::VectorXd& at) const {
+    const Eigen::Index hands = at.size() - basis.cols();
+    Eigen::VectorXd all(basis.rows() + hands);
+    all << basis * at.head(basis.cols()), at.tail(hands);
+    return all;
+}
+
+Eigen::VectorXd LinearisedModel::balance(const Eigen::VectorXd& forces) const {
+    return span ? forces : Eigen::VectorXd(find_response(factor, forces));
+}
+
+void place_by(const TorsionModel& model, const LinearisedModel& linear, const Eigen::VectorXd& at,
+              TorsionState& state) {
+    if (linear.span) {
+        place_about(model, linear.coordinates, linear.at, linear.span->expand(at), state);
+    } else {
+        place_about(model, linear.coordinates, linear.at, at, state);
+    }
+}
+
+bool linearise(const TorsionModel& model, const LineariseSettings& settings,
                const TorsionState& state, Lineariser& lineariser, LinearisedModel& linear) {
+    const double reach = settings.near_reach;
     linear.at = state;
     linear.coordinates = lineariser.coordinates;
     linear.near = build_near_pairs(model, state.positions, lineariser.held.atoms, reach);
@@ -64,9 +95,9 @@ bool linearise(const TorsionModel& model, const ForceSettings& settings, double 
     constexpr double close_reach = 4.5;
     linear.close =
         build_close_pairs(model, state.positions, lineariser.held.atoms, reach, close_reach);
-    update_derivatives(model, settings, state, lineariser);
+    update_derivatives(model, settings.forces, state, lineariser);
     const SecondDerivatives& all = lineariser.all;
-    separate_rest(model, settings, lineariser, linear);
+    separate_rest(model, settings.forces, lineariser, linear);
 
     update_atom_metric(model, linear.coordinates, state, lineariser.metric);
     linear.factor.shift = lineariser.shift;
@@ -76,6 +107,11 @@ bool linearise(const TorsionModel& model, const ForceSettings& settings, double 
     linear.response = -find_response(linear.factor, all.mixed());
     linear.frozen_stiffness = all.of_hands();
     linear.relaxed_stiffness = all.of_hands() + all.mixed().transpose() * linear.response;
+    if (settings.responses) {
+        linear.span = build_response_span(model, settings.forces, linear, lineariser.held.hands,
+                                          all.mixed(), *settings.responses);
+        reduce_to_span(lineariser.rest, linear);
+    }
     return true;
 }
 
@@ -85,8 +121,8 @@ std::vector<Mat3> find_atom_responses(const TorsionModel& model, const Linearise
     std::vector<CoordinateMotion> motions;
     update_motions(model, linear.coordinates, state, motions);
     Eigen::MatrixXd moves = Eigen::MatrixXd::Zero(linear.coordinates.size(), 3);
-    moves.topRows(linear.mobile()) = linear.response.middleCols(first, 3);
-    moves.middleRows(linear.mobile() + first, 3).setIdentity();
+    moves.topRows(linear.response.rows()) = linear.response.middleCols(first, 3);
+    moves.middleRows(linear.response.rows() + first, 3).setIdentity();
     // Turn and velocity at the origin of each body, for each displacement.
     using Screws = Eigen::Matrix<double, 6, 3>;
     const std::vector<Body>& bodies = model.tree.bodies.bodies;
@@ -110,8 +146,10 @@ std::vector<Mat3> find_atom_responses(const TorsionModel& model, const Linearise
 void evaluate_model(const TorsionModel& model, const ForceSettings& settings,
                     const LinearisedModel& linear, const Eigen::VectorXd& at, NearPairs& near,
                     TorsionState& state, ModelValue& value) {
-    place_about(model, linear.coordinates, linear.at, at, state);
-    evaluate_near(model, settings, linear, at, near, state, value);
+    const Eigen::VectorXd all = linear.span ? linear.span->expand(at) : at;
+    place_about(model, linear.coordinates, linear.at, all, state);
+    evaluate_near(model, settings, linear, all, near, state, value);
+    if (linear.span) value.gradient = linear.span->reduce(value.gradient);
     const Eigen::VectorXd curved = (linear.rest * at.cast<float>()).cast<double>();
     value.energy += linear.rest_energy + at.dot(linear.rest_gradient + 0.5 * curved);
     value.gradient += linear.rest_gradient + curved;

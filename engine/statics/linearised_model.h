@@ -9,7 +9,9 @@
 #include "statics/torsion_state.h"
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -21,9 +23,24 @@ struct HeldParts {
     std::vector<std::uint32_t> atoms;  // of all hands, rising
 };
 
+// Few combinations of the mobile coordinates in which a model answers, instead of all
+// (statics/response_span.h). By the second derivatives that are factored each has the curvature 1
+// kcal/mol, and none of two.
+struct ResponseSpan {
+    Eigen::MatrixXd basis;     // one column each
+    Eigen::MatrixXd response;  // X in them: basis * response is LinearisedModel::response
+
+    // Of a gradient along all coordinates, hands last.
+    Eigen::VectorXd reduce(const Eigen::VectorXd& gradient) const;
+    // All coordinates from those of the span, hands last.
+    Eigen::VectorXd expand(const Eigen::VectorXd& at) const;
+};
+
 // E(q, d) = E_near(q, d) + Q(q, d), where q are the mobile coordinates and d those of the hands,
 // both 0 at the point of linearisation (statics/local_coordinates.h). Q is the Taylor expansion to
-// second order of all terms but the near pairs. Not changed after it is built.
+// second order of all terms but the near pairs. With a span q are its combinations: then `at`,
+// gradients and matrices of the model have those for the mobile coordinates. Not changed after it
+// is built.
 struct LinearisedModel {
     TorsionState at;  // the point of linearisation, with its energy
     LocalCoordinates coordinates;
@@ -38,13 +55,21 @@ struct LinearisedModel {
 
     ResponseFactor factor;     // of H, made positive definite
     Eigen::MatrixXd response;  // X = -H^-1 G: moves of mobile coordinates per move of the hands
+    std::optional<ResponseSpan> span;
     // At the hands (kcal/mol per Å and rad): K - G^T H^-1 G if everything mobile relaxes, and K if
     // nothing does.
     Eigen::MatrixXd relaxed_stiffness, frozen_stiffness;
 
-    Eigen::Index mobile() const noexcept { return coordinates.mobile; }
+    Eigen::Index mobile() const noexcept { return span ? span->basis.cols() : coordinates.mobile; }
     Eigen::Index hands() const noexcept { return coordinates.hands; }
+    // X, and the inverse of H times forces, in the coordinates of the model.
+    const Eigen::MatrixXd& answer() const noexcept { return span ? span->response : response; }
+    Eigen::VectorXd balance(const Eigen::VectorXd& forces) const;
 };
+
+// Where the coordinates of a model say.
+void place_by(const TorsionModel& model, const LinearisedModel& linear, const Eigen::VectorXd& at,
+              TorsionState& state);
 
 // What one linearisation uses again at the next; of one model and its hands.
 struct Lineariser {
@@ -53,15 +78,24 @@ struct Lineariser {
     FastSecondDerivatives fast;
     SecondDerivativesMemory memory;
     SecondDerivatives all, near;
+    Eigen::MatrixXd rest;  // of all but the near pairs
     AtomMetric metric;
     double shift = 0;  // of the last factor
 };
 
 Lineariser build_lineariser(const TorsionModel& model, HeldParts held);
 
-// At a state with forces; `reach`: within it pairs are exact, Å. False, and `linear` is of no use,
-// where second derivatives are not finite.
-[[nodiscard]] bool linearise(const TorsionModel& model, const ForceSettings& settings, double reach,
+struct LineariseSettings {
+    ForceSettings forces;
+    double near_reach = 6;  // Å: pairs of held atoms with atoms so near are exact
+    // The answer is sought in the span of so many responses for each hand; unset: among all
+    // coordinates.
+    std::optional<std::size_t> responses;
+};
+
+// At a state with forces. False, and `linear` is of no use, where second derivatives are not
+// finite.
+[[nodiscard]] bool linearise(const TorsionModel& model, const LineariseSettings& settings,
                              const TorsionState& state, Lineariser& lineariser,
                              LinearisedModel& linear);
 

@@ -1,6 +1,7 @@
 #include "statics/near_pairs.h"
 
 #include "forces/fast_nonbonded.h"
+#include "forces/solvation.h"
 
 #include <algorithm>
 #include <limits>
@@ -60,6 +61,11 @@ NearPairs build_near_pairs(const TorsionModel& model, std::span<const Vec3> posi
         if (number_of[a] == not_near || number_of[b] == not_near) continue;
         if (groups[number_of[a]] != groups[number_of[b]]) near.others.push_back({a, b});
     }
+    if (model.topology.solvation) {
+        near.solvation = build_solvation_tiles(fast.solvation, atoms, groups, fast.excluded(),
+                                               near.workspace.origin);
+        near.solvated = list_pairs(near.solvation.tiles);
+    }
     near.all = list_pairs(near.tiles);
     near.all.insert(near.all.end(), near.others.begin(), near.others.end());
     return near;
@@ -68,17 +74,24 @@ NearPairs build_near_pairs(const TorsionModel& model, std::span<const Vec3> posi
 double add_near_forces(const TorsionModel& model, const ForceSettings& settings, NearPairs& near,
                        std::span<const Vec3> positions, std::span<Vec3> forces) {
     const Topology& topology = model.topology;
-    const auto energy_of = [](const NonbondedEnergy& sum) {
-        return sum.van_der_waals + sum.electrostatic;
-    };
+    const NonbondedSettings& nonbonded = settings.nonbonded;
+    const bool has_solvation = nonbonded.solvation != SolvationEnd::None;
     if (is_fast(settings)) {
         const std::optional<NonbondedEnergy> sum =
-            add_tile_forces(topology, settings.nonbonded, near.tiles, near.workspace, near.others,
-                            positions, forces, PairResult::ForcesAndEnergies);
-        if (sum) return energy_of(*sum);
+            add_tile_forces(topology, nonbonded, near.tiles, near.workspace, near.others, positions,
+                            forces, PairResult::ForcesAndEnergies);
+        if (sum) {
+            return sum->sum() +
+                   (has_solvation ? add_solvation_tiles(topology, near.solvation, positions, forces)
+                                  : 0);
+        }
     }
-    return energy_of(add_pairs_in_double(topology, settings.nonbonded, near.tiles, near.others,
-                                         positions, forces));
+    const double vacuum = add_pairs_in_double(topology, without_solvation(nonbonded), near.tiles,
+                                              near.others, positions, forces)
+                              .sum();
+    if (!has_solvation) return vacuum;
+    return vacuum +
+           add_solvation_forces(topology, nonbonded.solvation, near.solvated, positions, forces);
 }
 
 }  // namespace palpa

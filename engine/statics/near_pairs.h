@@ -17,8 +17,10 @@ namespace palpa {
 struct NearPairs {
     ClusterList tiles;  // summed by the kernel
     PairWorkspace workspace;
+    SolvationTiles solvation;                          // summed by its own kernel
     std::vector<std::array<std::uint32_t, 2>> others;  // with replaced numbers, summed in double
-    std::vector<std::array<std::uint32_t, 2>> all;     // both, one by one
+    // One by one: both, without solvation, and those of its tiles, of which that alone counts.
+    std::vector<std::array<std::uint32_t, 2>> all, solvated;
 };
 
 // `held`: atoms of all hands, rising. An atom is near if it was within `reach` (Å) of one of them.

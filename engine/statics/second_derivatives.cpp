@@ -58,8 +58,7 @@ public:
                const TorsionState& state)
         : model_(model),
           state_(state),
-          law_(settings),
-          coulomb_(settings.coulomb_constant / settings.dielectric),
+          law_(model.topology, settings),
           excluded_(find_excluded(model.topology)),
           is_left_out_(model.topology.size(), 0) {}
 
@@ -78,25 +77,20 @@ private:
     void add_atom(std::uint32_t i, std::uint32_t body, const Vec3& point, std::vector<Mat6>& row) {
         const Topology& topology = model_.topology;
         const std::vector<std::uint32_t>& body_of = model_.tree.bodies.body_of;
-        const double charge = coulomb_ * topology.charge[i];
-        const LennardJonesPair* const numbers = topology.lennard_jones.row(topology.type[i]);
         for (const std::uint32_t j : excluded_[i]) is_left_out_[j] = 1;
         for (std::uint32_t j = 0; j < topology.size(); ++j) {
             if (body_of[j] == body || is_left_out_[j] != 0) continue;
             const Vec3 x_i = state_.positions[i] - point, x_j = state_.positions[j] - point;
             const double r2 = (x_i - x_j).squaredNorm();
             if (r2 >= law_.reach2()) continue;
-            row[body_of[j]] += pair_block(
-                x_i, x_j,
-                law_.evaluate(r2, charge * topology.charge[j], numbers[topology.type[j]]));
+            row[body_of[j]] += pair_block(x_i, x_j, law_.plain(i, j, r2));
         }
         for (const std::uint32_t j : excluded_[i]) is_left_out_[j] = 0;
     }
 
     const TorsionModel& model_;
     const TorsionState& state_;
-    PairHessianLaw law_;
-    double coulomb_;
+    TopologyPairHessian law_;
     std::vector<std::vector<std::uint32_t>> excluded_;
     std::vector<std::uint8_t> is_left_out_;  // of the atom at hand
 };
@@ -105,43 +99,48 @@ private:
 class ListedBlocks {
 public:
     ListedBlocks(const TorsionModel& model, const NonbondedSettings& settings,
-                 const TorsionState& state, std::span<const std::array<std::uint32_t, 2>> pairs)
+                 const TorsionState& state, std::span<const std::array<std::uint32_t, 2>> pairs,
+                 std::span<const std::array<std::uint32_t, 2>> solvated)
         : model_(model),
           state_(state),
-          law_(settings),
-          coulomb_(settings.coulomb_constant / settings.dielectric),
+          vacuum_(model.topology, without_solvation(settings)),
+          water_(model.topology, settings),
           of_body_(model.tree.bodies.bodies.size()) {
         const std::vector<std::uint32_t>& body_of = model.tree.bodies.body_of;
-        for (const auto& [i, j] : pairs) {
-            if (body_of[i] == body_of[j]) continue;
-            of_body_[body_of[i]].push_back({i, j});
-            of_body_[body_of[j]].push_back({j, i});
-        }
+        const auto add = [&](std::span<const std::array<std::uint32_t, 2>> listed, bool is_water) {
+            for (const auto& [i, j] : listed) {
+                if (body_of[i] == body_of[j]) continue;
+                of_body_[body_of[i]].push_back({i, j, is_water});
+                of_body_[body_of[j]].push_back({j, i, is_water});
+            }
+        };
+        add(pairs, false);
+        add(solvated, true);
     }
 
     bool has(std::uint32_t body) const noexcept { return !of_body_[body].empty(); }
 
     void update_row(std::uint32_t body, const Vec3& point, std::vector<Mat6>& row) const {
         row.assign(of_body_.size(), Mat6::Zero());
-        const Topology& topology = model_.topology;
-        for (const auto& [i, j] : of_body_[body]) {
+        for (const auto& [i, j, is_water] : of_body_[body]) {
             const Vec3 x_i = state_.positions[i] - point, x_j = state_.positions[j] - point;
             const double r2 = (x_i - x_j).squaredNorm();
-            if (r2 >= law_.reach2()) continue;
-            const LennardJonesPair& numbers =
-                topology.lennard_jones.row(topology.type[i])[topology.type[j]];
+            if (r2 >= (is_water ? water_ : vacuum_).reach2()) continue;
             row[model_.tree.bodies.body_of[j]] += pair_block(
-                x_i, x_j,
-                law_.evaluate(r2, coulomb_ * topology.charge[i] * topology.charge[j], numbers));
+                x_i, x_j, is_water ? water_.solvation(i, j, r2) : vacuum_.plain(i, j, r2));
         }
     }
 
 private:
+    struct Listed {
+        std::uint32_t i, j;
+        bool is_water;  // solvation alone
+    };
+
     const TorsionModel& model_;
     const TorsionState& state_;
-    PairHessianLaw law_;
-    double coulomb_;
-    std::vector<std::vector<std::array<std::uint32_t, 2>>> of_body_;
+    TopologyPairHessian vacuum_, water_;
+    std::vector<std::vector<Listed>> of_body_;
 };
 
 // Blocks times screws: what one body gets from each coordinate, about a point of the body.
@@ -270,6 +269,7 @@ void update_second_derivatives(const TorsionModel& model, const LocalCoordinates
 
 void update_pair_derivatives(const TorsionModel& model, const LocalCoordinates& coordinates,
                              std::span<const std::array<std::uint32_t, 2>> pairs,
+                             std::span<const std::array<std::uint32_t, 2>> solvated,
                              const NonbondedSettings& settings, const TorsionState& state,
                              SecondDerivatives& derivatives) {
     derivatives.mobile = coordinates.mobile;
@@ -277,7 +277,7 @@ void update_pair_derivatives(const TorsionModel& model, const LocalCoordinates& 
     std::vector<CoordinateMotion> motions;
     update_motions(model, coordinates, state, motions);
     std::vector<Mat6> outward;
-    const ListedBlocks blocks(model, settings, state, pairs);
+    const ListedBlocks blocks(model, settings, state, pairs, solvated);
     add_pair_products(model, coordinates, blocks, state, motions, outward, derivatives.all);
     Eigen::MatrixXd half = Eigen::MatrixXd::Zero(coordinates.size(), coordinates.size());
     add_outward(model, coordinates, state, motions, outward, half);

@@ -37,9 +37,11 @@ void update_second_derivatives(const TorsionModel& model, const LocalCoordinates
                                const ModelPaths& paths, const NonbondedSettings& settings,
                                const TorsionState& state, SecondDerivatives& derivatives);
 
-// The same of some plain pairs alone, each named once.
+// The same of some plain pairs alone, each named once: of `pairs` without solvation, and of
+// `solvated` its part alone.
 void update_pair_derivatives(const TorsionModel& model, const LocalCoordinates& coordinates,
                              std::span<const std::array<std::uint32_t, 2>> pairs,
+                             std::span<const std::array<std::uint32_t, 2>> solvated,
                              const NonbondedSettings& settings, const TorsionState& state,
                              SecondDerivatives& derivatives);
 

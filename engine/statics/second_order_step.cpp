@@ -87,7 +87,7 @@ double find_force(std::span<const HandHold> hands, const Eigen::VectorXd& gradie
 double find_unrelaxed(std::span<const HandHold> hands, const SecondOrderStatics& statics) {
     const LinearisedModel& linear = *statics.linear;
     const Eigen::VectorXd change =
-        linear.response.transpose() * statics.value.gradient.head(linear.mobile());
+        linear.answer().transpose() * statics.value.gradient.head(linear.mobile());
     return find_force(hands, change);
 }
 
@@ -108,7 +108,7 @@ public:
     const Eigen::VectorXd& trial_move() const { return move_; }
 
     Eigen::VectorXd precondition(const Eigen::VectorXd& forces) {
-        return find_response(statics_.linear->factor, forces);
+        return statics_.linear->balance(forces);
     }
     static Eigen::VectorXd limit(Eigen::VectorXd direction) { return direction; }
 
@@ -168,9 +168,10 @@ void relax_model(const TorsionModel& model, const SecondOrderSettings& settings,
     ++statics.model_evaluations;
     ModelDescent descent(model, settings, state, statics);
     constexpr LineSearch search{.tries = 6};
+    const double rest = statics.linear->span ? settings.span_rest : settings.rest;
     const std::size_t most = settings.tolerance ? 3 * settings.evaluations : settings.evaluations;
     for (std::size_t i = 1; i < most; ++i) {
-        if (!descent.forces().allFinite() || rms_of(descent.forces()) < settings.rest) return;
+        if (!descent.forces().allFinite() || rms_of(descent.forces()) < rest) return;
         if (i >= settings.evaluations && 4 * find_unrelaxed(hands, statics) < *settings.tolerance)
             return;
         if (!step_downhill(descent, statics.pairs, search)) return;
@@ -181,11 +182,11 @@ void relax_model(const TorsionModel& model, const SecondOrderSettings& settings,
 void follow_linearly(const TorsionModel& model, const SecondOrderSettings& settings,
                      const Eigen::VectorXd& by, TorsionState& state, SecondOrderStatics& statics) {
     const LinearisedModel& linear = *statics.linear;
-    const Eigen::VectorXd answer = linear.response * by;
+    const Eigen::VectorXd answer = linear.answer() * by;
     statics.at.tail(linear.hands()) += by;
     Eigen::VectorXd at = statics.at;
     at.head(linear.mobile()) += answer;
-    place_about(model, linear.coordinates, linear.at, at, statics.trial);
+    place_by(model, linear, at, statics.trial);
     const double moved =
         find_largest_move(model.mobile_atoms, state.positions, statics.trial.positions);
     const double most = 2 * settings.largest_move;
@@ -230,14 +231,24 @@ double find_relative_age(const TorsionModel& model, const SecondOrderSettings& s
 
 RenewalRequest request_renewal(const TorsionModel& model, const SecondOrderSettings& settings,
                                const TorsionState& state, const SecondOrderStatics& statics) {
-    RenewalRequest request{state, 0, {}, {}};
+    RenewalRequest request{state, statics.near_reach, 0, {}, {}};
     if (!statics.linear) return request;
     request.age = find_relative_age(model, settings, state, statics);
     const LinearisedModel& linear = *statics.linear;
     request.felt = statics.value.gradient.tail(linear.hands());
     request.at_rest =
-        request.felt + linear.response.transpose() * statics.value.gradient.head(linear.mobile());
+        request.felt + linear.answer().transpose() * statics.value.gradient.head(linear.mobile());
     return request;
+}
+
+// By the age at which the model's error comes to the tolerance.
+void choose_reach(const SecondOrderSettings& settings, SecondOrderStatics& statics) {
+    constexpr double early = 0.7, late = 1.5, change = 1;  // Å
+    double& reach = statics.near_reach;
+    if (reach <= 0) reach = settings.near_reach;
+    const double age = std::sqrt(*settings.tolerance / statics.error_growth);
+    if (age < early) reach = std::max(reach, std::min(reach + change, settings.farthest_reach));
+    if (age > late) reach = std::min(reach, std::max(reach - change, settings.nearest_reach));
 }
 
 void adopt_renewal(const SecondOrderSettings& settings, const Renewal& renewal,
@@ -245,7 +256,7 @@ void adopt_renewal(const SecondOrderSettings& settings, const Renewal& renewal,
     if (!renewal.linear) return;
     statics.linear = renewal.linear;
     statics.near = renewal.linear->near;
-    statics.at = Eigen::VectorXd::Zero(renewal.linear->coordinates.size());
+    statics.at = Eigen::VectorXd::Zero(renewal.linear->gradient.size());
     statics.value = {renewal.linear->at.energy(), renewal.linear->gradient};
     statics.pairs.clear();
     statics.is_settled =
@@ -258,6 +269,7 @@ void adopt_renewal(const SecondOrderSettings& settings, const Renewal& renewal,
         const double growth = renewal.model_error / (age * age);
         statics.error_growth =
             statics.error_growth > 0 ? 0.5 * (statics.error_growth + growth) : growth;
+        if (settings.tolerance) choose_reach(settings, statics);
     }
     ++statics.renewed;
 }
@@ -295,7 +307,7 @@ private:
                statics_.at.tail(linear().hands());
     }
 
-    void place() { place_about(model_, linear().coordinates, linear().at, statics_.at, state_); }
+    void place() { place_by(model_, linear(), statics_.at, state_); }
 
     // Springs that no hand moves may be others than the model knows: then it is made anew.
     bool place_with_springs() {
@@ -392,12 +404,16 @@ private:
             const Eigen::VectorXd by = is_there ? rest : Eigen::VectorXd(rest * (stride / length));
             report_.lags = wants_renewal_ && is_beyond(by);
             if (report_.lags) return;
+            const bool is_new = is_at_point();
             if (try_stride(by)) continue;
-            is_there = false;
+            // A state that a new model cannot hold relaxes on in the steps that follow.
+            is_there = is_there && is_new;
             report_.lags = !settings_.renews_at_once;
             if (!renew(settings_.renews_at_once)) return;
         }
     }
+
+    bool is_at_point() const { return statics_.at.squaredNorm() == 0; }
 
     bool is_beyond(const Eigen::VectorXd& by) const {
         const Eigen::VectorXd d = statics_.at.tail(linear().hands());
@@ -419,8 +435,8 @@ private:
             !are_too_close(linear().close, state_.positions))
             return true;
         ++statics_.discarded;
-        const bool is_new = at.squaredNorm() == 0;
         statics_.at = at;
+        const bool is_new = is_at_point();
         statics_.value = value;
         statics_.pairs.clear();
         if (is_new) statics_.at.tail(linear().hands()) += by;
@@ -465,8 +481,9 @@ Renewal make_renewal(const TorsionModel& model, const SecondOrderSettings& setti
     if (renewal.relaxed.end == RelaxEnd::NotFinite || !std::isfinite(request.state.energy()))
         return renewal;
     auto linear = std::make_shared<LinearisedModel>();
-    if (!linearise(model, settings.forces, settings.near_reach, request.state, memory.lineariser,
-                   *linear))
+    LineariseSettings linearise_settings = settings;
+    if (request.near_reach > 0) linearise_settings.near_reach = request.near_reach;
+    if (!linearise(model, linearise_settings, request.state, memory.lineariser, *linear))
         return renewal;
     if (request.felt.size() == linear->hands()) {
         renewal.error = find_force(memory.lineariser.held.hands,

@@ -21,14 +21,13 @@ namespace palpa {
 // work grows with the third power.
 inline constexpr Eigen::Index most_second_order_coordinates = 3000;
 
-struct SecondOrderSettings {
-    ForceSettings forces;
-    double near_reach = 6;          // Å: pairs of held atoms with atoms so near are exact
+struct SecondOrderSettings : LineariseSettings {
     double stride = 0.1;            // Å: the way of a hand between two relaxations, at most
     std::size_t most_strides = 25;  // in a step; a hand that goes farther has longer ones
     std::size_t evaluations = 4;    // of the model after each stride, at most
     double largest_move = 0.15;     // Å, of any atom in one of them
     double rest = 1e-3;  // rms force along coordinates that counts as rest, kcal/mol per rad and Å
+    double span_rest = 1e-5;  // the same along combinations of curvature one, kcal/mol
 
     // The model is renewed if a hand or an atom has gone so far from the point of linearisation
     // (Å). A stride that takes an atom beyond `farthest` is repeated with a new model.
@@ -44,8 +43,11 @@ struct SecondOrderSettings {
 
     // kcal/mol/Å. Where set, it decides instead of `renew_hand`: the model is renewed if the error
     // estimate comes near it, and evaluations go on, up to three times as many, while what they
-    // leave is more than a quarter of it.
+    // leave is more than a quarter of it. Then `near_reach` is where it begins: it grows up to
+    // `farthest_reach` while a model's error comes to the tolerance within the region in which it
+    // is to hold, and shrinks down to `nearest_reach` while it stays far below.
     std::optional<double> tolerance;
+    double nearest_reach = 4, farthest_reach = 10;  // Å
 
     // Relaxation at a renewal: at least so many evaluations of the whole energy, and more until
     // the rms force is below `relaxed`, at most `most_relaxation`. No step moves an atom farther
@@ -66,7 +68,8 @@ struct RenewalMemory {
 // Where a renewal starts from.
 struct RenewalRequest {
     TorsionState state;
-    double age = 0;  // of the old model, in units of the region in which it holds
+    double near_reach = 0;  // Å, of the new model; 0: as the settings have it
+    double age = 0;         // of the old model, in units of the region in which it holds
     // Gradient at the hands by the old model, and what it would be if that model were at rest;
     // empty where there is none.
     Eigen::VectorXd felt, at_rest;
@@ -127,6 +130,7 @@ struct SecondOrderStatics {
     bool is_at_rest = false;      // the whole energy is, where the hands are
     std::size_t still_steps = 0;  // since hands last moved, or a renewal
     double error_growth = 0;      // of errors at renewals, kcal/mol/Å per squared age
+    double near_reach = 0;        // of the next model, Å, where there is a tolerance
     TorsionState trial;
     ModelValue trial_value;
     std::vector<Vec3> start;  // memory: where the step began

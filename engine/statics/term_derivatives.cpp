@@ -301,15 +301,11 @@ void add_cmap_terms(const Topology& topology, const TermPaths& paths, TermSum& s
 
 void add_pairs14(const Topology& topology, const NonbondedSettings& settings,
                  const TermPaths& paths, TermSum& sum) {
-    const PairHessianLaw law(settings);
-    const double coulomb =
-        settings.coulomb_constant / settings.dielectric * settings.coulomb14_factor;
+    const TopologyPairHessian law(topology, settings);
     for (std::size_t t = 0; t < topology.exclusions.pairs14.size(); ++t) {
         const auto [i, j] = topology.exclusions.pairs14[t];
         const Vec3 d = sum.place(i) - sum.place(j);
-        const auto [first, second] =
-            law.evaluate(d.squaredNorm(), coulomb * topology.charge[i] * topology.charge[j],
-                         topology.lennard_jones14.row(topology.type[i])[topology.type[j]]);
+        const auto [first, second] = law.three_bonds_apart(i, j, d.squaredNorm());
         TermHessian<1> term;
         term.gradient = first * d;
         term.hessian = first * Mat3::Identity() + second * d * d.transpose();

@@ -82,9 +82,7 @@ void update_pivots(const TorsionModel& model, TorsionState& state) noexcept {
 }
 
 bool is_fast(const ForceSettings& settings) noexcept {
-    const NonbondedSettings& n = settings.nonbonded;
-    return settings.fast &&
-           !(n.distance_dielectric && n.electrostatics == ElectrostaticCutoff::ForceSwitch);
+    return settings.fast && has_fast_form(settings.nonbonded);
 }
 
 EnergyTerms add_model_forces(const TorsionModel& model, const ForceSettings& settings,
@@ -99,8 +97,8 @@ EnergyTerms add_model_forces(const TorsionModel& model, const ForceSettings& set
     if (!has_end(settings.nonbonded))
         return add_forces(topology, settings.nonbonded, positions, forces);
     if (memory.list.positions.empty() || is_outdated(memory.list, positions)) {
-        memory.list = build_pair_list(topology.exclusions, settings.nonbonded.cutoff, settings.skin,
-                                      positions, {}, std::move(memory.list));
+        memory.list = build_pair_list(topology.exclusions, find_reach(settings.nonbonded),
+                                      settings.skin, positions, {}, std::move(memory.list));
     }
     return add_forces(topology, settings.nonbonded, memory.list, positions, forces,
                       settings.threads);

@@ -50,6 +50,22 @@ const char* doing(bool on_axis, double force) {
     return force > 0 ? ", repels" : ", attracts";
 }
 
+// Which water is around the molecules, and what that leaves out.
+void show_solvent(Solvent solvent) {
+    if (solvent == Solvent::None) {
+        return reading("water", "none: vacuum",
+                       "Molecules are in vacuum. Nothing screens charges, so that ionic groups "
+                       "attract and repel each other far too strongly; nothing is gained from "
+                       "water. force_field.solvent of the scene says so.");
+    }
+    reading("water", "implicit, EEF1-SB",
+            "EEF1-SB (Bottaro et al. 2013): each atom gains from water, less what the atoms around "
+            "take of its shell; ionic groups are neutral, and charges act through a dielectric of "
+            "1.5 r. It leaves out salt, surface tension, polarisation and viscosity, and knows no "
+            "inside and outside: a salt bridge is nearly nothing; catalytic pairs of acids and "
+            "metal sites are poor. Energies are no free energies of binding.");
+}
+
 void switch_sound(const OverlayStatus& status, std::vector<Action>& actions) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
@@ -162,6 +178,7 @@ void Overlay::draw_readings(const Readout& readout, const OverlayStatus& status,
             has_flexible_ ? "Of all molecules, bonded terms too, kcal/mol"
                           : "Of the molecule in hand with all others: Lennard-Jones and Coulomb, "
                             "kcal/mol");
+    show_solvent(scene_.force_field.solvent);
     if (status.devices.empty()) {
         reading("device", status.device_name, "what the force is sent to, 1000 times a second");
     } else {

@@ -45,6 +45,14 @@ std::vector<NonbondedSettings> all_schemes() {
             }
         }
     }
+    for (const bool distance_dielectric : {false, true}) {
+        schemes.push_back({.coulomb_constant = test::reference_coulomb_constant,
+                           .distance_dielectric = distance_dielectric,
+                           .electrostatics = Electrostatics::CubicShift,
+                           .van_der_waals = VanDerWaals::SmoothSwitch,
+                           .switch_from = 7,
+                           .cutoff = 9});
+    }
     return schemes;
 }
 

@@ -4,6 +4,7 @@
 
 #include "tests/support/paths.h"
 #include "tests/support/reference_case.h"
+#include "tests/support/solvation_of.h"
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
@@ -11,6 +12,7 @@
 #include <cstddef>
 #include <limits>
 #include <random>
+#include <string>
 #include <vector>
 
 using namespace palpa;
@@ -26,7 +28,13 @@ struct GroupedPeptide {
         test::read_reference_frames(test::test_data("tetra_aera_c36m.frames.json"))
             .front()
             .positions;
-    const Topology& topology = reference.topology;
+    Topology& topology = reference.topology;
+
+    GroupedPeptide() {
+        std::vector<std::string> types;
+        for (const test::ReferenceAtom& atom : reference.atoms) types.push_back(atom.type);
+        topology.solvation = test::solvation_of(types);
+    }
 };
 
 // Residue by residue, the atoms of the last in a group of the first.
@@ -113,19 +121,22 @@ TEST_CASE("all that changes when groups move rigidly is in the sum across groups
     const std::vector<std::uint32_t> groups = groups_of(peptide);
 
     SECTION("all pairs, in double") {
-        const NonbondedSettings settings{.dielectric = GENERATE(1.0, 2.5)};
+        const NonbondedSettings settings =
+            GENERATE(NonbondedSettings{}, NonbondedSettings{.dielectric = 2.5}, eef1_settings());
         GroupForces group_forces = build_group_forces(peptide.topology, nullptr, groups);
         check_rest_is_rigid(peptide, settings, group_forces, 1e-9, 1e-9);
     }
     SECTION("pairs of a list, in double") {
-        const PairList list = build_pair_list(peptide.topology.exclusions, group_settings.cutoff, 2,
+        const NonbondedSettings settings = GENERATE(eef1_settings(), group_settings);
+        const PairList list = build_pair_list(peptide.topology.exclusions, find_reach(settings), 2,
                                               peptide.positions);
         GroupForces group_forces = build_group_forces(peptide.topology, &list, groups);
-        check_rest_is_rigid(peptide, group_settings, group_forces, 1e-9, 1e-9);
+        check_rest_is_rigid(peptide, settings, group_forces, 1e-9, 1e-9);
     }
     SECTION("by the kernel, in single precision") {
         const FastForceField fast = build_fast_force_field(peptide.topology);
-        const NonbondedSettings settings = GENERATE(NonbondedSettings{}, group_settings);
+        const NonbondedSettings settings =
+            GENERATE(NonbondedSettings{}, group_settings, eef1_settings());
         FastPairs pairs;
         std::vector<Vec3> forces(peptide.positions.size(), Vec3::Zero());
         (void)add_fast_forces(peptide.topology, fast, settings, 2, peptide.positions, pairs, forces,

@@ -214,9 +214,11 @@ TEST_CASE("van der Waals cutoffs are CHARMM's functions", "[forces][nonbonded][c
 TEST_CASE("cutoffs leave no step in energy or force, and nothing behind them",
           "[forces][nonbonded][cutoff]") {
     constexpr double m = 6, c = 9;
-    const auto kind = GENERATE(Electrostatics::Switch, Electrostatics::Shift,
-                               Electrostatics::ForceShift, Electrostatics::ForceSwitch);
-    const auto van_der_waals = GENERATE(VanDerWaals::Switch, VanDerWaals::ForceSwitch);
+    const auto kind =
+        GENERATE(Electrostatics::Switch, Electrostatics::Shift, Electrostatics::ForceShift,
+                 Electrostatics::ForceSwitch, Electrostatics::CubicShift);
+    const auto van_der_waals =
+        GENERATE(VanDerWaals::Switch, VanDerWaals::ForceSwitch, VanDerWaals::SmoothSwitch);
     const bool distance = GENERATE(false, true);
     const NonbondedSettings settings{.distance_dielectric = distance,
                                      .electrostatics = kind,
@@ -241,9 +243,10 @@ TEST_CASE("cutoffs leave no step in energy or force, and nothing behind them",
 TEST_CASE("non-bonded forces are the derivative of the energy and move with the molecule",
           "[forces][nonbonded]") {
     const auto kind = GENERATE(Electrostatics::None, Electrostatics::Switch, Electrostatics::Shift,
-                               Electrostatics::ForceShift, Electrostatics::ForceSwitch);
-    const auto van_der_waals =
-        GENERATE(VanDerWaals::None, VanDerWaals::Switch, VanDerWaals::ForceSwitch);
+                               Electrostatics::ForceShift, Electrostatics::ForceSwitch,
+                               Electrostatics::CubicShift);
+    const auto van_der_waals = GENERATE(VanDerWaals::None, VanDerWaals::Switch,
+                                        VanDerWaals::ForceSwitch, VanDerWaals::SmoothSwitch);
     const bool distance = GENERATE(false, true);
     const NonbondedSettings settings{.dielectric = 2,
                                      .distance_dielectric = distance,
@@ -279,9 +282,10 @@ TEST_CASE("non-bonded forces are the derivative of the energy and move with the 
 TEST_CASE("atoms at one place are finite, and the force goes to zero there",
           "[forces][nonbonded]") {
     const auto kind = GENERATE(Electrostatics::None, Electrostatics::Switch, Electrostatics::Shift,
-                               Electrostatics::ForceShift, Electrostatics::ForceSwitch);
-    const auto van_der_waals =
-        GENERATE(VanDerWaals::None, VanDerWaals::Switch, VanDerWaals::ForceSwitch);
+                               Electrostatics::ForceShift, Electrostatics::ForceSwitch,
+                               Electrostatics::CubicShift);
+    const auto van_der_waals = GENERATE(VanDerWaals::None, VanDerWaals::Switch,
+                                        VanDerWaals::ForceSwitch, VanDerWaals::SmoothSwitch);
     const NonbondedSettings settings{.electrostatics = kind, .van_der_waals = van_der_waals};
     const Topology oxygens = build_gas({-0.8, -0.8}, {{0.15, 1.77}});
 

@@ -1,9 +1,12 @@
 #include "forces/pair_hessian.h"
 
+#include "tests/support/solvation_of.h"
+
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -44,9 +47,11 @@ TEST_CASE("second derivatives of a pair are the differences of its force, whatev
     settings.cutoff = 9;
     settings.electrostatics =
         GENERATE(ElectrostaticCutoff::None, ElectrostaticCutoff::Switch, ElectrostaticCutoff::Shift,
-                 ElectrostaticCutoff::ForceShift, ElectrostaticCutoff::ForceSwitch);
-    settings.van_der_waals = GENERATE(VanDerWaalsCutoff::None, VanDerWaalsCutoff::Switch,
-                                      VanDerWaalsCutoff::ForceSwitch);
+                 ElectrostaticCutoff::ForceShift, ElectrostaticCutoff::ForceSwitch,
+                 ElectrostaticCutoff::CubicShift);
+    settings.van_der_waals =
+        GENERATE(VanDerWaalsCutoff::None, VanDerWaalsCutoff::Switch, VanDerWaalsCutoff::ForceSwitch,
+                 VanDerWaalsCutoff::SmoothSwitch);
     settings.distance_dielectric = GENERATE(false, true);
     if (find_problem(settings)) return;
     const PairHessianLaw law(settings);
@@ -64,6 +69,38 @@ TEST_CASE("second derivatives of a pair are the differences of its force, whatev
 
         CHECK(std::abs(pair.first - first) <= 1e-12 * std::abs(first));
         CHECK(std::abs(pair.second - second) <= 1e-8 * (std::abs(second) + std::abs(first) / u));
+    }
+}
+
+TEST_CASE("second derivatives of solvated pairs are the differences of their force",
+          "[forces][hessian][solvation]") {
+    Topology topology = two_atoms();
+    topology.solvation = test::solvation_of(std::array<std::string, 2>{"NH3", "CT3"});
+    const NonbondedSettings settings =
+        eef1_settings(GENERATE(SolvationEnd::None, SolvationEnd::Sharp, SolvationEnd::Smooth));
+    const TopologyPairHessian law(topology, settings);
+    const std::array<std::array<std::uint32_t, 2>, 1> pairs{{{0, 1}}};
+    for (const bool is_14 : {false, true}) {
+        const auto first_of = [&](double u) {
+            const std::array positions{Vec3(std::sqrt(2 * u), 0, 0), Vec3(0, 0, 0)};
+            std::array forces{Vec3(0, 0, 0), Vec3(0, 0, 0)};
+            is_14 ? add_pair14_forces(topology, settings, pairs, positions, forces)
+                  : add_pair_forces(topology, settings, pairs, positions, forces);
+            return -forces[0].x() / positions[0].x();
+        };
+        for (const double r : {0.03, 1.2, 2.9, 6.99, 7.5, 8.2, 8.51, 8.99, 9.2, 9.49, 9.6}) {
+            INFO("r = " << r);
+            const double u = 0.5 * r * r, h = 1e-4 * u;
+            const PairHessian pair =
+                is_14 ? law.three_bonds_apart(0, 1, r * r) : law.plain(0, 1, r * r);
+            const double first = first_of(u);
+            const double second = (8 * (first_of(u + h) - first_of(u - h)) -
+                                   (first_of(u + 2 * h) - first_of(u - 2 * h))) /
+                                  (12 * h);
+            CHECK(std::abs(pair.first - first) <= 1e-12 * std::abs(first));
+            CHECK(std::abs(pair.second - second) <=
+                  1e-7 * (std::abs(second) + std::abs(first) / u));
+        }
     }
 }
 

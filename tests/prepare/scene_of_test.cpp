@@ -37,9 +37,11 @@ struct Complex {
     }
 
     std::string scene(const std::string& grab, const SceneTuning& tuning,
-                      const Vec3& way = Vec3::UnitX()) const {
-        return format_scene(structure, segments, choose_hand(structure, segments, grab), way,
-                            {"t", "a", "m"}, tuning);
+                      const Vec3& way = Vec3::UnitX(), Solvent solvent = Solvent::None) const {
+        SceneText text{"t", "a", "m"};
+        text.solvent = solvent;
+        return format_scene(structure, segments, choose_hand(structure, segments, grab), way, text,
+                            tuning);
     }
 };
 
@@ -63,6 +65,15 @@ TEST_CASE("a prepared scene moves molecules and holds waters and ions", "[prepar
     CHECK_THAT(section(scene, "grab"),
                Contains("molecule = \"L\"\nmeasured_from = \"A\"") && !Contains("atom"));
     CHECK_THAT(scene, !Contains("mode ="));  // guarded, which is the default
+}
+
+TEST_CASE("a prepared scene says its solvent, and nothing of it in vacuum", "[prepare][scene]") {
+    const std::string vacuum = Complex().scene("", {});
+    CHECK_THAT(vacuum, !Contains("solvent") && !Contains("structural_water"));
+    const std::string scene = Complex().scene("", {}, Vec3::UnitX(), Solvent::Eef1Sb);
+    CHECK_THAT(section(scene, "force_field"), Contains("solvent = \"eef1-sb\""));
+    CHECK_THAT(section(scene, "molecules.\"W\""), Contains("structural_water = true"));
+    CHECK_THAT(section(scene, "molecules.\"A\""), !Contains("structural_water"));
 }
 
 TEST_CASE("what is on a spring is away from the base of its molecule", "[prepare][scene]") {

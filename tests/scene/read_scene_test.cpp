@@ -418,6 +418,30 @@ TEST_CASE("fields that contradict each other are told at one of them", "[scene][
                StartsWith(at(row.line, row.column)) && Contains(row.what));
 }
 
+TEST_CASE("a scene is in vacuum unless it names a solvent", "[scene][read]") {
+    const auto scene = [](const std::string& solvent) {
+        return replaced(base, "[force_field]\n", "[force_field]\nsolvent = \"" + solvent + "\"\n");
+    };
+    CHECK(parse_scene(base, file).force_field.solvent == Solvent::None);
+    CHECK(parse_scene(scene("none"), file).force_field.solvent == Solvent::None);
+    CHECK(parse_scene(scene("eef1-sb"), file).force_field.solvent == Solvent::Eef1Sb);
+    CHECK_FALSE(parse_scene(base, file).molecules[0].structural_water);
+    CHECK_THAT(error_of(scene("water")),
+               Contains("'force_field.solvent' is the text \"water\"") && Contains("eef1-sb"));
+
+    const std::string structural = replaced(scene("eef1-sb"), "[molecules.fixed]\n",
+                                            "[molecules.fixed]\nstructural_water = true\n");
+    CHECK(parse_scene(structural, file).molecules[0].structural_water);
+    CHECK_THAT(error_of(replaced(structural, "eef1-sb", "none")),
+               Contains("'molecules.fixed.structural_water' is true without a solvent"));
+    CHECK_THAT(
+        error_of(scene("eef1-sb") + "[statics]\ncutoff_angstrom = 12\n"),
+        Contains("'statics.cutoff_angstrom' is 12, and with force_field.solvent = \"eef1-sb\"") &&
+            Contains("solvent = \"none\""));
+    CHECK(error_of(base + "[statics]\ncutoff_angstrom = 12\n") == "no error");
+    CHECK(with({"force_field.solvent=eef1-sb"}).force_field.solvent == Solvent::Eef1Sb);
+}
+
 TEST_CASE("what looks like a contradiction and is none passes", "[scene][read]") {
     const std::string lines = GENERATE(
         "[hand]\ngrip = \"none\"\nstroke = \"hold\"", "[coupling]\nA_d_min = 1e8\nA_d_max = 1e8",

@@ -48,12 +48,14 @@ TEST_CASE("odd values survive being written and read, to the last bit", "[scene]
     scene.force_field.coulomb_constant = 332.06371329919216;
     scene.molecules[0].name = "a.b \"c\"\n";
     scene.molecules[0].segment = " FIX ";
+    scene.molecules[0].structural_water = true;
+    scene.force_field.solvent = Solvent::Eef1Sb;
     scene.molecules[1].name = "";
     scene.molecules[1].segment = "#";
     scene.grab = {"x", scene.molecules[0].name, "", 0.1 + 0.2};
     scene.joints.methyl = true;
     scene.joints.turn = {"A 1 \"C\" N", ""};
-    scene.statics.cutoff_angstrom = 0.1 + 12;
+    scene.statics.near_angstrom = 0.1 + 12;
     scene.molecules[1].name = "x";
     scene.hand.grip = HandGrip::FirmGrip;
     scene.hand.stroke = Stroke::Path;
@@ -92,7 +94,10 @@ TEST_CASE("odd values survive being written and read, to the last bit", "[scene]
     CHECK(back.grab.spring_kcal_per_mol_angstrom2 == 0.1 + 0.2);
     CHECK(back.joints.methyl);
     CHECK(back.joints.turn == scene.joints.turn);
-    CHECK(back.statics.cutoff_angstrom == scene.statics.cutoff_angstrom);
+    CHECK(back.statics.near_angstrom == scene.statics.near_angstrom);
+    CHECK(back.force_field.solvent == Solvent::Eef1Sb);
+    CHECK(back.molecules[0].structural_water);
+    CHECK_FALSE(back.molecules[1].structural_water);
     CHECK(back.hand.start_angstrom == scene.hand.start_angstrom);
     CHECK(std::signbit(back.hand.kick_N_s));
     CHECK(back.hand.release_s == scene.hand.release_s);
@@ -123,6 +128,7 @@ TEST_CASE("every field is written, under its full key", "[scene][write]") {
     scene.lesson = {{"STEP", "text", "task", LessonQuantity::Force, 1.0, 2.0, 0.5}};
     scene.hand.release_s = 4;
     scene.joints.within_angstrom = 8;
+    scene.joints.region_angstrom = 30;
     scene.statics.method = RelaxMethod::LimitedMemory;
     scene.statics.cutoff_angstrom = 12;
     scene.statics.budget_us = 1000;

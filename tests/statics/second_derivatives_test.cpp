@@ -122,10 +122,11 @@ TEST_CASE("second derivatives between two peptides have springs and hands in the
 
 TEST_CASE("second derivatives have the cutoff that the energy has", "[statics][hessian]") {
     NonbondedSettings settings;
-    settings.electrostatics =
-        GENERATE(ElectrostaticCutoff::Switch, ElectrostaticCutoff::Shift,
-                 ElectrostaticCutoff::ForceShift, ElectrostaticCutoff::ForceSwitch);
-    settings.van_der_waals = GENERATE(VanDerWaalsCutoff::Switch, VanDerWaalsCutoff::ForceSwitch);
+    settings.electrostatics = GENERATE(
+        ElectrostaticCutoff::Switch, ElectrostaticCutoff::Shift, ElectrostaticCutoff::ForceShift,
+        ElectrostaticCutoff::ForceSwitch, ElectrostaticCutoff::CubicShift);
+    settings.van_der_waals = GENERATE(VanDerWaalsCutoff::Switch, VanDerWaalsCutoff::ForceSwitch,
+                                      VanDerWaalsCutoff::SmoothSwitch);
     settings.switch_from = 6.5;
     settings.cutoff = 9;
     HeldCase c = two_peptides(test::alanine_dipeptide(), {6, 3, -2}, BaseFreedom::Turning, false);
@@ -151,6 +152,31 @@ TEST_CASE("second derivatives have the cutoff that the energy has", "[statics][h
     REQUIRE(is_clear());
 
     check_against_differences(c, settings);
+}
+
+TEST_CASE("second derivatives of solvated peptides are the differences of the gradient",
+          "[statics][hessian][solvation]") {
+    HeldCase c = two_peptides(test::solvated(test::tetrapeptide()), {14, 9, -6},
+                              BaseFreedom::Turning, false);
+    const LocalCoordinates coordinates = build_local_coordinates(c.model, c.hands);
+    const std::vector<Eigen::Index> columns = test::every(1, coordinates.size());
+    const NonbondedSettings settings = eef1_settings();
+
+    const SecondDerivatives derivatives = derivatives_of(c, coordinates, settings);
+
+    const Eigen::MatrixXd differences =
+        test::difference_columns(c.model, coordinates, settings, c.state, columns);
+    CHECK(test::worst_of_row(derivatives.all, differences, columns) < 1e-6);
+    CHECK((derivatives.all - differences).cwiseAbs().maxCoeff() <
+          1e-7 * derivatives.all.cwiseAbs().maxCoeff());
+    CHECK(test::worst_asymmetry(derivatives.all) < 1e-12);
+    // Solvation's own part.
+    const NonbondedSettings vacuum = eef1_settings(SolvationEnd::None);
+    const Eigen::MatrixXd part = derivatives.all - derivatives_of(c, coordinates, vacuum).all;
+    const Eigen::MatrixXd expected =
+        differences - test::difference_columns(c.model, coordinates, vacuum, c.state, columns);
+    CHECK(part.cwiseAbs().maxCoeff() > 1);
+    CHECK((part - expected).cwiseAbs().maxCoeff() < 1e-6 * part.cwiseAbs().maxCoeff());
 }
 
 TEST_CASE("nothing changes where everything moves as one", "[statics][hessian]") {

@@ -1,7 +1,7 @@
 #include "statics/second_order_step.h"
 
 #include "statics/renewal_worker.h"
-#include "tests/support/torsion_case.h"
+#include "tests/statics/held_pair.h"
 
 #include <algorithm>
 #include <array>
@@ -15,68 +15,11 @@
 #include <vector>
 
 using namespace palpa;
+using palpa::test::HeldPair;
+using palpa::test::model_at;
+using palpa::test::whole_at;
 
 namespace {
-
-// Two tetrapeptides beside each other: the first on a hand that moves its base, which may turn; the
-// second free but for springs at three of its atoms.
-struct HeldPair {
-    TorsionModel model;
-    TorsionState state;
-    HeldParts held;
-    SecondOrderSettings settings;
-
-    explicit HeldPair(double rms = 1e-6) {
-        test::PeptidePair pair = test::peptide_pair({BaseFreedom::Turning, BaseFreedom::Free});
-        model = std::move(pair.model);
-        state = std::move(pair.state);
-        const std::size_t half = model.masses.size() / 2;
-        held.hands = {{.molecule = 0}};
-        held.atoms.resize(half);
-        std::iota(held.atoms.begin(), held.atoms.end(), 0U);
-        for (const std::size_t atom : {half, half + half / 2, 2 * half - 1}) {
-            state.springs.push_back({.atoms = {static_cast<std::uint32_t>(atom)},
-                                     .k = 5,
-                                     .place = state.positions[atom]});
-        }
-        relax(rms);
-    }
-
-    void relax(double rms) {
-        RelaxSettings to_rest;
-        to_rest.force_tolerance = rms;
-        to_rest.steps = 20000;
-        QuasiStatics statics = build_quasi_statics(model);
-        const JointRelaxReport report = relax_joints(model, to_rest, state, statics);
-        REQUIRE(report.rms_force < std::max(10 * rms, 3e-5));
-    }
-
-    void move_hand(const Vec3& by) { shift_base(model, 0, by, state); }
-
-    LinearisedModel linearised() const {
-        Lineariser lineariser = build_lineariser(model, held);
-        LinearisedModel linear;
-        REQUIRE(linearise(model, settings.forces, settings.near_reach, state, lineariser, linear));
-        return linear;
-    }
-};
-
-// Energy and gradient of everything, at coordinates about the state.
-ModelValue whole_at(const HeldPair& c, const LinearisedModel& linear, const Eigen::VectorXd& at) {
-    TorsionState state = c.state;
-    place_about(c.model, linear.coordinates, linear.at, at, state);
-    ForceMemory memory;
-    update_forces(c.model, c.settings.forces, memory, state);
-    return {state.energy(), find_gradient(c.model, linear.coordinates, linear.at, at, state)};
-}
-
-ModelValue model_at(const HeldPair& c, const LinearisedModel& linear, const Eigen::VectorXd& at) {
-    ModelValue value;
-    TorsionState state = c.state;
-    NearPairs near = linear.near;
-    evaluate_model(c.model, c.settings.forces, linear, at, near, state, value);
-    return value;
-}
 
 // By complete relaxation where the hand is.
 Vec3 relaxed_force(HeldPair c) {
@@ -370,7 +313,7 @@ TEST_CASE("a rod turns over under the hand as its closed form says", "[statics][
         (void)relax_joints(model, to_rest, rest, full);
         CHECK((rest.positions[2] - r * c.normalized()).norm() < 1e-6);
         LinearisedModel linear;
-        REQUIRE(linearise(model, settings.forces, settings.near_reach, rest, lineariser, linear));
+        REQUIRE(linearise(model, settings, rest, lineariser, linear));
         const Vec3 across = up.cross(c).normalized();
         const double softened = r * k2 * k2 / c.norm();
         const Mat3 K = k2 * Mat3::Identity() - softened * across * across.transpose();
@@ -497,6 +440,26 @@ TEST_CASE("the error estimate of a step is near its error", "[statics][second-or
     }
     CHECK(states >= 12);
     CHECK(6 * right >= 5 * states);
+}
+
+TEST_CASE("a tight tolerance has more pairs exact than a loose one, and both keep the force in it",
+          "[statics][second-order]") {
+    const auto reach_with = [](double tolerance) {
+        HeldPair c;
+        c.settings.tolerance = tolerance;
+        c.settings.near_reach = 6;
+        SecondOrderStatics statics = build_second_order_statics(c.model, c.held);
+        for (int k = 1; k <= 60; ++k) {
+            c.move_hand(0.02 * Vec3::UnitX());
+            REQUIRE(step_second_order(c.model, c.settings, c.state, statics).is_finite);
+            if (k % 10 == 0) CHECK((hand_force(statics) - relaxed_force(c)).norm() < 2 * tolerance);
+        }
+        REQUIRE(statics.renewed > 3);
+        return statics.near_reach;
+    };
+    const double tight = reach_with(1e-3), loose = reach_with(1);
+    CHECK(tight > 6);
+    CHECK(loose < 6);
 }
 
 TEST_CASE("out and back without a snap the hand's force is what it was",

@@ -318,3 +318,50 @@ TEST_CASE("lists of pairs give the sum over all pairs wherever atoms go", "[stat
     }
     CHECK(memory.evaluations == 30);
 }
+
+TEST_CASE("solvated peptides have finite energies however they are twisted",
+          "[statics][state][solvation]") {
+    const TorsionModel model =
+        test::model_of(test::with_copy(test::solvated(test::tetrapeptide()), {6, 2, -1}),
+                       {BaseFreedom::Free, BaseFreedom::Turning}, test::all_joints);
+    const ForceSettings settings{.nonbonded = eef1_settings()};
+    TorsionState state = build_torsion_state(model);
+    ForceMemory memory;
+    std::mt19937 random(6);
+    for (int i = 0; i < 1000; ++i) {
+        add_move(model, test::random_move(model, 3, random), state);
+        update_forces(model, settings, memory, state);
+        update_coordinate_forces(model, state);
+        CHECK(std::isfinite(state.energy()));
+        CHECK(state.terms.solvation != 0);
+        CHECK(state.coordinate_forces.allFinite());
+    }
+}
+
+TEST_CASE("coordinate forces with solvation are the derivative of the energy",
+          "[statics][state][solvation]") {
+    const TorsionModel model =
+        test::model_of(test::with_copy(test::solvated(test::tetrapeptide()), {9, 4, -2}),
+                       {BaseFreedom::Free, BaseFreedom::Turning}, test::all_joints);
+    const ForceSettings settings{.nonbonded = eef1_settings()};
+    ForceMemory memory;
+    const TorsionState start = test::state_after(model, 0.1, 3);
+    const auto forces_at = [&](const Coordinates& move) {
+        TorsionState state = start;
+        add_move(model, move, state);
+        update_forces(model, settings, memory, state);
+        update_coordinate_forces(model, state);
+        return state;
+    };
+    const Coordinates there = forces_at(Coordinates::Zero(model.coordinates)).coordinate_forces;
+    constexpr double h = 1e-4;
+    for (Eigen::Index k = 0; k < model.coordinates; ++k) {
+        const auto at = [&](double by) {
+            return forces_at(by * Coordinates::Unit(model.coordinates, k)).energy();
+        };
+        const double slope =
+            (45 * (at(h) - at(-h)) - 9 * (at(2 * h) - at(-2 * h)) + at(3 * h) - at(-3 * h)) /
+            (60 * h);
+        CHECK(std::abs(there[k] + slope) < 1e-8 * there.cwiseAbs().maxCoeff());
+    }
+}

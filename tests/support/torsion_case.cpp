@@ -2,6 +2,7 @@
 
 #include "tests/support/paths.h"
 #include "tests/support/reference_case.h"
+#include "tests/support/solvation_of.h"
 
 #include <Eigen/Cholesky>
 #include <array>
@@ -21,6 +22,7 @@ FlexibleCase read_flexible_case(const std::filesystem::path& folder, const std::
         result.connectivity.names.push_back(
             {"A", atom.residue, std::to_string(atom.number), atom.name});
         result.connectivity.mass.push_back(atom.mass);
+        result.connectivity.type.push_back(atom.type);
     }
     for (const Bond& bond : result.topology.bonds) {
         result.connectivity.bonds.push_back({bond.a, bond.b});
@@ -32,6 +34,11 @@ FlexibleCase read_flexible_case(const std::filesystem::path& folder, const std::
 FlexibleCase alanine_dipeptide() { return read_flexible_case(test_data(""), "ala_dipeptide"); }
 
 FlexibleCase tetrapeptide() { return read_flexible_case(test_data(""), "tetra_aera_c36m"); }
+
+FlexibleCase solvated(FlexibleCase c) {
+    c.topology.solvation = solvation_of(c.connectivity.type);
+    return c;
+}
 
 FlexibleCase with_copy(FlexibleCase c, const Vec3& away) {
     const auto atoms = static_cast<std::uint32_t>(c.topology.size());
@@ -68,9 +75,11 @@ FlexibleCase with_copy(FlexibleCase c, const Vec3& away) {
         t.charge.push_back(t.charge[i]);
         t.type.push_back(t.type[i]);
         c.connectivity.mass.push_back(c.connectivity.mass[i]);
+        c.connectivity.type.push_back(c.connectivity.type[i]);
         c.connectivity.names.push_back(c.connectivity.names[i]);
         c.connectivity.names.back().segment = "B";
     }
+    if (t.solvation) t.solvation = solvation_of(c.connectivity.type);
     for (std::size_t i = 0, count = c.connectivity.bonds.size(); i < count; ++i) {
         const auto [a, b] = c.connectivity.bonds[i];
         c.connectivity.bonds.push_back({a + atoms, b + atoms});

@@ -28,6 +28,9 @@ FlexibleCase alanine_dipeptide();
 
 FlexibleCase tetrapeptide();
 
+// With EEF1-SB's numbers of its types; charges stay as they are.
+FlexibleCase solvated(FlexibleCase c);
+
 // The molecule and a copy, turned and `away` from it.
 FlexibleCase with_copy(FlexibleCase c, const Vec3& away);
 

@@ -59,7 +59,8 @@ class Energy(unittest.TestCase):
                            ("lj14", "lj14")):
             self.assertAlmostEqual(energy[ours] * KJ_PER_KCAL, theirs[name], delta=1e-6, msg=name)
         self.assertEqual(list(energy), ["bond", "angle", "urey_bradley", "dihedral", "improper",
-                                        "cmap", "lj", "lj14", "coulomb", "coulomb14", "total"])
+                                        "cmap", "lj", "lj14", "coulomb", "coulomb14",
+                                        "solvation", "total"])
         with open(forces, newline="") as file:
             rows = list(csv.DictReader(file))
         self.assertEqual(len(rows), len(frame["f"]))

@@ -31,6 +31,37 @@ class MakeHivScene(unittest.TestCase):
                     # Minimising magnifies what compilers round differently.
                     for x, y in zip(a[4:7], b[4:7]):
                         self.assertAlmostEqual(float(x), float(y), delta=0.02, msg=a[:4])
+            for name in ("solvent.psf", "solvent.prm"):
+                self.assertEqual((Path(folder) / name).read_text(),
+                                 (ROOT / "scenes" / "hiv" / name).read_text(), name)
+
+
+class NeutralCharges(unittest.TestCase):
+    def test_only_ionic_groups_differ_from_vacuum_and_all_of_them_are_neutral(self):
+        def atoms(name):
+            lines = (ROOT / "scenes" / "hiv" / name).read_text().splitlines()
+            first = next(i for i, line in enumerate(lines) if line.endswith("!NATOM"))
+            count = int(lines[first].split()[0])
+            return [line.split() for line in lines[first + 1:first + 1 + count]]
+
+        vacuum, water = atoms("system.psf"), atoms("solvent.psf")
+        self.assertEqual(len(vacuum), len(water))
+        sums, changed = {}, set()
+        for a, b in zip(vacuum, water):
+            self.assertEqual(a[:5], b[:5])
+            residue = tuple(b[1:4])
+            sums[residue] = sums.get(residue, 0) + float(b[6])
+            if a[6] != b[6]:
+                changed.add(residue)
+            if a[5] != b[5]:
+                self.assertEqual((a[3], a[4], a[5], b[5]), ("ASP", "CB", "CT2A", "CT2"))
+        for residue, charge in sums.items():
+            self.assertAlmostEqual(charge, 0, delta=1e-6, msg=residue)
+        ends = {(chain, number, name) for chain in "AB" for number, name in (("1", "PRO"), ("99", "PHE"))}
+        for residue in changed - ends:
+            self.assertIn(residue[2], ("ARG", "LYS", "ASP", "GLU"))
+        self.assertTrue(ends <= changed)
+        self.assertNotIn(("B", "25", "ASP"), changed)  # has a proton
 
 
 if __name__ == "__main__":

@@ -140,6 +140,41 @@ class Prepare(PrepareCase):
         self.assertEqual(result.returncode, 2)
         self.assertIn("one argument too many", result.stderr)
 
+    def test_a_protein_alone_goes_with_implicit_water_if_that_is_left_open(self):
+        ubiquitin = self.data / "structures" / "1ubq.pdb"
+        vacuum = self.prepare(ubiquitin, self.toppar()[:2])
+        before, _ = read_psf(vacuum / "system.psf")
+        self.assertNotIn("Solvent", (vacuum / "report.txt").read_text())
+        places = (vacuum / "system.crd").read_text()
+        folder = self.prepare(ubiquitin, self.toppar()[:2], "--solvent", "auto")
+        after, _ = read_psf(folder / "system.psf")
+        self.assertEqual([atom[:4] for atom in before], [atom[:4] for atom in after])
+        self.assertIn(" REMARKS Charges: EEF1-SB", (folder / "system.psf").read_text())
+        self.assertEqual((folder / "system.crd").read_text(), places)
+        report = (folder / "report.txt").read_text()
+        self.assertIn("which covers every type", report)
+        self.assertIn("left out 58 waters", report)
+        self.assertAlmostEqual(sum(atom[5] for atom in after), 0, delta=1e-6)
+        self.assertNotIn("NBFIX", (folder / "system.prm").read_text())
+        self.energy(folder)  # has all of its parameters
+        kept = self.prepare(ubiquitin, self.toppar(), "--solvent", "auto", "--keep-waters", "--no-relax")
+        self.assertIn("none, vacuum: waters are kept", (kept / "report.txt").read_text())
+        self.assertNotIn("EEF1-SB", (kept / "system.psf").read_text())
+
+    def test_a_prepared_scene_in_implicit_water_can_be_run(self):
+        folder = self.folder / "water"
+        result = self.palpa("prepare", self.data / "structures" / "1crn.pdb", "--toppar",
+                            *self.toppar()[:2], "-o", folder, "--solvent", "eef1-sb")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn('solvent = "eef1-sb"', (folder / "scene.toml").read_text())
+        self.assertIn("joints turn, in EEF1-SB's implicit water", (folder / "report.txt").read_text())
+        checked = self.palpa("run", "--check", folder)
+        self.assertEqual(checked.returncode, 0, checked.stderr)
+        vacuum = self.palpa("run", "--check", folder, "--set", "force_field.solvent=none")
+        self.assertEqual(vacuum.returncode, 2)
+        self.assertIn("neutral charges", vacuum.stderr)
+        self.refuse(self.data / "structures" / "1crn.pdb", "--solvent", "water")
+
     def test_an_interrupt_leaves_no_files_behind(self):
         """The scene is tried out in a temporary folder; Ctrl+C while it is there removes it."""
         for number in (signal.SIGINT, signal.SIGTERM):

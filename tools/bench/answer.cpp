@@ -108,6 +108,13 @@ std::vector<Method> build_methods(const BenchStart& start, double cutoff) {
         {"default", build(start.scene), 0, start.scene.statics.cutoff_angstrom.has_value()});
     for (const double reach : {4.0, 6.0, 10.0})
         methods.push_back({fmt::format("near={}", reach), near(reach, {})});
+    for (const std::int64_t responses : {0, 8}) {
+        SceneDescription scene = with_cutoff(second_order_scene(start.scene), {});
+        scene.statics.responses = responses;
+        methods.push_back(
+            {responses == 0 ? "responses=all" : fmt::format("responses={}", responses),
+             build(scene)});
+    }
     methods.push_back({"near=6" + with, near(6, cutoff), 0, true});
     methods.push_back({"full-second-order", {}, 2});
     methods.push_back({"bfgs", build(bfgs)});

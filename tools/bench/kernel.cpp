@@ -7,6 +7,7 @@
 #include "field/peak.h"
 #include "field/processor.h"
 #include "forces/force_field.h"
+#include "forces/solvation.h"
 #include "formats/psf.h"
 #include "formats/structure.h"
 #include "molecule/match_atoms.h"
@@ -145,6 +146,7 @@ struct Case {
     const char* name;
     NonbondedSettings settings;
     double operations, operations_with_energy;  // as in `PairWork`
+    bool is_solvated = false;  // all terms are with solvation, where the topology has it
 };
 
 constexpr double skin = 1;  // Å
@@ -181,6 +183,32 @@ void bench_large(const System& system, const Case& which, const Peaks& peaks,
                              samples)});
             }
         }
+    }
+    use_processor_kind(list_processor_kinds().front());
+}
+
+// EEF1's solvation alone, with a list of its own.
+void bench_solvation(const System& system, std::vector<BenchRow>& rows) {
+    if (!system.topology.solvation) return;
+    const std::size_t n = system.positions.size();
+    const FastSolvationAtoms atoms = build_fast_solvation_atoms(system.topology);
+    std::vector<Vec3> reference(n, Vec3::Zero());
+    add_solvation_forces(system.topology, SolvationEnd::Smooth, system.positions, reference);
+    add_solvation_forces(system.topology, SolvationEnd::Smooth, system.topology.exclusions.pairs14,
+                         system.positions, reference);
+    for (const std::string& kind : list_processor_kinds()) {
+        use_processor_kind(kind);
+        FastSolvationPairs pairs;
+        std::vector<Vec3> forces(n, Vec3::Zero());
+        const auto add = [&] {
+            add_fast_solvation_forces(system.topology, atoms, skin, system.positions, pairs,
+                                      forces);
+        };
+        add();
+        const double error = worst_force(forces, reference);
+        rows.push_back({fmt::format("kernel/{}/eef1-sb/solvation/{}", system.name, kind),
+                        sample_long(add), "us", error, "of max(own, rms) force",
+                        "the reference implementation in double; with energies"});
     }
     use_processor_kind(list_processor_kinds().front());
 }
@@ -241,17 +269,19 @@ void bench_lists(const System& system, std::vector<BenchRow>& rows) {
 void bench_all_terms(const System& system, const Case& which, std::vector<BenchRow>& rows) {
     const std::size_t n = system.positions.size();
     if (system.topology.bonds.empty()) return;
+    NonbondedSettings settings = which.settings;
+    if (which.is_solvated && system.topology.solvation) settings.solvation = SolvationEnd::Smooth;
     const FastForceField fast = build_fast_force_field(system.topology);
     std::vector<Vec3> reference(n, Vec3::Zero());
-    add_forces(system.topology, which.settings, system.positions, reference);
+    add_forces(system.topology, settings, system.positions, reference);
     for (const std::string& kind : list_processor_kinds()) {
         use_processor_kind(kind);
         for (const std::size_t threads : {1U, 2U}) {
             FastPairs pairs;
             std::vector<Vec3> forces(n, Vec3::Zero());
             const auto add = [&] {
-                add_fast_forces(system.topology, fast, which.settings, skin, system.positions,
-                                pairs, forces, PairResult::ForcesAndEnergies, threads);
+                add_fast_forces(system.topology, fast, settings, skin, system.positions, pairs,
+                                forces, PairResult::ForcesAndEnergies, threads);
             };
             add();
             const double error = worst_force(forces, reference);
@@ -326,12 +356,14 @@ void bench_small(const System& system, const Peaks& peaks, std::vector<BenchRow>
                     "the reference implementation"});
 }
 
-std::array<Case, 2> list_cases() {
-    return {Case{"all-pairs", {}, 39, 43}, Case{"force-switch=12",
-                                                {.electrostatics = ElectrostaticCutoff::ForceSwitch,
-                                                 .van_der_waals = VanDerWaalsCutoff::ForceSwitch},
-                                                58,
-                                                86}};
+std::array<Case, 3> list_cases() {
+    return {Case{"all-pairs", {}, 39, 43},
+            Case{"force-switch=12",
+                 {.electrostatics = ElectrostaticCutoff::ForceSwitch,
+                  .van_der_waals = VanDerWaalsCutoff::ForceSwitch},
+                 58,
+                 86},
+            Case{"eef1-sb", eef1_settings(SolvationEnd::None), 69, 73, true}};
 }
 
 void bench_system(const System& system, std::vector<BenchRow>& rows) {
@@ -340,6 +372,7 @@ void bench_system(const System& system, std::vector<BenchRow>& rows) {
         bench_large(system, which, peaks, rows);
         bench_all_terms(system, which, rows);
     }
+    bench_solvation(system, rows);
     bench_small(system, peaks, rows);
     bench_lists(system, rows);
 }
@@ -355,6 +388,7 @@ void bench_force_field(const std::string& scene_name, const SceneDescription& sc
                        std::vector<BenchRow>& rows) {
     const System system = load_system(scene_name, scene);
     for (const Case& which : list_cases()) bench_all_terms(system, which, rows);
+    bench_solvation(system, rows);
 }
 
 void bench_gas_kernels(std::vector<BenchRow>& rows) {

@@ -85,7 +85,7 @@ std::string format_energy(double value) {
 
 using NamedTerm = std::pair<const char*, double>;
 
-std::array<NamedTerm, 11> list_terms(const EnergyTerms& e) {
+std::array<NamedTerm, 12> list_terms(const EnergyTerms& e) {
     return {NamedTerm{"bond", e.bond},
             {"angle", e.angle},
             {"urey_bradley", e.urey_bradley},
@@ -96,6 +96,7 @@ std::array<NamedTerm, 11> list_terms(const EnergyTerms& e) {
             {"lj14", e.lj14},
             {"coulomb", e.coulomb},
             {"coulomb14", e.coulomb14},
+            {"solvation", e.solvation},
             {"total", e.total()}};
 }
 

@@ -72,6 +72,14 @@ PrepareSettings build_settings(const PrepareOptions& options) {
         settings.disulphides.emplace_back(read_choice(one, "--disulphide", form),
                                           read_choice(other, "--disulphide", form));
     }
+    for (const std::string& text : options.structural_waters) {
+        settings.structural_waters.push_back(
+            read_choice(text, "--structural-water", "CHAIN:NUMBER, as in A:301"));
+    }
+    settings.solvent.reset();
+    for (std::size_t i = 0; i < solvent_names.size(); ++i) {
+        if (options.solvent == solvent_names[i]) settings.solvent = static_cast<Solvent>(i);
+    }
     if (!options.x_along.empty()) {
         settings.align = AlignSettings{options.x_along, {}};
         if (!options.y_towards.empty()) {
@@ -200,6 +208,16 @@ void add_prepare_choices(CLI::App& prepare, PrepareOptions& options) {
         ->type_name("PAIR");
     add_negation(prepare, "--no-disulphides", settings.finds_disulphides, "look for none");
     prepare.add_flag("--keep-waters", settings.keeps_waters, "waters are left out otherwise");
+    prepare
+        .add_option("--solvent", options.solvent,
+                    "eef1-sb: implicit water, neutral charges of ionic groups; none: vacuum; auto: "
+                    "eef1-sb where it covers every type of atoms, else none")
+        ->check(CLI::IsMember({"none", "eef1-sb", "auto"}))
+        ->capture_default_str();
+    prepare
+        .add_option("--structural-water", options.structural_waters,
+                    "CHAIN:NUMBER: a water that stays, as a part of the structure")
+        ->type_name("CHAIN:NUMBER");
     add_negation(prepare, "--no-ions", settings.keeps_ions, "ions are kept otherwise");
     prepare.add_option("--model", settings.model, "the first unless given");
     prepare

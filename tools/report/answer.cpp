@@ -25,12 +25,14 @@ struct AnswerStyle {
     std::string_view title;
     std::string_view look;
 };
-constexpr std::array<AnswerStyle, 12> answer_styles{{
+constexpr std::array<AnswerStyle, 13> answer_styles{{
     {"default", "as the scene has it", "pt 2 ps 1.3 lw 1.5 lc rgb '#000000'"},
     {"near=4", "exact within 4 Å", "pt 9 ps 0.7 lw 2 lc rgb '#56b4e9'"},
     {"near=6/cutoff", "exact within 6 Å", "pt 6 ps 0.9 lw 2 lc rgb '#0072b2'"},
     {"near=6", "exact within 6 Å", "pt 7 ps 0.7 lw 2 lc rgb '#0072b2'"},
     {"near=10", "exact within 10 Å", "pt 11 ps 0.7 lw 2 lc rgb '#009e73'"},
+    {"responses=all", "among all coordinates", "pt 2 ps 0.9 lw 2 lc rgb '#999999'"},
+    {"responses=", "in the span of 8 responses", "pt 1 ps 0.9 lw 2 lc rgb '#999999'"},
     {"full-second-order", "full second order", "pt 5 ps 0.7 lw 2 lc rgb '#000000'"},
     {"bfgs", "BFGS", "pt 13 ps 0.9 lw 2 lc rgb '#cc79a7'"},
     {"paper-40", "paper’s step, 40 active", "pt 9 ps 0.7 lw 2 lc rgb '#e69f00'"},
@@ -77,7 +79,7 @@ std::string plot_panel(const Answers& answers, int column) {
 
 // Three columns below the panels: gnuplot's own legend has one where titles are long.
 std::string plot_legend(const Answers& answers) {
-    constexpr std::size_t lines = 4;
+    constexpr std::size_t lines = 5;
     constexpr std::array columns{0.02, 0.23, 0.62};
     std::string script;
     for (std::size_t c = 0; c < columns.size(); ++c) {

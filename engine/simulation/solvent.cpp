@@ -1,0 +1,116 @@
+#include "simulation/solvent.h"
+
+#include "charmm/assign_solvation.h"
+#include "charmm/ionic_groups.h"
+#include "core/load_error.h"
+#include "simulation/components.h"
+#include "simulation/resources.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace palpa {
+namespace {
+
+constexpr const char* solvent_key = "force_field.solvent";
+
+std::vector<std::string_view> list_types(const AtomTable& atoms) {
+    std::vector<std::string_view> types;
+    for (const std::uint32_t type : atoms.type) types.emplace_back(atoms.type_names[type]);
+    return types;
+}
+
+void refuse_neutral_groups(const SceneDescription& scene, const AtomTable& atoms) {
+    std::vector<IonicGroup> groups =
+        find_ionic_groups(atoms.names, list_types(atoms), atoms.charge);
+    std::erase_if(groups, [](const IonicGroup& group) { return !group.has_neutral_charges; });
+    if (groups.empty()) return;
+    const AtomName& first = atoms.names[groups.front().atoms.front()];
+    throw LoadError(
+        scene.place_of(solvent_key),
+        fmt::format("the molecules have EEF1-SB's neutral charges ({} of {} {} {} is neutral, {} "
+                    "ionic groups in all), and the scene is in vacuum; expected "
+                    "solvent = \"eef1-sb\", or topology files made without (palpa prepare "
+                    "--solvent none)",
+                    groups.front().kind, first.segment, first.residue, first.number,
+                    groups.size()));
+}
+
+void refuse_charges(const SceneDescription& scene, const AtomTable& atoms) {
+    const std::vector<std::string> charged =
+        find_charged(atoms.names, list_types(atoms), atoms.charge);
+    if (charged.empty()) return;
+    throw LoadError(scene.place_of(solvent_key),
+                    fmt::format("EEF1-SB needs neutral charges, and {}; expected topology files "
+                                "of `palpa prepare --solvent eef1-sb`, or solvent = \"none\"",
+                                fmt::join(charged, "; ")));
+}
+
+// One entry per atom: which are of molecules that the scene calls structural water.
+std::vector<std::uint8_t> find_structural(const World& world) {
+    const AtomTable& atoms = world.resource<AtomTable>();
+    const SceneDescription& scene = world.resource<SceneFile>().scene;
+    const std::vector<std::uint8_t> is_water = find_water_atoms(atoms.names, atoms.mass);
+    std::vector<std::uint8_t> is_structural(atoms.size(), 0);
+    world.each<Molecule>([&](Entity, const Molecule& molecule) {
+        const auto said =
+            std::ranges::find(scene.molecules, molecule.name, &MoleculeDescription::name);
+        if (said == scene.molecules.end() || !said->structural_water) return;
+        for (std::uint32_t i = molecule.atoms.first;
+             i < molecule.atoms.first + molecule.atoms.count; ++i) {
+            if (is_water[i] == 0) {
+                throw LoadError(
+                    scene.place_of(fmt::format("molecules.{}.structural_water", molecule.name)),
+                    fmt::format("{} is of no water; expected a molecule of waters alone",
+                                to_string(atoms.names[i])));
+            }
+            is_structural[i] = 1;
+        }
+    });
+    return is_structural;
+}
+
+}  // namespace
+
+NonbondedSettings solvent_settings(const ForceFieldDescription& force_field) {
+    NonbondedSettings settings;
+    settings.coulomb_constant = force_field.coulomb_constant;
+    settings.dielectric = 1.5;
+    settings.distance_dielectric = true;
+    settings.cutoff = 9;
+    settings.switch_from = 7;
+    // To be the ends of EEF1-SB's own once sums over pairs have them: (1 - r^2/c^2)^3 / r^2, and a
+    // switch of second order from 7 to 9 Å.
+    settings.electrostatics = ElectrostaticCutoff::Shift;
+    settings.van_der_waals = VanDerWaalsCutoff::ForceSwitch;
+    return settings;
+}
+
+ForceField with_solvent(const ForceFieldDescription& description, ForceField force_field) {
+    if (description.solvent == Solvent::None) return force_field;
+    return neutralise_ionic_groups(std::move(force_field));
+}
+
+void check_solvent(const World& world) {
+    const AtomTable& atoms = world.resource<AtomTable>();
+    const SceneDescription& scene = world.resource<SceneFile>().scene;
+    if (scene.force_field.solvent == Solvent::None) return refuse_neutral_groups(scene, atoms);
+    (void)find_solvation(world);
+    refuse_charges(scene, atoms);
+}
+
+std::optional<Solvation> find_solvation(const World& world) {
+    const SceneDescription& scene = world.resource<SceneFile>().scene;
+    if (scene.force_field.solvent == Solvent::None) return std::nullopt;
+    return assign_solvation(world.resource<AtomTable>(), eef1sb_table(), find_structural(world),
+                            scene.place_of(solvent_key));
+}
+
+}  // namespace palpa

@@ -1,0 +1,150 @@
+#include "simulation/solvent.h"
+
+#include "charmm/solvation_reader.h"
+#include "charmm/topology.h"
+#include "core/load_error.h"
+#include "scene/read_scene.h"
+#include "simulation/components.h"
+#include "simulation/edit.h"
+#include "simulation/load.h"
+#include "simulation/resources.h"
+#include "tests/support/load_error_of.h"
+#include "tests/support/paths.h"
+#include "tests/support/water_scene.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <string>
+#include <vector>
+
+using namespace palpa;
+using Catch::Contains;
+using test::load_error_of;
+
+namespace {
+
+SceneDescription scene_of(const std::string& name, const std::vector<std::string>& settings = {}) {
+    return read_scene(test::in_project("scenes/" + name), settings);
+}
+
+std::string error_of(const SceneDescription& scene) {
+    return load_error_of([&] { (void)load_system(scene); });
+}
+
+}  // namespace
+
+TEST_CASE("pairs in implicit water act through 1.5 r and end at 9 Å", "[simulation][solvent]") {
+    ForceFieldDescription force_field;
+    force_field.coulomb_constant = 332;
+    force_field.solvent = Solvent::Eef1Sb;
+    const NonbondedSettings settings = solvent_settings(force_field);
+    CHECK(settings.coulomb_constant == 332);
+    CHECK(settings.dielectric == 1.5);
+    CHECK(settings.distance_dielectric);
+    CHECK(settings.cutoff == 9);
+    CHECK(settings.coulomb14_factor == 1);
+    CHECK(has_end(settings));
+    CHECK_FALSE(find_problem(settings));
+}
+
+TEST_CASE("a scene in vacuum has no solvation, one in EEF1-SB has every atom's",
+          "[simulation][solvent]") {
+    const SceneSystem vacuum = load_system(scene_of("salt-bridge/vacuum.toml"));
+    CHECK_FALSE(vacuum.topology.solvation);
+    const SceneSystem water = load_system(scene_of("salt-bridge/solvent.toml"));
+    REQUIRE(water.topology.solvation);
+    const Solvation& solvation = *water.topology.solvation;
+    REQUIRE(solvation.volume.size() == water.connectivity.names.size());
+    CHECK(solvation.radius.size() == solvation.volume.size());
+    for (std::size_t i = 0; i < solvation.volume.size(); ++i) {
+        INFO(to_string(water.connectivity.names[i]));
+        const auto row = eef1sb_table().types.find(water.connectivity.type[i]);
+        const bool is_heavy = water.connectivity.mass[i] > 3.5;
+        CHECK(is_heavy == (row != eef1sb_table().types.end()));
+        CHECK(solvation.volume[i] == (is_heavy ? row->second.volume : 0));
+        CHECK(solvation.dg_ref[i] == (is_heavy ? row->second.dg_ref : 0));
+        CHECK(solvation.radius[i] > 0);
+    }
+    // One ammonium, two carboxylate oxygens, whose shells reach farther.
+    CHECK(std::ranges::count(solvation.lambda, 6.0) == 3);
+    double sum = 0;
+    for (const double q : water.topology.charge) sum += q;
+    CHECK(std::abs(sum) < 1e-9);
+    CHECK(water.positions == vacuum.positions);
+    REQUIRE(water.topology.size() == vacuum.topology.size());
+}
+
+TEST_CASE("HIV protease with TL-3 loads with neutral groups and its published pose",
+          "[simulation][solvent]") {
+    const SceneSystem vacuum = load_system(scene_of("hiv/flexible.toml"));
+    const SceneSystem water = load_system(scene_of("hiv/solvent.toml"));
+    REQUIRE(water.topology.solvation);
+    CHECK(water.positions == vacuum.positions);
+    double before = 0, after = 0;
+    std::size_t changed = 0;
+    for (std::size_t i = 0; i < water.topology.size(); ++i) {
+        before += vacuum.topology.charge[i];
+        after += water.topology.charge[i];
+        CHECK(to_string(water.connectivity.names[i]) == to_string(vacuum.connectivity.names[i]));
+        if (water.connectivity.type[i] == vacuum.connectivity.type[i]) continue;
+        CHECK(water.connectivity.names[i].residue == "ASP");
+        CHECK(water.connectivity.names[i].atom == "CB");
+        ++changed;
+    }
+    CHECK(before == Approx(7));
+    CHECK(std::abs(after) < 1e-9);
+    CHECK(changed > 0);
+    // Terms are the same but for those of Asp's renamed CB, which keep their number.
+    CHECK(water.topology.bonds.size() == vacuum.topology.bonds.size());
+    CHECK(water.topology.angles.size() == vacuum.topology.angles.size());
+}
+
+TEST_CASE("charges that do not go with the solvent are refused with what to do",
+          "[simulation][solvent]") {
+    CHECK_THAT(error_of(scene_of("salt-bridge/vacuum.toml", {"force_field.solvent=eef1-sb"})),
+               Contains("EEF1-SB needs neutral charges, and ionic groups are not neutral: ASP of A "
+                        "ASP 2 (-1.00 e), LYS of B LYS 2 (+1.00 e)") &&
+                   Contains("palpa prepare --solvent eef1-sb"));
+    CHECK_THAT(error_of(scene_of("salt-bridge/solvent.toml", {"force_field.solvent=none"})),
+               Contains("neutral charges (ASP of A ASP 2 is neutral, 2 ionic groups in all)") &&
+                   Contains("expected solvent = \"eef1-sb\""));
+    CHECK_THAT(error_of(scene_of("hiv/flexible.toml", {"force_field.solvent=eef1-sb"})),
+               Contains("the whole has +7.00 e"));
+    CHECK(error_of(scene_of("hiv/charged")) == "no error");
+}
+
+TEST_CASE("water is refused in implicit water unless it is structural", "[simulation][solvent]") {
+    const std::string error = load_error_of(
+        [&] { (void)load_world(test::water_scene({"force_field.solvent=eef1-sb"})); });
+    CHECK_THAT(error, Contains("no solvation parameters in eef1sb.csv for type OT of"));
+    SceneDescription scene = test::water_scene({"force_field.solvent=eef1-sb"});
+    for (MoleculeDescription& molecule : scene.molecules) molecule.structural_water = true;
+    const World world = load_world(scene);
+    const std::optional<Solvation> solvation = find_solvation(world);
+    REQUIRE(solvation);
+    CHECK(std::ranges::count(solvation->volume, 0.0) == 6);
+    CHECK(std::ranges::count(solvation->dg_ref, 0.0) == 6);
+    CHECK_FALSE(find_solvation(load_world(test::water_scene())));
+
+    SceneDescription bridge = scene_of("salt-bridge/solvent.toml");
+    bridge.molecules[0].structural_water = true;
+    CHECK_THAT(error_of(bridge), Contains("is of no water; expected a molecule of waters alone"));
+}
+
+TEST_CASE("what is added to a scene must go with its solvent", "[simulation][solvent]") {
+    SceneDescription scene = scene_of("salt-bridge/vacuum.toml");
+    World world = load_world(scene);
+    const std::size_t atoms = world.resource<AtomTable>().size();
+    AddEdit edit;
+    edit.structure = test::in_project("scenes/salt-bridge/system.crd");
+    edit.topology = test::in_project("scenes/salt-bridge/solvent.psf");
+    edit.segment = "B";
+    edit.name = "another";
+    edit.at_angstrom = {0, 40, 0};
+    CHECK_THAT(load_error_of([&] { add_molecule(world, edit); }),
+               Contains("LYS of another LYS 2 is neutral"));
+    CHECK(world.resource<AtomTable>().size() == atoms);
+    edit.topology = test::in_project("scenes/salt-bridge/vacuum.psf");
+    CHECK(load_error_of([&] { add_molecule(world, edit); }) == "no error");
+}
