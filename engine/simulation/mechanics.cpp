@@ -671,11 +671,18 @@ bool has_left_region(const World& world) noexcept {
 }
 
 void renew_region(World& world) noexcept {
+    // Matrices of the old region are not copied: they are the most of it.
+    std::optional<SecondOrder> old;
+    if (SecondOrder* const second = world.find_resource<SecondOrder>()) {
+        old = std::move(*second);
+        world.remove_resource<SecondOrder>();
+    }
     try {
         World renewed = world;
         rebuild_mechanics(renewed);
         world = std::move(renewed);
     } catch (const LoadError&) {
+        if (old) world.set_resource(std::move(*old));
         world.resource<RegionCentre>().stays = true;
     }
 }

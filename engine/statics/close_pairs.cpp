@@ -65,16 +65,19 @@ ClosePairs build_close_pairs(const TorsionModel& model, std::span<const Vec3> po
     for (const std::uint32_t atom : held) is_held[atom] = true;
     std::vector<std::uint32_t> by_x = list_changing(model, positions, reach);
     std::ranges::sort(by_x, {}, [&](std::uint32_t atom) { return positions[atom].x(); });
+    std::vector<Vec3> places;  // one after the other: most are only looked at
+    for (const std::uint32_t atom : by_x) places.push_back(positions[atom]);
     ClosePairs close;
     for (std::size_t i = 0; i < by_x.size(); ++i) {
         const std::uint32_t a = by_x[i];
         for (std::size_t j = i + 1; j < by_x.size(); ++j) {
-            const std::uint32_t b = by_x[j];
-            const Vec3 between = positions[b] - positions[a];
+            const Vec3 between = places[j] - places[i];
             if (between.x() > reach) break;
             const double square = between.squaredNorm();
+            if (square > reach * reach) continue;
+            const std::uint32_t b = by_x[j];
             const bool is_exact = is_held[a] != is_held[b] && square < near_reach * near_reach;
-            if (square > reach * reach || group_of[a] == group_of[b] || is_exact) continue;
+            if (group_of[a] == group_of[b] || is_exact) continue;
             if (std::ranges::binary_search(left_out, ordered(a, b))) continue;
             close.pairs.push_back(ordered(a, b));
             const double least =

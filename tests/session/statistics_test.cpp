@@ -116,6 +116,14 @@ TEST_CASE("step times are told to a percent, whatever their size", "[session][st
     CHECK(summary.steps_not_finite == 100);
 }
 
+TEST_CASE("of no steps no time is told", "[session][statistics]") {
+    StepTimes times;
+    CHECK(times.quantile_us(0.5) == 0);
+    times.add(2e-3);
+    CHECK(times.quantile_us(0.5) == Approx(2000).epsilon(0.01));
+    CHECK(times.quantile_us(0.99) == times.quantile_us(0.1));
+}
+
 TEST_CASE("ripple is that of the last four seconds", "[session][statistics]") {
     Statistics statistics(1e-3);
     for (int i = 0; i < 5000; ++i) statistics.add(tick_of(std::sin(0.05 * i), 3));  // 8 Hz

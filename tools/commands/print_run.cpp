@@ -64,6 +64,12 @@ void print_mobile(const World& world, const JointRelaxReport& r) {
     if (report.joints_held > 0) {
         fmt::print("  region      {} joints further away are held\n", report.joints_held);
     }
+    if (const ModelAtoms& atoms = model_atoms_of(world); !atoms.in_table.empty()) {
+        fmt::print("  atoms       {} may move, {} fixed ones near them are felt, of {} in all\n",
+                   model_of(world).mobile_atoms.size(),
+                   atoms.in_table.size() - model_of(world).mobile_atoms.size(),
+                   world.resource<AtomTable>().size());
+    }
     fmt::print(
         "  relaxed     {:.3f} to {:.3f} kcal/mol in {} steps, moved {:.3f} Å at most, rms "
         "force {:.3g} kcal/mol left\n",
