@@ -4,6 +4,7 @@
 #include "view/elements.h"
 #include "view/in_hand.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -54,10 +55,16 @@ std::vector<HydrogenBond> find_hydrogen_bonds(const World& world) {
     const auto takes_part = [&](std::size_t i) {
         return roles[i].accepts || roles[i].donor != no_donor;
     };
+    Eigen::AlignedBox3d box;  // of what is held
+    for (std::size_t i = 0; i < atoms.size(); ++i) {
+        if (held[i] && takes_part(i)) box.extend(atoms.positions[i]);
+    }
     // Those around, along x: only a slice of them can be near enough.
     std::vector<std::uint32_t> around;
     for (std::size_t i = 0; i < atoms.size(); ++i) {
-        if (!held[i] && takes_part(i)) around.push_back(static_cast<std::uint32_t>(i));
+        if (!held[i] && takes_part(i) &&
+            box.squaredExteriorDistance(atoms.positions[i]) < longest * longest)
+            around.push_back(static_cast<std::uint32_t>(i));
     }
     const auto x_of = [&](std::uint32_t i) { return atoms.positions[i].x(); };
     std::ranges::sort(around, {}, x_of);

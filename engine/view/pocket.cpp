@@ -6,7 +6,9 @@
 #include "view/build_frame.h"
 #include "view/in_hand.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <glm/geometric.hpp>
@@ -19,26 +21,57 @@ constexpr float longest_step = 4.5F;  // Å, from one CA to the next
 constexpr float tube_radius = 0.30F;  // Å
 constexpr int pieces_a_residue = 6;
 
+// Places by cells as wide as what is near, so that only neighbouring ones are looked at.
+class PlacesByCell {
+public:
+    explicit PlacesByCell(std::span<const Vec3> places) {
+        for (const Vec3& place : places) places_.push_back({cell_of(place), place});
+        std::ranges::sort(places_, {}, &Entry::cell);
+        for (const Entry& entry : places_) box_.extend(entry.place);
+    }
+
+    bool has_near(const Vec3& of) const {
+        if (!(box_.squaredExteriorDistance(of) < near_by * near_by)) return false;
+        const auto [x, y, z] = cell_of(of);
+        for (const double dx : {-1, 0, 1}) {
+            for (const double dy : {-1, 0, 1}) {
+                const Cell last{x + dx, y + dy, z + 1};
+                auto entry = std::ranges::lower_bound(places_, Cell{x + dx, y + dy, z - 1}, {},
+                                                      &Entry::cell);
+                for (; entry != places_.end() && entry->cell <= last; ++entry) {
+                    if ((entry->place - of).squaredNorm() < near_by * near_by) return true;
+                }
+            }
+        }
+        return false;
+    }
+
+private:
+    using Cell = std::array<double, 3>;
+    struct Entry {
+        Cell cell;
+        Vec3 place;
+    };
+    static Cell cell_of(const Vec3& place) {
+        const Vec3 cell = (place / near_by).array().floor();
+        return {cell.x(), cell.y(), cell.z()};
+    }
+
+    std::vector<Entry> places_;
+    Eigen::AlignedBox3d box_;
+};
+
 // Which atoms of others are near to the grabbed molecule.
 std::vector<bool> find_near(const World& world) {
     const std::vector<Vec3>& places = world.resource<AtomTable>().positions;
     const std::vector<bool> held = find_in_hand(world);
-    std::vector<std::size_t> in_hand;
+    std::vector<Vec3> in_hand;
     for (std::size_t i = 0; i < held.size(); ++i)
-        if (held[i]) in_hand.push_back(i);
-    const auto x_of = [&](std::size_t i) { return places[i].x(); };
-    std::ranges::sort(in_hand, {}, x_of);
+        if (held[i]) in_hand.push_back(places[i]);
+    const PlacesByCell by_cell(in_hand);
     std::vector<bool> near(places.size(), false);
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        if (held[i]) continue;
-        auto other = std::ranges::lower_bound(in_hand, x_of(i) - near_by, {}, x_of);
-        for (; other != in_hand.end() && x_of(*other) < x_of(i) + near_by; ++other) {
-            if ((places[*other] - places[i]).squaredNorm() < near_by * near_by) {
-                near[i] = true;
-                break;
-            }
-        }
-    }
+    for (std::size_t i = 0; i < places.size(); ++i)
+        near[i] = !held[i] && by_cell.has_near(places[i]);
     return near;
 }
 
