@@ -166,9 +166,8 @@ void bring_to_rest(const std::filesystem::path& folder, const StageFunction& on_
     tuning.relaxed = *report.joints_at_rest;
     tuning.joints = report.joints;
     const std::vector<std::uint32_t> order = find_table_order(tuning.copy);
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        tuning.rest.positions[order[i]] = model_of(world).reference[i];
-    }
+    const std::vector<Vec3> rest = reference_positions(world);
+    for (std::size_t i = 0; i < order.size(); ++i) tuning.rest.positions[order[i]] = rest[i];
     tuning.tuning.relax_steps.reset();
     if (report.joints_at_rest->end != RelaxEnd::Converged) tuning.tuning.relax_steps = 0;
 }

@@ -142,6 +142,11 @@ void check_grab(const SceneDescription& scene, Problems& problems) {
     check_motions(scene, grabbed, problems);
     if (!scene.joints.around.empty())
         find_named(scene, problems, "joints.around", scene.joints.around);
+    if (scene.joints.region_angstrom && scene.joints.within_angstrom) {
+        problems.add(problems.place_of("joints.within_angstrom"),
+                     "'joints.within_angstrom' is given beside 'joints.region_angstrom'; expected "
+                     "one of them");
+    }
 }
 
 void check_view(const ViewDescription& view, const SceneDescription& scene, Problems& problems) {

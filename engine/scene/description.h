@@ -42,6 +42,7 @@ struct JointsDescription {
     std::vector<std::string> turn, rigid, springs;  // bonds: "A 25 CB CG", "A 25 C 26 N"
     std::optional<double> within_angstrom;          // of `around`; unset: everywhere
     std::string around;                             // a molecule; empty: the one in the hand
+    std::optional<double> region_angstrom;          // around what hands hold; unset: no region
 };
 
 // How flexible molecules come to rest.

@@ -131,6 +131,13 @@ void visit_joints(FieldVisitor& v, JointsDescription& j) {
                     j.within_angstrom);
     v.text({.key = "around", .meaning = "name of a molecule; unset: the one in the hand"},
            j.around);
+    v.optional_real({.key = "region_angstrom",
+                     .meaning = "only residues move of which an atom is as near as this to what "
+                                "hands hold, at a spring or whole: chains are cut where they leave "
+                                "this region, and bonded terms hold them there; unset: no region",
+                     .lowest = 0,
+                     .highest = 1e3},
+                    j.region_angstrom);
     v.leave_table();
 }
 

@@ -412,6 +412,10 @@ std::string format_summary(const SceneDescription& scene, const Summary& summary
                               {"error_median_pN", r.error_median_pN},
                               {"error_90_pN", r.error_90_pN},
                               {"renewals", r.renewals},
+                              {"step_between_median_us", r.between_median_us},
+                              {"step_between_90_us", r.between_90_us},
+                              {"step_between_99_us", r.between_99_us},
+                              {"step_renewal_median_us", r.renewal_median_us},
                               {"snaps", r.snaps},
                               {"released_kcal_per_mol", r.released}};
     }

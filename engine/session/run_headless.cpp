@@ -338,8 +338,11 @@ private:
 // How far the force was from complete relaxation, in as much memory however long the run is.
 class RelaxationLog {
 public:
-    void add(const RelaxStepReport& relaxed) {
-        if (relaxed.model_age && relaxed.is_renewed) ++sum_.renewals;
+    void add(const RelaxStepReport& relaxed, double took_us) {
+        if (relaxed.model_age) {
+            if (relaxed.is_renewed) ++sum_.renewals;
+            (relaxed.is_renewed ? renewing_ : between_).add(1e-6 * took_us);
+        }
         if (relaxed.released > least_snap) {
             ++sum_.snaps;
             sum_.released += relaxed.released;
@@ -353,6 +356,10 @@ public:
         RelaxationSummary result = sum_;
         result.error_median_pN = quantile_of(0.5);
         result.error_90_pN = quantile_of(0.9);
+        result.between_median_us = between_.quantile_us(0.5);
+        result.between_90_us = between_.quantile_us(0.9);
+        result.between_99_us = between_.quantile_us(0.99);
+        result.renewal_median_us = renewing_.quantile_us(0.5);
         return result;
     }
 
@@ -374,6 +381,7 @@ private:
     }
 
     RelaxationSummary sum_;
+    StepTimes between_, renewing_;
     std::array<std::uint64_t, 1200> counts_{};  // up to 1e7 pN
 };
 
@@ -416,7 +424,7 @@ public:
             return;
         }
         accuracy_.add_step(*report.relaxed);
-        relaxation_.add(*report.relaxed);
+        relaxation_.add(*report.relaxed, report.took_us);
         activity_.add(*report.relaxed, report.took_us, scene_.statics.budget_us);
     }
 

@@ -18,10 +18,6 @@ std::size_t class_of(double time_us) {
     return std::min(static_cast<std::size_t>(place / std::log(class_width)), class_count - 1);
 }
 
-}  // namespace
-
-namespace {
-
 // What held the force back beside slew, clamp, and a hand that takes hold for the first time.
 SafetyStage trouble_of(const ServoTick& tick) {
     if (tick.stage == SafetyStage::ThermalLimit || tick.stage > SafetyStage::Disengaged)
@@ -31,7 +27,26 @@ SafetyStage trouble_of(const ServoTick& tick) {
 
 }  // namespace
 
-Statistics::Statistics(double tick_s) : tick_s_(tick_s), step_counts_(class_count, 0) {
+StepTimes::StepTimes() : counts_(class_count, 0) {}
+
+void StepTimes::add(double seconds) {
+    ++steps_;
+    ++counts_[class_of(seconds * 1e6)];
+}
+
+double StepTimes::quantile_us(double share) const {
+    if (steps_ == 0) return 0;
+    const double wanted = share * static_cast<double>(steps_);
+    double seen = 0;
+    std::size_t at = 0;
+    for (; at + 1 < class_count; ++at) {
+        seen += static_cast<double>(counts_[at]);
+        if (seen >= wanted) break;
+    }
+    return shortest_us * std::pow(class_width, static_cast<double>(at) + 0.5);
+}
+
+Statistics::Statistics(double tick_s) : tick_s_(tick_s) {
     for (std::vector<double>& axis : recent_force_)
         axis.resize(static_cast<std::size_t>(std::lround(ripple_window_s / tick_s)), 0.0);
 }
@@ -79,13 +94,13 @@ void Statistics::add(const ServoTick& tick) {
 void Statistics::add_step(double seconds, bool finite) {
     ++running_.steps;
     if (!finite) ++running_.steps_not_finite;
-    ++step_counts_[class_of(seconds * 1e6)];
+    step_times_.add(seconds);
 }
 
 Summary Statistics::summary() const {
     Summary summary = running_;
-    summary.step_median_us = quantile_us(0.5);
-    summary.step_p99_us = quantile_us(0.99);
+    summary.step_median_us = step_times_.quantile_us(0.5);
+    summary.step_p99_us = step_times_.quantile_us(0.99);
     for (std::vector<double> force : recent_force_) {
         const auto oldest = static_cast<std::ptrdiff_t>(running_.ticks % force.size());
         if (running_.ticks >= force.size()) {
@@ -104,19 +119,6 @@ Summary Statistics::summary() const {
             static_cast<double>(safety_ticks_) / static_cast<double>(summary.ticks);
     }
     return summary;
-}
-
-// The middle of the class in which that share of the steps is reached.
-double Statistics::quantile_us(double share) const {
-    if (running_.steps == 0) return 0;
-    const double wanted = share * static_cast<double>(running_.steps);
-    double seen = 0;
-    std::size_t at = 0;
-    for (; at + 1 < class_count; ++at) {
-        seen += static_cast<double>(step_counts_[at]);
-        if (seen >= wanted) break;
-    }
-    return shortest_us * std::pow(class_width, static_cast<double>(at) + 0.5);
 }
 
 }  // namespace palpa

@@ -29,6 +29,9 @@ struct RelaxationSummary {
     std::uint64_t estimates = 0;
     double error_median_pN = 0, error_90_pN = 0;
     std::uint64_t renewals = 0;  // linearisations
+    // Wall time of steps within which none was made, and of those within which one was.
+    double between_median_us = 0, between_90_us = 0, between_99_us = 0;
+    double renewal_median_us = 0;
     // Renewals that set more than 1 kcal/mol free, since a minimum had vanished; and how much these
     // set free in all, kcal/mol.
     std::uint64_t snaps = 0;
@@ -70,6 +73,21 @@ struct Summary {
     std::vector<Summary> other_hands;
 };
 
+// How long steps take, in as much memory however many there are.
+class StepTimes {
+public:
+    StepTimes();
+
+    void add(double seconds);
+    // The middle of the class, 1 % wide, in which that share of the steps is reached; 0 without
+    // any.
+    double quantile_us(double share) const;
+
+private:
+    std::uint64_t steps_ = 0;
+    std::vector<std::uint64_t> counts_;  // by class
+};
+
 // Of one hand; takes the same memory however long the run is.
 class Statistics {
 public:
@@ -84,7 +102,6 @@ public:
 
 private:
     void add_place(const ContactModel& contact);
-    double quantile_us(double share) const;
 
     double tick_s_;
     Summary running_;
@@ -92,7 +109,7 @@ private:
     std::uint32_t start_ = 0;
     std::uint64_t clamped_ticks_ = 0, safety_ticks_ = 0;
     std::array<std::vector<double>, 3> recent_force_;  // by axis, N: a ring of the last 4 s
-    std::vector<std::uint64_t> step_counts_;           // of step times, in classes 1 % wide
+    StepTimes step_times_;
 };
 
 }  // namespace palpa

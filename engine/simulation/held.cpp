@@ -91,7 +91,11 @@ const Spring* spring_of(const World& world, Entity hand) noexcept {
 }
 
 std::vector<std::uint32_t> held_atoms(const World& world, Entity hand) {
-    if (const Spring* const spring = spring_of(world, hand)) return spring->atoms;
+    if (const Spring* const spring = spring_of(world, hand)) {
+        std::vector<std::uint32_t> atoms = spring->atoms;
+        for (std::uint32_t& atom : atoms) atom = model_atoms_of(world).number_in_table(atom);
+        return atoms;
+    }
     const AtomRange range = held_range(world, hand);
     std::vector<std::uint32_t> atoms(range.count);
     std::iota(atoms.begin(), atoms.end(), range.first);
@@ -273,6 +277,29 @@ const TorsionModel& model_of(const World& world) noexcept {
     return *world.resource<Mechanics>().model;
 }
 
+const ModelAtoms& model_atoms_of(const World& world) noexcept {
+    return *world.resource<Mechanics>().atoms;
+}
+
+std::optional<std::uint32_t> ModelAtoms::in_model(std::uint32_t number_in_table) const noexcept {
+    if (in_table.empty()) return number_in_table;
+    const auto found = std::ranges::lower_bound(in_table, number_in_table);
+    if (found == in_table.end() || *found != number_in_table) return {};
+    return static_cast<std::uint32_t>(found - in_table.begin());
+}
+
+void put_in_table(const TorsionModel& model, const ModelAtoms& atoms,
+                  const std::vector<Vec3>& positions, std::vector<Vec3>& table) {
+    for (const std::uint32_t atom : model.mobile_atoms)
+        table[atoms.number_in_table(atom)] = positions[atom];
+}
+
+std::vector<Vec3> reference_positions(const World& world) {
+    std::vector<Vec3> positions = world.resource<AtomTable>().positions;
+    put_in_table(model_of(world), model_atoms_of(world), model_of(world).reference, positions);
+    return positions;
+}
+
 std::size_t find_active_freedom(const World& world) noexcept {
     const AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();
     return adaptive ? find_active_freedom(model_of(world), adaptive->statics)
@@ -332,9 +359,10 @@ void copy_positions(World& world) {
     const TorsionState& state = world.resource<TorsionState>();
     if (state.positions.empty()) return;
     std::vector<Vec3>& positions = world.resource<AtomTable>().positions;
+    const ModelAtoms& atoms = model_atoms_of(world);
     AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();
-    if (!adaptive) {
-        positions = state.positions;
+    if (!adaptive || !atoms.in_table.empty()) {
+        put_in_table(model_of(world), atoms, state.positions, positions);
         return;
     }
     AdaptiveStatics& statics = adaptive->statics;

@@ -30,7 +30,7 @@ bool is_mobile(const Grip& grip) noexcept;
 
 // The molecule that a hand holds, whole or at a spring; without atoms where it holds nothing.
 AtomRange held_range(const World& world, Entity hand) noexcept;
-// The spring by which it holds it; null: as a whole, or nothing.
+// The spring by which it holds it, with the model's numbers of atoms; null: as a whole, or nothing.
 const Spring* spring_of(const World& world, Entity hand) noexcept;
 // The atoms that it holds: those at its spring, or all of the molecule.
 std::vector<std::uint32_t> held_atoms(const World& world, Entity hand);
@@ -94,6 +94,10 @@ FieldSum fast_field_on_held(const World& world, Entity hand);
 // Whether anything but the hand moves molecules.
 bool has_mobile(const World& world) noexcept;
 const TorsionModel& model_of(const World& world) noexcept;
+const ModelAtoms& model_atoms_of(const World& world) noexcept;
+
+// Of all atoms of the table, where mobile ones are as the model has them at angles of 0.
+std::vector<Vec3> reference_positions(const World& world);
 
 // Degrees of freedom that can move now.
 std::size_t find_active_freedom(const World& world) noexcept;

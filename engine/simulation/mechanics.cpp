@@ -1,10 +1,13 @@
 #include "simulation/mechanics.h"
 
+#include "assembly/region_bodies.h"
 #include "charmm/build_topology.h"
+#include "charmm/cut_sphere.h"
 #include "charmm/generate.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "simulation/held.h"
+#include "simulation/region.h"
 #include "simulation/solvent.h"
 #include "simulation/systems/choose_active.h"
 #include "simulation/systems/relax.h"
@@ -122,6 +125,10 @@ public:
         }
     }
 
+    void keep(std::span<const std::uint8_t> is_kept) {
+        for (std::size_t i = 0; i < is_kept.size(); ++i) is_mobile_[i] &= is_kept[i];
+    }
+
     bool has(const std::array<std::uint32_t, 2>& bond) const {
         return is_mobile_[bond[0]] != 0 && is_mobile_[bond[1]] != 0;
     }
@@ -136,7 +143,8 @@ struct SceneJoints {
 };
 
 SceneJoints find_joints(const SceneDescription& scene, const Connectivity& connectivity,
-                        std::span<const Vec3> positions, std::span<const ScenePart> parts) {
+                        std::span<const Vec3> positions, std::span<const ScenePart> parts,
+                        const std::optional<Region>& region) {
     MobileAtoms mobile(connectivity.names.size());
     for (const ScenePart& part : parts) {
         if (part.mobility.shape == Shape::Flexible) mobile.allow(part.atoms);
@@ -165,18 +173,24 @@ SceneJoints find_joints(const SceneDescription& scene, const Connectivity& conne
     }
     const auto keep_mobile = [&] {
         std::erase_if(result.joints.joints, [&](const Joint& joint) {
-            return !mobile.has(joint.bond) && !is_named(joint);
+            return !mobile.has(joint.bond) && (region || !is_named(joint));
         });
         std::erase_if(result.joints.springs,
                       [&](const std::array<std::uint32_t, 2>& bond) { return !mobile.has(bond); });
     };
     keep_mobile();
+    const std::size_t all = result.joints.joints.size();
+    if (region) {
+        mobile.keep(region->is_inside);
+        keep_mobile();
+        result.held = all - result.joints.joints.size();
+        return result;
+    }
     if (!scene.joints.within_angstrom) return result;
     const std::string& name =
         scene.joints.around.empty() ? scene.grab.molecule : scene.joints.around;
     const auto around = std::ranges::find(parts, name, &ScenePart::name);
     if (around == parts.end()) return result;
-    const std::size_t all = result.joints.joints.size();
     for (const ScenePart& part : parts) {
         mobile.keep_within(*scene.joints.within_angstrom, around->atoms, part.atoms, connectivity,
                            positions);
@@ -193,11 +207,16 @@ BaseFreedom freedom_of(Motion motion) {
     return motion == Motion::TranslateAndTurn ? BaseFreedom::Turning : BaseFreedom::Held;
 }
 
-// Of each bonded molecule, as the scene's molecules have it that its atoms belong to.
-std::vector<MoleculeBase> find_bases(const TorsionBodies& bodies,
-                                     std::span<const ScenePart> parts) {
+// Of each bonded molecule, as the scene's molecules have it that its atoms belong to. What has
+// atoms outside of a region is fixed.
+std::vector<MoleculeBase> find_bases(const TorsionBodies& bodies, std::span<const ScenePart> parts,
+                                     const std::optional<Region>& region) {
     const std::vector<std::uint32_t> molecule_of = molecules_of(bodies);
     std::vector<std::optional<MoleculeBase>> found(bodies.molecules());
+    for (const std::uint32_t atom : region ? region->atoms : std::vector<std::uint32_t>{}) {
+        std::optional<MoleculeBase>& base = found[molecule_of[bodies.body_of[atom]]];
+        if (!base && region->is_inside[atom] == 0) base = MoleculeBase{BaseFreedom::Held, atom};
+    }
     for (const ScenePart& part : parts) {
         const BaseFreedom freedom = freedom_of(part.mobility.motion);
         const auto set = [&](std::uint32_t atom) {
@@ -216,11 +235,10 @@ std::vector<MoleculeBase> find_bases(const TorsionBodies& bodies,
 }
 
 // A hand has hold of one base only.
-void check_one_piece(const TextPlace& place, const TorsionBodies& bodies, const Molecule& held) {
-    const std::vector<std::uint32_t> molecule_of = molecules_of(bodies);
-    const auto piece = [&](std::uint32_t atom) { return molecule_of[bodies.body_of[atom]]; };
+void check_one_piece(const TextPlace& place, const Molecule& held,
+                     const std::function<std::uint32_t(std::uint32_t)>& piece_of) {
     for (std::uint32_t i = 0; i < held.atoms.count; ++i) {
-        if (piece(held.atoms.first + i) == piece(held.reference_atom)) continue;
+        if (piece_of(held.atoms.first + i) == piece_of(held.reference_atom)) continue;
         throw LoadError(place,
                         fmt::format("'{}' is not all bonded together; expected one molecule, or a "
                                     "free one held by a spring (grab.atom)",
@@ -228,39 +246,43 @@ void check_one_piece(const TextPlace& place, const TorsionBodies& bodies, const 
     }
 }
 
-// What bases that nothing moves do to each other is constant.
-void join_fixed(std::span<const HeldPart> held, TorsionModel& model) {
-    const TorsionBodies& bodies = model.tree.bodies;
-    std::optional<std::uint32_t> first;
-    for (std::uint32_t i = 0; i < bodies.body_of.size(); ++i) {
-        const std::uint32_t body = bodies.body_of[i], molecule = model.tree.molecule_of[body];
-        if (!bodies.is_base(body) ||
-            std::ranges::find(held, molecule, &HeldPart::base) != held.end() ||
-            model.bases[molecule].freedom != BaseFreedom::Held)
-            continue;
-        if (!first) first = body;
-        model.fast.atoms.groups[i] = *first;
+// Bases that are held, but by no hand.
+void fix_held(std::span<const HeldPart> held, TorsionModel& model) {
+    std::vector<std::uint8_t> is_fixed;
+    for (const MoleculeBase& base : model.bases)
+        is_fixed.push_back(base.freedom == BaseFreedom::Held ? 1 : 0);
+    for (const HeldPart& part : held) {
+        if (!part.spring) is_fixed[part.base] = 0;
     }
+    fix_bases(is_fixed, model);
 }
 
 // ---- springs ---------------------------------------------------------------------------------
 
+// By the model's numbers.
+std::vector<std::uint32_t> model_numbers_of(const World& world, const ModelAtoms& atoms,
+                                            const AtomsOf& of) {
+    std::vector<std::uint32_t> numbers = numbers_of(world, of);
+    for (std::uint32_t& number : numbers) number = atoms.in_model(number).value();
+    return numbers;
+}
+
 // Of a hand, from the middle of what it holds.
-Spring build_spring(const World& world, const Grip& grip) {
+Spring build_spring(const World& world, const ModelAtoms& atoms, const Grip& grip) {
     Spring spring;
     spring.k = grip.k;
-    const std::uint32_t first = world.find<Molecule>(grip.molecule)->atoms.first;
-    for (const std::uint32_t atom : grip.atoms) spring.atoms.push_back(first + atom);
+    spring.atoms = model_numbers_of(world, atoms, {grip.molecule, grip.atoms});
     return spring;
 }
 
-Spring build_spring(const World& world, const Restraint& restraint) {
+Spring build_spring(const World& world, const ModelAtoms& atoms, const Restraint& restraint) {
     Spring spring;
     spring.k = restraint.k;
     spring.length = restraint.length;
     spring.place = restraint.place;
-    spring.atoms = numbers_of(world, restraint.ends.front());
-    if (restraint.ends.size() > 1) spring.other_atoms = numbers_of(world, restraint.ends.back());
+    spring.atoms = model_numbers_of(world, atoms, restraint.ends.front());
+    if (restraint.ends.size() > 1)
+        spring.other_atoms = model_numbers_of(world, atoms, restraint.ends.back());
     return spring;
 }
 
@@ -417,7 +439,7 @@ RelaxMethod find_method(const SceneDescription& scene, Eigen::Index coordinates)
     throw LoadError(scene.place_of("statics.method"),
                     fmt::format("{} degrees of freedom by second order would take {:.1f} GB and "
                                 "minutes; expected at most {}: fewer joints "
-                                "(joints.within_angstrom), or quasi-static",
+                                "(joints.region_angstrom, joints.within_angstrom), or quasi-static",
                                 coordinates, 5e-8 * static_cast<double>(coordinates * coordinates),
                                 most_second_order_coordinates));
 }
@@ -426,40 +448,68 @@ RelaxMethod find_method(const SceneDescription& scene, Eigen::Index coordinates)
 
 // Bodies and bases as molecules may now move.
 struct Plan {
+    ModelAtoms atoms;
     TorsionBodies bodies;
     std::vector<MoleculeBase> bases;
     std::size_t joints = 0, joints_held = 0;
 };
 
+// Leaves nothing in a plan but what a region needs.
+void cut_plan(const Region& region, Plan& plan) {
+    if (region.atoms.size() == region.is_inside.size()) return;
+    CutBodies cut = cut_bodies(plan.bodies, region.atoms);
+    plan.atoms.in_table = region.atoms;
+    std::vector<MoleculeBase> bases;
+    for (const std::uint32_t molecule : cut.molecules) {
+        bases.push_back(plan.bases[molecule]);
+        bases.back().pivot = plan.atoms.in_model(bases.back().pivot).value();
+    }
+    plan.bodies = std::move(cut.bodies);
+    plan.bases = std::move(bases);
+}
+
 Plan plan_mechanics(World& world) {
     const Connectivity& connectivity = *bonded_terms(world).connectivity;
     const std::vector<ScenePart> parts = list_parts(world);
-    const SceneJoints joints = find_joints(world.resource<SceneFile>().scene, connectivity,
-                                           world.resource<AtomTable>().positions, parts);
+    const std::optional<Region> region = find_region(world);
+    SceneJoints joints = find_joints(world.resource<SceneFile>().scene, connectivity,
+                                     world.resource<AtomTable>().positions, parts, region);
     std::vector<std::uint32_t> base_atoms;
+    if (region) {
+        const auto cuts = find_region_cuts(connectivity, region->is_inside, joints.joints.springs);
+        joints.joints.springs.insert(joints.joints.springs.end(), cuts.begin(), cuts.end());
+        for (std::uint32_t i = 0; i < region->is_inside.size(); ++i) {
+            if (region->is_inside[i] == 0) base_atoms.push_back(i);
+        }
+    }
     for (const ScenePart& part : parts) base_atoms.push_back(part.reference_atom);
-    Plan plan{build_bodies(connectivity, joints.joints, base_atoms), {}, 0, 0};
-    plan.bases = find_bases(plan.bodies, parts);
+    Plan plan{{}, build_bodies(connectivity, joints.joints, base_atoms), {}, 0, 0};
+    plan.bases = find_bases(plan.bodies, parts, region);
+    if (region) cut_plan(*region, plan);
     plan.joints = joints.joints.joints.size();
     plan.joints_held = joints.held;
     return plan;
 }
 
 // What hands hold, in their order.
-std::vector<HeldPart> find_held(const World& world, const TorsionBodies& bodies) {
-    const std::vector<std::uint32_t> molecule_of = molecules_of(bodies);
+std::vector<HeldPart> find_held(const World& world, const Plan& plan) {
+    const std::vector<std::uint32_t> molecule_of = molecules_of(plan.bodies);
+    const auto piece_of = [&](std::uint32_t atom) {
+        return molecule_of[plan.bodies.body_of[plan.atoms.in_model(atom).value()]];
+    };
     const SceneDescription& scene = world.resource<SceneFile>().scene;
     std::vector<HeldPart> held;
     world.each<Grip>([&](Entity hand, const Grip& grip) {
         const bool is_first = hand == first_hand(world);
         const Molecule& molecule = *world.find<Molecule>(grip.molecule);
         HeldPart& part = held.emplace_back();
-        part.base = molecule_of[bodies.body_of[molecule.reference_atom]];
         if (grip.atoms.empty()) {
+            part.base = piece_of(molecule.reference_atom);
             check_one_piece(scene.place_of(is_first ? "grab.molecule" : "second.grab.molecule"),
-                            bodies, molecule);
+                            molecule, piece_of);
         } else {
-            part.spring = build_spring(world, grip);
+            part.base = piece_of(molecule.atoms.first + grip.atoms.front());
+            part.spring = build_spring(world, plan.atoms, grip);
         }
     });
     return held;
@@ -467,14 +517,25 @@ std::vector<HeldPart> find_held(const World& world, const TorsionBodies& bodies)
 
 TorsionModel build_model(World& world, const Plan& plan, std::vector<MoleculeBase> bases) {
     const BondedTerms& terms = bonded_terms(world);
-    return build_torsion_model(plan.bodies, terms.connectivity->mass,
-                               world.resource<AtomTable>().positions, *terms.topology,
-                               std::move(bases));
+    const std::vector<Vec3>& positions = world.resource<AtomTable>().positions;
+    const std::vector<std::uint32_t>& atoms = plan.atoms.in_table;
+    if (atoms.empty()) {
+        return build_torsion_model(plan.bodies, terms.connectivity->mass, positions,
+                                   *terms.topology, std::move(bases));
+    }
+    std::vector<double> masses;
+    std::vector<Vec3> places;
+    for (const std::uint32_t atom : atoms) {
+        masses.push_back(terms.connectivity->mass[atom]);
+        places.push_back(positions[atom]);
+    }
+    return build_torsion_model(plan.bodies, std::move(masses), std::move(places),
+                               cut_topology(*terms.topology, atoms), std::move(bases));
 }
 
-void set_mechanics(const SceneDescription& scene, TorsionModel model,
+void set_mechanics(const SceneDescription& scene, TorsionModel model, ModelAtoms atoms,
                    std::span<const HeldPart> held, World& world) {
-    join_fixed(held, model);
+    fix_held(held, model);
     TorsionState state = build_torsion_state(model);
     std::size_t next = 0;
     world.each<Grip>([&](Entity, Grip& grip) {
@@ -489,7 +550,7 @@ void set_mechanics(const SceneDescription& scene, TorsionModel model,
                         : Vec3(grip.anchor + grip.pose.place_angstrom);
     });
     world.each<Restraint>([&](Entity, const Restraint& restraint) {
-        state.springs.push_back(build_spring(world, restraint));
+        state.springs.push_back(build_spring(world, atoms, restraint));
     });
     world.remove_resource<AdaptiveState>();
     world.remove_resource<SecondOrder>();
@@ -500,7 +561,8 @@ void set_mechanics(const SceneDescription& scene, TorsionModel model,
         world.set_resource(build_adaptive(scene, settings, model, held));
     world.set_resource(Solver{settings, build_quasi_statics(model), {}});
     world.set_resource(std::move(state));
-    world.set_resource(Mechanics{std::make_shared<const TorsionModel>(std::move(model))});
+    world.set_resource(Mechanics{std::make_shared<const TorsionModel>(std::move(model)),
+                                 std::make_shared<const ModelAtoms>(std::move(atoms))});
     if (settings.method == RelaxMethod::SecondOrder) {
         SecondOrder second = build_second_order(scene.statics, settings, world);
         if (const auto within_pN = scene.coupling.feel_within_pN)
@@ -588,15 +650,40 @@ void rebuild_mechanics(World& world) {
         return;
     }
     Plan plan = plan_mechanics(world);
-    const std::vector<HeldPart> held = find_held(world, plan.bodies);
+    if (plan.bodies.bodies.empty()) {
+        clear_mechanics(world);
+        return;
+    }
+    const std::vector<HeldPart> held = find_held(world, plan);
     TorsionModel model = build_model(world, plan, plan.bases);
-    set_mechanics(world.resource<SceneFile>().scene, std::move(model), held, world);
+    set_mechanics(world.resource<SceneFile>().scene, std::move(model), std::move(plan.atoms), held,
+                  world);
+}
+
+bool has_left_region(const World& world) noexcept {
+    const RegionCentre* const centre = world.find_resource<RegionCentre>();
+    if (!centre || centre->stays) return false;
+    const std::vector<Vec3>&now = world.resource<TorsionState>().positions,
+          &reference = model_of(world).reference;
+    return std::ranges::any_of(model_of(world).mobile_atoms, [&](std::uint32_t atom) {
+        return (now[atom] - reference[atom]).squaredNorm() > region_margin * region_margin;
+    });
+}
+
+void renew_region(World& world) noexcept {
+    try {
+        World renewed = world;
+        rebuild_mechanics(renewed);
+        world = std::move(renewed);
+    } catch (const LoadError&) {
+        world.resource<RegionCentre>().stays = true;
+    }
 }
 
 void relax_and_build_mechanics(World& world, const RelaxProgressFunction& on_relax) {
     const SceneDescription& scene = world.resource<SceneFile>().scene;
     const Plan plan = plan_mechanics(world);
-    const std::vector<HeldPart> held = find_held(world, plan.bodies);
+    const std::vector<HeldPart> held = find_held(world, plan);
 
     // At first nobody holds anything.
     std::vector<MoleculeBase> bases = plan.bases;
@@ -619,10 +706,10 @@ void relax_and_build_mechanics(World& world, const RelaxProgressFunction& on_rel
                         "the energy at the start is not finite; expected atoms apart from each "
                         "other, and charges and parameters of molecules");
     }
-    world.resource<AtomTable>().positions = rest.positions;
+    put_in_table(loose, plan.atoms, rest.positions, world.resource<AtomTable>().positions);
     TorsionModel model = build_model(world, plan, plan.bases);
-    set_mechanics(scene, std::move(model), held, world);
-    world.resource<AtomTable>().positions = world.resource<TorsionState>().positions;
+    set_mechanics(scene, std::move(model), plan.atoms, held, world);
+    copy_positions(world);
 }
 
 World build_mechanics_world(const SceneDescription& scene, TorsionModel model,
@@ -631,12 +718,14 @@ World build_mechanics_world(const SceneDescription& scene, TorsionModel model,
     const Entity hand = world.create();
     world.set(hand, Hand{});
     world.set(hand, Grip{});
-    world.set_resource(AtomTable{});
+    AtomTable atoms;
+    atoms.positions = model.reference;
+    world.set_resource(std::move(atoms));
     world.set_resource(Clock{scene.period_ms * 1e-3});  // a renewal is due after a time
     StartReport report;
     report.joints = model.tree.bodies.joints();
     world.set_resource(report);
-    set_mechanics(scene, std::move(model), std::span(&held, 1), world);
+    set_mechanics(scene, std::move(model), {}, std::span(&held, 1), world);
     return world;
 }
 

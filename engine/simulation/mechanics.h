@@ -26,6 +26,14 @@ const BondedTerms& bonded_terms(World& world);
 // and molecules that a hand cannot hold; then the world is of no use.
 void rebuild_mechanics(World& world);
 
+// Whether an atom has gone so far that it could soon feel others that a region's mechanics do not
+// have (simulation/region.h).
+bool has_left_region(const World& world) noexcept;
+
+// Mechanics anew of the region around where hands now hold something. Where that is too large the
+// old ones stay.
+void renew_region(World& world) noexcept;
+
 // Called while molecules come to rest; where it returns false they stay as they are.
 using RelaxProgressFunction = std::function<bool(const RelaxProgress&)>;
 

@@ -132,11 +132,22 @@ std::optional<FollowingAtoms> find_following(const World& world, Entity hand,
     const SecondOrder* const second = find_second_order(world);
     const std::optional<HandColumns> columns = second ? find_columns(*second, hand) : std::nullopt;
     if (!columns || columns->turns) return {};
+    // What the model does not have is fixed.
     const auto responses = [&](std::span<const std::uint32_t> atoms) {
-        std::vector<Mat3> moves =
+        std::vector<std::uint32_t> known;
+        std::vector<std::size_t> places;
+        for (std::size_t i = 0; i < atoms.size(); ++i) {
+            const auto atom = model_atoms_of(world).in_model(atoms[i]);
+            if (!atom) continue;
+            known.push_back(*atom);
+            places.push_back(i);
+        }
+        const std::vector<Mat3> found =
             find_atom_responses(model_of(world), *second->statics.linear,
-                                world.resource<TorsionState>(), columns->shift(), atoms);
-        for (Mat3& move : moves) move *= std::min(1.0, most_response / move.norm());
+                                world.resource<TorsionState>(), columns->shift(), known);
+        std::vector<Mat3> moves(atoms.size(), Mat3::Zero());
+        for (std::size_t i = 0; i < found.size(); ++i)
+            moves[places[i]] = found[i] * std::min(1.0, most_response / found[i].norm());
         return moves;
     };
     FollowingAtoms following;

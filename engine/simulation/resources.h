@@ -61,10 +61,27 @@ struct Clock {
     std::uint64_t steps = 0;
 };
 
+// Which atoms of the table a model has.
+struct ModelAtoms {
+    // Of each of its atoms the table's number, rising. Empty: it has all, by the same numbers.
+    std::vector<std::uint32_t> in_table;
+
+    std::uint32_t number_in_table(std::uint32_t in_model) const noexcept {
+        return in_table.empty() ? in_model : in_table[in_model];
+    }
+    // Nothing where the model does not have it.
+    std::optional<std::uint32_t> in_model(std::uint32_t number_in_table) const noexcept;
+};
+
+// Writes the places of mobile atoms to the table's.
+void put_in_table(const TorsionModel& model, const ModelAtoms& atoms,
+                  const std::vector<Vec3>& positions, std::vector<Vec3>& table);
+
 // The mobile molecules as torsion bodies; without atoms where there are none. Copies of a world
 // share it.
 struct Mechanics {
     std::shared_ptr<const TorsionModel> model = std::make_shared<const TorsionModel>();
+    std::shared_ptr<const ModelAtoms> atoms = std::make_shared<const ModelAtoms>();
 };
 
 // How what is mobile comes towards rest.

@@ -2,6 +2,7 @@
 
 #include "simulation/components.h"
 #include "simulation/held.h"
+#include "simulation/mechanics.h"
 #include "simulation/observe.h"
 #include "simulation/systems/choose_active.h"
 #include "simulation/systems/follow_hands.h"
@@ -56,6 +57,10 @@ void go_back(const Before& before, World& world) {
 
 const StepReport& step_world(World& world, const StepInput& input) noexcept {
     const auto begin = std::chrono::steady_clock::now();
+    if (has_left_region(world)) {
+        if (input.await_renewal) input.await_renewal();
+        renew_region(world);
+    }
     StepReport& report = world.resource<StepReport>();
     report = {};
     const Before before = remember(world);

@@ -127,7 +127,10 @@ void update_motions(const TorsionModel& model, const LocalCoordinates& coordinat
 void place_about(const TorsionModel& model, const LocalCoordinates& coordinates,
                  const TorsionState& origin, const Eigen::VectorXd& at, TorsionState& state) {
     PALPA_ASSERT(at.size() == coordinates.size());
-    copy_coordinates(origin, state);
+    state.angles = origin.angles;
+    state.turns = origin.turns;
+    state.shifts = origin.shifts;
+    state.springs = origin.springs;
     for (std::size_t b = 0; b < model.tree.bodies.bodies.size(); ++b) {
         const std::uint32_t m = model.tree.molecule_of[b];
         for (const CarriedCoordinate& carried : coordinates.of(b)) {

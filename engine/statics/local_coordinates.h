@@ -83,7 +83,7 @@ struct CoordinateMotion {
 void update_motions(const TorsionModel& model, const LocalCoordinates& coordinates,
                     const TorsionState& state, std::vector<CoordinateMotion>& motions);
 
-// Puts `state` where the coordinates say that are counted from `origin`.
+// Puts `state`, one of this model, where the coordinates say that are counted from `origin`.
 void place_about(const TorsionModel& model, const LocalCoordinates& coordinates,
                  const TorsionState& origin, const Eigen::VectorXd& at, TorsionState& state);
 

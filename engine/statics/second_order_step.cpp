@@ -117,7 +117,8 @@ public:
         Eigen::VectorXd at = statics_.at;
         at.head(mobile()) += direction;
         evaluate(at);
-        const double moved = find_largest_move(state_.positions, statics_.trial.positions);
+        const double moved =
+            find_largest_move(model_.mobile_atoms, state_.positions, statics_.trial.positions);
         if (moved > settings_.largest_move) {
             direction *= settings_.largest_move / moved;
             at = statics_.at;
@@ -137,7 +138,7 @@ public:
     }
 
     void accept() {
-        copy_coordinates(statics_.trial, state_);
+        swap_coordinates(statics_.trial, state_);
         statics_.at = at_;
         std::swap(statics_.value, statics_.trial_value);
         std::swap(forces_, trial_forces_);
@@ -186,7 +187,8 @@ void follow_linearly(const TorsionModel& model, const SecondOrderSettings& setti
     Eigen::VectorXd at = statics.at;
     at.head(linear.mobile()) += answer;
     place_by(model, linear, at, statics.trial);
-    const double moved = find_largest_move(state.positions, statics.trial.positions);
+    const double moved =
+        find_largest_move(model.mobile_atoms, state.positions, statics.trial.positions);
     const double most = 2 * settings.largest_move;
     statics.at.head(linear.mobile()) += std::min(1.0, most / std::max(moved, most)) * answer;
 }
@@ -217,20 +219,21 @@ JointRelaxReport relax_fully(const TorsionModel& model, const SecondOrderSetting
 
 // How far the state is from the point of linearisation, in units of the region in which the model
 // holds.
-double find_relative_age(const SecondOrderSettings& settings, const TorsionState& state,
-                         const SecondOrderStatics& statics) {
+double find_relative_age(const TorsionModel& model, const SecondOrderSettings& settings,
+                         const TorsionState& state, const SecondOrderStatics& statics) {
     const LinearisedModel& linear = *statics.linear;
     return std::max(
         find_length(statics.renewals.lineariser.held.hands, statics.at.tail(linear.hands())) /
             settings.renew_hand,
-        find_largest_move(linear.at.positions, state.positions) / settings.renew_atom);
+        find_largest_move(model.mobile_atoms, linear.at.positions, state.positions) /
+            settings.renew_atom);
 }
 
-RenewalRequest request_renewal(const SecondOrderSettings& settings, const TorsionState& state,
-                               const SecondOrderStatics& statics) {
+RenewalRequest request_renewal(const TorsionModel& model, const SecondOrderSettings& settings,
+                               const TorsionState& state, const SecondOrderStatics& statics) {
     RenewalRequest request{state, statics.near_reach, 0, {}, {}};
     if (!statics.linear) return request;
-    request.age = find_relative_age(settings, state, statics);
+    request.age = find_relative_age(model, settings, state, statics);
     const LinearisedModel& linear = *statics.linear;
     request.felt = statics.value.gradient.tail(linear.hands());
     request.at_rest =
@@ -282,15 +285,15 @@ public:
     }
 
     SecondOrderReport run() {
-        const std::vector<Vec3> start = state_.positions;
+        statics_.start = state_.positions;
         const std::size_t before = statics_.model_evaluations;
         if (!statics_.linear && !renew(true)) return report_;
         if (!place_with_springs()) return report_;
         const double way = find_length(hands(), left());
         if (prepare_still(way)) follow(way);
-        describe(start, before);
+        describe(before);
         if (wants_renewal_ && report_.is_finite && !statics_.pending)
-            statics_.pending = {request_renewal(settings_, state_, statics_), {}};
+            statics_.pending = {request_renewal(model_, settings_, state_, statics_), {}};
         return report_;
     }
 
@@ -327,7 +330,7 @@ private:
     }
 
     Renewal make_now() {
-        return make_renewal(model_, settings_, request_renewal(settings_, state_, statics_),
+        return make_renewal(model_, settings_, request_renewal(model_, settings_, state_, statics_),
                             statics_.renewals);
     }
 
@@ -370,7 +373,8 @@ private:
 
     bool is_old() const {
         const double way = find_length(hands(), statics_.at.tail(linear().hands()));
-        const double farthest = find_largest_move(linear().at.positions, state_.positions);
+        const double farthest =
+            find_largest_move(model_.mobile_atoms, linear().at.positions, state_.positions);
         if (!statics_.is_settled || farthest > settings_.renew_atom) return true;
         // Hands that stay at the end of the region are to have another.
         constexpr double near = 0.7, near_end = 0.8;
@@ -380,7 +384,7 @@ private:
     }
 
     double error_estimate() const {
-        const double age = find_relative_age(settings_, state_, statics_);
+        const double age = find_relative_age(model_, settings_, state_, statics_);
         return std::hypot(find_unrelaxed(hands(), statics_), statics_.error_growth * age * age);
     }
 
@@ -426,7 +430,8 @@ private:
         follow_linearly(model_, settings_, by, state_, statics_);
         relax_model(model_, settings_, state_, statics_);
         if (is_finite(statics_) &&
-            find_largest_move(linear().at.positions, state_.positions) < settings_.farthest &&
+            find_largest_move(model_.mobile_atoms, linear().at.positions, state_.positions) <
+                settings_.farthest &&
             !are_too_close(linear().close, state_.positions))
             return true;
         ++statics_.discarded;
@@ -442,13 +447,15 @@ private:
         return false;
     }
 
-    void describe(const std::vector<Vec3>& start, std::size_t before) {
+    void describe(std::size_t before) {
         if (!report_.is_finite) return;
         report_.energy = statics_.value.energy;
         report_.rms_force = rms_of(statics_.value.gradient.head(linear().mobile()));
         report_.age = find_length(hands(), statics_.at.tail(linear().hands()));
-        report_.farthest = find_largest_move(linear().at.positions, state_.positions);
-        report_.largest_move = find_largest_move(start, state_.positions);
+        report_.farthest =
+            find_largest_move(model_.mobile_atoms, linear().at.positions, state_.positions);
+        report_.largest_move =
+            find_largest_move(model_.mobile_atoms, statics_.start, state_.positions);
         report_.error_estimate = error_estimate();
         report_.model_evaluations = statics_.model_evaluations - before;
     }
@@ -502,10 +509,10 @@ void start_second_order(const TorsionModel& model, const SecondOrderSettings& se
                         const TorsionState& state, SecondOrderStatics& statics) {
     SecondOrderSettings as_it_is = settings;
     as_it_is.least_relaxation = as_it_is.most_relaxation = 0;
-    adopt_renewal(
-        settings,
-        make_renewal(model, as_it_is, request_renewal(settings, state, statics), statics.renewals),
-        statics);
+    adopt_renewal(settings,
+                  make_renewal(model, as_it_is, request_renewal(model, settings, state, statics),
+                               statics.renewals),
+                  statics);
     statics.is_at_rest = false;
 }
 

@@ -133,6 +133,7 @@ struct SecondOrderStatics {
     double near_reach = 0;        // of the next model, Å, where there is a tolerance
     TorsionState trial;
     ModelValue trial_value;
+    std::vector<Vec3> start;  // memory: where the step began
 
     std::size_t renewed = 0, discarded = 0;  // renewals; strides that were repeated
     std::size_t model_evaluations = 0;

@@ -103,6 +103,14 @@ double find_largest_move(const std::vector<Vec3>& from, const std::vector<Vec3>&
     return std::sqrt(largest2);
 }
 
+double find_largest_move(std::span<const std::uint32_t> atoms, const std::vector<Vec3>& from,
+                         const std::vector<Vec3>& to) noexcept {
+    double largest2 = 0;
+    for (const std::uint32_t i : atoms)
+        largest2 = std::max(largest2, (to[i] - from[i]).squaredNorm());
+    return std::sqrt(largest2);
+}
+
 double place_within(const TorsionModel& model, const TorsionState& from, double largest_move,
                     Coordinates& move, TorsionState& trial) noexcept {
     // A joint that turns by more than that leaves the range in which atoms go straight.

@@ -60,6 +60,9 @@ void multiply_by_inverse_mass(const TorsionModel& model, const TorsionState& sta
 
 // The largest distance between places of one atom, Å.
 double find_largest_move(const std::vector<Vec3>& from, const std::vector<Vec3>& to) noexcept;
+// Of these atoms.
+double find_largest_move(std::span<const std::uint32_t> atoms, const std::vector<Vec3>& from,
+                         const std::vector<Vec3>& to) noexcept;
 
 // Moves `trial` from where `from` is by `move`, or by so much less that no atom goes farther than
 // the largest move; `move` becomes what was done. Returns how far the farthest atom went.

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
+#include <optional>
 #include <utility>
 
 namespace palpa {
@@ -76,6 +78,8 @@ TorsionModel build_torsion_model(const TorsionBodies& bodies, std::vector<double
     keep_moving_terms(bodies, model.topology);
     model.fast = build_fast_force_field(model.topology);
     model.fast.atoms.groups = bodies.body_of;
+    model.mobile_atoms.resize(model.masses.size());
+    std::iota(model.mobile_atoms.begin(), model.mobile_atoms.end(), 0U);
 
     for (std::size_t body = 0; body < bodies.bodies.size(); ++body) {
         const bool is_base = bodies.is_base(body);
@@ -89,6 +93,22 @@ TorsionModel build_torsion_model(const TorsionBodies& bodies, std::vector<double
         if (base.freedom == BaseFreedom::Free) model.coordinates += 6;
     }
     return model;
+}
+
+void fix_bases(const std::vector<std::uint8_t>& is_fixed, TorsionModel& model) {
+    const AssemblyTree& tree = model.tree;
+    std::optional<std::uint32_t> first;
+    model.mobile_atoms.clear();
+    for (std::uint32_t i = 0; i < tree.bodies.body_of.size(); ++i) {
+        const std::uint32_t body = tree.bodies.body_of[i], molecule = tree.molecule_of[body];
+        if (!tree.bodies.is_base(body) || is_fixed[molecule] == 0) {
+            model.mobile_atoms.push_back(i);
+            continue;
+        }
+        PALPA_ASSERT(model.bases[molecule].freedom == BaseFreedom::Held);
+        if (!first) first = body;
+        model.fast.atoms.groups[i] = *first;
+    }
 }
 
 }  // namespace palpa

@@ -39,6 +39,9 @@ struct TorsionModel {
     std::vector<Vec3> reference;          // Å, where all joints have the angle 0
     std::vector<MoleculeBase> bases;      // of each molecule
 
+    // Atoms that may move: all, until fix_bases.
+    std::vector<std::uint32_t> mobile_atoms;
+
     // All atoms and exclusions. Of bonded terms and pairs three bonds apart only those that change:
     // a term whose atoms all stay in one body has a constant energy and no force on any joint.
     Topology topology;
@@ -55,5 +58,9 @@ struct TorsionModel {
 TorsionModel build_torsion_model(const TorsionBodies& bodies, std::vector<double> masses,
                                  std::vector<Vec3> positions, const Topology& topology,
                                  std::vector<MoleculeBase> bases);
+
+// Of bases that are held (one entry per molecule: which of them nothing moves, no hand either) the
+// atoms stay at the reference, and what they do to each other is constant: it is left out.
+void fix_bases(const std::vector<std::uint8_t>& is_fixed, TorsionModel& model);
 
 }  // namespace palpa

@@ -62,16 +62,15 @@ void update_positions(const TorsionModel& model, TorsionState& state) noexcept {
         const Vec3 axis = (model.reference[k] - model.reference[j]).normalized();
         state.motions[b] = parent * turn_about(model.reference[k], axis, state.angles[b]);
     }
-    for (std::size_t i = 0; i < state.positions.size(); ++i) {
+    for (const std::uint32_t i : model.mobile_atoms)
         state.positions[i] = state.motions[model.tree.bodies.body_of[i]] * model.reference[i];
-    }
     update_pivots(model, state);
 }
 
 void update_pivots(const TorsionModel& model, TorsionState& state) noexcept {
     std::vector<Vec3>& pivots = state.pivots;
     std::ranges::fill(pivots, Vec3::Zero());
-    for (std::size_t i = 0; i < state.positions.size(); ++i) {
+    for (const std::uint32_t i : model.mobile_atoms) {
         const std::uint32_t molecule = model.tree.molecule_of[model.tree.bodies.body_of[i]];
         pivots[molecule] += model.masses[i] * state.positions[i];
     }
@@ -119,7 +118,7 @@ void update_forces(const TorsionModel& model, const ForceSettings& settings, For
 void update_coordinate_forces(const TorsionModel& model, TorsionState& state) noexcept {
     const std::span<const Body> bodies = bodies_of(model);
     std::ranges::fill(state.wrenches, Vec6::Zero());
-    for (std::size_t i = 0; i < state.positions.size(); ++i) {
+    for (const std::uint32_t i : model.mobile_atoms) {
         Vec6& wrench = state.wrenches[model.tree.bodies.body_of[i]];
         wrench.head<3>() += state.positions[i].cross(state.forces[i]);
         wrench.tail<3>() += state.forces[i];
@@ -194,6 +193,16 @@ void copy_coordinates(const TorsionState& from, TorsionState& to) noexcept {
     to.motions = from.motions;
     to.positions = from.positions;
     to.pivots = from.pivots;
+}
+
+void swap_coordinates(TorsionState& a, TorsionState& b) noexcept {
+    a.angles.swap(b.angles);
+    a.turns.swap(b.turns);
+    a.shifts.swap(b.shifts);
+    a.springs.swap(b.springs);
+    a.motions.swap(b.motions);
+    a.positions.swap(b.positions);
+    a.pivots.swap(b.pivots);
 }
 
 void take_over(TorsionState& from, TorsionState& to) noexcept {

@@ -39,7 +39,7 @@ struct TorsionState {
 
     // update_positions
     std::vector<RigidMotion> motions;  // of each body from its reference
-    std::vector<Vec3> positions;       // Å
+    std::vector<Vec3> positions;       // Å; of fixed atoms the reference
     std::vector<Vec3> pivots;          // of each molecule, Å: where its base turns about
 
     // update_forces
@@ -48,7 +48,7 @@ struct TorsionState {
     std::vector<Vec3> forces;  // kcal/mol/Å
 
     // update_coordinate_forces
-    std::vector<Vec6> wrenches;     // of each body with all behind it, about the origin
+    std::vector<Vec6> wrenches;     // of each body with all behind it, about the origin; not fixed
     Coordinates coordinate_forces;  // kcal/mol/rad, kcal/mol/Å
 
     double energy() const noexcept { return terms.total() + spring_energy; }
@@ -95,6 +95,9 @@ Vec6 find_wrench_on(const TorsionModel& model, const TorsionState& state,
 
 // Puts the coordinates and positions of `from` into `to`, nothing else.
 void copy_coordinates(const TorsionState& from, TorsionState& to) noexcept;
+
+// Exchanges them.
+void swap_coordinates(TorsionState& a, TorsionState& b) noexcept;
 
 // The same with energies, forces and coordinate forces.
 void take_over(TorsionState& from, TorsionState& to) noexcept;

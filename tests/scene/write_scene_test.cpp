@@ -128,6 +128,7 @@ TEST_CASE("every field is written, under its full key", "[scene][write]") {
     scene.lesson = {{"STEP", "text", "task", LessonQuantity::Force, 1.0, 2.0, 0.5}};
     scene.hand.release_s = 4;
     scene.joints.within_angstrom = 8;
+    scene.joints.region_angstrom = 30;
     scene.statics.method = RelaxMethod::LimitedMemory;
     scene.statics.cutoff_angstrom = 12;
     scene.statics.budget_us = 1000;

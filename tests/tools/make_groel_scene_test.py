@@ -73,21 +73,32 @@ class MakeGroelScene(unittest.TestCase):
         program.chmod(0o755)
         return {"PALPA_DATA": str(self.folder), "PALPA_PROGRAM": str(program)}
 
-    def test_the_folder_has_what_was_prepared_and_where_it_came_to_rest(self):
+    def made_folder(self, *options, files):
         made = self.folder / "made"
-        result = run(SCRIPT, made, **self.stand_in())
+        result = run(SCRIPT, *options, made, **self.stand_in())
         self.assertEqual(result.returncode, 0, result.stderr)
         for name in ("system.psf", "system.prm", "report.txt"):
             self.assertEqual((made / name).read_text(), f"prepared {name}\n")
-        self.assertEqual((made / "relaxed.crd").read_text(), "relaxed\n")
         scene = (ROOT / "scenes" / "groel" / "scene.toml").read_text()
         self.assertEqual((made / "scene.toml").read_text(), scene)
         self.assertEqual(sorted(path.name for path in made.iterdir()),
-                         ["relaxed.crd", "report.txt", "scene.toml", "system.prm", "system.psf"])
+                         sorted(["report.txt", "scene.toml", "system.prm", "system.psf", *files]))
+        return made
+
+    def test_the_folder_has_what_was_prepared_and_the_pose(self):
+        made = self.made_folder(files=["relaxed.crd"])
+        pose = gzip.decompress((ROOT / "scenes" / "groel" / "pose.crd.gz").read_bytes())
+        self.assertEqual((made / "relaxed.crd").read_bytes(), pose)
+        self.assertIn(b"    120400  EXT\n", pose[:1000])
+
+    def test_made_anew_it_has_where_it_came_to_rest(self):
+        made = self.made_folder("--anew", files=["relaxed.crd", "pose.crd.gz"])
+        self.assertEqual((made / "relaxed.crd").read_text(), "relaxed\n")
+        self.assertEqual(gzip.decompress((made / "pose.crd.gz").read_bytes()), b"relaxed\n")
 
     def test_nothing_is_written_where_relaxing_fails(self):
         made = self.folder / "made"
-        result = run(SCRIPT, made, **self.stand_in(), RELAX_ENDS="2")
+        result = run(SCRIPT, "--anew", made, **self.stand_in(), RELAX_ENDS="2")
         self.assertEqual(result.returncode, 2)
         self.assertFalse(made.exists())
 

@@ -98,7 +98,7 @@ int relax_command(const RelaxOptions& options) {
     if (options.coordinates) {
         Structure structure;
         structure.names = world.resource<AtomTable>().names;
-        structure.positions = model_of(world).reference;
+        structure.positions = reference_positions(world);
         write_text_file(
             *options.coordinates,
             format_crd(structure,
@@ -108,7 +108,7 @@ int relax_command(const RelaxOptions& options) {
             existing);
     }
     if (const auto closest =
-            describe_coincident_atoms(world.resource<AtomTable>().names, model_of(world).reference,
+            describe_coincident_atoms(world.resource<AtomTable>().names, reference_positions(world),
                                       nearest_single_precision)) {
         fmt::print(stderr, "warning: atoms are on each other: {}\n", printable(*closest));
     }

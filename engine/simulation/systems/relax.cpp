@@ -148,6 +148,7 @@ RelaxStepReport follow_by_second_order(World& world, const StepInput& input, Sec
         report.released += released;
         report.evaluations += adopted->relaxed.evaluations;
     }
+    report.snapped_atom = model_atoms_of(world).number_in_table(report.snapped_atom);
     report.energy_change = -report.released;
     report.hand_work = step.energy + report.released - before;
     report.largest_move = step.largest_move;
@@ -177,9 +178,10 @@ void relax(World& world, const StepInput& input) {
     const TorsionState& state = world.resource<TorsionState>();
     world.each<Molecule, Pose>([&](Entity, const Molecule& molecule, Pose& pose) {
         const TorsionModel& model = model_of(world);
-        const std::uint32_t body = model.tree.bodies.body_of[molecule.reference_atom];
-        pose = {state.positions[molecule.reference_atom],
-                state.turns[model.tree.molecule_of[body]]};
+        const auto atom = model_atoms_of(world).in_model(molecule.reference_atom);
+        if (!atom) return;  // it is fixed
+        const std::uint32_t body = model.tree.bodies.body_of[*atom];
+        pose = {state.positions[*atom], state.turns[model.tree.molecule_of[body]]};
     });
 }
 
