@@ -41,7 +41,8 @@ FromFiles compare_with_files(const SceneDescription& scene, const World& world) 
     std::vector<Vec3>& positions = start.resource<AtomTable>().positions;
     positions = load_system(scene).positions;
     const PoseComparison comparison(start);
-    return {comparison.between(model_of(world).reference, positions), comparison.pocket_residues()};
+    return {comparison.between(reference_positions(world), positions),
+            comparison.pocket_residues()};
 }
 
 void print_report(const StartReport& start, const FromFiles& from) {
