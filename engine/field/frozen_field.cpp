@@ -589,9 +589,11 @@ PairRule rule_of(const FrozenField& field) noexcept {
     return {field.coulomb_constant, field.replaced, field.smooth};
 }
 
-// By place: volume, strength, scale and offset; zero without solvation.
+// By place: volume, strength, scale and offset; zero without solvation. What has no strength has no
+// shell either, or far pairs would leave the range of power_of_minus_square.
 std::array<float, 4> solvation_numbers(const FrozenField::Points& points, std::size_t i) noexcept {
     if (points.volume.empty()) return {};
+    if (points.strength[i] == 0) return {static_cast<float>(points.volume[i]), 0, 0, 0};
     const double scale = std::sqrt(std::numbers::log2e) * points.inverse_lambda[i];
     return {static_cast<float>(points.volume[i]), static_cast<float>(points.strength[i]),
             static_cast<float>(scale), static_cast<float>(scale * points.radius[i])};

@@ -142,7 +142,7 @@ class Prepare(PrepareCase):
 
     def test_a_protein_alone_goes_with_implicit_water_if_that_is_left_open(self):
         ubiquitin = self.data / "structures" / "1ubq.pdb"
-        vacuum = self.prepare(ubiquitin, self.toppar()[:2])
+        vacuum = self.prepare(ubiquitin, self.toppar()[:2], "--solvent", "none")
         before, _ = read_psf(vacuum / "system.psf")
         self.assertNotIn("Solvent", (vacuum / "report.txt").read_text())
         places = (vacuum / "system.crd").read_text()
