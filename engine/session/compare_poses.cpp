@@ -80,6 +80,10 @@ PoseComparison::PoseComparison(const World& world) {
         SymmetricAtoms symmetric = find_symmetries(atoms, side_chain);
         if (!symmetric.atoms.empty()) pocket_.push_back(std::move(symmetric));
     }
+    if (grip_of(world, hand).spring >= 0) {
+        frame_.clear();
+        return;
+    }
     if (!frame_.empty()) return;
     for (std::uint32_t i = frame.first; i < frame.first + frame.count; ++i) {
         if (atoms.mass[i] > heaviest_hydrogen) frame_.push_back(i);

@@ -18,7 +18,8 @@ struct PoseDistance {
 };
 
 // Poses are superposed on the backbone of the molecule that the hand's place is measured from (its
-// heavy atoms where it has no residues of a protein), and atoms that only their numbers tell apart
+// heavy atoms where it has no residues of a protein), but not where the hand holds a spring, since
+// that is within a molecule whose base does not move. Atoms that only their numbers tell apart
 // may change places: all those of what is held together, those of others by residue.
 class PoseComparison {
 public:
