@@ -11,6 +11,7 @@
 // then row sums do the same.
 #pragma once
 #include "field/pair_kernel.h"
+#include "field/solvation_parameters.h"
 #include "math/spatial.h"
 #include "math/vec.h"
 

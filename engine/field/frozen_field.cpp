@@ -4,11 +4,15 @@
 #include "field/frozen_job.h"
 #include "field/grid.h"
 #include "field/pair_kernel.h"
+#include "field/solvation_law.h"
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <numeric>
 #include <utility>
 
 // From here on once for each kind of processor.
@@ -16,7 +20,7 @@
 #define HWY_TARGET_INCLUDE "field/frozen_field.cpp"
 #include <hwy/foreach_target.h>  // before highway.h
 
-#include "field/pair_kernel-inl.h"
+#include "field/smooth_law-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace palpa::HWY_NAMESPACE {
@@ -125,18 +129,25 @@ struct Pairs {
     V gradient, curvature, s6, well, coulomb;
 };
 
+// The same with smooth ends, and their energies; of Lennard-Jones 12 times.
+struct SmoothPairs {
+    std::array<V, 3> d;
+    V gradient, curvature, van_der_waals, electrostatic, solvation;
+};
+
 // Nothing besides the sums of a frozen field.
 struct NothingBesides {
     HWY_INLINE void begin_point(std::size_t /*i*/) {}
-    HWY_INLINE void add(std::size_t /*sixteen*/, std::size_t /*at*/, const Pairs& /*pairs*/) {}
+    template <class AnyPairs>
+    HWY_INLINE void add(std::size_t /*sixteen*/, std::size_t /*at*/, const AnyPairs& /*pairs*/) {}
     HWY_INLINE void end_part() {}
 };
 
 class Energies {
 public:
     HWY_INLINE Energies() {
-        van_der_waals_ = electrostatic_ = hn::Zero(doubles);
-        part_van_der_waals_ = part_electrostatic_ = hn::Zero(floats);
+        van_der_waals_ = electrostatic_ = solvation_ = hn::Zero(doubles);
+        part_van_der_waals_ = part_electrostatic_ = part_solvation_ = hn::Zero(floats);
     }
 
     HWY_INLINE void begin_point(std::size_t /*i*/) {}
@@ -147,20 +158,28 @@ public:
         part_electrostatic_ = hn::Add(part_electrostatic_, pairs.coulomb);
     }
 
+    HWY_INLINE void add(std::size_t /*sixteen*/, std::size_t /*at*/, const SmoothPairs& pairs) {
+        part_van_der_waals_ = hn::Add(part_van_der_waals_, pairs.van_der_waals);
+        part_electrostatic_ = hn::Add(part_electrostatic_, pairs.electrostatic);
+        part_solvation_ = hn::Add(part_solvation_, pairs.solvation);
+    }
+
     HWY_INLINE void end_part() {
         van_der_waals_ = hn::Add(van_der_waals_, both_halves(part_van_der_waals_));
         electrostatic_ = hn::Add(electrostatic_, both_halves(part_electrostatic_));
-        part_van_der_waals_ = part_electrostatic_ = hn::Zero(floats);
+        solvation_ = hn::Add(solvation_, both_halves(part_solvation_));
+        part_van_der_waals_ = part_electrostatic_ = part_solvation_ = hn::Zero(floats);
     }
 
     void write(EnergyJobSum& sum) const {
         sum.van_der_waals = sum_of(van_der_waals_) / 12;
         sum.electrostatic = sum_of(electrostatic_);
+        sum.solvation = sum_of(solvation_);
     }
 
 private:
-    V part_van_der_waals_, part_electrostatic_;
-    W van_der_waals_, electrostatic_;  // twelve times the former
+    V part_van_der_waals_, part_electrostatic_, part_solvation_;
+    W van_der_waals_, electrostatic_, solvation_;  // twelve times the first
 };
 
 // What points that follow add, of one point of the group with the others. With D how far the one
@@ -178,7 +197,8 @@ public:
         for (V& x : part_) x = hn::Zero(floats);
     }
 
-    HWY_INLINE void add(std::size_t sixteen, std::size_t at, const Pairs& pairs) {
+    template <class AnyPairs>
+    HWY_INLINE void add(std::size_t sixteen, std::size_t at, const AnyPairs& pairs) {
         const std::array<FrozenPoints::Column, 9>& others = points_.sixteens[sixteen];
         std::array<V, 9> D;
         for (std::size_t k = 0; k < 9; ++k)
@@ -279,8 +299,9 @@ HWY_INLINE void add_pairs(const Point& point, const FrozenPoints& others, std::s
         sum.kyy = hn::MulAdd(cy, dy[k], sum.kyy);
         sum.kyz = hn::MulAdd(cy, dz[k], sum.kyz);
         sum.kzz = hn::MulAdd(cz, dz[k], sum.kzz);
-        besides.add(sixteen, at + k * lane_count,
-                    {{dx[k], dy[k], dz[k]}, gradient[k], curvature[k], s6[k], well[k], coulomb[k]});
+        besides.add(
+            sixteen, at + k * lane_count,
+            Pairs{{dx[k], dy[k], dz[k]}, gradient[k], curvature[k], s6[k], well[k], coulomb[k]});
     }
 }
 
@@ -344,9 +365,175 @@ HWY_INLINE FrozenJobSum sum_pairs(const FrozenField& field, std::span<const Froz
     return result;
 }
 
+// A point of the group among those with smooth ends.
+struct SmoothPoint {
+    Point place;
+    V volume, strength, scale, offset;
+};
+
+template <class Besides>
+HWY_INLINE void add_smooth_pairs(const SmoothLaw& law, const SmoothPoint& own,
+                                 const FrozenPoints& others, const FrozenSolvation* solvation,
+                                 std::size_t at, V epsilon12, V rmin, Nearest& nearest,
+                                 Partial& sum, std::size_t sixteen, Besides& besides) {
+    const Point& point = own.place;
+    const auto load = [&](const FrozenPoints::Column& column)
+                          HWY_ATTR { return hn::Load(floats, column.data() + at); };
+    const auto difference = [&](V own_high, V own_low, std::size_t axis) HWY_ATTR {
+        return hn::Add(hn::Sub(own_high, load(others.high[axis])),
+                       hn::Sub(own_low, load(others.low[axis])));
+    };
+    const V dx = difference(point.high_x, point.low_x, 0);
+    const V dy = difference(point.high_y, point.low_y, 1);
+    const V dz = difference(point.high_z, point.low_z, 2);
+    const V r2 = hn::MulAdd(dz, dz, hn::MulAdd(dy, dy, hn::Mul(dx, dx)));
+    const V inverse_r = inverse_root(r2), inverse_r2 = hn::Mul(inverse_r, inverse_r);
+    nearest.r2 = hn::Min(nearest.r2, r2);
+    nearest.clearance = hn::Min(nearest.clearance, hn::MulSub(r2, inverse_r, rmin));
+    SmoothTerms terms =
+        law.find({r2, hn::Mul(point.charge, load(others.charge)), epsilon12, rmin}, inverse_r2);
+    if (solvation != nullptr) {
+        const SmoothTerms water =
+            law.find_solvation(r2, inverse_r,
+                               {hn::Mul(own.strength, load(solvation->volume)),
+                                hn::Mul(own.volume, load(solvation->strength)), own.scale,
+                                own.offset, load(solvation->scale), load(solvation->offset)});
+        terms.first = hn::Add(terms.first, water.first);
+        terms.second = hn::Add(terms.second, water.second);
+        terms.solvation = water.solvation;
+    }
+    const V gradient = hn::Neg(terms.first), curvature = hn::Mul(terms.second, all(1.0 / 3));
+    sum.fx = hn::MulAdd(gradient, dx, sum.fx);
+    sum.fy = hn::MulAdd(gradient, dy, sum.fy);
+    sum.fz = hn::MulAdd(gradient, dz, sum.fz);
+    sum.gradients = hn::Add(sum.gradients, gradient);
+    const V cx = hn::Mul(curvature, dx), cy = hn::Mul(curvature, dy), cz = hn::Mul(curvature, dz);
+    sum.kxx = hn::MulAdd(cx, dx, sum.kxx);
+    sum.kxy = hn::MulAdd(cx, dy, sum.kxy);
+    sum.kxz = hn::MulAdd(cx, dz, sum.kxz);
+    sum.kyy = hn::MulAdd(cy, dy, sum.kyy);
+    sum.kyz = hn::MulAdd(cy, dz, sum.kyz);
+    sum.kzz = hn::MulAdd(cz, dz, sum.kzz);
+    besides.add(sixteen, at,
+                SmoothPairs{{dx, dy, dz},
+                            gradient,
+                            curvature,
+                            terms.van_der_waals,
+                            terms.electrostatic,
+                            terms.solvation});
+}
+
+// Which of sixteen boxes are nearer to a place than the root of `reach2`: a bit for each.
+HWY_INLINE std::uint32_t find_near_boxes(const FrozenBoxes& boxes, const Vec3& place, V reach2) {
+    std::uint32_t near = 0;
+    for (std::size_t at = 0; at < 16; at += lane_count) {
+        V distance2 = hn::Zero(floats);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const V from = hn::AbsDiff(all(place[static_cast<Eigen::Index>(axis)]),
+                                       hn::Load(floats, boxes.centre[axis].data() + at));
+            const V beyond = hn::Max(hn::Sub(from, hn::Load(floats, boxes.half[axis].data() + at)),
+                                     hn::Zero(floats));
+            distance2 = hn::MulAdd(beyond, beyond, distance2);
+        }
+        std::uint8_t bits[8] = {};
+        hn::StoreMaskBits(floats, hn::Lt(distance2, reach2), bits);
+        near |= (bits[0] | static_cast<std::uint32_t>(bits[1]) << 8) << at;
+    }
+    return near;
+}
+
+PairScheme scheme_of(const SmoothEnds& ends) {
+    PairScheme scheme;
+    scheme.switch_from = ends.switch_from;
+    scheme.cutoff = ends.cutoff;
+    if (ends.solvation != SolvationEnd::None) {
+        scheme.solvation_begin = smooth_solvation_begin;
+        scheme.solvation_end = smooth_solvation_end;
+    }
+    return scheme;
+}
+
+// As sum_pairs, of the sixteens that have a point within reach.
+template <class Besides>
+HWY_INLINE FrozenJobSum sum_smooth_pairs(const FrozenField& field,
+                                         std::span<const FrozenPoints> points,
+                                         std::span<const FrozenBoxes> boxes,
+                                         std::span<const Vec3> group, const RigidMotion& motion,
+                                         Besides& besides) {
+    const SmoothLaw law(scheme_of(*field.smooth));
+    const double reach = field.smooth->reach();
+    const bool is_solvated = field.smooth->solvation != SolvationEnd::None;
+    // Boxes are rounded.
+    const V reach2 = all((reach + 1e-2) * (reach + 1e-2));
+    Total total;
+    Nearest nearest;
+    double bound = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < group.size(); ++i) {
+        const FrozenField::GroupPoint& own = field.group[i];
+        const Vec3 place = motion * group[i];
+        const Vec3 high(rounded_to_grid(place.x()), rounded_to_grid(place.y()),
+                        rounded_to_grid(place.z()));
+        const Vec3 low = place - high;
+        const SmoothPoint point{
+            {all(high.x()), all(high.y()), all(high.z()), all(low.x()), all(low.y()), all(low.z()),
+             all(own.charge), all(own.epsilon12), all(own.half_rmin)},
+            all(own.volume),
+            all(own.strength),
+            all(own.scale),
+            all(own.offset)};
+        const bool has_own = is_solvated && (own.volume != 0 || own.strength != 0);
+        const FrozenNumbers* const numbers =
+            own.row < 0 ? nullptr
+                        : field.numbers.data() + static_cast<std::size_t>(own.row) * points.size();
+        besides.begin_point(i);
+        Partial part;
+        std::size_t in_part = 0, found = 0;
+        for (std::size_t b = 0; b < boxes.size(); ++b) {
+            std::uint32_t near = find_near_boxes(boxes[b], place, reach2);
+            for (; near != 0; near &= near - 1) {
+                const std::size_t p = 16 * b + static_cast<std::size_t>(std::countr_zero(near));
+                ++found;
+                const FrozenPoints& others = points[p];
+                const FrozenSolvation* const solvation =
+                    has_own && field.solvation[p].counts ? &field.solvation[p] : nullptr;
+                for (std::size_t at = 0; at < 16; at += lane_count) {
+                    V epsilon12, rmin;
+                    if (numbers) {
+                        epsilon12 = hn::Load(floats, numbers[p].epsilon12.data() + at);
+                        rmin = hn::Load(floats, numbers[p].rmin.data() + at);
+                    } else {
+                        epsilon12 = hn::Mul(point.place.epsilon12,
+                                            hn::Load(floats, others.sqrt_epsilon.data() + at));
+                        rmin = hn::Add(point.place.half_rmin,
+                                       hn::Load(floats, others.half_rmin.data() + at));
+                    }
+                    add_smooth_pairs(law, point, others, solvation, at, epsilon12, rmin, nearest,
+                                     part, p, besides);
+                }
+                if (++in_part < most_sixteens) continue;
+                total.add(part, place);
+                besides.end_part();
+                part = {};
+                in_part = 0;
+            }
+        }
+        total.add(part, place);
+        besides.end_part();
+        total.end_point();
+        if (found < points.size())
+            bound = std::min(bound, reach - own.half_rmin - field.largest_half_rmin);
+    }
+    FrozenJobSum result{total.sum(), hn::GetLane(hn::MinOfLanes(floats, nearest.r2))};
+    result.sum.clearance = std::min(
+        bound, static_cast<double>(hn::GetLane(hn::MinOfLanes(floats, nearest.clearance))));
+    return result;
+}
+
 FrozenJobSum sum_field(const FrozenField& field, std::span<const Vec3> group,
                        const RigidMotion& motion) {
     NothingBesides nothing;
+    if (field.smooth)
+        return sum_smooth_pairs(field, field.points, field.boxes, group, motion, nothing);
     return sum_pairs(field, field.points, group, motion, nothing);
 }
 
@@ -354,7 +541,9 @@ EnergyJobSum sum_with_energies(const FrozenField& field, std::span<const Vec3> g
                                const RigidMotion& motion) {
     Energies energies;
     EnergyJobSum sum;
-    sum.of_pairs = sum_pairs(field, field.points, group, motion, energies);
+    sum.of_pairs = field.smooth
+                       ? sum_smooth_pairs(field, field.points, field.boxes, group, motion, energies)
+                       : sum_pairs(field, field.points, group, motion, energies);
     energies.write(sum);
     return sum;
 }
@@ -364,7 +553,9 @@ FollowingJobSum sum_following(const FrozenField& field, const FollowingPoints& p
                               const FollowingMemory& memory) {
     Following following(points);
     FollowingJobSum sum;
-    sum.of_pairs = sum_pairs(field, memory.points, memory.group, {}, following);
+    sum.of_pairs = field.smooth ? sum_smooth_pairs(field, memory.points, memory.boxes, memory.group,
+                                                   {}, following)
+                                : sum_pairs(field, memory.points, memory.group, {}, following);
     following.write(sum);
     return sum;
 }
@@ -383,8 +574,90 @@ HWY_EXPORT(sum_following);
 
 FrozenField::Points copy_points(const FieldPoints& points) {
     const auto copy = [](const auto& span) { return std::vector(span.begin(), span.end()); };
-    return {copy(points.positions), copy(points.charge), copy(points.sqrt_epsilon),
-            copy(points.half_rmin), copy(points.type)};
+    return {copy(points.positions),
+            copy(points.charge),
+            copy(points.sqrt_epsilon),
+            copy(points.half_rmin),
+            copy(points.type),
+            copy(points.solvation.volume),
+            copy(points.solvation.strength),
+            copy(points.solvation.inverse_lambda),
+            copy(points.solvation.radius)};
+}
+
+PairRule rule_of(const FrozenField& field) noexcept {
+    return {field.coulomb_constant, field.replaced, field.smooth};
+}
+
+// By place: volume, strength, scale and offset; zero without solvation. What has no strength has no
+// shell either, or far pairs would leave the range of power_of_minus_square.
+std::array<float, 4> solvation_numbers(const FrozenField::Points& points, std::size_t i) noexcept {
+    if (points.volume.empty()) return {};
+    if (points.strength[i] == 0) return {static_cast<float>(points.volume[i]), 0, 0, 0};
+    const double scale = std::sqrt(std::numbers::log2e) * points.inverse_lambda[i];
+    return {static_cast<float>(points.volume[i]), static_cast<float>(points.strength[i]),
+            static_cast<float>(scale), static_cast<float>(scale * points.radius[i])};
+}
+
+// Of points that are at `positions`, from the origin.
+void update_boxes(std::span<const Vec3> positions, const Vec3& origin,
+                  std::vector<FrozenBoxes>& boxes) noexcept {
+    for (std::size_t sixteen = 0; sixteen < 16 * boxes.size(); ++sixteen) {
+        FrozenBoxes& of = boxes[sixteen / 16];
+        const std::size_t k = sixteen % 16, first = 16 * sixteen;
+        if (first >= positions.size()) {
+            for (auto& centre : of.centre) centre[k] = 4e4F;
+            continue;
+        }
+        Vec3 low = positions[first], high = low;
+        for (std::size_t j = first; j < std::min(first + 16, positions.size()); ++j) {
+            low = low.cwiseMin(positions[j]);
+            high = high.cwiseMax(positions[j]);
+        }
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const auto a = static_cast<Eigen::Index>(axis);
+            of.centre[axis][k] = static_cast<float>(0.5 * (low[a] + high[a]) - origin[a]);
+            of.half[axis][k] = static_cast<float>(0.5 * (high[a] - low[a]));
+        }
+    }
+}
+
+void fill_smooth(FrozenField& field) {
+    const FrozenField::Points& all = field.environment;
+    field.solvation.assign(field.points.size(), {});
+    for (std::size_t j = 0; j < all.positions.size(); ++j) {
+        FrozenSolvation& solvation = field.solvation[j / 16];
+        const std::size_t k = j % 16;
+        const auto [volume, strength, scale, offset] = solvation_numbers(all, j);
+        solvation.volume[k] = volume;
+        solvation.strength[k] = strength;
+        solvation.scale[k] = scale;
+        solvation.offset[k] = offset;
+        solvation.counts = solvation.counts || volume != 0 || strength != 0;
+    }
+    for (const double half_rmin : all.half_rmin)
+        field.largest_half_rmin = std::max(field.largest_half_rmin, half_rmin);
+    field.boxes.assign((field.points.size() + 15) / 16, {});
+    update_boxes(all.positions, field.origin, field.boxes);
+}
+
+// Halves a range of points across its longest extent, into whole sixteens, again and again.
+void halve(std::span<const Vec3> positions, std::span<std::uint32_t> range) {
+    if (range.size() <= 16) return;
+    Vec3 low = positions[range[0]], high = low;
+    for (const std::uint32_t i : range) {
+        low = low.cwiseMin(positions[i]);
+        high = high.cwiseMax(positions[i]);
+    }
+    Eigen::Index axis = 0;
+    (high - low).maxCoeff(&axis);
+    const std::size_t sixteens = (range.size() + 15) / 16, first = 16 * ((sixteens + 1) / 2);
+    std::nth_element(range.begin(), range.begin() + static_cast<std::ptrdiff_t>(first), range.end(),
+                     [&](std::uint32_t a, std::uint32_t b) {
+                         return std::pair(positions[a][axis], a) < std::pair(positions[b][axis], b);
+                     });
+    halve(positions, range.first(first));
+    halve(positions, range.subspan(first));
 }
 
 Vec3 middle_of(std::span<const Vec3> positions) noexcept {
@@ -470,9 +743,11 @@ void fill_group(FrozenField& field) {
             ++same;
         }
         const std::int32_t row = same < i ? field.group[same].row : add_row(field, i);
+        const auto [volume, strength, scale, offset] = solvation_numbers(own, i);
         field.group.push_back({static_cast<float>(field.coulomb_constant * own.charge[i]),
                                static_cast<float>(12 * own.sqrt_epsilon[i]),
-                               static_cast<float>(own.half_rmin[i]), row});
+                               static_cast<float>(own.half_rmin[i]), row, volume, strength, scale,
+                               offset});
     }
 }
 
@@ -489,8 +764,13 @@ FieldPoints view(const FrozenField::Points& points, std::span<const Vec3> positi
     const auto part = [&](const auto& column) {
         return std::span(column).subspan(column.empty() ? 0 : first, column.empty() ? 0 : count);
     };
-    return {positions, part(points.charge), part(points.sqrt_epsilon), part(points.half_rmin),
-            part(points.type)};
+    return {positions,
+            part(points.charge),
+            part(points.sqrt_epsilon),
+            part(points.half_rmin),
+            part(points.type),
+            {part(points.volume), part(points.strength), part(points.inverse_lambda),
+             part(points.radius)}};
 }
 
 double find_rmin(const FrozenField& field, std::size_t i, std::size_t j) noexcept {
@@ -518,7 +798,7 @@ FrozenSum evaluate_in_double(const FrozenField& field, std::span<const Vec3> gro
             evaluate_pair_field(view(field.group_numbers, std::span(&place, 1), i, 1),
                                 view(field.environment, field.environment.positions, 0,
                                      field.environment.positions.size()),
-                                {field.coulomb_constant, field.replaced});
+                                rule_of(field));
         sum.force += one.force;
         sum.torque += one.torque;
         sum.stiffness += one.stiffness;
@@ -542,7 +822,7 @@ FollowingSum evaluate_following_in_double(const FrozenField& field,
             const FieldSum pair = evaluate_pair_field(
                 view(field.group_numbers, std::span(&place, 1), i, 1),
                 view(field.environment, std::span(&memory.environment[j], 1), j, 1),
-                {field.coulomb_constant, field.replaced});
+                rule_of(field));
             const Mat3 D = following.group[i] - following.environment[j];
             result.along += D.transpose() * pair.force;
             result.slope += D.transpose() * pair.stiffness * D;
@@ -567,6 +847,7 @@ void move_points(const FrozenField& field, std::span<const Vec3> group,
         memory.environment[j] = field.environment.positions[j] + following.environment[j] * by;
         set_place(memory.environment[j] - field.origin, j % 16, memory.points[j / 16]);
     }
+    if (field.smooth) update_boxes(memory.environment, field.origin, memory.boxes);
 }
 
 }  // namespace
@@ -580,9 +861,26 @@ FrozenField build_frozen_field(const FieldPoints& group, const FieldPoints& envi
     field.group_numbers.positions.clear();
     field.replaced.assign(rule.replaced.begin(), rule.replaced.end());
     field.origin = middle_of(environment.positions);
+    field.smooth = rule.smooth;
     fill_points(field);
     fill_group(field);
+    if (field.smooth) fill_smooth(field);
     return field;
+}
+
+std::vector<std::uint32_t> order_for_sixteens(std::span<const Vec3> positions,
+                                              std::span<const std::uint8_t> has_solvation) {
+    PALPA_ASSERT(has_solvation.empty() || has_solvation.size() == positions.size());
+    std::vector<std::uint32_t> order(positions.size());
+    std::iota(order.begin(), order.end(), 0U);
+    const auto middle = has_solvation.empty()
+                            ? order.end()
+                            : std::ranges::stable_partition(order, [&](std::uint32_t i) {
+                                  return has_solvation[i] != 0;
+                              }).begin();
+    halve(positions, {order.begin(), middle});
+    halve(positions, {middle, order.end()});
+    return order;
 }
 
 FrozenSum evaluate_frozen_field(const FrozenField& field, std::span<const Vec3> group,
@@ -611,14 +909,18 @@ FieldSum evaluate_field_and_energies(const FrozenField& field,
         constexpr double nearest = nearest_single_precision;
         if (result.of_pairs.nearest2 > nearest * nearest) {
             const FrozenSum& sum = result.of_pairs.sum;
-            return {result.van_der_waals, result.electrostatic, sum.force,
-                    sum.torque + field.origin.cross(sum.force), sum.stiffness};
+            return {result.van_der_waals,
+                    result.electrostatic,
+                    result.solvation,
+                    sum.force,
+                    sum.torque + field.origin.cross(sum.force),
+                    sum.stiffness};
         }
     }
     return evaluate_pair_field(
         view(field.group_numbers, group, 0, group.size()),
         view(field.environment, field.environment.positions, 0, field.environment.positions.size()),
-        {field.coulomb_constant, field.replaced});
+        rule_of(field));
 }
 
 FollowingPoints build_following_points(std::vector<Mat3> group, std::vector<Mat3> environment) {
@@ -634,7 +936,8 @@ FollowingPoints build_following_points(std::vector<Mat3> group, std::vector<Mat3
 }
 
 FollowingMemory build_following_memory(const FrozenField& field) {
-    return {std::vector<Vec3>(field.group.size()), field.environment.positions, field.points};
+    return {std::vector<Vec3>(field.group.size()), field.environment.positions, field.points,
+            field.boxes};
 }
 
 FollowingSum evaluate_following_field(const FrozenField& field, std::span<const Vec3> group,

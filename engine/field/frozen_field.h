@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -32,11 +33,27 @@ struct alignas(64) FrozenNumbers {
     FrozenPoints::Column rmin;       // Å
 };
 
+// The numbers of solvation of sixteen points of the environment, as in field/solvation_kernel.h.
+struct alignas(64) FrozenSolvation {
+    FrozenPoints::Column volume, strength, scale, offset;
+    bool counts = false;  // for any of them
+};
+
+// Where sixteen points are: the box around them, Å from the origin, by axis; of sixteen sixteens.
+struct alignas(64) FrozenBoxes {
+    std::array<FrozenPoints::Column, 3> centre, half;
+};
+
 // Of an environment and a group but for the group's place; constant after building.
 struct FrozenField {
-    double coulomb_constant = 0;  // kcal Å/mol/e^2
+    double coulomb_constant = 0;  // kcal Å/mol/e^2; over eps with smooth ends
+    std::optional<SmoothEnds> smooth;
     Vec3 origin = Vec3::Zero();
     std::vector<FrozenPoints> points;
+    // With smooth ends alone, of each of `points`.
+    std::vector<FrozenSolvation> solvation;
+    std::vector<FrozenBoxes> boxes;
+    double largest_half_rmin = 0;  // Å, of the environment
 
     // Types of the group that have a replaced pair here, each with a row of `points.size()`.
     std::vector<FrozenNumbers> numbers;
@@ -45,7 +62,8 @@ struct FrozenField {
         float charge;     // times the Coulomb constant
         float epsilon12;  // 12 sqrt(epsilon)
         float half_rmin;
-        std::int32_t row;  // of `numbers`, -1 for the combination rules
+        std::int32_t row;                       // of `numbers`, -1 for the combination rules
+        float volume, strength, scale, offset;  // as in `FrozenSolvation`
     };
     std::vector<GroupPoint> group;
 
@@ -54,14 +72,21 @@ struct FrozenField {
         std::vector<Vec3> positions;
         std::vector<double> charge, sqrt_epsilon, half_rmin;
         std::vector<std::uint32_t> type;
+        std::vector<double> volume, strength, inverse_lambda, radius;
     };
     Points environment, group_numbers;  // the latter without positions
     std::vector<ReplacedPair> replaced;
 };
 
-// The positions of the group do not matter.
+// The positions of the group do not matter. With smooth ends only sixteens of the environment
+// within reach are looked at, so one in the order of `order_for_sixteens` takes the least time.
 FrozenField build_frozen_field(const FieldPoints& group, const FieldPoints& environment,
                                const PairRule& rule);
+
+// An order of points in which those of each sixteen are near each other, first those of which
+// `has_solvation` (empty, or one entry per point) says so: the numbers of the points.
+std::vector<std::uint32_t> order_for_sixteens(std::span<const Vec3> positions,
+                                              std::span<const std::uint8_t> has_solvation = {});
 
 // What the environment does to the group as a whole, as in FieldSum, and what limits how far the
 // group may go.
@@ -69,7 +94,8 @@ struct FrozenSum {
     Vec3 force = Vec3::Zero();      // kcal/mol/Å
     Vec3 torque = Vec3::Zero();     // about the origin, kcal/mol
     Mat3 stiffness = Mat3::Zero();  // kcal/mol/Å^2
-    // The least of r - Rmin of all pairs, Å, below 0 where they repel; infinite without pairs.
+    // The least of r - Rmin of all pairs, Å, below 0 where they repel; infinite without pairs. With
+    // smooth ends a bound below it where it is more than their reach less the largest Rmin.
     double clearance = std::numeric_limits<double>::infinity();
     double largest_force = 0;  // on any point of the group, kcal/mol/Å
 
@@ -107,6 +133,7 @@ FollowingPoints build_following_points(std::vector<Mat3> group, std::vector<Mat3
 struct FollowingMemory {
     std::vector<Vec3> group, environment;
     std::vector<FrozenPoints> points;
+    std::vector<FrozenBoxes> boxes;
 };
 
 FollowingMemory build_following_memory(const FrozenField& field);

@@ -14,7 +14,7 @@ struct FrozenJobSum {
 
 struct EnergyJobSum {
     FrozenJobSum of_pairs;
-    double van_der_waals = 0, electrostatic = 0;  // kcal/mol
+    double van_der_waals = 0, electrostatic = 0, solvation = 0;  // kcal/mol
 };
 
 struct FollowingJobSum {

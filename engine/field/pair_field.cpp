@@ -1,8 +1,10 @@
 #include "field/pair_field.h"
 
 #include "core/assertion.h"
+#include "field/solvation_law.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 namespace palpa {
@@ -83,10 +85,132 @@ void replace_pairs(std::span<const ReplacedPair> replaced, std::uint32_t type,
     }
 }
 
+// The last one counts.
+const ReplacedPair* find_pair(std::span<const ReplacedPair> replaced, std::uint32_t a,
+                              std::uint32_t b) noexcept {
+    const auto found =
+        std::find_if(replaced.rbegin(), replaced.rend(), [&](const ReplacedPair& pair) {
+            return (pair.a == a && pair.b == b) || (pair.a == b && pair.b == a);
+        });
+    return found == replaced.rend() ? nullptr : &*found;
+}
+
 bool is_replaced(std::span<const ReplacedPair> replaced, std::uint32_t type) noexcept {
     return std::any_of(replaced.begin(), replaced.end(), [type](const ReplacedPair& pair) {
         return pair.a == type || pair.b == type;
     });
+}
+
+// A function of u = r^2/2, and its derivatives by it.
+struct Along {
+    double value = 0, first = 0, second = 0;
+};
+
+Along operator*(const Along& a, const Along& b) noexcept {
+    return {a.value * b.value, a.first * b.value + a.value * b.first,
+            a.second * b.value + 2 * a.first * b.first + a.value * b.second};
+}
+
+// What smooth ends make of a pair: three energies, and derivatives of their sum by u.
+struct SmoothPair {
+    double van_der_waals = 0, electrostatic = 0, solvation = 0, first = 0, second = 0;
+};
+
+class SmoothPairLaw {
+public:
+    explicit SmoothPairLaw(const SmoothEnds& ends) noexcept
+        : c2_(ends.cutoff * ends.cutoff),
+          m2_(ends.switch_from * ends.switch_from),
+          solvation_(ends.solvation) {}
+
+    SmoothPair evaluate(double distance2, double charges, double epsilon, double rmin,
+                        const SolvationAtom& a, const SolvationAtom& b) const noexcept {
+        SmoothPair pair;
+        if (distance2 < c2_) {
+            const double s = std::max(distance2, core2), below = 0.5 * (distance2 - s);
+            const Along coulomb = electrostatic(s, charges);
+            const Along lj = van_der_waals(s, epsilon, rmin);
+            pair = {lj.value + lj.first * below, coulomb.value + coulomb.first * below, 0,
+                    lj.first + coulomb.first, below < 0 ? 0 : lj.second + coulomb.second};
+        }
+        const SolvationPair water = solvation_.evaluate(distance2, a, b);
+        pair.solvation = water.energy_a + water.energy_b;
+        pair.first += water.first;
+        pair.second += water.second;
+        return pair;
+    }
+
+private:
+    Along electrostatic(double s, double charges) const noexcept {
+        const double q = s / c2_, left = 1 - q;
+        return {charges * left * left * left / s,
+                -2 * charges * left * left * (1 + 2 * q) / (s * s),
+                8 * charges * (1 - q * q * q) / (s * s * s)};
+    }
+
+    Along van_der_waals(double s, double epsilon, double rmin) const noexcept {
+        const double s2 = rmin * rmin / s, s6 = s2 * s2 * s2, well = epsilon * s6;
+        const Along whole{well * (s6 - 2), -12 * well * (s6 - 1) / s,
+                          well * (168 * s6 - 96) / (s * s)};
+        if (s <= m2_) return whole;
+        const double slope = 2 / (c2_ - m2_), y = (s - m2_) / (c2_ - m2_), left = 1 - y;
+        return whole * Along{1 - y * y * y * (10 - y * (15 - 6 * y)),
+                             -30 * y * y * left * left * slope,
+                             -60 * y * left * (1 - 2 * y) * slope * slope};
+    }
+
+    double c2_, m2_;  // Å^2
+    SolvationLaw<> solvation_;
+};
+
+SolvationAtom solvation_of(const FieldPoints& points, std::size_t i) noexcept {
+    const SolvationParameters& numbers = points.solvation;
+    if (numbers.volume.empty()) return {};
+    return {numbers.volume[i], numbers.strength[i], numbers.inverse_lambda[i], numbers.radius[i]};
+}
+
+// Calls visit(i, j, force on i) for every pair within reach.
+template <class Visit>
+FieldSum sum_smooth_pairs(const FieldPoints& group, const FieldPoints& environment,
+                          const PairRule& rule, const Visit& visit) noexcept {
+    const SmoothPairLaw law(*rule.smooth);
+    const double reach = rule.smooth->reach();
+    FieldSum sum;
+    for (std::size_t i = 0; i < group.positions.size(); ++i) {
+        const Vec3 place = group.positions[i];
+        const SolvationAtom own = solvation_of(group, i);
+        const bool replaced = !rule.replaced.empty() && is_replaced(rule.replaced, group.type[i]);
+        Vec3 force = Vec3::Zero();
+        for (std::size_t j = 0; j < environment.positions.size(); ++j) {
+            const Vec3 d = place - environment.positions[j];
+            const double distance2 = d.squaredNorm();
+            if (distance2 >= reach * reach) continue;
+            double epsilon = group.sqrt_epsilon[i] * environment.sqrt_epsilon[j];
+            double rmin = group.half_rmin[i] + environment.half_rmin[j];
+            if (replaced) {
+                const ReplacedPair* const pair =
+                    find_pair(rule.replaced, group.type[i], environment.type[j]);
+                if (pair != nullptr) {
+                    epsilon = pair->epsilon;
+                    rmin = pair->rmin;
+                }
+            }
+            const SmoothPair pair = law.evaluate(
+                distance2, rule.coulomb_constant * group.charge[i] * environment.charge[j], epsilon,
+                rmin, own, solvation_of(environment, j));
+            sum.van_der_waals += pair.van_der_waals;
+            sum.electrostatic += pair.electrostatic;
+            sum.solvation += pair.solvation;
+            const Vec3 pull = -pair.first * d;
+            force += pull;
+            sum.stiffness += pair.second * d * d.transpose();
+            sum.stiffness.diagonal().array() += pair.first;
+            visit(i, j, pull);
+        }
+        sum.force += force;
+        sum.torque += place.cross(force);
+    }
+    return sum;
 }
 
 // Calls visit(i, j, force on i) for every pair.
@@ -159,8 +283,13 @@ FieldSum sum_pairs(const FieldPoints& group, const FieldPoints& environment, con
 
 }  // namespace
 
+double SmoothEnds::reach() const noexcept {
+    return std::max(cutoff, std::sqrt(SolvationLaw<>(solvation).reach2));
+}
+
 FieldSum evaluate_pair_field(const FieldPoints& group, const FieldPoints& environment,
                              const PairRule& rule) noexcept {
+    if (rule.smooth) return sum_smooth_pairs(group, environment, rule, [](auto&&...) {});
     return sum_pairs(group, environment, rule, [](auto&&...) {});
 }
 
@@ -169,6 +298,13 @@ FieldSum add_pair_forces(const FieldPoints& group, const FieldPoints& environmen
                          std::span<Vec3> environment_forces) noexcept {
     PALPA_ASSERT(group_forces.size() == group.positions.size());
     PALPA_ASSERT(environment_forces.size() == environment.positions.size());
+    if (rule.smooth) {
+        return sum_smooth_pairs(group, environment, rule,
+                                [&](std::size_t i, std::size_t j, const Vec3& force) {
+                                    group_forces[i] += force;
+                                    environment_forces[j] -= force;
+                                });
+    }
     return sum_pairs(group, environment, rule,
                      [&](std::size_t i, std::size_t j, std::size_t count, const Lanes& x,
                          const Lanes& y, const Lanes& z) {

@@ -30,16 +30,6 @@ struct PairScheme {
     double solvation_begin = 0, solvation_end = 0;
 };
 
-// One entry per atom; what one takes of another's water (EEF1) is
-//   strength volume' exp(-((r - radius)/lambda)^2)/r^2.
-// All empty where there is no solvation.
-struct SolvationParameters {
-    std::span<const double> volume;          // Å^3
-    std::span<const double> strength;        // kcal/mol/Å
-    std::span<const double> inverse_lambda;  // 1/Å
-    std::span<const double> radius;          // Å
-};
-
 // One entry per atom. Every pair follows CHARMM's combination rules; what does not is left out of
 // the list.
 struct PairParameters {

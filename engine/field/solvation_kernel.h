@@ -2,6 +2,7 @@
 // can. Its reference implementation, in double, is forces/solvation.h.
 #pragma once
 #include "field/pair_kernel.h"
+#include "field/solvation_parameters.h"
 
 #include <array>
 #include <span>

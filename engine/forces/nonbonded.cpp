@@ -204,6 +204,21 @@ NonbondedSettings without_solvation(NonbondedSettings settings) noexcept {
     return settings;
 }
 
+std::optional<PairRule> find_field_rule(const NonbondedSettings& settings,
+                                        std::span<const ReplacedPair> replaced) noexcept {
+    const PairRule rule{settings.coulomb_constant / settings.dielectric, replaced};
+    if (settings.electrostatics == ElectrostaticCutoff::None &&
+        settings.van_der_waals == VanDerWaalsCutoff::None &&
+        settings.solvation == SolvationEnd::None && !settings.distance_dielectric)
+        return rule;
+    if (settings.electrostatics != ElectrostaticCutoff::CubicShift ||
+        settings.van_der_waals != VanDerWaalsCutoff::SmoothSwitch || !settings.distance_dielectric)
+        return std::nullopt;
+    PairRule smooth = rule;
+    smooth.smooth = {settings.switch_from, settings.cutoff, settings.solvation};
+    return smooth;
+}
+
 std::optional<std::string_view> find_problem(const NonbondedSettings& settings) noexcept {
     if (!(settings.dielectric > 0)) return "the dielectric must be above 0";
     const bool switches = settings.electrostatics == ElectrostaticCutoff::Switch ||

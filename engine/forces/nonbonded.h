@@ -5,6 +5,7 @@
 #include "charmm/topology.h"
 #include "core/units.h"
 #include "field/cutoff.h"
+#include "field/pair_field.h"
 #include "forces/pair_list.h"
 #include "math/vec.h"
 
@@ -39,6 +40,12 @@ NonbondedSettings eef1_settings(SolvationEnd solvation = SolvationEnd::Smooth) n
 
 // The same but for solvation, which they have none of then.
 NonbondedSettings without_solvation(NonbondedSettings settings) noexcept;
+
+// The law of settings for sums between sets of points: with eef1_settings() its smooth ends,
+// without any end Coulomb's and Lennard-Jones's law. Nothing for others, which those sums do not
+// have.
+std::optional<PairRule> find_field_rule(const NonbondedSettings& settings,
+                                        std::span<const ReplacedPair> replaced = {}) noexcept;
 
 // What makes settings unusable, as a sentence for a message; none where they are sound.
 std::optional<std::string_view> find_problem(const NonbondedSettings& settings) noexcept;

@@ -93,6 +93,16 @@ inline bool has_atom(const AtomRange& range, std::size_t atom) noexcept {
 
 // All atoms of a world; every array up to `type` has one entry per atom. Written once on loading,
 // but for `positions`, which each simulation step updates.
+// One entry per atom; what one takes of another's water (EEF1, forces/solvation.h) is
+//   strength volume' exp(-((r - radius)/lambda)^2)/r^2.
+// All empty without implicit solvent.
+struct SolvationColumns {
+    std::vector<double> volume;          // Å^3
+    std::vector<double> strength;        // kcal/mol/Å
+    std::vector<double> inverse_lambda;  // 1/Å
+    std::vector<double> radius;          // Å
+};
+
 struct AtomTable {
     std::vector<AtomName> names;
     std::vector<Vec3> positions;       // Å
@@ -102,6 +112,7 @@ struct AtomTable {
     std::vector<double> sqrt_epsilon;  // (kcal/mol)^(1/2), root of the Lennard-Jones well depth
     std::vector<double> half_rmin;     // Å, half the distance of the well's minimum
     std::vector<std::uint32_t> type;   // index into `type_names`
+    SolvationColumns solvation;
 
     // Bonded pairs of atoms, by index.
     std::vector<std::array<std::uint32_t, 2>> bonds;

@@ -403,6 +403,8 @@ std::string format_summary(const SceneDescription& scene, const Summary& summary
         json["clearance_angstrom"] = summary.unbinding->clearance;
         json["closest_atoms_angstrom"] = summary.unbinding->closest;
         json["last_rmsd_angstrom"] = summary.unbinding->last_rmsd;
+        json["last_backbone_rmsd_angstrom"] = summary.unbinding->last_backbone;
+        json["last_pocket_rmsd_angstrom"] = summary.unbinding->last_pocket;
     }
     if (summary.relaxation) {
         const RelaxationSummary& r = *summary.relaxation;

@@ -24,14 +24,13 @@ Vec3 centre_of_held(const World& world) {
 
 }  // namespace
 
-UnbindingLog::UnbindingLog(const World& start) {
+UnbindingLog::UnbindingLog(const World& start)
+    : comparison_(start), start_(start.resource<AtomTable>().positions) {
     const AtomTable& atoms = start.resource<AtomTable>();
     const Entity hand = first_hand(start);
     const auto is_heavy = [&](std::size_t i) { return atoms.mass[i] >= heavier_than_hydrogen; };
     for (const std::uint32_t i : held_atoms(start, hand)) {
-        if (!is_heavy(i)) continue;
-        heavy_.push_back(i);
-        start_.push_back(atoms.positions[i]);
+        if (is_heavy(i)) heavy_.push_back(i);
     }
     const AtomRange grabbed = held_range(start, hand);
     for (std::size_t i = 0; i < atoms.size(); ++i) {
@@ -46,10 +45,9 @@ UnbindingLog::UnbindingLog(const World& start) {
 
 void UnbindingLog::add(const World& world) {
     const std::vector<Vec3>& positions = world.resource<AtomTable>().positions;
-    double nearest2 = std::numeric_limits<double>::infinity(), square = 0;
-    for (std::size_t i = 0; i < heavy_.size(); ++i) {
-        const Vec3& place = positions[heavy_[i]];
-        square += (place - start_[i]).squaredNorm();
+    double nearest2 = std::numeric_limits<double>::infinity();
+    for (const std::size_t own : heavy_) {
+        const Vec3& place = positions[own];
         for (const std::size_t other : other_heavy_) {
             nearest2 = std::min(nearest2, (positions[other] - place).squaredNorm());
         }
@@ -62,8 +60,16 @@ void UnbindingLog::add(const World& world) {
         unbinding_.farthest = distance;
         unbinding_.clearance = clearance;
     }
-    unbinding_.last_rmsd =
-        heavy_.empty() ? 0 : std::sqrt(square / static_cast<double>(heavy_.size()));
+    last_ = positions;
+}
+
+UnbindingPath UnbindingLog::unbinding() const {
+    UnbindingPath unbinding = unbinding_;
+    const PoseDistance distance = comparison_.between(last_, start_);
+    unbinding.last_rmsd = distance.held;
+    unbinding.last_backbone = distance.backbone;
+    unbinding.last_pocket = distance.pocket;
+    return unbinding;
 }
 
 }  // namespace palpa

@@ -94,7 +94,7 @@ struct Grip {
     bool is_new = true;  // its pose is not yet known: that of what it holds
 };
 
-// Atoms around what is held, by number, rising.
+// Atoms around what is held, by number; rising, but with smooth ends in an order of neighbours.
 struct NearAtoms {
     std::vector<std::uint32_t> atoms;  // empty: not chosen yet
     Vec3 place = Vec3::Zero();         // of the molecule when they were chosen

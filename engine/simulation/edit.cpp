@@ -9,7 +9,6 @@
 #include "simulation/mechanics.h"
 #include "simulation/molecules.h"
 #include "simulation/resources.h"
-#include "simulation/solvent.h"
 #include "simulation/sources.h"
 #include "simulation/systems/publish_contact.h"
 
@@ -309,7 +308,6 @@ void add_molecule(World& world, const AddEdit& edit) {
         check_room(atoms, range, edit.name);
         create_molecule(changed, {edit.name, range, reference}, mobility, std::move(source));
         set_interactions(changed);
-        check_solvent(changed);
         forget_bonded_terms(changed);
     });
 }

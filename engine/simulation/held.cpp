@@ -176,11 +176,17 @@ Vec3 centre_of_mass(const AtomTable& atoms, AtomRange range) noexcept {
 }
 
 FieldPoints points_of(const AtomTable& atoms, AtomRange range) noexcept {
-    return {std::span(atoms.positions).subspan(range.first, range.count),
-            std::span(atoms.charge).subspan(range.first, range.count),
-            std::span(atoms.sqrt_epsilon).subspan(range.first, range.count),
-            std::span(atoms.half_rmin).subspan(range.first, range.count),
-            std::span(atoms.type).subspan(range.first, range.count)};
+    const auto part = [&](const auto& column) {
+        return std::span(column).subspan(range.first, range.count);
+    };
+    FieldPoints points{part(atoms.positions), part(atoms.charge), part(atoms.sqrt_epsilon),
+                       part(atoms.half_rmin), part(atoms.type)};
+    const SolvationColumns& solvation = atoms.solvation;
+    if (!solvation.volume.empty()) {
+        points.solvation = {part(solvation.volume), part(solvation.strength),
+                            part(solvation.inverse_lambda), part(solvation.radius)};
+    }
+    return points;
 }
 
 GatheredPoints::GatheredPoints(const AtomTable& atoms, std::span<const std::uint32_t> numbers) {
@@ -190,7 +196,21 @@ GatheredPoints::GatheredPoints(const AtomTable& atoms, std::span<const std::uint
         sqrt_epsilon.push_back(atoms.sqrt_epsilon[i]);
         half_rmin.push_back(atoms.half_rmin[i]);
         type.push_back(atoms.type[i]);
+        if (atoms.solvation.volume.empty()) continue;
+        solvation.volume.push_back(atoms.solvation.volume[i]);
+        solvation.strength.push_back(atoms.solvation.strength[i]);
+        solvation.inverse_lambda.push_back(atoms.solvation.inverse_lambda[i]);
+        solvation.radius.push_back(atoms.solvation.radius[i]);
     }
+}
+
+FieldPoints GatheredPoints::view() const noexcept {
+    return {positions,
+            charge,
+            sqrt_epsilon,
+            half_rmin,
+            type,
+            {solvation.volume, solvation.strength, solvation.inverse_lambda, solvation.radius}};
 }
 
 FieldPoints held_points(const World& world, Entity hand) noexcept {
@@ -213,7 +233,7 @@ std::size_t count_environment(const World& world, Entity hand) noexcept {
 
 PairRule pair_rule(const World& world) noexcept {
     const Interactions& interactions = world.resource<Interactions>();
-    return {interactions.coulomb_constant, interactions.replaced_pairs};
+    return {interactions.coulomb_constant, interactions.replaced_pairs, interactions.smooth};
 }
 
 FieldSum field_on_held(const World& world, Entity hand) {

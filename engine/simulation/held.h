@@ -63,9 +63,10 @@ struct GatheredPoints {
     std::vector<Vec3> positions;
     std::vector<double> charge, sqrt_epsilon, half_rmin;
     std::vector<std::uint32_t> type;
+    SolvationColumns solvation;
 
     GatheredPoints(const AtomTable& atoms, std::span<const std::uint32_t> numbers);
-    FieldPoints view() const noexcept { return {positions, charge, sqrt_epsilon, half_rmin, type}; }
+    FieldPoints view() const noexcept;
 };
 
 // The molecule in the hand, and the ranges of all other atoms.

@@ -247,7 +247,6 @@ World read_world(const SceneDescription& scene, const StageFunction& on_stage) {
     }
     world.set_resource(SceneFile{scene, std::move(force_field), scene.coupling});
     set_interactions(world);
-    check_solvent(world);
     return world;
 }
 

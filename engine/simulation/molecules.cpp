@@ -2,6 +2,7 @@
 
 #include "charmm/assign.h"
 #include "simulation/resources.h"
+#include "simulation/solvent.h"
 
 #include <algorithm>
 #include <array>
@@ -74,10 +75,19 @@ AtomRange add_segment_atoms(const ForceField& force_field, const Source& source,
 
 void set_interactions(World& world) {
     const SceneFile& file = world.resource<SceneFile>();
-    world.set_resource(Interactions{
-        file.scene.force_field.coulomb_constant,
-        build_replaced_pairs(*file.force_field, world.resource<AtomTable>().type_names),
-        file.scene.statics.pairs});
+    const ForceFieldDescription& description = file.scene.force_field;
+    Interactions interactions{.coulomb_constant = description.coulomb_constant,
+                              .replaced_pairs = build_replaced_pairs(
+                                  *file.force_field, world.resource<AtomTable>().type_names),
+                              .smooth = {},
+                              .precision = file.scene.statics.pairs};
+    if (description.solvent != Solvent::None) {
+        const PairRule rule = find_field_rule(solvent_settings(description)).value();
+        interactions.coulomb_constant = rule.coulomb_constant;
+        interactions.smooth = rule.smooth;
+    }
+    world.set_resource(std::move(interactions));
+    set_solvation(world);
 }
 
 void set_shape(World& world, Entity entity) {

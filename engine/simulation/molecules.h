@@ -18,7 +18,8 @@ Entity create_molecule(World& world, Molecule molecule, Mobility mobility, Sourc
 // residues have them. Throws LoadError as charmm/assign.h says.
 AtomRange add_segment_atoms(const ForceField& force_field, const Source& source, AtomTable& atoms);
 
-// What atoms of the table do to each other, from the scene's force field.
+// What atoms of the table do to each other, from the scene's force field and solvent. Throws
+// LoadError as set_solvation (simulation/solvent.h) does.
 void set_interactions(World& world);
 
 // A molecule moves as one piece from now on, from where it is.

@@ -43,8 +43,9 @@ struct BondedTerms {
 
 // What atoms do to each other, beside what the table says of each.
 struct Interactions {
-    double coulomb_constant = 0;                    // kcal Å/mol/e^2
+    double coulomb_constant = 0;                    // kcal Å/mol/e^2; over eps with smooth ends
     std::vector<ReplacedPair> replaced_pairs;       // of types in the table
+    std::optional<SmoothEnds> smooth;               // with implicit solvent
     PairPrecision precision = PairPrecision::Fast;  // of steps: see fast_field_on_held
 };
 

@@ -3,6 +3,7 @@
 #include "charmm/assign_solvation.h"
 #include "charmm/ionic_groups.h"
 #include "core/load_error.h"
+#include "forces/solvation_law.h"
 #include "simulation/components.h"
 #include "simulation/resources.h"
 
@@ -80,16 +81,8 @@ std::vector<std::uint8_t> find_structural(const World& world) {
 }  // namespace
 
 NonbondedSettings solvent_settings(const ForceFieldDescription& force_field) {
-    NonbondedSettings settings;
+    NonbondedSettings settings = eef1_settings();
     settings.coulomb_constant = force_field.coulomb_constant;
-    settings.dielectric = 1.5;
-    settings.distance_dielectric = true;
-    settings.cutoff = 9;
-    settings.switch_from = 7;
-    // To be the ends of EEF1-SB's own once sums over pairs have them: (1 - r^2/c^2)^3 / r^2, and a
-    // switch of second order from 7 to 9 Å.
-    settings.electrostatics = ElectrostaticCutoff::Shift;
-    settings.van_der_waals = VanDerWaalsCutoff::ForceSwitch;
     return settings;
 }
 
@@ -98,12 +91,20 @@ ForceField with_solvent(const ForceFieldDescription& description, ForceField for
     return neutralise_ionic_groups(std::move(force_field));
 }
 
-void check_solvent(const World& world) {
-    const AtomTable& atoms = world.resource<AtomTable>();
+void set_solvation(World& world) {
+    AtomTable& atoms = world.resource<AtomTable>();
     const SceneDescription& scene = world.resource<SceneFile>().scene;
-    if (scene.force_field.solvent == Solvent::None) return refuse_neutral_groups(scene, atoms);
-    (void)find_solvation(world);
+    atoms.solvation = {};
+    const std::optional<Solvation> solvation = find_solvation(world);
+    if (!solvation) return refuse_neutral_groups(scene, atoms);
     refuse_charges(scene, atoms);
+    for (std::size_t i = 0; i < atoms.size(); ++i) {
+        const SolvationAtom atom = solvation_atom(*solvation, i);
+        atoms.solvation.volume.push_back(atom.volume);
+        atoms.solvation.strength.push_back(atom.strength);
+        atoms.solvation.inverse_lambda.push_back(atom.inverse_lambda);
+        atoms.solvation.radius.push_back(atom.radius);
+    }
 }
 
 std::optional<Solvation> find_solvation(const World& world) {

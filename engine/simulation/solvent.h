@@ -18,12 +18,12 @@ NonbondedSettings solvent_settings(const ForceFieldDescription& force_field);
 // (charmm/ionic_groups.h), or in vacuum as it is.
 ForceField with_solvent(const ForceFieldDescription& description, ForceField force_field);
 
-// Whether the atoms of the table are such as the scene's solvent needs them. Throws LoadError with
-// what to do where ionic groups are neutral in vacuum; or, with EEF1-SB, where groups, residues or
-// the whole are not, where a type has no numbers, and where structural waters are none.
-void check_solvent(const World& world);
+// Gives the atoms of the table the numbers of the scene's solvent. Throws LoadError with what to do
+// where ionic groups are neutral in vacuum; or, with EEF1-SB, where groups, residues or the whole
+// are not, where a type has no numbers, and where structural waters are none.
+void set_solvation(World& world);
 
-// Of all atoms of the table; nothing in vacuum. Throws LoadError as check_solvent does for types
+// Of all atoms of the table; nothing in vacuum. Throws LoadError as set_solvation does for types
 // without numbers.
 std::optional<Solvation> find_solvation(const World& world);
 

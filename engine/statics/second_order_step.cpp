@@ -392,6 +392,7 @@ private:
         const double stride =
             std::max(settings_.stride, way / static_cast<double>(settings_.most_strides));
         bool is_tried = false;  // one renewal a step where a state does not settle
+        int tries = 0;          // of new models, where hands are to go
         for (bool is_there = false; !is_there;) {
             if (is_old() && !(is_tried && !statics_.is_settled)) {
                 is_tried = true;
@@ -406,8 +407,9 @@ private:
             if (report_.lags) return;
             const bool is_new = is_at_point();
             if (try_stride(by)) continue;
-            // A state that a new model cannot hold relaxes on in the steps that follow.
-            is_there = is_there && is_new;
+            // A state that new models cannot hold relaxes on in the steps that follow.
+            constexpr int most_tries = 20;
+            is_there = is_there && is_new && ++tries > most_tries;
             report_.lags = !settings_.renews_at_once;
             if (!renew(settings_.renews_at_once)) return;
         }

@@ -29,7 +29,7 @@ def main():
     with tempfile.TemporaryDirectory() as prepared:
         subprocess.run([sys.argv[1], "prepare", folder / "both.crd", "--toppar",
                         folder / "aera_c36m.rtf", folder / "aera_c36m.prm", "--no-relax",
-                        "-o", prepared], check=True)
+                        "--solvent", "none", "-o", prepared], check=True)
         (folder / "both.psf").write_bytes((Path(prepared) / "system.psf").read_bytes())
 
 

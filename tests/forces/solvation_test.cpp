@@ -383,3 +383,49 @@ TEST_CASE("an atom without volume and energy takes nothing and loses nothing",
     // It has a volume.
     CHECK(carbonyl.at(3, eef1_settings()) != carbonyl.at(3, eef1_settings(SolvationEnd::None)));
 }
+
+TEST_CASE("fields between groups have the law of the force field", "[forces][solvation]") {
+    // Two groups whose inner pairs are excluded by bonds from one atom to its group.
+    SolvatedGas gas = build_solvated_gas(40, 6, 12);
+    std::vector<Bond> bonds;
+    for (std::uint32_t i = 1; i < 15; ++i) bonds.push_back({0, i, 0, 0});
+    for (std::uint32_t i = 16; i < 40; ++i) bonds.push_back({15, i, 0, 0});
+    gas.topology.exclusions = build_exclusions(bonds, 40);
+    const FastAtoms atoms = build_fast_atoms(gas.topology);
+    std::vector<double> volume, strength, inverse_lambda, radius;
+    for (std::size_t i = 0; i < 40; ++i) {
+        const SolvationAtom atom = solvation_atom(*gas.topology.solvation, i);
+        volume.push_back(atom.volume);
+        strength.push_back(atom.strength);
+        inverse_lambda.push_back(atom.inverse_lambda);
+        radius.push_back(atom.radius);
+    }
+    const auto points = [&](std::size_t first, std::size_t count) {
+        const auto part = [&](const auto& all) { return std::span(all).subspan(first, count); };
+        return FieldPoints{part(gas.positions),
+                           part(gas.topology.charge),
+                           part(atoms.sqrt_epsilon),
+                           part(atoms.half_rmin),
+                           {},
+                           {part(volume), part(strength), part(inverse_lambda), part(radius)}};
+    };
+    for (const SolvationEnd end : {SolvationEnd::Smooth, SolvationEnd::Sharp, SolvationEnd::None}) {
+        const NonbondedSettings settings = eef1_settings(end);
+        std::vector<Vec3> forces(40, Vec3::Zero()), expected(40, Vec3::Zero());
+        const NonbondedEnergy energy =
+            add_nonbonded_forces(gas.topology, settings, gas.positions, forces);
+        const auto rule = find_field_rule(settings);
+        REQUIRE(rule);
+        const FieldSum field =
+            add_pair_forces(points(0, 15), points(15, 25), *rule, std::span(expected).first(15),
+                            std::span(expected).last(25));
+        CHECK(energy.van_der_waals == Approx(field.van_der_waals).epsilon(1e-12));
+        CHECK(energy.electrostatic == Approx(field.electrostatic).epsilon(1e-12));
+        CHECK(energy.solvation == Approx(field.solvation).epsilon(1e-12));
+        for (std::size_t i = 0; i < 40; ++i)
+            CHECK((forces[i] - expected[i]).norm() < 1e-11 * (1 + expected[i].norm()));
+    }
+    CHECK(find_field_rule({}));
+    CHECK_FALSE(find_field_rule({})->smooth);
+    CHECK_FALSE(find_field_rule({.electrostatics = ElectrostaticCutoff::Shift}));
+}

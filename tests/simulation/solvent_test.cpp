@@ -3,11 +3,14 @@
 #include "charmm/solvation_reader.h"
 #include "charmm/topology.h"
 #include "core/load_error.h"
+#include "forces/force_field.h"
 #include "scene/read_scene.h"
 #include "simulation/components.h"
 #include "simulation/edit.h"
+#include "simulation/held.h"
 #include "simulation/load.h"
 #include "simulation/resources.h"
+#include "simulation/systems/publish_contact.h"
 #include "tests/support/load_error_of.h"
 #include "tests/support/paths.h"
 #include "tests/support/water_scene.h"
@@ -75,12 +78,16 @@ TEST_CASE("a scene in vacuum has no solvation, one in EEF1-SB has every atom's",
     REQUIRE(water.topology.size() == vacuum.topology.size());
 }
 
-TEST_CASE("HIV protease with TL-3 loads with neutral groups and its published pose",
+TEST_CASE("HIV protease with TL-3 loads with neutral groups, at rest in implicit water",
           "[simulation][solvent]") {
     const SceneSystem vacuum = load_system(scene_of("hiv/flexible.toml"));
     const SceneSystem water = load_system(scene_of("hiv/solvent.toml"));
     REQUIRE(water.topology.solvation);
-    CHECK(water.positions == vacuum.positions);
+    const std::optional<JointRelaxReport> relaxed =
+        load_world(scene_of("hiv/solvent.toml")).resource<StartReport>().joints_at_rest;
+    REQUIRE(relaxed);
+    CHECK(relaxed->largest_move < 0.01);
+    CHECK(relaxed->energy_before == Approx(-1440.97).margin(0.05));
     double before = 0, after = 0;
     std::size_t changed = 0;
     for (std::size_t i = 0; i < water.topology.size(); ++i) {
@@ -147,4 +154,49 @@ TEST_CASE("what is added to a scene must go with its solvent", "[simulation][sol
     CHECK(world.resource<AtomTable>().size() == atoms);
     edit.topology = test::in_project("scenes/salt-bridge/vacuum.psf");
     CHECK(load_error_of([&] { add_molecule(world, edit); }) == "no error");
+}
+
+// Whatever a molecule does to itself sums to no force and no torque.
+TEST_CASE("what is felt of a rigid TL-3 in implicit water is the sum of all forces on its atoms",
+          "[simulation][solvent]") {
+    SceneDescription scene = scene_of("hiv/solvent.toml");
+    for (MoleculeDescription& molecule : scene.molecules) molecule.shape = Shape::Rigid;
+    scene.molecules[1].motion = Motion::Fixed;
+    const World world = load_world(scene);
+    const Entity hand = first_hand(world);
+    const AtomTable& atoms = world.resource<AtomTable>();
+    const SceneSystem system = load_system(scene);
+    REQUIRE(system.topology.size() == atoms.size());
+    const NonbondedSettings settings = solvent_settings(scene.force_field);
+    const AtomRange held = held_range(world, hand);
+    const auto wrench_at = [&](const Vec3& by) {
+        std::vector<Vec3> positions = atoms.positions, forces(atoms.size(), Vec3::Zero());
+        for (std::uint32_t i = 0; i < held.count; ++i) positions[held.first + i] += by;
+        (void)add_forces(system.topology, settings, positions, forces);
+        Vec6 wrench = Vec6::Zero();
+        for (std::uint32_t i = held.first; i < held.first + held.count; ++i) {
+            wrench.head<3>() += positions[i].cross(forces[i]);
+            wrench.tail<3>() += forces[i];
+        }
+        return wrench;
+    };
+    const LocalContactModel contact = build_local_contact(world, hand, {});
+    CHECK(contact.field.has_atoms);
+    CHECK(contact.field.frozen.smooth);
+    // Those in reach, not all.
+    CHECK(contact.field.frozen.environment.positions.size() < 1900);
+    for (const Vec3& by : {Vec3(0, 0, 0), Vec3(0.8, 0, 0), Vec3(0, -0.5, 1)}) {
+        CAPTURE(by.transpose());
+        const Vec6 expected = wrench_at(by);
+        std::vector<Vec3> moved(contact.field.group);
+        for (Vec3& place : moved) place += by;
+        FieldPoints group = held_points(world, hand);
+        group.positions = moved;
+        const FieldSum sum = field_on(world, hand, group);
+        CHECK((sum.force - expected.tail<3>()).norm() < 1e-9 * expected.tail<3>().norm() + 1e-8);
+        CHECK((sum.torque - expected.head<3>()).norm() < 1e-9 * expected.head<3>().norm() + 1e-7);
+        const FrozenSum fast = evaluate_frozen_field(contact.field.frozen, moved);
+        CHECK((fast.force - sum.force).norm() < 1e-5 * sum.force.norm() + 1e-3);
+        CHECK((fast.stiffness - sum.stiffness).norm() < 1e-5 * sum.stiffness.norm() + 1e-2);
+    }
 }

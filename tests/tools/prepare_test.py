@@ -142,11 +142,11 @@ class Prepare(PrepareCase):
 
     def test_a_protein_alone_goes_with_implicit_water_if_that_is_left_open(self):
         ubiquitin = self.data / "structures" / "1ubq.pdb"
-        vacuum = self.prepare(ubiquitin, self.toppar()[:2])
+        vacuum = self.prepare(ubiquitin, self.toppar()[:2], "--solvent", "none")
         before, _ = read_psf(vacuum / "system.psf")
         self.assertNotIn("Solvent", (vacuum / "report.txt").read_text())
         places = (vacuum / "system.crd").read_text()
-        folder = self.prepare(ubiquitin, self.toppar()[:2], "--solvent", "auto")
+        folder = self.prepare(ubiquitin, self.toppar()[:2])
         after, _ = read_psf(folder / "system.psf")
         self.assertEqual([atom[:4] for atom in before], [atom[:4] for atom in after])
         self.assertIn(" REMARKS Charges: EEF1-SB", (folder / "system.psf").read_text())
@@ -157,7 +157,7 @@ class Prepare(PrepareCase):
         self.assertAlmostEqual(sum(atom[5] for atom in after), 0, delta=1e-6)
         self.assertNotIn("NBFIX", (folder / "system.prm").read_text())
         self.energy(folder)  # has all of its parameters
-        kept = self.prepare(ubiquitin, self.toppar(), "--solvent", "auto", "--keep-waters", "--no-relax")
+        kept = self.prepare(ubiquitin, self.toppar(), "--keep-waters", "--no-relax")
         self.assertIn("none, vacuum: waters are kept", (kept / "report.txt").read_text())
         self.assertNotIn("EEF1-SB", (kept / "system.psf").read_text())
 
@@ -196,7 +196,8 @@ class Prepare(PrepareCase):
                 self.assertFalse((self.folder / "out").exists())
 
     def test_crambin_from_heavy_atoms_is_charmm_s_own(self):
-        folder = self.prepare(self.data / "structures" / "1crn.pdb", self.toppar()[:2])
+        folder = self.prepare(self.data / "structures" / "1crn.pdb", self.toppar()[:2],
+                              "--solvent", "none")
         _, counts = self.check_reference(folder, "crambin_c36m")
         self.assertEqual([counts[key] for key in ("NBOND", "NTHETA", "NPHI", "NIMPHI", "NCRTERM")],
                          [652, 1183, 1747, 111, 44])
@@ -205,13 +206,14 @@ class Prepare(PrepareCase):
         self.assertLess((folder / "system.prm").stat().st_size, 40000)
         relaxed = self.energy(folder)["total"]
         unrelaxed = self.prepare(self.data / "structures" / "1crn.pdb", self.toppar()[:2],
-                                 "--no-relax")
+                                 "--no-relax", "--solvent", "none")
         self.assertLess(relaxed, self.energy(unrelaxed)["total"])
         self.assertLess(relaxed, 0)
 
     def test_1hpv_in_charmm22(self):
         folder = self.prepare(self.data / "hiv" / "1hpv_protein.pdb", self.toppar("22"),
-                              "--protonation", "A:69=HSE", "--protonation", "B:69=HSE")
+                              "--protonation", "A:69=HSE", "--protonation", "B:69=HSE",
+                              "--solvent", "none")
         self.check_reference(folder, "hiv_protease_1hpv")
         self.check_clean(folder)
 
@@ -220,7 +222,7 @@ class Prepare(PrepareCase):
         # hydrogens of the first residue, which it calls otherwise.
         folder = self.prepare(self.data / "hiv" / "1hpv_protein.pdb", self.toppar("22"),
                               "--protonation", "A:69=HSE", "--protonation", "B:69=HSE",
-                              "--no-relax", "--no-flips")
+                              "--no-relax", "--no-flips", "--solvent", "none")
         reference = Path(SHARED) / "reference"
         rows = json.loads((reference / "hiv_protease_1hpv.ff.json").read_text())["atoms"]["rows"]
         frame = json.loads((reference / "hiv_protease_1hpv.minimised_300_steps.json")
@@ -255,7 +257,7 @@ class Prepare(PrepareCase):
     def test_hiv_protease_with_tl3(self):
         folder = self.prepare(self.data / "hiv" / "derived" / "standin_2az8_tl3.pdb",
                               [*self.toppar(), *self.tl3()], "--protonation", "A:69=HSE",
-                              "--protonation", "B:69=HSE")
+                              "--protonation", "B:69=HSE", "--solvent", "none")
         reference, counts = self.check_reference(folder, "hiv_tl3_c36m")
         self.assertEqual(counts["NPHI"], reference["counts"]["dihedrals_before_expansion"])
         self.check_clean(folder)

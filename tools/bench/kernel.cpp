@@ -1,16 +1,12 @@
 #include "tools/bench/kernel.h"
 
-#include "charmm/build_topology.h"
-#include "charmm/force_field.h"
 #include "core/load_error.h"
 #include "field/frozen_field.h"
 #include "field/peak.h"
 #include "field/processor.h"
 #include "forces/force_field.h"
 #include "forces/solvation.h"
-#include "formats/psf.h"
-#include "formats/structure.h"
-#include "molecule/match_atoms.h"
+#include "simulation/load.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -33,15 +29,15 @@ struct System {
     std::vector<Vec3> positions;
 };
 
-System load_system(const std::string& name, const SceneDescription& scene) {
-    for (const MoleculeDescription& molecule : scene.molecules) {
-        if (molecule.topology.empty()) continue;
-        const Connectivity connectivity = read_psf(molecule.topology);
-        return {name, build_topology(connectivity, read_force_field(scene.force_field.files)),
-                match_positions(connectivity, read_structure(molecule.structure))};
+System load_named(const std::string& name, const SceneDescription& scene) {
+    if (std::ranges::all_of(scene.molecules, [](const MoleculeDescription& molecule) {
+            return molecule.topology.empty();
+        })) {
+        throw LoadError({scene.file.string()},
+                        "no molecule names a topology file; expected one, as scenes/hiv has");
     }
-    throw LoadError({scene.file.string()},
-                    "no molecule names a topology file; expected one, as scenes/hiv has");
+    SceneSystem system = load_system(scene);
+    return {name, std::move(system.topology), std::move(system.positions)};
 }
 
 // On a grid of 2.15 Å, shaken: as dense as a protein.
@@ -381,12 +377,12 @@ void bench_system(const System& system, std::vector<BenchRow>& rows) {
 
 void bench_kernels(const std::string& scene_name, const SceneDescription& scene,
                    std::vector<BenchRow>& rows) {
-    bench_system(load_system(scene_name, scene), rows);
+    bench_system(load_named(scene_name, scene), rows);
 }
 
 void bench_force_field(const std::string& scene_name, const SceneDescription& scene,
                        std::vector<BenchRow>& rows) {
-    const System system = load_system(scene_name, scene);
+    const System system = load_named(scene_name, scene);
     for (const Case& which : list_cases()) bench_all_terms(system, which, rows);
     bench_solvation(system, rows);
 }

@@ -13,6 +13,9 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace palpa {
 namespace {
@@ -74,18 +77,23 @@ double error_of(const AtRest& rest, const SecondDerivatives& fast,
     return std::max(softest, (*own - *K).norm() / K->norm());
 }
 
+// All pairs and 9.5 Å, or implicit solvent where the model has it; with the suffix of its row.
+std::vector<std::pair<std::string, NonbondedSettings>> list_laws(const AtRest& rest) {
+    if (rest.model.topology.solvation) return {{"", eef1_settings()}};
+    return {{"", {}}, {"/9.5", switched_at(9.5)}};
+}
+
 void bench_matrices(const std::string& name, const AtRest& rest, std::vector<BenchRow>& rows) {
     const FastSecondDerivatives fast = build_fast_second_derivatives(rest.model, rest.coordinates);
     SecondDerivativesMemory memory;
-    for (const std::optional<double> cutoff : {std::optional<double>(), std::optional(9.5)}) {
-        const NonbondedSettings settings = cutoff ? switched_at(*cutoff) : NonbondedSettings{};
+    for (const auto& [suffix, settings] : list_laws(rest)) {
         SecondDerivatives reference, own;
         const auto of_reference = sample(1, 1e3, [&] {
             update_second_derivatives(rest.model, rest.coordinates, fast.paths, settings,
                                       rest.state, reference);
         });
         const std::string prefix = "second-derivatives/" + name;
-        if (!cutoff)
+        if (suffix.empty())
             rows.push_back({prefix + "/double",
                             of_reference,
                             "ms",
@@ -96,9 +104,8 @@ void bench_matrices(const std::string& name, const AtRest& rest, std::vector<Ben
             (void)update_fast_second_derivatives(rest.model, rest.coordinates, fast, settings,
                                                  rest.state, memory, own);
         });
-        rows.push_back({prefix + (cutoff ? fmt::format("/fast/{}", *cutoff) : "/fast"), of_fast,
-                        "ms", error_of(rest, own, reference), "relative",
-                        "softest direction and felt stiffness, double"});
+        rows.push_back({prefix + "/fast" + suffix, of_fast, "ms", error_of(rest, own, reference),
+                        "relative", "softest direction and felt stiffness, double"});
     }
 }
 

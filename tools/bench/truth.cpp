@@ -99,6 +99,7 @@ Truth::Truth(const TorsionModel& model, const SecondOrder& second)
     settings_.rest = settings_.relaxed = 1e-3;
     settings_.least_relaxation = 0;
     settings_.most_relaxation = 3000;
+    settings_.responses.reset();
     memory_.lineariser = build_lineariser(model, second.statics.renewals.lineariser.held);
     memory_.full = build_quasi_statics(model);
 }

@@ -257,7 +257,10 @@ void print_summary(const SceneDescription& scene, const Summary& s) {
                 "closest",
                 j.clearance, j.closest);
         }
-        fmt::print("; at the end {:.2f} Å rms from where they started\n", j.last_rmsd);
+        fmt::print(
+            "; at the end {:.2f} Å rms from where they started, the backbone around it {:.2f} "
+            "Å\n",
+            j.last_rmsd, j.last_backbone);
     }
     if (s.activity) {
         const Activity& a = *s.activity;

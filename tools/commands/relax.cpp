@@ -5,6 +5,7 @@
 #include "formats/crd.h"
 #include "molecule/coincident_atoms.h"
 #include "scene/read_scene.h"
+#include "session/compare_poses.h"
 #include "simulation/held.h"
 #include "simulation/load.h"
 #include "tools/commands/command.h"
@@ -15,6 +16,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string_view>
+#include <vector>
 
 namespace palpa {
 namespace {
@@ -28,15 +30,35 @@ std::string_view end_of(const JointRelaxReport& report) {
     return end_names[static_cast<std::size_t>(report.end)];
 }
 
-void print_report(const StartReport& start) {
+// How far molecules are at rest from where their files have them.
+struct FromFiles {
+    PoseDistance distance;
+    std::size_t pocket_residues = 0;
+};
+
+FromFiles compare_with_files(const SceneDescription& scene, const World& world) {
+    World start = world;
+    std::vector<Vec3>& positions = start.resource<AtomTable>().positions;
+    positions = load_system(scene).positions;
+    const PoseComparison comparison(start);
+    return {comparison.between(reference_positions(world), positions),
+            comparison.pocket_residues()};
+}
+
+void print_report(const StartReport& start, const FromFiles& from) {
     const JointRelaxReport& r = start.joints_at_rest.value();
     fmt::print("{} joints: {:.4f} to {:.4f} kcal/mol, rms force {:.3g} kcal/mol per radian and Å\n",
                start.joints, r.energy_before, r.energy_after, r.rms_force);
     fmt::print("{} steps, {} evaluations, moved {:.3f} Å at most; {}\n", r.steps, r.evaluations,
                r.largest_move, end_of(r));
+    const PoseDistance& d = from.distance;
+    fmt::print(
+        "rms from the files: what is held {:.3f} Å, backbone {:.3f} Å, side chains of the {} "
+        "residues around it {:.3f} Å\n",
+        d.held, d.backbone, from.pocket_residues, d.pocket);
 }
 
-void print_json(const StartReport& start) {
+void print_json(const StartReport& start, const FromFiles& from) {
     const JointRelaxReport& r = start.joints_at_rest.value();
     const nlohmann::ordered_json json{{"joints", start.joints},
                                       {"energy_before", r.energy_before},
@@ -45,7 +67,11 @@ void print_json(const StartReport& start) {
                                       {"steps", r.steps},
                                       {"evaluations", r.evaluations},
                                       {"largest_move", r.largest_move},
-                                      {"end", end_of(r)}};
+                                      {"end", end_of(r)},
+                                      {"held_rmsd_angstrom", from.distance.held},
+                                      {"backbone_rmsd_angstrom", from.distance.backbone},
+                                      {"pocket_rmsd_angstrom", from.distance.pocket},
+                                      {"pocket_residues", from.pocket_residues}};
     fmt::print("{}\n", json.dump(2));
 }
 
@@ -87,7 +113,8 @@ int relax_command(const RelaxOptions& options) {
                                       nearest_single_precision)) {
         fmt::print(stderr, "warning: atoms are on each other: {}\n", printable(*closest));
     }
-    options.json ? print_json(start) : print_report(start);
+    const FromFiles from = compare_with_files(scene, world);
+    options.json ? print_json(start, from) : print_report(start, from);
     return relaxed.end == RelaxEnd::Converged ? 0 : 1;
 }
 

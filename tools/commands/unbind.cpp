@@ -48,6 +48,8 @@ nlohmann::ordered_json as_json(const UnbindingResult& r) {
         json["clearance_angstrom"] = unbinding->clearance;
         json["closest_angstrom"] = unbinding->closest;
         json["last_rmsd_angstrom"] = unbinding->last_rmsd;
+        json["last_backbone_rmsd_angstrom"] = unbinding->last_backbone;
+        json["last_pocket_rmsd_angstrom"] = unbinding->last_pocket;
     }
     return json;
 }

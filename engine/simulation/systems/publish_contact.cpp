@@ -21,12 +21,18 @@ namespace {
 // With fewer neighbours for each atom in the hand a field is no better than its tangent.
 constexpr std::size_t fewest_neighbours = 100;
 
-// Atoms around what the hand holds that a servo tick has time for.
+// Pairs that a servo tick has time for. Those that follow take twice the time.
+std::size_t most_pairs(const World& world) noexcept {
+    return world.resource<Coupling>().pairs_per_tick / (find_second_order(world) ? 2 : 1);
+}
+
+// Atoms around what the hand holds that a tick has time for where every pair acts.
 std::size_t most_neighbours(const World& world, Entity hand) noexcept {
-    const std::size_t own = std::max<std::size_t>(held_range(world, hand).count, 1);
-    // Pairs that follow take twice the time.
-    const std::size_t times = find_second_order(world) ? 2 : 1;
-    return world.resource<Coupling>().pairs_per_tick / (times * own);
+    return most_pairs(world) / std::max<std::size_t>(held_range(world, hand).count, 1);
+}
+
+bool has_ends(const World& world) noexcept {
+    return world.resource<Interactions>().smooth.has_value();
 }
 
 // A molecule that another hand holds as a whole, which the servo moves with that hand.
@@ -91,7 +97,47 @@ std::vector<std::uint32_t> find_nearest(const World& world, Entity hand, std::si
     return atoms;
 }
 
-// The atoms nearby, or all where they were not chosen or are too many for a servo tick; rising.
+// With smooth ends a tick looks only at pairs in reach: the atoms that are in reach or nearly so,
+// the nearest first, as far as there is time for their pairs; in an order of neighbours.
+std::vector<std::uint32_t> find_in_reach(const World& world, Entity hand) {
+    constexpr double margin = 2;        // Å, gone before the next choice
+    constexpr std::size_t fewest = 16;  // however far
+    struct Near {
+        double distance2;
+        std::uint32_t atom;
+        std::size_t pairs;
+    };
+    const std::span<const Vec3> own = held_points(world, hand).positions;
+    const AtomTable& table = world.resource<AtomTable>();
+    const double reach = world.resource<Interactions>().smooth->reach() + margin;
+    std::vector<Near> near;
+    for (const std::uint32_t j : list_environment(world, hand, list_others(world, hand))) {
+        Near& added = near.emplace_back(std::numeric_limits<double>::infinity(), j, 0);
+        for (const Vec3& place : own) {
+            const double distance2 = (place - table.positions[j]).squaredNorm();
+            added.distance2 = std::min(added.distance2, distance2);
+            if (distance2 < reach * reach) ++added.pairs;
+        }
+    }
+    std::ranges::sort(near, {}, [](const Near& a) { return std::pair(a.distance2, a.atom); });
+    std::vector<std::uint32_t> atoms;
+    std::vector<Vec3> places;
+    std::vector<std::uint8_t> has_solvation;
+    std::size_t pairs = 0;
+    for (const Near& next : near) {
+        pairs += next.pairs;
+        if (atoms.size() >= fewest && (next.pairs == 0 || pairs > most_pairs(world))) break;
+        atoms.push_back(next.atom);
+        places.push_back(table.positions[next.atom]);
+        has_solvation.push_back(table.solvation.volume[next.atom] != 0 ||
+                                table.solvation.strength[next.atom] != 0);
+    }
+    std::vector<std::uint32_t> order = order_for_sixteens(places, has_solvation);
+    for (std::uint32_t& place : order) place = atoms[place];
+    return order;
+}
+
+// The atoms nearby, or all where they were not chosen or are too many for a servo tick.
 std::vector<std::uint32_t> list_field_atoms(const World& world, Entity hand,
                                             std::span<const OtherHeld> others) {
     const std::vector<std::uint32_t>& near = contact_of(world, hand).near.atoms;
@@ -104,7 +150,7 @@ FrozenField freeze(const World& world, Entity hand, const FieldPoints& group,
     const std::vector<std::uint32_t>& near = contact_of(world, hand).near.atoms;
     const std::vector<AtomRange> all = environment_of(world, hand);
     const std::size_t still = count_environment(world, hand) - count_atoms(others);
-    const bool is_whole = near.empty() || near.size() == still;
+    const bool is_whole = near.empty() || (near.size() == still && !has_ends(world));
     if (is_whole && all.size() == 1 && others.empty())
         return build_frozen_field(group, points_of(atoms, all.front()), pair_rule(world));
     const GatheredPoints points(atoms, list_field_atoms(world, hand, others));
@@ -133,9 +179,10 @@ LocalField build_local_field(const World& world, Entity hand) {
     field.there = evaluate_frozen_field(field.frozen, field.group);
     for (const OtherHeld& other : others)
         field.held.push_back(build_held_field(world, hand, other, group));
-    field.has_atoms = world.resource<Coupling>().is_guarded &&
-                      field.frozen.environment.positions.size() + count_atoms(others) <=
-                          std::max(most_neighbours(world, hand), fewest_neighbours);
+    field.has_atoms =
+        world.resource<Coupling>().is_guarded &&
+        (has_ends(world) || field.frozen.environment.positions.size() + count_atoms(others) <=
+                                std::max(most_neighbours(world, hand), fewest_neighbours));
     if (field.has_atoms)
         field.following = find_following(world, hand, field, list_field_atoms(world, hand, others));
     return field;
@@ -311,6 +358,10 @@ void update_near(World& world, Entity hand) {
                           (place - near.place).norm() < moved;
     ++near.steps;
     if (is_known) return;
+    if (has_ends(world)) {
+        near = {find_in_reach(world, hand), place, 0, most};
+        return;
+    }
     near = {find_nearest(world, hand,
                          most < fewest_neighbours ? std::numeric_limits<std::size_t>::max() : most),
             place, 0, most};
