@@ -116,7 +116,7 @@ TEST_CASE("step times are told to a percent, whatever their size", "[session][st
     CHECK(summary.steps_not_finite == 100);
 }
 
-TEST_CASE("of no steps no time is told", "[session][statistics]") {
+TEST_CASE("without steps there is no step time", "[session][statistics]") {
     StepTimes times;
     CHECK(times.quantile_us(0.5) == 0);
     times.add(2e-3);
