@@ -123,11 +123,17 @@ std::vector<Mat3> find_atom_responses(const TorsionModel& model, const Linearise
     Eigen::MatrixXd moves = Eigen::MatrixXd::Zero(linear.coordinates.size(), 3);
     moves.topRows(linear.response.rows()) = linear.response.middleCols(first, 3);
     moves.middleRows(linear.response.rows() + first, 3).setIdentity();
+    const std::vector<Body>& bodies = model.tree.bodies.bodies;
+    std::vector<std::uint8_t> is_needed(bodies.size(), 0);
+    for (const std::uint32_t atom : atoms) is_needed[model.tree.bodies.body_of[atom]] = 1;
+    for (std::size_t b = bodies.size(); b-- > 0;) {
+        if (is_needed[b] != 0 && bodies[b].parent != no_body) is_needed[bodies[b].parent] = 1;
+    }
     // Turn and velocity at the origin of each body, for each displacement.
     using Screws = Eigen::Matrix<double, 6, 3>;
-    const std::vector<Body>& bodies = model.tree.bodies.bodies;
     std::vector<Screws> screws(bodies.size(), Screws::Zero());
     for (std::size_t b = 0; b < bodies.size(); ++b) {
+        if (is_needed[b] == 0) continue;
         if (bodies[b].parent != no_body) screws[b] = screws[bodies[b].parent];
         for (const CarriedCoordinate& carried : linear.coordinates.of(b)) {
             const CoordinateMotion& motion = motions[static_cast<std::size_t>(carried.column)];
@@ -135,6 +141,7 @@ std::vector<Mat3> find_atom_responses(const TorsionModel& model, const Linearise
         }
     }
     std::vector<Mat3> responses;
+    responses.reserve(atoms.size());
     for (const std::uint32_t atom : atoms) {
         const Screws& screw = screws[model.tree.bodies.body_of[atom]];
         responses.emplace_back(screw.bottomRows<3>() -
@@ -146,8 +153,14 @@ std::vector<Mat3> find_atom_responses(const TorsionModel& model, const Linearise
 void evaluate_model(const TorsionModel& model, const ForceSettings& settings,
                     const LinearisedModel& linear, const Eigen::VectorXd& at, NearPairs& near,
                     TorsionState& state, ModelValue& value) {
+    place_by(model, linear, at, state);
+    evaluate_placed(model, settings, linear, at, near, state, value);
+}
+
+void evaluate_placed(const TorsionModel& model, const ForceSettings& settings,
+                     const LinearisedModel& linear, const Eigen::VectorXd& at, NearPairs& near,
+                     TorsionState& state, ModelValue& value) {
     const Eigen::VectorXd all = linear.span ? linear.span->expand(at) : at;
-    place_about(model, linear.coordinates, linear.at, all, state);
     evaluate_near(model, settings, linear, all, near, state, value);
     if (linear.span) value.gradient = linear.span->reduce(value.gradient);
     const Eigen::VectorXd curved = (linear.rest * at.cast<float>()).cast<double>();

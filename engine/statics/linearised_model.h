@@ -118,5 +118,9 @@ struct ModelValue {
 void evaluate_model(const TorsionModel& model, const ForceSettings& settings,
                     const LinearisedModel& linear, const Eigen::VectorXd& at, NearPairs& near,
                     TorsionState& state, ModelValue& value);
+// The same where the state is there already.
+void evaluate_placed(const TorsionModel& model, const ForceSettings& settings,
+                     const LinearisedModel& linear, const Eigen::VectorXd& at, NearPairs& near,
+                     TorsionState& state, ModelValue& value);
 
 }  // namespace palpa

@@ -3,6 +3,7 @@
 #include "core/assertion.h"
 
 #include <cmath>
+#include <utility>
 
 namespace palpa {
 namespace {
@@ -127,14 +128,15 @@ void update_motions(const TorsionModel& model, const LocalCoordinates& coordinat
 void place_about(const TorsionModel& model, const LocalCoordinates& coordinates,
                  const TorsionState& origin, const Eigen::VectorXd& at, TorsionState& state) {
     PALPA_ASSERT(at.size() == coordinates.size());
-    state.angles = origin.angles;
-    state.turns = origin.turns;
-    state.shifts = origin.shifts;
+    const std::vector<Quat> turns = std::exchange(state.turns, origin.turns);
+    const std::vector<Vec3> shifts = std::exchange(state.shifts, origin.shifts);
     state.springs = origin.springs;
+    std::vector<std::uint8_t> is_changed(model.bases.size(), 0);
     for (std::size_t b = 0; b < model.tree.bodies.bodies.size(); ++b) {
         const std::uint32_t m = model.tree.molecule_of[b];
+        double angle = origin.angles[b];
         for (const CarriedCoordinate& carried : coordinates.of(b)) {
-            if (carried.kind == CoordinateKind::Joint) state.angles[b] += at[carried.column];
+            if (carried.kind == CoordinateKind::Joint) angle += at[carried.column];
             if (carried.axis != 0) continue;  // of three at a time
             if (carried.kind == CoordinateKind::Turn) {
                 const Quat turn = turn_of(three_at(at, carried));
@@ -144,11 +146,16 @@ void place_about(const TorsionModel& model, const LocalCoordinates& coordinates,
                 state.shifts[m] += three_at(at, carried);
             }
         }
+        if (std::exchange(state.angles[b], angle) != angle) is_changed[m] = 1;
     }
     for (const LocalCoordinates::SpringEnd& end : coordinates.ends) {
         state.springs[end.spring].place += at.segment<3>(end.column);
     }
-    update_positions(model, state);
+    for (std::size_t m = 0; m < is_changed.size(); ++m) {
+        if (turns[m].coeffs() != state.turns[m].coeffs() || shifts[m] != state.shifts[m])
+            is_changed[m] = 1;
+    }
+    update_positions(model, is_changed, state);
 }
 
 Eigen::VectorXd find_gradient(const TorsionModel& model, const LocalCoordinates& coordinates,

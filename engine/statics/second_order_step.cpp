@@ -159,12 +159,12 @@ private:
     Eigen::VectorXd forces_, trial_forces_, move_, at_;
 };
 
-// Evaluates the model where `at` is, and goes towards its rest.
+// Evaluates the model where the state is, and goes towards its rest.
 void relax_model(const TorsionModel& model, const SecondOrderSettings& settings,
                  TorsionState& state, SecondOrderStatics& statics) {
     const std::span<const HandHold> hands = statics.renewals.lineariser.held.hands;
-    evaluate_model(model, settings.forces, *statics.linear, statics.at, statics.near, state,
-                   statics.value);
+    evaluate_placed(model, settings.forces, *statics.linear, statics.at, statics.near, state,
+                    statics.value);
     ++statics.model_evaluations;
     ModelDescent descent(model, settings, state, statics);
     constexpr LineSearch search{.tries = 6};
@@ -190,7 +190,13 @@ void follow_linearly(const TorsionModel& model, const SecondOrderSettings& setti
     const double moved =
         find_largest_move(model.mobile_atoms, state.positions, statics.trial.positions);
     const double most = 2 * settings.largest_move;
-    statics.at.head(linear.mobile()) += std::min(1.0, most / std::max(moved, most)) * answer;
+    if (moved > most) {
+        statics.at.head(linear.mobile()) += most / moved * answer;
+        place_by(model, linear, statics.at, state);
+    } else {
+        statics.at = std::move(at);
+        swap_coordinates(statics.trial, state);
+    }
 }
 
 bool is_finite(const SecondOrderStatics& statics) {

@@ -83,6 +83,9 @@ TorsionModel build_torsion_model(const TorsionBodies& bodies, std::vector<double
 
     for (std::size_t body = 0; body < bodies.bodies.size(); ++body) {
         const bool is_base = bodies.is_base(body);
+        const auto [j, k] = bodies.bodies[body].axis;
+        model.axes.push_back(is_base ? Vec3(Vec3::Zero())
+                                     : (model.reference[k] - model.reference[j]).normalized());
         model.coordinate_of_body.push_back(is_base ? -1 : model.coordinates);
         model.coordinates += is_base ? 0 : 1;
     }

@@ -37,6 +37,7 @@ struct TorsionModel {
     std::vector<double> masses;           // amu
     std::vector<double> molecule_masses;  // amu
     std::vector<Vec3> reference;          // Å, where all joints have the angle 0
+    std::vector<Vec3> axes;               // of each body's joint there, of length 1; 0 for bases
     std::vector<MoleculeBase> bases;      // of each molecule
 
     // Atoms that may move: all, until fix_bases.

@@ -30,6 +30,51 @@ void move_base(std::size_t molecule, const Vec3& turn, const Vec3& by, TorsionSt
     state.shifts[molecule] += by;
 }
 
+// Of molecules for which `is_wanted`.
+template <typename F>
+void update_pivots_where(const TorsionModel& model, TorsionState& state, F&& is_wanted) noexcept {
+    std::vector<Vec3>& pivots = state.pivots;
+    const auto is_summed = [&](std::uint32_t m) {
+        return model.bases[m].freedom == BaseFreedom::Free && is_wanted(m);
+    };
+    for (std::uint32_t m = 0; m < pivots.size(); ++m) {
+        if (is_summed(m)) pivots[m].setZero();
+    }
+    for (const std::uint32_t i : model.mobile_atoms) {
+        const std::uint32_t m = model.tree.molecule_of[model.tree.bodies.body_of[i]];
+        if (is_summed(m)) pivots[m] += model.masses[i] * state.positions[i];
+    }
+    for (std::uint32_t m = 0; m < pivots.size(); ++m) {
+        if (!is_wanted(m)) continue;
+        pivots[m] = is_summed(m) ? Vec3(pivots[m] / model.molecule_masses[m])
+                                 : state.positions[model.bases[m].pivot];
+    }
+}
+
+template <typename F>
+void update_where(const TorsionModel& model, TorsionState& state, F&& is_wanted) noexcept {
+    const std::span<const Body> bodies = bodies_of(model);
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        const std::uint32_t molecule = model.tree.molecule_of[b];
+        if (!is_wanted(molecule)) continue;
+        if (model.tree.bodies.is_base(b)) {
+            state.motions[b] = motion_of_base(state, molecule);
+            continue;
+        }
+        const RigidMotion& parent = state.motions[bodies[b].parent];
+        state.motions[b] = state.angles[b] == 0
+                               ? parent
+                               : parent * turn_about(model.reference[bodies[b].axis[1]],
+                                                     model.axes[b], state.angles[b]);
+    }
+    for (const std::uint32_t i : model.mobile_atoms) {
+        const std::uint32_t body = model.tree.bodies.body_of[i];
+        if (is_wanted(model.tree.molecule_of[body]))
+            state.positions[i] = state.motions[body] * model.reference[i];
+    }
+    update_pivots_where(model, state, is_wanted);
+}
+
 }  // namespace
 
 TorsionState build_torsion_state(const TorsionModel& model) {
@@ -49,36 +94,16 @@ TorsionState build_torsion_state(const TorsionModel& model) {
 }
 
 void update_positions(const TorsionModel& model, TorsionState& state) noexcept {
-    const std::span<const Body> bodies = bodies_of(model);
-    for (std::size_t b = 0; b < bodies.size(); ++b) {
-        if (model.tree.bodies.is_base(b)) {
-            state.motions[b] = motion_of_base(state, model.tree.molecule_of[b]);
-            continue;
-        }
-        const RigidMotion& parent = state.motions[bodies[b].parent];
-        state.motions[b] = parent;
-        if (state.angles[b] == 0) continue;
-        const auto [j, k] = bodies[b].axis;
-        const Vec3 axis = (model.reference[k] - model.reference[j]).normalized();
-        state.motions[b] = parent * turn_about(model.reference[k], axis, state.angles[b]);
-    }
-    for (const std::uint32_t i : model.mobile_atoms)
-        state.positions[i] = state.motions[model.tree.bodies.body_of[i]] * model.reference[i];
-    update_pivots(model, state);
+    update_where(model, state, [](std::uint32_t) { return true; });
+}
+
+void update_positions(const TorsionModel& model, std::span<const std::uint8_t> is_changed,
+                      TorsionState& state) noexcept {
+    update_where(model, state, [&](std::uint32_t molecule) { return is_changed[molecule] != 0; });
 }
 
 void update_pivots(const TorsionModel& model, TorsionState& state) noexcept {
-    std::vector<Vec3>& pivots = state.pivots;
-    std::ranges::fill(pivots, Vec3::Zero());
-    for (const std::uint32_t i : model.mobile_atoms) {
-        const std::uint32_t molecule = model.tree.molecule_of[model.tree.bodies.body_of[i]];
-        pivots[molecule] += model.masses[i] * state.positions[i];
-    }
-    for (std::size_t m = 0; m < pivots.size(); ++m) {
-        const MoleculeBase& base = model.bases[m];
-        pivots[m] = base.freedom == BaseFreedom::Free ? Vec3(pivots[m] / model.molecule_masses[m])
-                                                      : state.positions[base.pivot];
-    }
+    update_pivots_where(model, state, [](std::uint32_t) { return true; });
 }
 
 bool is_fast(const ForceSettings& settings) noexcept {
@@ -164,14 +189,14 @@ void add_move(const TorsionModel& model, const Coordinates& move, TorsionState& 
 void shift_base(const TorsionModel& model, std::size_t molecule, const Vec3& by,
                 TorsionState& state) noexcept {
     state.shifts[molecule] += by;
-    update_positions(model, state);
+    update_where(model, state, [=](std::uint32_t m) { return m == molecule; });
 }
 
 void turn_base(const TorsionModel& model, std::size_t molecule, const Eigen::Quaterniond& turn,
                const Vec3& by, TorsionState& state) noexcept {
     rotate_base(molecule, turn, state.pivots[molecule], state);
     state.shifts[molecule] += by;
-    update_positions(model, state);
+    update_where(model, state, [=](std::uint32_t m) { return m == molecule; });
 }
 
 Vec6 find_wrench_on(const TorsionModel& model, const TorsionState& state,

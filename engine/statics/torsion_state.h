@@ -60,6 +60,10 @@ TorsionState build_torsion_state(const TorsionModel& model);
 // Positions from coordinates: no bond gets longer, however many steps there were.
 void update_positions(const TorsionModel& model, TorsionState& state) noexcept;
 
+// Only of molecules that are marked; the others are where their coordinates say.
+void update_positions(const TorsionModel& model, std::span<const std::uint8_t> is_changed,
+                      TorsionState& state) noexcept;
+
 // From the positions.
 void update_pivots(const TorsionModel& model, TorsionState& state) noexcept;
 
