@@ -61,6 +61,32 @@ private:
     std::span<Vec3> forces_;
 };
 
+struct TabulatedExponential {
+    double operator()(double x) const noexcept {
+        constexpr double steps = 100, end = 350, digits = 1e5;
+        const double n = std::floor(steps * std::abs(x));
+        if (n >= end) return 0;
+        return std::round(digits * std::exp(-std::pow((n + 0.5) / steps, 2))) / digits;
+    }
+};
+
+template <class Law>
+std::vector<double> find_energies(const Topology& topology, const Law& law,
+                                  std::span<const Vec3> positions) {
+    const Solvation& solvation = *topology.solvation;
+    std::vector<double> energies = solvation.dg_ref;
+    const auto add = [&](std::uint32_t i, std::uint32_t j) {
+        const SolvationPair pair =
+            law.evaluate((positions[i] - positions[j]).squaredNorm(), solvation_atom(solvation, i),
+                         solvation_atom(solvation, j));
+        energies[i] += pair.energy_a;
+        energies[j] += pair.energy_b;
+    };
+    visit_plain_pairs(topology, add);
+    for (const auto& [i, j] : topology.exclusions.pairs14) add(i, j);
+    return energies;
+}
+
 }  // namespace
 
 double find_solvation_reach(SolvationEnd end) noexcept {
@@ -106,21 +132,12 @@ double add_solvation_forces(const Topology& topology, SolvationEnd end,
 }
 
 std::vector<double> find_solvation_energies(const Topology& topology, SolvationEnd end,
-                                            std::span<const Vec3> positions) {
+                                            std::span<const Vec3> positions,
+                                            SolvationExponential exponential) {
     PALPA_ASSERT(topology.solvation && positions.size() == topology.size());
-    const Solvation& solvation = *topology.solvation;
-    const SolvationLaw law(end);
-    std::vector<double> energies = solvation.dg_ref;
-    const auto add = [&](std::uint32_t i, std::uint32_t j) {
-        const SolvationPair pair =
-            law.evaluate((positions[i] - positions[j]).squaredNorm(), solvation_atom(solvation, i),
-                         solvation_atom(solvation, j));
-        energies[i] += pair.energy_a;
-        energies[j] += pair.energy_b;
-    };
-    visit_plain_pairs(topology, add);
-    for (const auto& [i, j] : topology.exclusions.pairs14) add(i, j);
-    return energies;
+    if (exponential == SolvationExponential::Table)
+        return find_energies(topology, SolvationLaw(end, TabulatedExponential{}), positions);
+    return find_energies(topology, SolvationLaw(end), positions);
 }
 
 }  // namespace palpa

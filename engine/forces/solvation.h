@@ -40,9 +40,17 @@ double add_solvation_forces(const Topology& topology, SolvationEnd end,
                             std::span<const std::array<std::uint32_t, 2>> pairs,
                             std::span<const Vec3> positions, std::span<Vec3> forces) noexcept;
 
+enum class SolvationExponential {
+    Exact,
+    // As in CHARMM before October 2013: x = |r - R_i|/lambda_i in steps of 0.01, at their middle,
+    // rounded to five decimals, and 0 from 3.5 on.
+    Table,
+};
+
 // Of each atom, kcal/mol: dG_ref less what the others take, pairs three bonds apart included. Their
 // sum is the whole energy.
-std::vector<double> find_solvation_energies(const Topology& topology, SolvationEnd end,
-                                            std::span<const Vec3> positions);
+std::vector<double> find_solvation_energies(
+    const Topology& topology, SolvationEnd end, std::span<const Vec3> positions,
+    SolvationExponential exponential = SolvationExponential::Exact);
 
 }  // namespace palpa

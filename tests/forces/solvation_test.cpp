@@ -173,6 +173,8 @@ TEST_CASE("proteins have the solvation that CHARMM gives each of their atoms",
 
         const std::vector<double> energies =
             atom_energies(topology, c.positions, SolvationLaw<CharmmTable>(SolvationEnd::Sharp));
+        CHECK(energies == find_solvation_energies(topology, SolvationEnd::Sharp, c.positions,
+                                                  SolvationExponential::Table));
 
         CHECK(sum_of(energies) == Approx(c.total).margin(1e-5).epsilon(0));
         double worst = 0;

@@ -1,6 +1,7 @@
 """palpa energy from outside, against what other programs print for the same structures."""
 import csv
 import json
+import math
 import os
 import subprocess
 import tempfile
@@ -12,6 +13,42 @@ DATA = Path(os.environ["PALPA_ROOT"]) / "tests" / "data"
 PEPTIDES = DATA / "two_peptides"
 SHARED = os.environ.get("PALPA_DATA")
 KJ_PER_KCAL = 4.184
+
+
+BRIDGE = Path(os.environ["PALPA_ROOT"]) / "scenes" / "salt-bridge"
+
+
+def read_bonds(psf):
+    """Pairs of atoms, from 0."""
+    lines = iter(psf.read_text().splitlines())
+    numbers = []
+    for line in lines:
+        if "!NBOND" in line:
+            count = 2 * int(line.split()[0])
+            while len(numbers) < count:
+                numbers += [int(word) - 1 for word in next(lines).split()]
+    return list(zip(numbers[::2], numbers[1::2]))
+
+
+def solvation_by_hand(atoms, places, bonds, end):
+    """EEF1 of each atom: the published formula on heavy atoms, without pairs 1-2 and 1-3."""
+    table = Path(os.environ["PALPA_ROOT"]) / "engine/charmm/eef1sb.csv"
+    with open(table, newline="") as file:
+        rows = {row["type"]: row for row in csv.DictReader(line for line in file if line[0] != "#")}
+    near = {frozenset(bond) for bond in bonds}
+    near |= {frozenset((a, b)) for a in range(len(atoms)) for b in range(a)
+             if any({frozenset((a, c)), frozenset((c, b))} <= near for c in range(len(atoms)))}
+    energies = [float(rows[atom["type"]]["dG_ref"]) if atom["type"] in rows else 0.0 for atom in atoms]
+    for a, first in enumerate(atoms):
+        for b, second in enumerate(atoms):
+            r = math.dist(places[a], places[b])
+            if a == b or frozenset((a, b)) in near or r >= end or not {first["type"], second["type"]} <= rows.keys():
+                continue
+            of_a = {key: float(rows[first["type"]][key]) for key in ("dG_free", "lambda_A", "R_min_half_A")}
+            x = (r - of_a["R_min_half_A"]) / of_a["lambda_A"]
+            energies[a] -= (of_a["dG_free"] * float(rows[second["type"]]["volume_A3"]) * math.exp(-x * x)
+                            / (2 * math.pi ** 1.5 * of_a["lambda_A"] * r * r))
+    return energies
 
 
 def first_row(path):
@@ -69,6 +106,70 @@ class Energy(unittest.TestCase):
                 mine = float(row[f"force_{axis}_kcal_per_mol_angstrom"]) * KJ_PER_KCAL * 10
                 self.assertAlmostEqual(mine, value, delta=2e-2)  # of hundreds; constant's digits
 
+    def test_solvation_of_every_atom_is_the_published_formula(self):
+        crd, atoms = BRIDGE / "system.crd", self.folder / "atoms.csv"
+        energy = self.energy(BRIDGE / "solvent.psf", "--coordinates", crd, "--toppar", BRIDGE / "system.prm",
+                             BRIDGE / "solvent.prm", "--solvent", "eef1-sb", "--solvent-end", "sharp",
+                             "--per-atom", atoms)
+        with open(atoms, newline="") as file:
+            rows = list(csv.DictReader(file))
+        places = [tuple(map(float, line.split()[4:7])) for line in crd.read_text().splitlines()
+                  if not line.startswith("*")][1:]
+        by_hand = solvation_by_hand(rows, places, read_bonds(BRIDGE / "solvent.psf"), 9)
+        self.assertEqual(len(rows), len(places))
+        for row, expected in zip(rows, by_hand):
+            self.assertAlmostEqual(float(row["solvation_kcal_per_mol"]), expected, delta=1e-9, msg=row)
+        self.assertAlmostEqual(energy["solvation"], sum(by_hand), delta=1e-8)
+        self.assertLess(energy["solvation"], -30)
+        self.assertAlmostEqual(sum(float(row["charge_e"]) for row in rows), 0, delta=1e-9)
+
+    def forces(self, *arguments):
+        """Of each atom, kcal/mol/A, and its segment."""
+        path = self.folder / "forces.csv"
+        self.energy(*arguments, "--forces", path, "--overwrite")
+        with open(path, newline="") as file:
+            return [(row["segment"], [float(row[f"force_{axis}_kcal_per_mol_angstrom"]) for axis in "xyz"])
+                    for row in csv.DictReader(file)]
+
+    def test_little_electrostatics_is_left_out_by_the_end_at_9_A(self):
+        hiv = BRIDGE.parent / "hiv"
+        arguments = [hiv / "solvent.psf", "--coordinates", hiv / "relaxed.crd", "--toppar",
+                     hiv / "system.prm", hiv / "solvent.prm", "--solvent", "eef1-sb", "--solvent-end"]
+        def electrostatics(end):
+            whole, without = (self.forces(*arguments, end, *extra) for extra in ([], ["--coulomb-constant", 0]))
+            return [(segment, [f - g for f, g in zip(force, other)])
+                    for (segment, force), (_, other) in zip(whole, without)]
+        ended, endless = electrostatics("smooth"), electrostatics("sharp")
+        def net(forces):
+            return [sum(force[axis] for segment, force in forces if segment == "TL3C") for axis in range(3)]
+        self.assertAlmostEqual(math.hypot(*net(endless)), 10.8, delta=0.1)
+        self.assertLess(math.dist(net(ended), net(endless)), 0.01 * math.hypot(*net(endless)))
+        off = sum(math.dist(force, other) ** 2 for (_, force), (_, other) in zip(ended, endless))
+        self.assertLess(off, 0.04 ** 2 * sum(math.hypot(*force) ** 2 for _, force in endless))
+
+    def test_charged_groups_in_implicit_water_are_said(self):
+        arguments = ["--coordinates", BRIDGE / "system.crd", "--toppar", BRIDGE / "system.prm",
+                     BRIDGE / "solvent.prm", "--solvent", "eef1-sb"]
+        result = self.palpa(BRIDGE / "vacuum.psf", *arguments)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("warning: ionic groups are not neutral", result.stderr)
+        self.assertEqual(self.palpa(BRIDGE / "solvent.psf", *arguments).stderr, "")
+
+    def test_tetrapeptides_have_charmm_s_solvation(self):
+        if not SHARED:
+            self.skipTest("PALPA_DATA names no folder with data/energies and reference/solvent")
+        folder = Path(SHARED) / "data/energies/eef1sb"
+        totals = Path(SHARED) / "reference/solvent/oracle/charmm/tetra_totals.csv"
+        with open(totals, newline="") as file:
+            expected = [row for row in csv.DictReader(file)]
+        self.assertEqual(len(expected), 38)
+        for row in expected:
+            energy = self.energy(folder / "tetra" / f"{row['name']}.pdb", "--toppar",
+                                 folder / "top_all36_prot_eef1sb.rtf", folder / "param_all36_eef1sb.prm",
+                                 "--solvent", "eef1-sb", "--solvent-end", "sharp", "--solvent-exp", "table")
+            self.assertAlmostEqual(energy["solvation"], float(row["solvation_charmm"]), delta=1.01e-5,
+                                   msg=row["name"])
+
     def test_bad_input_is_one_line(self):
         path, _ = self.aera()
         toppar = ["--toppar", PEPTIDES / "aera_c36m.rtf", PEPTIDES / "aera_c36m.prm"]
@@ -82,6 +183,11 @@ class Energy(unittest.TestCase):
                 ([self.folder / "none.crd", *toppar], "none.crd"),
                 ([path, *toppar, "--cutoff", 12], "expected --method cutoff"),
                 ([path, *toppar, "--forces", "/dev/full"], "cannot be written"),
+                ([path, *toppar, "--solvent", "eef1"], "expected one of none, eef1-sb"),
+                ([path, *toppar, "--solvent-end", "sharp"], "expected --solvent eef1-sb"),
+                ([path, *toppar, "--solvent", "eef1-sb", "--method", "cutoff"], "--solvent-end sharp"),
+                ([path, *toppar, "--solvent", "eef1-sb", "--solvent-table", PEPTIDES / "aera_c36m.prm"],
+                 "no head of a solvation table"),
                 ([path, *toppar, "--dielectric", "nan"], "nan")):
             with self.subTest(arguments=arguments):
                 result = self.palpa(*arguments)

@@ -1,12 +1,16 @@
 #include "tools/commands/energy.h"
 
+#include "charmm/assign_solvation.h"
 #include "charmm/build_topology.h"
 #include "charmm/force_field.h"
+#include "charmm/ionic_groups.h"
+#include "charmm/solvation_reader.h"
 #include "charmm/type_structure.h"
 #include "core/files.h"
 #include "core/load_error.h"
 #include "core/text.h"
 #include "forces/force_field.h"
+#include "forces/solvation.h"
 #include "formats/psf.h"
 #include "formats/structure.h"
 #include "molecule/coincident_atoms.h"
@@ -21,6 +25,7 @@
 #include <cstddef>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -33,14 +38,38 @@ constexpr std::array<std::string_view, 4> electrostatic_names{"switch", "shift",
                                                               "fswitch"};
 constexpr std::array<std::string_view, 2> van_der_waals_names{"switch", "fswitch"};
 constexpr std::array<std::string_view, 2> method_names{"all-pairs", "cutoff"};
+constexpr std::array<std::string_view, 2> solvent_names{"none", "eef1-sb"};
+constexpr std::array<std::string_view, 2> end_names{"smooth", "sharp"};
+constexpr std::array<std::string_view, 2> exponential_names{"exact", "table"};
 
 // Å. No two nuclei are that close; the shortest bonds, to hydrogen, are ten times as long.
 constexpr double coincident_distance = 0.1;
 constexpr std::size_t most_warnings = 8;
 
-NonbondedSettings build_settings(const EnergyOptions& options) {
-    NonbondedSettings settings = options.nonbonded;
+// With --solvent, how it ends: all as scenes have it, or solvation alone as EEF1 is published.
+SolvationEnd find_end(const EnergyOptions& options) {
+    if (choice_called("--solvent", options.solvent, solvent_names) == 1) {
+        const std::size_t end =
+            choice_called("--solvent-end", options.solvent_end.value_or("smooth"), end_names);
+        return end == 0 ? SolvationEnd::Smooth : SolvationEnd::Sharp;
+    }
+    if (options.solvent_end || options.solvent_exp || options.solvent_table || options.per_atom) {
+        throw LoadError({"--solvent " + options.solvent},
+                        "--solvent-end, --solvent-exp, --solvent-table and --per-atom are of a "
+                        "solvent; expected --solvent eef1-sb with them");
+    }
+    return SolvationEnd::None;
+}
+
+void choose_cutoff(const EnergyOptions& options, NonbondedSettings& settings) {
+    const bool is_chosen =
+        options.cutoff || options.switch_from || options.electrostatics || options.van_der_waals;
     if (choice_called("--method", options.method, method_names) == 1) {
+        if (settings.solvation == SolvationEnd::Smooth) {
+            throw LoadError({"--method " + options.method},
+                            "--solvent-end smooth has ends of its own at 9 Å; expected "
+                            "--solvent-end sharp with a cutoff");
+        }
         settings.cutoff = options.cutoff.value_or(settings.cutoff);
         settings.switch_from = options.switch_from.value_or(settings.switch_from);
         settings.electrostatics = static_cast<ElectrostaticCutoff>(
@@ -49,12 +78,24 @@ NonbondedSettings build_settings(const EnergyOptions& options) {
         settings.van_der_waals = static_cast<VanDerWaalsCutoff>(
             1 + choice_called("--van-der-waals", options.van_der_waals.value_or("switch"),
                               van_der_waals_names));
-    } else if (options.cutoff || options.switch_from || options.electrostatics ||
-               options.van_der_waals) {
+    } else if (is_chosen) {
         throw LoadError({"--method " + options.method},
                         "--cutoff, --switch-from, --electrostatics and --van-der-waals are of a "
                         "cutoff; expected --method cutoff with them");
     }
+}
+
+NonbondedSettings build_settings(const EnergyOptions& options) {
+    const SolvationEnd end = find_end(options);
+    NonbondedSettings settings;
+    if (end == SolvationEnd::Smooth) settings = eef1_settings(end);
+    settings.solvation = end;
+    const bool is_solvated = end != SolvationEnd::None;
+    settings.coulomb_constant = options.coulomb_constant;
+    settings.dielectric =
+        options.dielectric.value_or(is_solvated ? eef1_settings().dielectric : 1.0);
+    settings.distance_dielectric = options.distance_dielectric || is_solvated;
+    choose_cutoff(options, settings);
     if (const auto problem = find_problem(settings)) {
         throw LoadError({"--method " + options.method}, std::string(*problem));
     }
@@ -116,6 +157,69 @@ std::string format_forces(const Connectivity& connectivity, std::span<const Vec3
     return text;
 }
 
+constexpr std::string_view atom_columns =
+    "segment,residue,number,atom,type,charge_e,solvation_kcal_per_mol\n";
+
+std::string format_atoms(const Connectivity& connectivity, std::span<const double> solvation) {
+    std::string text(atom_columns);
+    for (std::size_t i = 0; i < solvation.size(); ++i) {
+        const AtomName& name = connectivity.names[i];
+        fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{}\n", name.segment,
+                       name.residue, name.number, name.atom, connectivity.type[i],
+                       connectivity.charge[i], solvation[i]);
+    }
+    return text;
+}
+
+// EEF1-SB is made for neutral ionic groups; others are said, since charges are no part of
+// solvation.
+void warn_of_charges(const Connectivity& connectivity) {
+    const std::vector<std::string_view> types(connectivity.type.begin(), connectivity.type.end());
+    const std::vector<std::string> charged =
+        find_charged(connectivity.names, types, connectivity.charge);
+    for (const std::string& sentence : charged)
+        fmt::print(stderr, "warning: {}, which EEF1-SB's implicit water is not made for\n",
+                   sentence);
+}
+
+// Energies and forces of everything with the exact exponential; then each atom's solvation as the
+// options say.
+struct Energies {
+    EnergyTerms terms;
+    std::vector<Vec3> forces;
+    std::vector<double> solvation;  // of each atom, kcal/mol; empty without a solvent
+};
+
+Energies find_energies(const EnergyOptions& options, const Topology& topology,
+                       const NonbondedSettings& settings, std::span<const Vec3> positions) {
+    const auto exponential = static_cast<SolvationExponential>(
+        choice_called("--solvent-exp", options.solvent_exp.value_or("exact"), exponential_names));
+    Energies found{{}, std::vector<Vec3>(positions.size(), Vec3::Zero()), {}};
+    found.terms = add_forces(topology, settings, positions, found.forces);
+    if (settings.solvation == SolvationEnd::None) return found;
+    found.solvation = find_solvation_energies(topology, settings.solvation, positions, exponential);
+    found.terms.solvation = std::accumulate(found.solvation.begin(), found.solvation.end(), 0.0);
+    return found;
+}
+
+Topology build_solvated_topology(const EnergyOptions& options, const Connectivity& connectivity,
+                                 const ForceField& force_field) {
+    Topology topology = build_topology(connectivity, force_field);
+    if (options.solvent == "none") return topology;
+    warn_of_charges(connectivity);
+    const SolvationTable table = options.solvent_table
+                                     ? parse_solvation_table(read_text_file(*options.solvent_table),
+                                                             options.solvent_table->string())
+                                     : eef1sb_table();
+    topology.solvation = assign_solvation(connectivity, force_field, table);
+    return topology;
+}
+
+Existing check_written(const std::optional<std::filesystem::path>& path, std::string_view columns,
+                       bool overwrites) {
+    return path ? check_output(*path, columns, overwrites) : Existing::Refuse;
+}
+
 }  // namespace
 
 int energy_command(const EnergyOptions& options) {
@@ -125,24 +229,24 @@ int energy_command(const EnergyOptions& options) {
         throw LoadError({options.system.string()},
                         "a PSF holds no coordinates; expected --coordinates FILE with it");
     }
-    const Existing existing = options.forces
-                                  ? check_output(*options.forces, force_columns, options.overwrites)
-                                  : Existing::Refuse;
-    const ForceField force_field = read_force_field(options.toppar);
+    const Existing forces = check_written(options.forces, force_columns, options.overwrites);
+    const Existing atoms = check_written(options.per_atom, atom_columns, options.overwrites);
+    ForceField force_field = read_force_field(options.toppar);
+    if (!is_psf && settings.solvation != SolvationEnd::None)
+        force_field = neutralise_ionic_groups(std::move(force_field));
     const Structure structure = read_structure(is_psf ? *options.coordinates : options.system);
     const Connectivity connectivity =
         is_psf ? read_psf(options.system) : type_structure(force_field, structure);
     const std::vector<Vec3> positions = match_positions(
         connectivity, options.coordinates ? read_structure(*options.coordinates) : structure);
     warn_of_coincident_atoms(connectivity, positions);
-    const Topology topology = build_topology(connectivity, force_field);
-
-    std::vector<Vec3> forces(positions.size(), Vec3::Zero());
-    const EnergyTerms energy = add_forces(topology, settings, positions, forces);
-
-    if (options.forces) {
-        write_text_file(*options.forces, format_forces(connectivity, forces), existing);
-    }
+    const Topology topology = build_solvated_topology(options, connectivity, force_field);
+    const Energies found = find_energies(options, topology, settings, positions);
+    const EnergyTerms& energy = found.terms;
+    if (options.forces)
+        write_text_file(*options.forces, format_forces(connectivity, found.forces), forces);
+    if (options.per_atom)
+        write_text_file(*options.per_atom, format_atoms(connectivity, found.solvation), atoms);
     if (options.json) {
         nlohmann::ordered_json json;
         for (const auto& [name, value] : list_terms(energy)) json[name] = value;
@@ -161,7 +265,9 @@ void add_energy(CLI::App& program, ProgramCommand& chosen) {
     EnergyOptions& options = own_options<EnergyOptions>(energy, chosen, energy_command);
     describe(energy, "Look and measure",
              {"palpa energy system.psf --coordinates system.crd --toppar top_all36_prot.rtf "
-              "par_all36m_prot.prm"});
+              "par_all36m_prot.prm",
+              "palpa energy solvent.psf --coordinates solvent.crd --toppar system.prm solvent.prm "
+              "--solvent eef1-sb --per-atom atoms.csv"});
     energy.add_option("system", options.system, "PSF, or a structure that has all its atoms")
         ->required();
     energy.add_option("--coordinates", options.coordinates, "of a PSF: .crd, .pdb or .cif")
@@ -170,12 +276,34 @@ void add_energy(CLI::App& program, ProgramCommand& chosen) {
     energy.add_option("--method", options.method, "all-pairs, or cutoff (all-pairs unless given)")
         ->type_name("NAME");
     energy
-        .add_option("--coulomb-constant", options.nonbonded.coulomb_constant,
+        .add_option("--solvent", options.solvent,
+                    "none, or eef1-sb: implicit water, of neutral ionic groups, with a dielectric "
+                    "of 1.5 times the distance (none unless given)")
+        ->type_name("NAME");
+    energy
+        .add_option("--solvent-end", options.solvent_end,
+                    "smooth: all ends as in scenes; sharp: solvation ends at 9 Å as in CHARMM, and "
+                    "other pairs as --method says (smooth unless given)")
+        ->type_name("NAME");
+    energy
+        .add_option("--solvent-exp", options.solvent_exp,
+                    "exact, or table: solvation, not its forces, by the table of CHARMM until 2013 "
+                    "(exact unless given)")
+        ->type_name("NAME");
+    energy
+        .add_option("--solvent-table", options.solvent_table,
+                    "CSV file of solvation by atom type, instead of the program's")
+        ->type_name("FILE");
+    energy.add_option("--per-atom", options.per_atom, "CSV file for the solvation of every atom")
+        ->type_name("FILE");
+    energy
+        .add_option("--coulomb-constant", options.coulomb_constant,
                     "kcal Å/mol/e^2, CHARMM's 332.0716 unless given")
         ->check(in_range(0.0, 1e6));
-    energy.add_option("--dielectric", options.nonbonded.dielectric, "1 unless given")
+    energy
+        .add_option("--dielectric", options.dielectric, "1 unless given, 1.5 with implicit water")
         ->check(in_range(1e-6, 1e6));
-    energy.add_flag("--distance-dielectric", options.nonbonded.distance_dielectric,
+    energy.add_flag("--distance-dielectric", options.distance_dielectric,
                     "a dielectric of that times the distance in Å");
     energy.add_option("--cutoff", options.cutoff, "Å, 12 unless given")->check(in_range(0.0, 1e6));
     energy.add_option("--switch-from", options.switch_from, "Å, 10 unless given")
