@@ -161,18 +161,10 @@ void relax_conformations(std::string_view how, const TorsionModel& model, std::s
     CHECK(tally.at_rest + tally.out_of_steps + tally.stuck == count);
 }
 
-void relax_conformations(std::string_view name, const test::FlexibleCase& c, std::size_t count,
-                         const LeastAtRest& least) {
-    const TorsionModel model = test::model_of(c, {BaseFreedom::Free}, test::all_joints);
-    std::cout << fmt::format("{}, {} degrees of freedom\n", name, model.coordinates);
-    for (const test::WayOfStepping& way : test::all_ways_of_stepping()) {
-        const bool has_few = way.name.starts_with("few");
-        relax_conformations(way.name, model, count, has_few ? least.few_joints : least.all_joints,
-                            [&](const TorsionState& start, Tally& tally) {
-                                step_to_rest(model, way, start, tally);
-                            });
-    }
-    for (const ForceSettings& forces : {ForceSettings{}, test::fast_forces()}) {
+void minimise_conformations(const TorsionModel& model, const NonbondedSettings& nonbonded,
+                            std::size_t count, const LeastAtRest& least) {
+    for (ForceSettings forces : {ForceSettings{}, test::fast_forces()}) {
+        forces.nonbonded = nonbonded;
         relax_conformations(forces.fast ? "limited-memory BFGS, fast pairs"
                                         : "limited-memory BFGS, pairs in double",
                             model, count, least.minimised,
@@ -186,6 +178,20 @@ void relax_conformations(std::string_view name, const test::FlexibleCase& c, std
                                 follow_to_rest(model, forces, start, tally);
                             });
     }
+}
+
+void relax_conformations(std::string_view name, const test::FlexibleCase& c, std::size_t count,
+                         const LeastAtRest& least) {
+    const TorsionModel model = test::model_of(c, {BaseFreedom::Free}, test::all_joints);
+    std::cout << fmt::format("{}, {} degrees of freedom\n", name, model.coordinates);
+    for (const test::WayOfStepping& way : test::all_ways_of_stepping()) {
+        const bool has_few = way.name.starts_with("few");
+        relax_conformations(way.name, model, count, has_few ? least.few_joints : least.all_joints,
+                            [&](const TorsionState& start, Tally& tally) {
+                                step_to_rest(model, way, start, tally);
+                            });
+    }
+    minimise_conformations(model, {}, count, least);
 }
 
 }  // namespace
@@ -208,4 +214,11 @@ TEST_CASE("random conformations of tetrapeptides with proline and lysine go towa
                         {0, 0, 0.8, 0.85});
     relax_conformations("ADKA", test::read_flexible_case(*folder, "tetra_adka_c36m"), 50,
                         {0, 0, 0.6, 0.85});
+}
+
+TEST_CASE("1,000 random conformations in implicit water go towards rest", "[hard][slow]") {
+    const TorsionModel model =
+        test::model_of(test::solvated(test::tetrapeptide()), {BaseFreedom::Free}, test::all_joints);
+    std::cout << fmt::format("AERA in implicit water, {} degrees of freedom\n", model.coordinates);
+    minimise_conformations(model, eef1_settings(), 1000, {0, 0, 0.75, 0.9});
 }
