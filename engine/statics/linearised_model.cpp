@@ -1,5 +1,6 @@
 #include "statics/linearised_model.h"
 
+#include "statics/pair_derivatives.h"
 #include "statics/response_span.h"
 
 #include <algorithm>

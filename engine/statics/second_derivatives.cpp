@@ -3,11 +3,9 @@
 #include "core/assertion.h"
 #include "forces/pair_hessian.h"
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <utility>
 
 namespace palpa {
 namespace {
@@ -23,21 +21,6 @@ Mat6 from_point(const Vec3& from, const Vec3& to) noexcept {
     Mat6 X = Mat6::Identity();
     X.bottomLeftCorner<3, 3>() = -cross_matrix(to - from);
     return X;
-}
-
-// What the pairs of two atoms add to the block of their bodies: with T = (-[x]x, 1), which makes a
-// screw the velocity at x, T_i^T (first 1 + second d d^T) T_j. It is the negative of the Hessian.
-Mat6 pair_block(const Vec3& x_i, const Vec3& x_j, const PairHessian& pair) noexcept {
-    const Vec3 d = x_i - x_j;
-    Vec6 line;
-    line << x_i.cross(d), d;
-    const Mat3 X_i = cross_matrix(x_i), X_j = cross_matrix(x_j);
-    Mat6 block = pair.second * line * line.transpose();
-    block.topLeftCorner<3, 3>() -= pair.first * X_i * X_j;
-    block.topRightCorner<3, 3>() += pair.first * X_i;
-    block.bottomLeftCorner<3, 3>() -= pair.first * X_j;
-    block.bottomRightCorner<3, 3>().diagonal().array() += pair.first;
-    return block;
 }
 
 // The pairs that the topology leaves out, either way round.
@@ -61,8 +44,6 @@ public:
           law_(model.topology, settings),
           excluded_(find_excluded(model.topology)),
           is_left_out_(model.topology.size(), 0) {}
-
-    static bool has(std::uint32_t /*body*/) noexcept { return true; }
 
     // Of one body with each other, about a point.
     void update_row(std::uint32_t body, const Vec3& point, std::vector<Mat6>& row) {
@@ -95,54 +76,6 @@ private:
     std::vector<std::uint8_t> is_left_out_;  // of the atom at hand
 };
 
-// Of listed pairs alone.
-class ListedBlocks {
-public:
-    ListedBlocks(const TorsionModel& model, const NonbondedSettings& settings,
-                 const TorsionState& state, std::span<const std::array<std::uint32_t, 2>> pairs,
-                 std::span<const std::array<std::uint32_t, 2>> solvated)
-        : model_(model),
-          state_(state),
-          vacuum_(model.topology, without_solvation(settings)),
-          water_(model.topology, settings),
-          of_body_(model.tree.bodies.bodies.size()) {
-        const std::vector<std::uint32_t>& body_of = model.tree.bodies.body_of;
-        const auto add = [&](std::span<const std::array<std::uint32_t, 2>> listed, bool is_water) {
-            for (const auto& [i, j] : listed) {
-                if (body_of[i] == body_of[j]) continue;
-                of_body_[body_of[i]].push_back({i, j, is_water});
-                of_body_[body_of[j]].push_back({j, i, is_water});
-            }
-        };
-        add(pairs, false);
-        add(solvated, true);
-    }
-
-    bool has(std::uint32_t body) const noexcept { return !of_body_[body].empty(); }
-
-    void update_row(std::uint32_t body, const Vec3& point, std::vector<Mat6>& row) const {
-        row.assign(of_body_.size(), Mat6::Zero());
-        for (const auto& [i, j, is_water] : of_body_[body]) {
-            const Vec3 x_i = state_.positions[i] - point, x_j = state_.positions[j] - point;
-            const double r2 = (x_i - x_j).squaredNorm();
-            if (r2 >= (is_water ? water_ : vacuum_).reach2()) continue;
-            row[model_.tree.bodies.body_of[j]] += pair_block(
-                x_i, x_j, is_water ? water_.solvation(i, j, r2) : vacuum_.plain(i, j, r2));
-        }
-    }
-
-private:
-    struct Listed {
-        std::uint32_t i, j;
-        bool is_water;  // solvation alone
-    };
-
-    const TorsionModel& model_;
-    const TorsionState& state_;
-    TopologyPairHessian vacuum_, water_;
-    std::vector<std::vector<Listed>> of_body_;
-};
-
 // Blocks times screws: what one body gets from each coordinate, about a point of the body.
 using Wrenches = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
@@ -168,9 +101,8 @@ void add_wrenches(const TorsionModel& model, const LocalCoordinates& coordinates
 
 // From where both bodies are: -S_a^T (sum of blocks of what a moves with what b moves) S_b. Writes
 // into `outward` the sum of each body's blocks, with all behind it, about the body's own point.
-template <class Blocks>
 void add_pair_products(const TorsionModel& model, const LocalCoordinates& coordinates,
-                       Blocks& blocks, const TorsionState& state,
+                       PairBlocks& blocks, const TorsionState& state,
                        std::span<const CoordinateMotion> motions, std::vector<Mat6>& outward,
                        Eigen::MatrixXd& all) {
     const std::vector<Body>& bodies = model.tree.bodies.bodies;
@@ -180,15 +112,11 @@ void add_pair_products(const TorsionModel& model, const LocalCoordinates& coordi
     std::vector<Wrenches> wrenches(bodies.size());
     for (std::uint32_t a = static_cast<std::uint32_t>(bodies.size()); a-- > 0;) {
         Wrenches& of_a = wrenches[a];
-        const bool has_own = blocks.has(a);
-        if (!has_own && of_a.size() == 0) continue;
         const Vec3 point = point_of(model, state, a);
         if (of_a.size() == 0) of_a.setZero(6, coordinates.size());
-        if (has_own) {
-            blocks.update_row(a, point, row);
-            for (const Mat6& block : row) outward[a] += block;
-            add_wrenches(model, coordinates, motions, point, row, of_a);
-        }
+        blocks.update_row(a, point, row);
+        for (const Mat6& block : row) outward[a] += block;
+        add_wrenches(model, coordinates, motions, point, row, of_a);
         for (const CarriedCoordinate& carried : coordinates.of(a)) {
             all.row(carried.column) -=
                 motions[static_cast<std::size_t>(carried.column)].screw_at(point).transpose() *
@@ -223,6 +151,19 @@ void add_outward(const TorsionModel& model, const LocalCoordinates& coordinates,
 }
 
 }  // namespace
+
+Mat6 pair_block(const Vec3& x_i, const Vec3& x_j, const PairHessian& pair) noexcept {
+    const Vec3 d = x_i - x_j;
+    Vec6 line;
+    line << x_i.cross(d), d;
+    const Mat3 X_i = cross_matrix(x_i), X_j = cross_matrix(x_j);
+    Mat6 block = pair.second * line * line.transpose();
+    block.topLeftCorner<3, 3>() -= pair.first * X_i * X_j;
+    block.topRightCorner<3, 3>() += pair.first * X_i;
+    block.bottomLeftCorner<3, 3>() -= pair.first * X_j;
+    block.bottomRightCorner<3, 3>().diagonal().array() += pair.first;
+    return block;
+}
 
 void add_outward_products(const TorsionModel& model, const LocalCoordinates& coordinates,
                           std::span<const CoordinateMotion> motions, std::span<const Vec3> points,
@@ -264,23 +205,6 @@ void update_second_derivatives(const TorsionModel& model, const LocalCoordinates
     Eigen::MatrixXd half = Eigen::MatrixXd::Zero(coordinates.size(), coordinates.size());
     add_outward(model, coordinates, state, motions, outward, half);
     add_term_derivatives(model, coordinates, paths, settings, state, motions, half);
-    derivatives.all += half + half.transpose();
-}
-
-void update_pair_derivatives(const TorsionModel& model, const LocalCoordinates& coordinates,
-                             std::span<const std::array<std::uint32_t, 2>> pairs,
-                             std::span<const std::array<std::uint32_t, 2>> solvated,
-                             const NonbondedSettings& settings, const TorsionState& state,
-                             SecondDerivatives& derivatives) {
-    derivatives.mobile = coordinates.mobile;
-    derivatives.all.setZero(coordinates.size(), coordinates.size());
-    std::vector<CoordinateMotion> motions;
-    update_motions(model, coordinates, state, motions);
-    std::vector<Mat6> outward;
-    const ListedBlocks blocks(model, settings, state, pairs, solvated);
-    add_pair_products(model, coordinates, blocks, state, motions, outward, derivatives.all);
-    Eigen::MatrixXd half = Eigen::MatrixXd::Zero(coordinates.size(), coordinates.size());
-    add_outward(model, coordinates, state, motions, outward, half);
     derivatives.all += half + half.transpose();
 }
 

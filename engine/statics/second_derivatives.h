@@ -1,11 +1,11 @@
 // Second derivatives of the energy along joints, bases and what hands move, in double: the
 // reference of statics/fast_second_derivatives.h.
 #pragma once
+#include "forces/pair_hessian.h"
 #include "statics/local_coordinates.h"
 #include "statics/term_derivatives.h"
 
 #include <Eigen/Core>
-#include <array>
 #include <cstdint>
 #include <span>
 
@@ -37,15 +37,12 @@ void update_second_derivatives(const TorsionModel& model, const LocalCoordinates
                                const ModelPaths& paths, const NonbondedSettings& settings,
                                const TorsionState& state, SecondDerivatives& derivatives);
 
-// The same of some plain pairs alone, each named once: of `pairs` without solvation, and of
-// `solvated` its part alone.
-void update_pair_derivatives(const TorsionModel& model, const LocalCoordinates& coordinates,
-                             std::span<const std::array<std::uint32_t, 2>> pairs,
-                             std::span<const std::array<std::uint32_t, 2>> solvated,
-                             const NonbondedSettings& settings, const TorsionState& state,
-                             SecondDerivatives& derivatives);
+// What the pair of two atoms, at x_i and x_j from some point, adds to the block of their bodies:
+// with T = (-[x]x, 1), which makes a screw about the point the velocity at x, T_i^T (first 1 +
+// second d d^T) T_j. It is the negative of the Hessian.
+Mat6 pair_block(const Vec3& x_i, const Vec3& x_j, const PairHessian& pair) noexcept;
 
-// One stage of it, shared with the fast form. `inward` has for each coordinate the transposed
+// One stage of it, shared with other forms. `inward` has for each coordinate the transposed
 // blocks of its body (and of all that hang on it) with all others, times the coordinate's screw,
 // taken about the body's point. Adds to half of the second derivatives: a matrix that makes all of
 // them with its transpose.

@@ -1,5 +1,6 @@
 #include "statics/second_derivatives.h"
 
+#include "statics/pair_derivatives.h"
 #include "statics/relax_joints.h"
 #include "tests/support/second_differences.h"
 #include "tests/support/shared_data.h"
@@ -7,12 +8,15 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
 #include <random>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -177,6 +181,47 @@ TEST_CASE("second derivatives of solvated peptides are the differences of the gr
         differences - test::difference_columns(c.model, coordinates, vacuum, c.state, columns);
     CHECK(part.cwiseAbs().maxCoeff() > 1);
     CHECK((part - expected).cwiseAbs().maxCoeff() < 1e-6 * part.cwiseAbs().maxCoeff());
+}
+
+TEST_CASE("second derivatives of listed pairs are those of all, where all are listed",
+          "[statics][hessian][solvation]") {
+    test::FlexibleCase peptide = test::solvated(test::tetrapeptide());
+    Topology& topology = peptide.topology;
+    topology.dihedrals.clear();
+    topology.impropers.clear();
+    topology.cmap_terms.clear();
+    topology.exclusions.pairs14.clear();
+    HeldCase c = two_peptides(peptide, {9, 6, -4}, BaseFreedom::Turning, false);
+    c.state.springs.clear();
+    c.hands = {{.molecule = 0}};
+    const LocalCoordinates coordinates = build_local_coordinates(c.model, c.hands);
+    std::vector<std::array<std::uint32_t, 2>> plain, some;
+    for (std::uint32_t i = 0; i < c.model.topology.size(); ++i) {
+        const auto excluded = c.model.topology.exclusions.of(i);
+        for (std::uint32_t j = i + 1; j < c.model.topology.size(); ++j) {
+            if (!std::ranges::binary_search(excluded, j)) plain.push_back({i, j});
+        }
+    }
+    const auto listed = [&](const auto& pairs, const auto& solvated) {
+        SecondDerivatives derivatives;
+        update_pair_derivatives(c.model, coordinates, pairs, solvated, eef1_settings(), c.state,
+                                derivatives);
+        return derivatives.all;
+    };
+    const Eigen::MatrixXd all = derivatives_of(c, coordinates, eef1_settings()).all;
+    const double largest = all.cwiseAbs().maxCoeff();
+
+    CHECK((listed(plain, plain) - all).cwiseAbs().maxCoeff() < 1e-11 * largest);
+    CHECK((listed(plain, some) -
+           derivatives_of(c, coordinates, eef1_settings(SolvationEnd::None)).all)
+              .cwiseAbs()
+              .maxCoeff() < 1e-11 * largest);
+    // Any share of them, and the rest.
+    std::vector<std::array<std::uint32_t, 2>> others;
+    for (const auto& pair : plain) (pair[1] % 5 == 0 ? some : others).push_back(pair);
+    CHECK((listed(some, others) + listed(others, some) - all).cwiseAbs().maxCoeff() <
+          1e-11 * largest);
+    CHECK(listed(std::span(plain).first(0), std::span(plain).first(0)).isZero(0));
 }
 
 TEST_CASE("nothing changes where everything moves as one", "[statics][hessian]") {

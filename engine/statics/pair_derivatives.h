@@ -1,0 +1,21 @@
+// Second derivatives of listed pairs alone, in double: what models that are exact near the hand
+// take off those of all pairs.
+#pragma once
+#include "statics/second_derivatives.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+namespace palpa {
+
+// As update_second_derivatives, of some plain pairs, each named once: of `pairs` without solvation,
+// and of `solvated` its part alone. The work grows with the number of coordinates that move one of
+// their atoms.
+void update_pair_derivatives(const TorsionModel& model, const LocalCoordinates& coordinates,
+                             std::span<const std::array<std::uint32_t, 2>> pairs,
+                             std::span<const std::array<std::uint32_t, 2>> solvated,
+                             const NonbondedSettings& settings, const TorsionState& state,
+                             SecondDerivatives& derivatives);
+
+}  // namespace palpa
