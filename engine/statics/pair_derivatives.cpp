@@ -3,6 +3,7 @@
 #include "forces/pair_hessian.h"
 
 #include <cstddef>
+#include <unordered_map>
 #include <vector>
 
 namespace palpa {
@@ -85,11 +86,7 @@ public:
           wrenches_(outward_.size()),
           row_(outward_.size(), Mat6::Zero()),
           of_body_(outward_.size()) {
-        const std::vector<std::uint32_t>& body_of = model.tree.bodies.body_of;
-        for (const ListedPair& pair : listed) {
-            of_body_[body_of[pair.i]].push_back({pair.i, pair.j, pair.hessian});
-            of_body_[body_of[pair.j]].push_back({pair.j, pair.i, pair.hessian});
-        }
+        sum_blocks(listed);
         update_motions(model, moving.numbered, state, motions_);
         for (const CoordinateMotion& motion : motions_) screws_.push_back(motion.screw_at(origin));
     }
@@ -114,13 +111,37 @@ public:
     }
 
 private:
-    // The blocks of a body's pairs, along all that moves their other atoms.
+    // Of each two bodies once: that of the other way round is its transpose.
+    void sum_blocks(std::span<const ListedPair> listed) {
+        const std::vector<std::uint32_t>& body_of = model_.tree.bodies.body_of;
+        std::unordered_map<std::uint64_t, std::uint32_t> number_of;
+        for (const ListedPair& pair : listed) {
+            const bool is_swapped = body_of[pair.j] < body_of[pair.i];
+            const std::uint32_t i = is_swapped ? pair.j : pair.i, j = is_swapped ? pair.i : pair.j;
+            const std::uint32_t a = body_of[i], b = body_of[j];
+            const auto [found, is_new] = number_of.try_emplace(
+                std::uint64_t{a} << 32U | b, static_cast<std::uint32_t>(blocks_.size()));
+            if (is_new) {
+                blocks_.emplace_back(Mat6::Zero());
+                of_body_[a].push_back({b, found->second, false});
+                of_body_[b].push_back({a, found->second, true});
+            }
+            blocks_[found->second] += pair_block(state_.positions[i] - origin_,
+                                                 state_.positions[j] - origin_, pair.hessian);
+        }
+    }
+
+    // The blocks of a body, along all that moves the other one.
     void add_own(std::uint32_t body, WrenchColumns& wrenches) {
-        for (const ListedPair& pair : of_body_[body]) {
-            const Mat6 block = pair_block(state_.positions[pair.i] - origin_,
-                                          state_.positions[pair.j] - origin_, pair.hessian);
-            row_[model_.tree.bodies.body_of[pair.j]] += block;
-            outward_[body] += block;
+        for (const Block& of : of_body_[body]) {
+            Mat6& row = row_[of.other];
+            const Mat6& block = blocks_[of.number];
+            if (of.is_transposed) {
+                row = block.transpose();
+            } else {
+                row = block;
+            }
+            outward_[body] += row;
         }
         for (std::size_t k = moving_.bodies.size(); k-- > 0;) {
             const std::uint32_t b = moving_.bodies[k], parent = model_.tree.bodies.bodies[b].parent;
@@ -163,7 +184,13 @@ private:
     std::vector<Mat6> outward_;
     std::vector<WrenchColumns> wrenches_;  // of bodies on whose children work is done
     std::vector<Mat6> row_;                // zero between calls
-    std::vector<std::vector<ListedPair>> of_body_;
+    std::vector<Mat6> blocks_;
+    struct Block {
+        std::uint32_t other;  // body
+        std::uint32_t number;
+        bool is_transposed;
+    };
+    std::vector<std::vector<Block>> of_body_;
 };
 
 }  // namespace
