@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <set>
 #include <string_view>
@@ -134,6 +135,24 @@ std::vector<std::string> find_uncovered_types(const Connectivity& connectivity,
         uncovered.push_back(fmt::format("{} ({})", type, to_string(connectivity.names[i])));
     }
     return uncovered;
+}
+
+std::vector<std::string> find_other_radii(const Connectivity& connectivity,
+                                          const Solvation& solvation, const SolvationTable& table) {
+    constexpr double alike = 0.02;  // Å
+    std::set<std::string_view> seen;
+    std::vector<std::string> others;
+    for (std::size_t i = 0; i < connectivity.type.size(); ++i) {
+        const auto row = table.types.find(connectivity.type[i]);
+        const bool is_counted = solvation.volume[i] != 0 && row != table.types.end();
+        if (!is_counted || row->second.is_assigned) continue;
+        const double radius = solvation.radius[i];
+        if (std::abs(radius - row->second.radius) <= alike || !seen.insert(row->first).second)
+            continue;
+        others.push_back(
+            fmt::format("{} ({} Å, not {} Å)", row->first, radius, row->second.radius));
+    }
+    return others;
 }
 
 std::vector<std::string> find_assigned_types(const Connectivity& connectivity,

@@ -39,6 +39,12 @@ std::vector<std::string> find_uncovered_types(const Connectivity& connectivity,
                                               const SolvationTable& table,
                                               std::span<const std::uint8_t> is_structural = {});
 
+// The types whose radius, of the force field at hand, is not that of the one that the table was
+// made for (0.02 Å), each once, as "CT2 (2.175 Å, not 2.01 Å)". Rows that were assigned by analogy
+// have the radius of whoever uses them.
+std::vector<std::string> find_other_radii(const Connectivity& connectivity,
+                                          const Solvation& solvation, const SolvationTable& table);
+
 // Those types of a structure whose rows were assigned by analogy, each once, with what they are
 // assigned to: "CG331: as CT3 (CH3); used by TL-3".
 std::vector<std::string> find_assigned_types(const Connectivity& connectivity,

@@ -108,11 +108,12 @@ private:
         (void)real(fields[EnthalpyColumn], "dH_ref; expected a number, in kcal/mol");
         (void)real(fields[HeatCapacityColumn], "dCp_ref; expected a number, in cal/(mol K)");
         row.lambda = real(fields[LambdaColumn], "lambda; expected a number, in Å");
-        const double radius = real(fields[RadiusColumn], "radius; expected a number, in Å");
+        row.radius = real(fields[RadiusColumn], "radius; expected a number, in Å");
         if (row.volume < 0) fail(fmt::format("a volume of {} Å^3; expected 0 or more", row.volume));
         if (row.lambda <= 0)
             fail(fmt::format("a lambda of {} Å; expected more than 0", row.lambda));
-        if (radius <= 0) fail(fmt::format("a radius of {} Å; expected more than 0", radius));
+        if (row.radius <= 0)
+            fail(fmt::format("a radius of {} Å; expected more than 0", row.radius));
         row.source = unquoted(fields[SourceColumn]);
         row.is_assigned = row.source.starts_with("ASSIGNED");
         row.place = {table_.file, line_, 0};

@@ -14,6 +14,7 @@ struct SolvationRow {
     double dg_ref = 0;         // kcal/mol
     double dg_free = 0;        // kcal/mol
     double lambda = 0;         // Å, > 0
+    double radius = 0;         // Å, > 0, of the force field that the row was made for
     std::string source;        // where the numbers are from
     bool is_assigned = false;  // by analogy, which its authors did not publish
     TextPlace place;
@@ -26,8 +27,8 @@ struct SolvationTable {
 
 // Lines that begin with '#' and empty ones are passed over; the first other line must be
 // "type,volume_A3,dG_ref,dG_free,dH_ref,dCp_ref,lambda_A,R_min_half_A,source", each line behind it
-// one type with these fields, the last in quotes or not. Enthalpies, heat capacities and radii must
-// be numbers and are not kept: one temperature, 298.15 K, and the radii of the force field. A
+// one type with these fields, the last in quotes or not. Enthalpies and heat capacities must be
+// numbers and are not kept: one temperature, 298.15 K. A
 // source that begins with ASSIGNED means no published row. Throws LoadError with the line of what
 // is wrong: fields that are missing or too many, no number, a volume below 0, a lambda or radius
 // that is not above 0, a type that comes twice, no type at all.

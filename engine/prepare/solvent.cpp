@@ -43,7 +43,8 @@ std::vector<std::uint8_t> find_structural(const Connectivity& connectivity,
     return find_water_atoms(connectivity.names, connectivity.mass);
 }
 
-std::optional<SolventObstacle> find_obstacle(const Connectivity& connectivity,
+std::optional<SolventObstacle> find_obstacle(const ForceField& force_field,
+                                             const Connectivity& connectivity,
                                              const std::vector<std::vector<std::uint32_t>>& groups,
                                              const PrepareSettings& settings) {
     const std::vector<std::uint8_t> is_water =
@@ -62,6 +63,18 @@ std::optional<SolventObstacle> find_obstacle(const Connectivity& connectivity,
                         uncovered.size() == 1 ? "a type of atoms" : "types of atoms",
                         join_some(uncovered)),
             "leave those residues out (--without, --no-ions)"};
+    }
+    const std::vector<std::string> others =
+        find_other_radii(connectivity,
+                         assign_solvation(connectivity, force_field, eef1sb_table(),
+                                          find_structural(connectivity, settings)),
+                         eef1sb_table());
+    if (!others.empty()) {
+        return SolventObstacle{
+            fmt::format("EEF1-SB is made for CHARMM36, and these parameter files have other radii: "
+                        "{}",
+                        join_some(others)),
+            "give CHARMM36's or CHARMM36m's files (--toppar)"};
     }
     const std::vector<std::string> charged = find_charged_groups(connectivity, groups);
     if (!charged.empty()) {
@@ -145,7 +158,8 @@ std::optional<SolvatedSystem> solvate(const ForceField& force_field, const Struc
     system.connectivity = build_connectivity(system.force_field, structure, generate);
     const std::vector<std::vector<std::uint32_t>> groups =
         find_charge_groups(system.force_field, structure, generate);
-    if (const auto obstacle = find_obstacle(system.connectivity, groups, settings)) {
+    if (const auto obstacle =
+            find_obstacle(system.force_field, system.connectivity, groups, settings)) {
         if (settings.solvent) {
             throw LoadError({structure.file},
                             fmt::format("no --solvent eef1-sb: {}; expected to {}, or "

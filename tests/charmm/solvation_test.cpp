@@ -185,6 +185,25 @@ TEST_CASE("atoms have their types' numbers, hydrogens none", "[charmm][solvation
     CHECK(again.radius == solvation.radius);
 }
 
+TEST_CASE("radii of another force field than the table's are named", "[charmm][solvation]") {
+    const ForceField field = test::force_field_of(small_field, "a.prm");
+    const Connectivity atoms = atoms_of({{"LIG", "CX"}, {"LIG", "HX"}, {"LIG", "CX"}});
+    const auto others = [&](const std::string& rows) {
+        const SolvationTable table = table_of(rows);
+        return find_other_radii(atoms, assign_solvation(atoms, field, table), table);
+    };
+    CHECK(others("CX,11.5,-0.187,-0.2,0,0,3.5,2.0,a\n") ==
+          std::vector<std::string>{"CX (2.11 Å, not 2 Å)"});
+    CHECK(others("CX,11.5,-0.187,-0.2,0,0,3.5,2.1,a\n").empty());
+    CHECK(others("CX,11.5,-0.187,-0.2,0,0,3.5,2.0,ASSIGNED: as CT1\n").empty());
+    // CHARMM36's.
+    const Connectivity all = read_psf(test::in_project("scenes/hiv/system.psf"));
+    const ForceField charmm36 = test::force_field_of(
+        read_text_file(test::in_project("scenes/hiv/system.prm")), "system.prm");
+    CHECK(find_other_radii(all, assign_solvation(all, charmm36, eef1sb_table()), eef1sb_table())
+              .empty());
+}
+
 TEST_CASE("a heavy type without a row is refused with its name", "[charmm][solvation]") {
     const ForceField field = test::force_field_of(small_field, "a.prm");
     const SolvationTable table = table_of("CX,11.5,-0.187,-0.2,0,0,3.5,2.0,a\n");
