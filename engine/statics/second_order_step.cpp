@@ -265,6 +265,8 @@ void adopt_renewal(const SecondOrderSettings& settings, const Renewal& renewal,
     statics.at = Eigen::VectorXd::Zero(renewal.linear->gradient.size());
     statics.value = {renewal.linear->at.energy(), renewal.linear->gradient};
     statics.pairs.clear();
+    statics.refused_way.reset();
+    statics.is_spent = false;
     statics.is_settled =
         renewal.relaxed.rms_force <= settings.relaxed || renewal.relaxed.end == RelaxEnd::Stuck;
     constexpr double at_rest = 0.002;  // Å
@@ -409,8 +411,12 @@ private:
             const double length = find_length(hands(), rest);
             is_there = length <= stride;
             const Eigen::VectorXd by = is_there ? rest : Eigen::VectorXd(rest * (stride / length));
-            report_.lags = wants_renewal_ && is_beyond(by);
-            if (report_.lags) return;
+            report_.lags = (wants_renewal_ || statics_.refused_way) && is_beyond(by);
+            if (report_.lags) {
+                wants_renewal_ = true;
+                relax_waiting();
+                return;
+            }
             const bool is_new = is_at_point();
             if (try_stride(by)) continue;
             // A state that new models cannot hold relaxes on in the steps that follow.
@@ -426,6 +432,7 @@ private:
     bool is_beyond(const Eigen::VectorXd& by) const {
         const Eigen::VectorXd d = statics_.at.tail(linear().hands());
         const double next = find_length(hands(), d + by);
+        if (statics_.refused_way && next >= *statics_.refused_way) return true;
         return next > settings_.farthest_hand && next > find_length(hands(), d);
     }
 
@@ -437,22 +444,44 @@ private:
         const ModelValue value = statics_.value;
         follow_linearly(model_, settings_, by, state_, statics_);
         relax_model(model_, settings_, state_, statics_);
-        if (is_finite(statics_) &&
-            find_largest_move(model_.mobile_atoms, linear().at.positions, state_.positions) <
-                settings_.farthest &&
-            !are_too_close(linear().close, state_.positions))
-            return true;
+        if (model_holds()) return true;
         ++statics_.discarded;
         statics_.at = at;
         const bool is_new = is_at_point();
         statics_.value = value;
         statics_.pairs.clear();
-        if (is_new) statics_.at.tail(linear().hands()) += by;
+        if (is_new) {
+            statics_.at.tail(linear().hands()) += by;
+        } else {
+            statics_.refused_way = find_length(hands(), at.tail(linear().hands()) + by);
+        }
         place();
         if (is_new && !settings_.renews_at_once)
             evaluate_model(model_, settings_.forces, linear(), statics_.at, statics_.near, state_,
                            statics_.value);
         return false;
+    }
+
+    bool model_holds() const {
+        return is_finite(statics_) &&
+               find_largest_move(model_.mobile_atoms, linear().at.positions, state_.positions) <
+                   settings_.farthest &&
+               !are_too_close(linear().close, state_.positions);
+    }
+
+    // While hands wait for a new model.
+    void relax_waiting() {
+        const double rest = linear().span ? settings_.span_rest : settings_.rest;
+        const Eigen::VectorXd at = statics_.at;
+        ModelValue value = statics_.value;
+        if (statics_.is_spent || rms_of(value.gradient.head(linear().mobile())) < rest) return;
+        relax_model(model_, settings_, state_, statics_);
+        if (model_holds()) return;
+        statics_.is_spent = true;
+        statics_.at = at;
+        statics_.value = std::move(value);
+        statics_.pairs.clear();
+        place();
     }
 
     void describe(std::size_t before) {

@@ -129,8 +129,12 @@ struct SecondOrderStatics {
     bool is_settled = true;       // the model's point was relaxed enough
     bool is_at_rest = false;      // the whole energy is, where the hands are
     std::size_t still_steps = 0;  // since hands last moved, or a renewal
-    double error_growth = 0;      // of errors at renewals, kcal/mol/Å per squared age
-    double near_reach = 0;        // of the next model, Å, where there is a tolerance
+    // Of the hands (Å), where this model did not hold any more: until there is another, hands go no
+    // farther.
+    std::optional<double> refused_way;
+    bool is_spent = false;    // this model cannot relax where hands wait
+    double error_growth = 0;  // of errors at renewals, kcal/mol/Å per squared age
+    double near_reach = 0;    // of the next model, Å, where there is a tolerance
     TorsionState trial;
     ModelValue trial_value;
     std::vector<Vec3> start;  // memory: where the step began

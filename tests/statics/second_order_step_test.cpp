@@ -276,6 +276,43 @@ TEST_CASE("a hand that jumps waits for renewals, stride by stride, and comes to 
     CHECK((hand_force(statics) - expected).norm() < 0.01 * (1 + expected.norm()));
 }
 
+TEST_CASE("where a model does not hold a hand waits at rest, and may go back",
+          "[statics][second-order]") {
+    HeldPair c;
+    c.settings.renews_at_once = false;
+    c.settings.stride = 0.05;
+    c.settings.farthest = 0.12;  // Å, which the second stride or the third takes an atom to
+    SecondOrderStatics statics = build_second_order_statics(c.model, c.held);
+    REQUIRE(step_second_order(c.model, c.settings, c.state, statics).is_finite);
+    const std::uint32_t pivot = c.model.bases[0].pivot;
+    const Vec3 start = c.state.positions[pivot], goal = start + Vec3(0.29, 0, 0);
+    const auto step_to = [&](const Vec3& place) {
+        c.move_hand(place - c.state.positions[pivot]);
+        return step_second_order(c.model, c.settings, c.state, statics);
+    };
+    REQUIRE(step_to(goal).lags);
+    REQUIRE(statics.discarded == 1);
+    REQUIRE(statics.pending);
+    const Vec3 waits = c.state.positions[pivot];
+    CHECK((waits - start).norm() > 0.04);
+    std::size_t last = 1;
+    for (int k = 0; k < 40; ++k) {
+        const SecondOrderReport report = step_to(goal);
+        CHECK(report.lags);
+        last = report.model_evaluations;
+    }
+    CHECK(statics.discarded == 1);
+    CHECK(last == 0);  // at the model's rest
+    CHECK((c.state.positions[pivot] - waits).norm() < 1e-9);
+    CHECK(step_to(start).lags == false);
+    CHECK((c.state.positions[pivot] - start).norm() < 1e-9);
+    // With a new model it goes on.
+    (void)step_to(goal);
+    (void)adopt_pending(c.model, c.settings, statics);
+    (void)step_to(goal);
+    CHECK(c.state.positions[pivot].x() > waits.x() + 0.04);
+}
+
 // A rod on a joint along z, its end on a spring to a fixed place and on one that a hand holds:
 // E = const - r |c| at rest, where c = k1 a + k2 x in the plane. Where the hand makes c small the
 // rod turns over, and what the hand feels is as soft as -r k2^2/|c|.
