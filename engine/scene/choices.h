@@ -83,4 +83,9 @@ inline constexpr std::array<std::string_view, 5> representation_names{
 enum class Colouring { Element, Chain };
 inline constexpr std::array<std::string_view, 2> colouring_names{"element", "chain"};
 
+// Which hydrogen bonds are drawn. In hand: of what hands hold with all the rest. All: also within
+// molecules.
+enum class ShownBonds { None, InHand, All };
+inline constexpr std::array<std::string_view, 3> shown_bond_names{"none", "in-hand", "all"};
+
 }  // namespace palpa

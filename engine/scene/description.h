@@ -159,6 +159,7 @@ struct LessonStepDescription {
 struct ViewDescription {
     std::optional<Representation> representation;  // unset: what shows the scene best
     Colouring colouring = Colouring::Chain;
+    ShownBonds hydrogen_bonds = ShownBonds::InHand;
     std::array<double, 3> camera{0, 0, 1};  // azimuth and elevation in degrees, zoom
     std::string look_at;                    // a molecule; empty: all of them
     bool clip = false;                      // nothing in front of the grabbed molecule

@@ -395,6 +395,11 @@ void visit_view(FieldVisitor& v, ViewDescription& view) {
            {.key = "colouring",
             .meaning = "carbons in a colour of their chain, or all atoms by element"},
            colouring_names, view.colouring);
+    choose(v,
+           {.key = "hydrogen_bonds",
+            .meaning = "which are drawn as dashes; in-hand: between the molecule in hand and all "
+                       "others; all: also within molecules"},
+           shown_bond_names, view.hydrogen_bonds);
     v.triple(
         {.key = "camera",
          .meaning = "[azimuth, elevation, zoom]: degrees around what is looked at and above it, "

@@ -21,12 +21,14 @@ bool is_backbone(const AtomName& name) {
     return std::ranges::find(names, name.atom) != names.end();
 }
 
-// Of one residue each, in the order of the table, without those of `range`.
+// Of one residue each, in the order of the table, without those atoms.
 std::vector<std::vector<std::uint32_t>> list_residues(const AtomTable& atoms,
-                                                      const AtomRange& without) {
+                                                      std::span<const std::uint32_t> without) {
+    std::vector<bool> left_out(atoms.size(), false);
+    for (const std::uint32_t i : without) left_out[i] = true;
     std::vector<std::vector<std::uint32_t>> residues;
     for (std::uint32_t i = 0; i < atoms.size(); ++i) {
-        if (has_atom(without, i)) continue;
+        if (left_out[i]) continue;
         if (residues.empty() ||
             !is_same_residue(atoms.names[residues.back().back()], atoms.names[i]))
             residues.emplace_back();
@@ -64,8 +66,7 @@ PoseComparison::PoseComparison(const World& world) {
     const Entity other =
         molecule_called(world, world.resource<SceneFile>().scene.grab.measured_from);
     const AtomRange frame = other == Entity{} ? AtomRange{} : world.find<Molecule>(other)->atoms;
-    for (const std::vector<std::uint32_t>& residue :
-         list_residues(atoms, held_range(world, hand))) {
+    for (const std::vector<std::uint32_t>& residue : list_residues(atoms, held)) {
         if (!is_amino_acid(atoms, residue)) continue;
         std::vector<std::uint32_t> side_chain;
         for (const std::uint32_t i : residue) {

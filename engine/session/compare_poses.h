@@ -13,7 +13,7 @@ namespace palpa {
 // rms distances of heavy atoms, Å; 0 where there are none.
 struct PoseDistance {
     double held = 0;      // of what the first hand holds
-    double backbone = 0;  // N, CA, C and O of all other molecules
+    double backbone = 0;  // N, CA, C and O of all that is not held
     double pocket = 0;    // side chains of residues with a heavy atom within 5 Å of what is held
 };
 

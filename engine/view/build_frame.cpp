@@ -176,8 +176,7 @@ FrameScene build_frame(const World& world, std::span<const ContactModel> contact
     std::vector<ViewLabel> words;
     const std::vector<AtomLook> looks = find_looks(world, settings);
     const std::vector<glm::vec3> colours = build_colours(world, looks);
-    std::vector<HydrogenBond> bonds;
-    if (settings.hydrogen_bonds) bonds = find_hydrogen_bonds(world);
+    std::vector<HydrogenBond> bonds = find_hydrogen_bonds(world, settings.hydrogen_bonds);
     std::erase_if(bonds, [&](const HydrogenBond& bond) {
         return !looks[bond.hydrogen].visible || !looks[bond.acceptor].visible;
     });

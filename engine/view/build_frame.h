@@ -14,8 +14,8 @@ namespace palpa {
 struct ViewSettings {
     Representation representation = Representation::BallAndStick;
     Colouring colouring = Colouring::Chain;
-    bool force_arrow = true;     // on the grabbed molecule; and its torque where it moves in space
-    bool hydrogen_bonds = true;  // of the grabbed molecule with others
+    bool force_arrow = true;  // on the grabbed molecule; and its torque where it moves in space
+    ShownBonds hydrogen_bonds = ShownBonds::InHand;
 
     friend bool operator==(const ViewSettings&, const ViewSettings&) = default;
 };

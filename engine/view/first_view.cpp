@@ -16,7 +16,8 @@ ViewSettings first_settings(const ViewDescription& view, const World& world) {
     const bool hides = count_environment(world, first_hand(world)) > many;
     return {.representation = view.representation.value_or(hides ? Representation::Pocket
                                                                  : Representation::BallAndStick),
-            .colouring = view.colouring};
+            .colouring = view.colouring,
+            .hydrogen_bonds = view.hydrogen_bonds};
 }
 
 AtomRange framed_atoms(const ViewDescription& view, const World& world) {

@@ -48,22 +48,28 @@ std::vector<Role> find_roles(const AtomTable& atoms) {
 
 }  // namespace
 
-std::vector<HydrogenBond> find_hydrogen_bonds(const World& world) {
+std::vector<HydrogenBond> find_hydrogen_bonds(const World& world, ShownBonds which) {
+    if (which == ShownBonds::None) return {};
+    const bool all = which == ShownBonds::All;
     const AtomTable& atoms = world.resource<AtomTable>();
     const std::vector<Role> roles = find_roles(atoms);
     const std::vector<bool> held = find_in_hand(world);
     const auto takes_part = [&](std::size_t i) {
         return roles[i].accepts || roles[i].donor != no_donor;
     };
-    Eigen::AlignedBox3d box;  // of what is held
+    // From each of one side, those of the other are sought; where all count, from each hydrogen.
+    const auto is_sought_from = [&](std::size_t i) {
+        return all ? roles[i].donor != no_donor : held[i] && takes_part(i);
+    };
+    Eigen::AlignedBox3d box;  // of what is sought from
     for (std::size_t i = 0; i < atoms.size(); ++i) {
-        if (held[i] && takes_part(i)) box.extend(atoms.positions[i]);
+        if (is_sought_from(i)) box.extend(atoms.positions[i]);
     }
     // Those around, along x: only a slice of them can be near enough.
     std::vector<std::uint32_t> around;
     for (std::size_t i = 0; i < atoms.size(); ++i) {
-        if (!held[i] && takes_part(i) &&
-            box.squaredExteriorDistance(atoms.positions[i]) < longest * longest)
+        const bool is_other = all ? roles[i].accepts : !held[i] && takes_part(i);
+        if (is_other && box.squaredExteriorDistance(atoms.positions[i]) < longest * longest)
             around.push_back(static_cast<std::uint32_t>(i));
     }
     const auto x_of = [&](std::uint32_t i) { return atoms.positions[i].x(); };
@@ -80,11 +86,11 @@ std::vector<HydrogenBond> find_hydrogen_bonds(const World& world) {
         found.push_back({hydrogen, acceptor, length});
     };
     for (std::uint32_t i = 0; i < atoms.size(); ++i) {
-        if (!held[i] || !takes_part(i)) continue;
+        if (!is_sought_from(i)) continue;
         auto other = std::ranges::lower_bound(around, x_of(i) - longest, {}, x_of);
         for (; other != around.end() && x_of(*other) < x_of(i) + longest; ++other) {
             try_bond(i, *other);
-            try_bond(*other, i);
+            if (!all) try_bond(*other, i);
         }
     }
     std::ranges::sort(found, {}, [](const HydrogenBond& bond) {

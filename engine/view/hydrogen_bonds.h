@@ -1,6 +1,7 @@
-// Hydrogen bonds between the molecule in hand and what is around it, from where the atoms are.
+// Hydrogen bonds, from where the atoms are.
 #pragma once
 #include "ecs/world.h"
+#include "scene/choices.h"
 
 #include <cstdint>
 #include <vector>
@@ -15,6 +16,7 @@ struct HydrogenBond {
 // D-H...A, where D and A are nitrogen, oxygen or sulphur, A not a nitrogen with four bonds; shorter
 // than 2.5 Å, and the angle at H above 120°: E. N. Baker, R. E. Hubbard, Prog. Biophys. Mol. Biol.
 // 44, 97 (1984). The shortest first.
-std::vector<HydrogenBond> find_hydrogen_bonds(const World& world);
+std::vector<HydrogenBond> find_hydrogen_bonds(const World& world,
+                                              ShownBonds which = ShownBonds::InHand);
 
 }  // namespace palpa

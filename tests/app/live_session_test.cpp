@@ -208,7 +208,7 @@ LiveFrame run_course(TakingHand& hand, test::VirtualClock& clock) {
     hand.session = &session;
     hand.is_over.wait(false);
     while (session.read_frame(frame)) continue;
-    session.send(ViewSettings{.force_arrow = false, .hydrogen_bonds = false});
+    session.send(ViewSettings{.force_arrow = false, .hydrogen_bonds = ShownBonds::None});
     while (!session.read_frame(frame) || frame.picture.cones.size() > 4)
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     return frame;

@@ -693,6 +693,7 @@ TEST_CASE("the view table says how a scene is seen at first, without it the prog
 [view]
 representation = "space-filling"
 colouring = "element"
+hydrogen_bonds = "all"
 camera = [-40, 12.5, 2]
 look_at = "moved"
 clip = true
@@ -701,6 +702,7 @@ clip = true
                                      .view;
     CHECK(view.representation == Representation::SpaceFilling);
     CHECK(view.colouring == Colouring::Element);
+    CHECK(view.hydrogen_bonds == ShownBonds::All);
     CHECK(view.camera == std::array<double, 3>{-40, 12.5, 2});
     CHECK(view.look_at == "moved");
     CHECK(view.clip);

@@ -72,7 +72,12 @@ TEST_CASE("odd values survive being written and read, to the last bit", "[scene]
     scene.coupling.A_f_min = 1 + std::numeric_limits<double>::epsilon();
     scene.coupling.gamma_per_N = 1e18;
     scene.coupling.feel_within_pN = 1.0 / 3;
-    scene.view = {Representation::InHand, Colouring::Element, {-0.1, 1.0 / 3, 0.7}, "x", true};
+    scene.view = {Representation::InHand,
+                  Colouring::Element,
+                  ShownBonds::All,
+                  {-0.1, 1.0 / 3, 0.7},
+                  "x",
+                  true};
     scene.period_ms = 10000;
     scene.seed = 1'000'000'000'000'000;
     scene.lesson = {{"zuerst", "two\nlines \"quoted\"", "do", LessonQuantity::Force, -0.25, {}, 0},
@@ -109,6 +114,7 @@ TEST_CASE("odd values survive being written and read, to the last bit", "[scene]
     CHECK_FALSE(back.coupling.feel_pN);
     CHECK(back.view.representation == Representation::InHand);
     CHECK(back.view.colouring == Colouring::Element);
+    CHECK(back.view.hydrogen_bonds == ShownBonds::All);
     CHECK(back.view.camera == scene.view.camera);
     CHECK(back.view.look_at == "x");
     CHECK(back.view.clip);

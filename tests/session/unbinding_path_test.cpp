@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <string>
@@ -65,4 +66,22 @@ TEST_CASE("of a hand on a spring the path is that of its residue", "[session][un
     CHECK(log.unbinding().closest ==
           Approx(std::min({at_start, clearance, find_clearance()})).epsilon(1e-12));
     CHECK(log.unbinding().last_rmsd == Approx(0.2).epsilon(1e-12));
+    CHECK(log.unbinding().last_backbone == 0);
+
+    // What is not held counts as others, of the same chain too.
+    const auto is_backbone = [&](std::size_t i) {
+        const std::string& name = atoms.names[i].atom;
+        return name == "N" || name == "CA" || name == "C" || name == "O";
+    };
+    std::size_t others = 0;
+    for (std::size_t i = 0; i < atoms.size(); ++i) {
+        if (atoms.names[i].segment == "TL3C" || is_held(i) || !is_backbone(i)) continue;
+        ++others;
+        if (atoms.names[i].segment == "B" && atoms.names[i].number == "48") {
+            world.resource<AtomTable>().positions[i].z() += 2;
+        }
+    }
+    log.add(world);
+    CHECK(log.unbinding().last_backbone ==
+          Approx(2 * std::sqrt(4 / static_cast<double>(others))).epsilon(1e-12));
 }

@@ -50,6 +50,26 @@ class Render(unittest.TestCase):
             pictures.append(self.image.read_bytes())
         self.assertNotEqual(*pictures)
 
+    def test_the_atoms_are_written_too_where_the_picture_has_them(self):
+        places = Path(self.folder.name) / "water.crd"
+        oxygens = []
+        for time in (0, 3):
+            result = self.render("-o", self.image, "--size", "64x48", "--time", time, "--coordinates", places)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            rows = [line.split() for line in places.read_text().splitlines() if not line.startswith("*")]
+            oxygens.append([list(map(float, row[4:7])) for row in rows[1:] if row[3].startswith("O")])
+        # At first both stand as in their file; then one is 3 Å and less from the other, and bonded to it.
+        apart = [sum((a - b) ** 2 for a, b in zip(*pair)) ** 0.5 for pair in oxygens]
+        self.assertNotAlmostEqual(*apart, places=2)
+        self.assertLess(apart[1], 3)
+        self.assertIn("6 atoms, hydrogen bonds in all: 1", result.stdout)
+        kept = places.read_text()
+        result = subprocess.run([PROGRAM, "render", WATER, "-o", self.image.with_name("other.png"),
+                                 "--coordinates", places], capture_output=True, text=True)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("water.crd", result.stderr)
+        self.assertEqual(places.read_text(), kept)
+
     def test_the_same_picture_twice_is_the_same_to_the_byte(self):
         pictures = []
         for _ in range(2):

@@ -29,7 +29,8 @@ namespace {
 constexpr std::uint32_t height = 270;
 
 ViewSettings shown_as(Representation representation) {
-    return {.representation = representation, .force_arrow = false, .hydrogen_bonds = false};
+    return {
+        .representation = representation, .force_arrow = false, .hydrogen_bonds = ShownBonds::None};
 }
 
 }  // namespace
@@ -39,7 +40,7 @@ TEST_CASE("two waters are six spheres and four sticks, and an arrow along the fo
     const double distance = GENERATE(2.5, 3.1);
     move_grabbed(world, distance);
 
-    const FrameScene frame = build_frame(world, {.hydrogen_bonds = false});
+    const FrameScene frame = build_frame(world, {.hydrogen_bonds = ShownBonds::None});
 
     CHECK(frame.spheres.size() == 6);
     REQUIRE(frame.cones.size() >= 4 + 2);
@@ -162,7 +163,7 @@ TEST_CASE("each molecule is drawn as its appearance says, and all others as the 
     for (std::string& element : world.resource<AtomTable>().element) element = "C";
     move_grabbed(world, 2.8);
     ViewSettings settings = shown_as(Representation::BallAndStick);
-    settings.hydrogen_bonds = true;
+    settings.hydrogen_bonds = ShownBonds::InHand;
     const AtomRange moved = held_range(world, first_hand(world));
     const auto spheres_of_moved = [&] { return shapes_of(build_frame(world, settings), moved); };
     const auto find_fixed = [&](const FrameScene& frame) {

@@ -103,8 +103,9 @@ TEST_CASE("what gives and what accepts", "[view][hydrogen-bonds]") {
 }
 
 // Against all pairs, one by one, in a molecule where there are many.
-TEST_CASE("the inhibitor's hydrogen bonds in HIV-1 protease are those of a plain search",
+TEST_CASE("hydrogen bonds in HIV-1 protease, the inhibitor's or all, are those of a plain search",
           "[view][hydrogen-bonds]") {
+    const ShownBonds which = GENERATE(ShownBonds::InHand, ShownBonds::All);
     const SceneDescription scene =
         read_scene(test::in_project("scenes/hiv"), std::vector<std::string>());
     const World world = load_world(test::with_held_at(GENERATE(0, 1, 2), scene));
@@ -118,7 +119,9 @@ TEST_CASE("the inhibitor's hydrogen bonds in HIV-1 protease are those of a plain
                     return std::string("NOS").find(atoms.element[i]) != std::string::npos;
                 };
                 if (atoms.element[hydrogen] != "H" || !polar(donor) || !polar(acceptor)) continue;
-                if (is_in_hand(hydrogen) == is_in_hand(acceptor)) continue;
+                if (acceptor == donor) continue;
+                if (which == ShownBonds::InHand && is_in_hand(hydrogen) == is_in_hand(acceptor))
+                    continue;
                 const Vec3 x = atoms.positions[donor] - atoms.positions[hydrogen];
                 const Vec3 y = atoms.positions[acceptor] - atoms.positions[hydrogen];
                 const double angle = std::acos(x.dot(y) / x.norm() / y.norm());
@@ -129,11 +132,12 @@ TEST_CASE("the inhibitor's hydrogen bonds in HIV-1 protease are those of a plain
         }
     }
 
-    const std::vector<HydrogenBond> bonds = find_hydrogen_bonds(world);
+    const std::vector<HydrogenBond> bonds = find_hydrogen_bonds(world, which);
 
     std::set<std::tuple<std::size_t, std::size_t>> found;
     for (const HydrogenBond& bond : bonds) found.insert({bond.hydrogen, bond.acceptor});
     CHECK(found == expected);
-    CHECK(bonds.size() >= 6);
+    CHECK(bonds.size() >= (which == ShownBonds::All ? 100 : 6));
+    CHECK(find_hydrogen_bonds(world, ShownBonds::None).empty());
     for (std::size_t i = 1; i < bonds.size(); ++i) CHECK(bonds[i - 1].length <= bonds[i].length);
 }

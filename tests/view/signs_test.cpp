@@ -215,7 +215,8 @@ TEST_CASE("hydrogen bonds are dashes between the atoms as drawn, with their leng
         }
     }
     CHECK(dashes >= 3);
-    const FrameScene without = build_frame(world, {.force_arrow = false, .hydrogen_bonds = false});
+    const FrameScene without =
+        build_frame(world, {.force_arrow = false, .hydrogen_bonds = ShownBonds::None});
     CHECK(without.cones.size() == 4);
 }
 

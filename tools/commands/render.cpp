@@ -4,6 +4,7 @@
 #include "core/text.h"
 #include "devices/emulated_omni.h"
 #include "experiments/emulated_hand.h"
+#include "formats/crd.h"
 #include "render/picture.h"
 #include "scene/read_scene.h"
 #include "session/run_headless.h"
@@ -14,12 +15,14 @@
 #include "tools/commands/progress.h"
 #include "view/clip.h"
 #include "view/first_view.h"
+#include "view/hydrogen_bonds.h"
 
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <string_view>
 #include <system_error>
 
 namespace palpa {
@@ -52,6 +55,9 @@ void finish_frame(const ViewDescription& view, const World& world, const OrbitCa
     frame.camera = frame_camera(camera, frame);
 }
 
+// Stands first in what is written, by which it is known again.
+constexpr std::string_view coordinates_title = "Written by palpa render.\n";
+
 float aspect_of(std::uint32_t width, std::uint32_t height) {
     return static_cast<float>(width) / static_cast<float>(std::max<std::uint32_t>(height, 1));
 }
@@ -78,6 +84,11 @@ std::array<double, 3> read_camera(std::string_view text) {
 int render_command(const RenderOptions& options) {
     SceneDescription scene = read_scene(options.scene, options.settings);
     const Existing existing = check_output(options.image, picture_mark, options.overwrites);
+    const Existing existing_coordinates =
+        options.coordinates
+            ? check_output(*options.coordinates, fmt::format("* {}", coordinates_title),
+                           options.overwrites)
+            : Existing::Refuse;
     const std::int64_t pixels = std::int64_t{options.width} * options.height * options.samples;
     if (pixels > most_pixels) {
         throw LoadError({"--samples"},
@@ -113,6 +124,17 @@ int render_command(const RenderOptions& options) {
     progress.wipe();
     fmt::print("{}: {}x{} on {}\n", options.image.string(), picture.width, picture.height,
                gpu.name());
+    if (options.coordinates) {
+        Structure structure;
+        structure.names = world.resource<AtomTable>().names;
+        structure.positions = world.resource<AtomTable>().positions;
+        write_text_file(*options.coordinates,
+                        format_crd(structure, fmt::format("{}{}\n{} s of it", coordinates_title,
+                                                          scene.title, options.time_s)),
+                        existing_coordinates);
+        fmt::print("{}: {} atoms, hydrogen bonds in all: {}\n", options.coordinates->string(),
+                   structure.names.size(), find_hydrogen_bonds(world, ShownBonds::All).size());
+    }
     return 0;
 }
 
@@ -147,6 +169,8 @@ void add_render(CLI::App& program, ProgramCommand& chosen) {
     describe(render, "Look and measure", {"palpa render scenes/hiv -o tunnel.png"});
     render.add_option("scene", options.scene, "scene folder or file")->required();
     render.add_option("-o,--output", options.image, "PNG file to write")->required();
+    render.add_option("--coordinates", options.coordinates,
+                      "CHARMM coordinates (.crd) to write too: where the atoms are in it");
     add_overwrite_flag(render, options.overwrites);
     add_size_option(render, "--size", options.width, options.height);
     render.add_option("--time", options.time_s, "seconds that the hand plays before the picture")

@@ -23,6 +23,7 @@ struct RenderOptions {
     std::filesystem::path scene;
     std::vector<std::string> settings;
     std::filesystem::path image;
+    std::optional<std::filesystem::path> coordinates;  // to write too
     std::uint32_t width = 1280, height = 720;
     double time_s = 0;  // simulated, under the emulated hand, before the picture
     // Empty: as the scene's [view] says.
@@ -31,7 +32,7 @@ struct RenderOptions {
     std::string look_at;  // a molecule's name
     std::optional<bool> clips;
     std::uint32_t samples = 1;  // a pixel: 1, 4, 9 or 16
-    bool overwrites = false;    // an earlier file of this command
+    bool overwrites = false;    // earlier files of this command
     bool arrow = true;
 };
 

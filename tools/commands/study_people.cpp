@@ -119,7 +119,9 @@ int study_in_window(const StudyCommand& command) {
     give_to_mouse(omni);
     EmulatedOmni device(omni);
     ViewSettings view = first_settings(scene.view, world);
-    view.force_arrow = view.hydrogen_bonds = false;  // they would show what is to be felt
+    // They would show what is to be felt.
+    view.force_arrow = false;
+    view.hydrogen_bonds = ShownBonds::None;
     WindowOptions window;
     window.view = view;
     window.orders = &orders;
