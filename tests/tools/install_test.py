@@ -73,7 +73,8 @@ class Install(unittest.TestCase):
         self.assertEqual(self.play(moved / "bin" / "palpa", "moved"), self.play(PROGRAM, "as-built"))
 
     def test_files_are_where_distributions_want_them(self):
-        for name in ("bin/palpa", "share/palpa/scenes/hiv/system.psf", "share/man/man1/palpa.1",
+        for name in ("bin/palpa", "share/palpa/scenes/hiv/system.psf",
+                     "share/palpa/scenes/hairpin/scene.toml", "share/palpa/scenes/peptide/system.psf", "share/man/man1/palpa.1",
                      "share/bash-completion/completions/palpa", "lib/udev/rules.d/70-palpa.rules",
                      "share/doc/palpa/LICENSE"):
             with self.subTest(name=name):
