@@ -84,7 +84,7 @@ private:
     void place(std::size_t next) {
         if (found_.size() >= most_) return;
         if (next == order_.size()) {
-            if (image_ != found_.front() && keeps_chirality()) found_.push_back(image_);
+            if (image_ != found_.front()) found_.push_back(image_);
             return;
         }
         const std::uint32_t atom = order_[next];
@@ -92,7 +92,7 @@ private:
             if (is_used_[image] || !fits(atom, image)) continue;
             image_[atom] = image;
             is_used_[image] = true;
-            place(next + 1);
+            if (keeps_chirality(atom)) place(next + 1);
             image_[atom] = unplaced;
             is_used_[image] = false;
         }
@@ -127,17 +127,25 @@ private:
         return arms.determinant();
     }
 
-    bool keeps_chirality() const {
+    // Of centres that an atom completes.
+    bool keeps_chirality(std::uint32_t atom) const {
+        return keeps_centre(atom) &&
+               std::ranges::all_of(graph_.neighbours[atom], [&](std::uint32_t neighbour) {
+                   return keeps_centre(neighbour);
+               });
+    }
+
+    // Where it and three neighbours are placed.
+    bool keeps_centre(std::uint32_t atom) const {
         constexpr double flat = 0.3;
-        for (std::uint32_t atom = 0; atom < graph_.neighbours.size(); ++atom) {
-            const auto& to = graph_.neighbours[atom];
-            if (to.size() < 3) continue;
-            const double here = volume_at(atom, {to[0], to[1], to[2]});
-            const double there =
-                volume_at(image_[atom], {image_[to[0]], image_[to[1]], image_[to[2]]});
-            if (std::abs(here) > flat && here * there < 0) return false;
+        const auto& to = graph_.neighbours[atom];
+        if (to.size() < 3 || image_[atom] == unplaced) return true;
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (image_[to[i]] == unplaced) return true;
         }
-        return true;
+        const double here = volume_at(atom, {to[0], to[1], to[2]});
+        const double there = volume_at(image_[atom], {image_[to[0]], image_[to[1]], image_[to[2]]});
+        return std::abs(here) <= flat || here * there >= 0;
     }
 
     const Graph& graph_;

@@ -100,8 +100,10 @@ ResponseSpan build_response_span(const TorsionModel& model, const ForceSettings&
                                  const LinearisedModel& linear, std::span<const HandHold> hands,
                                  const Eigen::MatrixXd& mixed, std::size_t count) {
     const Eigen::Index of_hands = mixed.cols();
-    const Eigen::Index wanted =
-        std::max<Eigen::Index>(static_cast<Eigen::Index>(count * hands.size()) - of_hands, 0);
+    // No more than there are coordinates.
+    const Eigen::Index all_columns =
+        std::min(static_cast<Eigen::Index>(count * hands.size()), mixed.rows());
+    const Eigen::Index wanted = std::max<Eigen::Index>(all_columns - of_hands, 0);
     const Eigen::MatrixXd remaining = find_remaining_forces(model, settings, linear, hands, wanted);
     Eigen::MatrixXd forces(mixed.rows(), of_hands + remaining.cols());
     forces << -mixed, remaining;

@@ -399,10 +399,10 @@ private:
     void follow(double way) {
         const double stride =
             std::max(settings_.stride, way / static_cast<double>(settings_.most_strides));
-        bool is_tried = false;  // one renewal a step where a state does not settle
+        bool is_tried = false;  // one renewal a step where a state does not settle, or at one point
         int tries = 0;          // of new models, where hands are to go
         for (bool is_there = false; !is_there;) {
-            if (is_old() && !(is_tried && !statics_.is_settled)) {
+            if (is_old() && !(is_tried && (is_at_point() || !statics_.is_settled))) {
                 is_tried = true;
                 if (renew(settings_.renews_at_once)) continue;
                 if (!report_.is_finite) return;

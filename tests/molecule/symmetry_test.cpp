@@ -105,3 +105,20 @@ TEST_CASE("a molecule with a two-fold axis and two rings has eight ways", "[mole
     std::iota(all.begin(), all.end(), 0U);
     CHECK(find_symmetries(builder.table, all, 3).symmetries.size() == 3);
 }
+
+TEST_CASE("a chain of forty chiral centres with two methyls each has no way but its own",
+          "[molecule][symmetry]") {
+    // Judged at the end alone that would be 2^40 tries.
+    Builder builder;
+    std::uint32_t last = builder.add(oxygen, Vec3(-1.5, 0, 0));
+    for (int i = 0; i < 40; ++i) {
+        const double x = 1.5 * i;
+        const std::uint32_t centre = builder.add(carbon, Vec3(x, i % 2 == 0 ? 0.5 : -0.5, 0));
+        const double side = i % 2 == 0 ? 1 : -1;
+        builder.bond(last, centre);
+        builder.bond(centre, builder.add(carbon, Vec3(x, 1.2 * side, 1.2)));
+        builder.bond(centre, builder.add(carbon, Vec3(x, 1.2 * side, -1.2)));
+        last = centre;
+    }
+    CHECK(builder.symmetries().symmetries.size() == 1);
+}

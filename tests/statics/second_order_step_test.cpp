@@ -499,6 +499,19 @@ TEST_CASE("a tight tolerance has more pairs exact than a loose one, and both kee
     CHECK(loose < 6);
 }
 
+TEST_CASE("a tolerance that nothing meets renews once at a place, and goes on",
+          "[statics][second-order]") {
+    HeldPair c;
+    c.settings.tolerance = 1e-12;
+    SecondOrderStatics statics = build_second_order_statics(c.model, c.held);
+    for (int k = 0; k < 5; ++k) {
+        c.move_hand({0.05, 0, 0});
+        const std::size_t before = statics.renewed;
+        CHECK(step_second_order(c.model, c.settings, c.state, statics).is_finite);
+        CHECK(statics.renewed - before <= 3);
+    }
+}
+
 TEST_CASE("out and back without a snap the hand's force is what it was",
           "[statics][second-order]") {
     HeldPair c;

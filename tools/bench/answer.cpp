@@ -70,12 +70,15 @@ Changes change_in_full(const TorsionModel& model, const Truth& truth, const Rest
     at.segment<3>(linear.mobile() + (truth.hand().turns ? 3 : 0)) = by;
     at.head(linear.mobile()) = linear.response * at.tail(linear.hands());
     place_about(model, linear.coordinates, linear.at, at, state);
-    (void)relax_joints(model, settings, state, statics, [&](const RelaxProgress&) {
+    const auto add_change = [&] {
         const std::chrono::duration<double, std::micro> us =
             std::chrono::steady_clock::now() - begin;
         changes.push_back({us.count(), pN * find_force_on_held(model, state, held) - before});
         return us.count() < 1e3 * times_ms.back();
-    });
+    };
+    (void)relax_joints(model, settings, state, statics,
+                       [&](const RelaxProgress&) { return add_change(); });
+    if (changes.empty()) (void)add_change();  // it was at rest there
     return changes;
 }
 
