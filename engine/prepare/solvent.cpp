@@ -43,10 +43,9 @@ std::vector<std::uint8_t> find_structural(const Connectivity& connectivity,
     return find_water_atoms(connectivity.names, connectivity.mass);
 }
 
-std::optional<SolventObstacle> find_obstacle(const ForceField& force_field,
-                                             const Connectivity& connectivity,
-                                             const std::vector<std::vector<std::uint32_t>>& groups,
-                                             const PrepareSettings& settings) {
+// What has no numbers.
+std::optional<SolventObstacle> find_uncovered(const Connectivity& connectivity,
+                                              const PrepareSettings& settings) {
     const std::vector<std::uint8_t> is_water =
         find_water_atoms(connectivity.names, connectivity.mass);
     if (settings.keeps_waters && std::ranges::find(is_water, 1) != is_water.end()) {
@@ -64,11 +63,15 @@ std::optional<SolventObstacle> find_obstacle(const ForceField& force_field,
                         join_some(uncovered)),
             "leave those residues out (--without, --no-ions)"};
     }
+    return std::nullopt;
+}
+
+// What has numbers, but not those that EEF1-SB is made for.
+std::optional<SolventObstacle> find_obstacle(
+    const Connectivity& connectivity, const Solvation& solvation,
+    const std::vector<std::vector<std::uint32_t>>& groups) {
     const std::vector<std::string> others =
-        find_other_radii(connectivity,
-                         assign_solvation(connectivity, force_field, eef1sb_table(),
-                                          find_structural(connectivity, settings)),
-                         eef1sb_table());
+        find_other_radii(connectivity, solvation, eef1sb_table());
     if (!others.empty()) {
         return SolventObstacle{
             fmt::format("EEF1-SB is made for CHARMM36, and these parameter files have other radii: "
@@ -158,8 +161,14 @@ std::optional<SolvatedSystem> solvate(const ForceField& force_field, const Struc
     system.connectivity = build_connectivity(system.force_field, structure, generate);
     const std::vector<std::vector<std::uint32_t>> groups =
         find_charge_groups(system.force_field, structure, generate);
-    if (const auto obstacle =
-            find_obstacle(system.force_field, system.connectivity, groups, settings)) {
+    std::optional<SolventObstacle> obstacle = find_uncovered(system.connectivity, settings);
+    Solvation solvation;
+    if (!obstacle) {
+        solvation = assign_solvation(system.connectivity, system.force_field, eef1sb_table(),
+                                     find_structural(system.connectivity, settings));
+        obstacle = find_obstacle(system.connectivity, solvation, groups);
+    }
+    if (obstacle) {
         if (settings.solvent) {
             throw LoadError({structure.file},
                             fmt::format("no --solvent eef1-sb: {}; expected to {}, or "
@@ -180,9 +189,7 @@ std::optional<SolvatedSystem> solvate(const ForceField& force_field, const Struc
     report_structural(system.connectivity, settings, report);
     report_force_field(force_field, report);
     system.topology = build_topology(system.connectivity, system.force_field);
-    system.topology.solvation =
-        assign_solvation(system.connectivity, system.force_field, eef1sb_table(),
-                         find_structural(system.connectivity, settings));
+    system.topology.solvation = std::move(solvation);
     return system;
 }
 

@@ -159,6 +159,11 @@ private:
     Eigen::VectorXd forces_, trial_forces_, move_, at_;
 };
 
+// The rms force along the coordinates of the model that counts as rest.
+double find_rest(const SecondOrderSettings& settings, const LinearisedModel& linear) noexcept {
+    return linear.span ? settings.span_rest : settings.rest;
+}
+
 // Evaluates the model where the state is, and goes towards its rest.
 void relax_model(const TorsionModel& model, const SecondOrderSettings& settings,
                  TorsionState& state, SecondOrderStatics& statics) {
@@ -168,7 +173,7 @@ void relax_model(const TorsionModel& model, const SecondOrderSettings& settings,
     ++statics.model_evaluations;
     ModelDescent descent(model, settings, state, statics);
     constexpr LineSearch search{.tries = 6};
-    const double rest = statics.linear->span ? settings.span_rest : settings.rest;
+    const double rest = find_rest(settings, *statics.linear);
     const std::size_t most = settings.tolerance ? 3 * settings.evaluations : settings.evaluations;
     for (std::size_t i = 1; i < most; ++i) {
         if (!descent.forces().allFinite() || rms_of(descent.forces()) < rest) return;
@@ -446,20 +451,24 @@ private:
         relax_model(model_, settings_, state_, statics_);
         if (model_holds()) return true;
         ++statics_.discarded;
+        go_back(at, value);
+        if (!is_at_point()) {
+            statics_.refused_way = find_length(hands(), at.tail(linear().hands()) + by);
+            return false;
+        }
+        statics_.at.tail(linear().hands()) += by;
+        place();
+        if (!settings_.renews_at_once)
+            evaluate_placed(model_, settings_.forces, linear(), statics_.at, statics_.near, state_,
+                            statics_.value);
+        return false;
+    }
+
+    void go_back(const Eigen::VectorXd& at, const ModelValue& value) {
         statics_.at = at;
-        const bool is_new = is_at_point();
         statics_.value = value;
         statics_.pairs.clear();
-        if (is_new) {
-            statics_.at.tail(linear().hands()) += by;
-        } else {
-            statics_.refused_way = find_length(hands(), at.tail(linear().hands()) + by);
-        }
         place();
-        if (is_new && !settings_.renews_at_once)
-            evaluate_model(model_, settings_.forces, linear(), statics_.at, statics_.near, state_,
-                           statics_.value);
-        return false;
     }
 
     bool model_holds() const {
@@ -471,17 +480,13 @@ private:
 
     // While hands wait for a new model.
     void relax_waiting() {
-        const double rest = linear().span ? settings_.span_rest : settings_.rest;
+        const double rms_force = rms_of(statics_.value.gradient.head(linear().mobile()));
+        if (statics_.is_spent || rms_force < find_rest(settings_, linear())) return;
         const Eigen::VectorXd at = statics_.at;
-        ModelValue value = statics_.value;
-        if (statics_.is_spent || rms_of(value.gradient.head(linear().mobile())) < rest) return;
+        const ModelValue value = statics_.value;
         relax_model(model_, settings_, state_, statics_);
-        if (model_holds()) return;
-        statics_.is_spent = true;
-        statics_.at = at;
-        statics_.value = std::move(value);
-        statics_.pairs.clear();
-        place();
+        statics_.is_spent = !model_holds();
+        if (statics_.is_spent) go_back(at, value);
     }
 
     void describe(std::size_t before) {

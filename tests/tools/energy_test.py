@@ -154,6 +154,25 @@ class Energy(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn("warning: ionic groups are not neutral", result.stderr)
         self.assertEqual(self.palpa(BRIDGE / "solvent.psf", *arguments).stderr, "")
+        vacuum = self.palpa(BRIDGE / "solvent.psf", *arguments[:-2])
+        self.assertEqual(vacuum.returncode, 0, vacuum.stderr)
+        self.assertIn("has EEF1-SB's neutral charges, and this is in vacuum", vacuum.stderr)
+        self.assertEqual(self.palpa(BRIDGE / "vacuum.psf", *arguments[:-2]).stderr, "")
+
+    def test_a_psf_has_the_terms_that_scenes_have(self):
+        """Asp's changed type keeps its dihedral without a file for it, and the NBFIX of NC2 and OC is off."""
+        hiv = BRIDGE.parent / "hiv"
+        def energy(*toppar):
+            return self.energy(hiv / "solvent.psf", "--coordinates", hiv / "solvent.crd", "--toppar", *toppar,
+                               "--solvent", "eef1-sb")
+        text = (hiv / "system.prm").read_text()
+        without = self.folder / "without.prm"
+        without.write_text("\n".join(line for line in text.splitlines() if line.split()[:2] != ["NC2", "OC"]) + "\n")
+        self.assertNotEqual(text, without.read_text())
+        whole = energy(hiv / "system.prm", hiv / "solvent.prm")
+        for toppar in ([hiv / "system.prm"], [without, hiv / "solvent.prm"]):
+            for name, value in energy(*toppar).items():
+                self.assertAlmostEqual(value, whole[name], delta=1e-9, msg=name)
 
     def test_tetrapeptides_have_charmm_s_solvation(self):
         if not SHARED:

@@ -1,19 +1,18 @@
 """The inputs of scenes/salt-bridge are what tools/scripts/make_salt_bridge_scene makes."""
 import os
 import subprocess
+import sys
 import tempfile
 import unittest
 from pathlib import Path
+
+sys.path.append(str(Path(__file__).resolve().parents[1] / "support"))
+from made_scenes import assert_explains_itself, assert_same_atoms, places  # noqa: E402
 
 ROOT = Path(os.environ["PALPA_ROOT"])
 DATA = os.environ.get("PALPA_DATA")
 SCRIPT = ROOT / "tools" / "scripts" / "make_salt_bridge_scene"
 SCENE = ROOT / "scenes" / "salt-bridge"
-
-
-def places(path):
-    lines = [line for line in path.read_text().splitlines() if not line.startswith("*")]
-    return [line.split() for line in lines[1:]]
 
 
 class MakeSaltBridgeScene(unittest.TestCase):
@@ -23,10 +22,7 @@ class MakeSaltBridgeScene(unittest.TestCase):
             subprocess.run([SCRIPT, folder], check=True, capture_output=True)
             for name in ("vacuum.psf", "solvent.psf", "system.prm", "solvent.prm"):
                 self.assertEqual((Path(folder) / name).read_text(), (SCENE / name).read_text(), name)
-            for a, b in zip(places(Path(folder) / "system.crd"), places(SCENE / "system.crd"), strict=True):
-                self.assertEqual(a[:4] + a[7:9], b[:4] + b[7:9])
-                for x, y in zip(a[4:7], b[4:7]):
-                    self.assertAlmostEqual(float(x), float(y), delta=0.02, msg=a[:4])
+            assert_same_atoms(self, Path(folder) / "system.crd", SCENE / "system.crd", 0.02)
 
     def test_the_charged_groups_face_each_other_4_angstrom_apart(self):
         atoms = {(row[7], row[3]): [float(x) for x in row[4:7]] for row in places(SCENE / "system.crd")}
@@ -37,13 +33,7 @@ class MakeSaltBridgeScene(unittest.TestCase):
         self.assertGreater(atoms["B", "CE"][0], 5)
 
     def test_it_explains_itself_and_says_what_is_missing(self):
-        kept = {key: value for key, value in os.environ.items() if key != "PALPA_DATA"}
-        told = subprocess.run([SCRIPT, "--help"], capture_output=True, text=True, env=kept)
-        self.assertEqual(told.returncode, 0)
-        self.assertIn("PALPA_DATA", told.stdout)
-        refused = subprocess.run([SCRIPT], capture_output=True, text=True, env=kept)
-        self.assertEqual(refused.returncode, 2)
-        self.assertIn("PALPA_DATA is not set", refused.stderr)
+        assert_explains_itself(self, SCRIPT)
 
 
 if __name__ == "__main__":

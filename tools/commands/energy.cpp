@@ -15,6 +15,7 @@
 #include "formats/structure.h"
 #include "molecule/coincident_atoms.h"
 #include "molecule/match_atoms.h"
+#include "scene/choices.h"
 #include "tools/commands/choice.h"
 #include "tools/commands/command.h"
 
@@ -38,7 +39,6 @@ constexpr std::array<std::string_view, 4> electrostatic_names{"switch", "shift",
                                                               "fswitch"};
 constexpr std::array<std::string_view, 2> van_der_waals_names{"switch", "fswitch"};
 constexpr std::array<std::string_view, 2> method_names{"all-pairs", "cutoff"};
-constexpr std::array<std::string_view, 2> solvent_names{"none", "eef1-sb"};
 constexpr std::array<std::string_view, 2> end_names{"smooth", "sharp"};
 constexpr std::array<std::string_view, 2> exponential_names{"exact", "table"};
 
@@ -141,45 +141,43 @@ std::array<NamedTerm, 12> list_terms(const EnergyTerms& e) {
             {"total", e.total()}};
 }
 
-// The first line of a file of forces, by which it is known again.
+// The first lines of files with a row for each atom, by which they are known again.
 constexpr std::string_view force_columns =
     "segment,residue,number,atom,force_x_kcal_per_mol_angstrom,force_y_kcal_per_mol_angstrom,"
     "force_z_kcal_per_mol_angstrom\n";
-
-std::string format_forces(const Connectivity& connectivity, std::span<const Vec3> forces) {
-    std::string text(force_columns);
-    for (std::size_t i = 0; i < forces.size(); ++i) {
-        const AtomName& name = connectivity.names[i];
-        fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{}\n", name.segment,
-                       name.residue, name.number, name.atom, forces[i].x(), forces[i].y(),
-                       forces[i].z());
-    }
-    return text;
-}
-
 constexpr std::string_view atom_columns =
     "segment,residue,number,atom,type,charge_e,solvation_kcal_per_mol\n";
 
-std::string format_atoms(const Connectivity& connectivity, std::span<const double> solvation) {
-    std::string text(atom_columns);
-    for (std::size_t i = 0; i < solvation.size(); ++i) {
+// `values`: what stands behind an atom's name.
+template <typename F>
+std::string format_rows(std::string_view columns, const Connectivity& connectivity, F&& values) {
+    std::string text(columns);
+    for (std::size_t i = 0; i < connectivity.names.size(); ++i) {
         const AtomName& name = connectivity.names[i];
-        fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{}\n", name.segment,
-                       name.residue, name.number, name.atom, connectivity.type[i],
-                       connectivity.charge[i], solvation[i]);
+        fmt::format_to(std::back_inserter(text), "{},{},{},{},{}\n", name.segment, name.residue,
+                       name.number, name.atom, values(i));
     }
     return text;
 }
 
-// EEF1-SB is made for neutral ionic groups; others are said, since charges are no part of
-// solvation.
-void warn_of_charges(const Connectivity& connectivity) {
+// Charges are no part of solvation, so that those of the other model are only warned of.
+void warn_of_charges(const Connectivity& connectivity, bool is_solvated) {
     const std::vector<std::string_view> types(connectivity.type.begin(), connectivity.type.end());
-    const std::vector<std::string> charged =
-        find_charged(connectivity.names, types, connectivity.charge);
-    for (const std::string& sentence : charged)
-        fmt::print(stderr, "warning: {}, which EEF1-SB's implicit water is not made for\n",
-                   sentence);
+    if (is_solvated) {
+        for (const std::string& sentence :
+             find_charged(connectivity.names, types, connectivity.charge))
+            fmt::print(stderr, "warning: {}, which EEF1-SB's implicit water is not made for\n",
+                       sentence);
+        return;
+    }
+    const auto groups = find_ionic_groups(connectivity.names, types, connectivity.charge);
+    if (const auto neutral = std::ranges::find_if(groups, &IonicGroup::has_neutral_charges);
+        neutral != groups.end()) {
+        fmt::print(stderr,
+                   "warning: {} has EEF1-SB's neutral charges, and this is in vacuum; expected "
+                   "--solvent eef1-sb with them\n",
+                   to_string(connectivity.names[neutral->atoms.front()]));
+    }
 }
 
 // Energies and forces of everything with the exact exponential; then each atom's solvation as the
@@ -205,8 +203,8 @@ Energies find_energies(const EnergyOptions& options, const Topology& topology,
 Topology build_solvated_topology(const EnergyOptions& options, const Connectivity& connectivity,
                                  const ForceField& force_field) {
     Topology topology = build_topology(connectivity, force_field);
+    warn_of_charges(connectivity, options.solvent != "none");
     if (options.solvent == "none") return topology;
-    warn_of_charges(connectivity);
     const SolvationTable table = options.solvent_table
                                      ? parse_solvation_table(read_text_file(*options.solvent_table),
                                                              options.solvent_table->string())
@@ -232,7 +230,8 @@ int energy_command(const EnergyOptions& options) {
     const Existing forces = check_written(options.forces, force_columns, options.overwrites);
     const Existing atoms = check_written(options.per_atom, atom_columns, options.overwrites);
     ForceField force_field = read_force_field(options.toppar);
-    if (!is_psf && settings.solvation != SolvationEnd::None)
+    // As scenes have it: Asp's type changes with its charges, and an NBFIX goes.
+    if (settings.solvation != SolvationEnd::None)
         force_field = neutralise_ionic_groups(std::move(force_field));
     const Structure structure = read_structure(is_psf ? *options.coordinates : options.system);
     const Connectivity connectivity =
@@ -244,9 +243,22 @@ int energy_command(const EnergyOptions& options) {
     const Energies found = find_energies(options, topology, settings, positions);
     const EnergyTerms& energy = found.terms;
     if (options.forces)
-        write_text_file(*options.forces, format_forces(connectivity, found.forces), forces);
+        write_text_file(*options.forces,
+                        format_rows(force_columns, connectivity,
+                                    [&](std::size_t i) {
+                                        const Vec3& f = found.forces[i];
+                                        return fmt::format("{},{},{}", f.x(), f.y(), f.z());
+                                    }),
+                        forces);
     if (options.per_atom)
-        write_text_file(*options.per_atom, format_atoms(connectivity, found.solvation), atoms);
+        write_text_file(*options.per_atom,
+                        format_rows(atom_columns, connectivity,
+                                    [&](std::size_t i) {
+                                        return fmt::format("{},{},{}", connectivity.type[i],
+                                                           connectivity.charge[i],
+                                                           found.solvation[i]);
+                                    }),
+                        atoms);
     if (options.json) {
         nlohmann::ordered_json json;
         for (const auto& [name, value] : list_terms(energy)) json[name] = value;
