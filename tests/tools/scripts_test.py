@@ -40,12 +40,12 @@ class Scripts(unittest.TestCase):
             self.assertEqual(struct.unpack(">II", data[16:24]), (1200, 480))
             self.assertEqual(run(ROOT / "tools" / "scripts" / "plot_stroke", folder, image).returncode, 2)
 
-    def test_scenes_readme_has_the_list_of_keys_as_the_program_prints_it(self):
+    def test_scenes_page_has_the_list_of_keys_as_the_program_prints_it(self):
         keys = run(PROGRAM, "run", "--keys").stdout
-        self.assertIn(keys.strip(), (ROOT / "scenes" / "README.md").read_text())
+        self.assertIn(keys.strip(), (ROOT / "scenes" / "keys.md").read_text())
 
-    def test_readmes_link_to_what_is_there(self):
-        for readme in [*ROOT.glob("**/README.md"), *ROOT.glob("**/results.md")]:
+    def test_pages_link_to_what_is_there(self):
+        for readme in ROOT.glob("**/*.md"):
             if "build" in readme.relative_to(ROOT).parts:
                 continue
             for target in re.findall(r"\]\(([^)#]+)\)", readme.read_text()):

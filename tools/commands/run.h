@@ -31,7 +31,7 @@ struct RunOptions {
     bool validation = false;  // of all that Vulkan is told
 };
 
-// All keys of a scene file as a Markdown table, as scenes/README.md has it.
+// All keys of a scene file as a Markdown table, as scenes/keys.md has it.
 void print_scene_keys();
 
 // Throws LoadError on bad input. Returns the exit code.
