@@ -46,7 +46,7 @@ std::vector<std::string> find_other_radii(const Connectivity& connectivity,
                                           const Solvation& solvation, const SolvationTable& table);
 
 // Those types of a structure whose rows were assigned by analogy, each once, with what they are
-// assigned to: "CG331: as CT3 (CH3); used by TL-3".
+// assigned to: "CG331: as CT3 (CH3); chosen for TL-3".
 std::vector<std::string> find_assigned_types(const Connectivity& connectivity,
                                              const SolvationTable& table);
 

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <vector>
@@ -96,6 +97,20 @@ private:
                          shortened_text(field)));
     }
 
+    // The bounds are far from any atom's, and keep all sums finite.
+    void check_bounds(const SolvationRow& row) const {
+        if (row.volume < 0 || row.volume > 1e4)
+            fail(fmt::format("a volume of {} Å^3; expected 0 to 10000", row.volume));
+        for (const double energy : {row.dg_ref, row.dg_free}) {
+            if (std::abs(energy) > 1e4)
+                fail(fmt::format("an energy of {} kcal/mol; expected -10000 to 10000", energy));
+        }
+        if (row.lambda < 0.1 || row.lambda > 1e3)
+            fail(fmt::format("a lambda of {} Å; expected 0.1 to 1000", row.lambda));
+        if (row.radius < 0.1 || row.radius > 100)
+            fail(fmt::format("a radius of {} Å; expected 0.1 to 100", row.radius));
+    }
+
     void read_row(std::string_view line) {
         const auto fields = split_fields(line);
         const std::string type = upper_case(fields[TypeColumn]);
@@ -109,11 +124,7 @@ private:
         (void)real(fields[HeatCapacityColumn], "dCp_ref; expected a number, in cal/(mol K)");
         row.lambda = real(fields[LambdaColumn], "lambda; expected a number, in Å");
         row.radius = real(fields[RadiusColumn], "radius; expected a number, in Å");
-        if (row.volume < 0) fail(fmt::format("a volume of {} Å^3; expected 0 or more", row.volume));
-        if (row.lambda <= 0)
-            fail(fmt::format("a lambda of {} Å; expected more than 0", row.lambda));
-        if (row.radius <= 0)
-            fail(fmt::format("a radius of {} Å; expected more than 0", row.radius));
+        check_bounds(row);
         row.source = unquoted(fields[SourceColumn]);
         row.is_assigned = row.source.starts_with("ASSIGNED");
         row.place = {table_.file, line_, 0};

@@ -1,6 +1,7 @@
 // A molecule is taken out of its pocket and brought back, by several hands, periods,
 // modes and numbers of active joints; or random ones of all these.
 #pragma once
+#include "scene/description.h"
 #include "session/statistics.h"
 
 #include <cstddef>
@@ -18,8 +19,8 @@ struct UnbindingOptions {
     std::vector<std::string> grips{"medium", "firm"}, modes{"guarded", "4"};
     std::vector<double> periods_ms{1, 14, 83};
     bool fastest = false;  // and at the shortest period that this machine keeps
-    std::vector<std::int64_t> active{40};
-    std::size_t random = 0;  // so many random ones instead
+    std::vector<std::int64_t> active{StaticsDescription{}.active};  // degrees of freedom
+    std::size_t random = 0;                                         // so many random ones instead
     std::uint64_t seed = 1;
 };
 

@@ -128,7 +128,7 @@ void report_force_field(const ForceField& given, Report& report) {
         report.add(
             solvent_heading,
             fmt::format("backbone: EEF1-SB's term of Cβ-Cα-C-N (0.5196 kcal/mol) is left "
-                        "out, as the parameter files have it{}",
+                        "out: the parameter files do not have it{}",
                         is_m ? "; EEF1-SB with CHARMM36m's backbone is an untested mixture" : ""));
     }
 }

@@ -239,6 +239,14 @@ void check_ranges(const SceneDescription& scene, Problems& problems) {
           fmt::format("'statics.method' is \"{}\", which moves all joints at once; expected "
                       "second-order or quasi-static with coupling.feel_within_pN",
                       relax_method_names[static_cast<std::size_t>(method_of(scene.statics))]));
+    const StaticsDescription& statics = scene.statics;
+    const bool is_adaptive =
+        statics.budget_us.has_value() || statics.active < StaticsDescription{}.active;
+    check(!is_adaptive || method_of(statics) == RelaxMethod::QuasiStatic, "statics.method",
+          fmt::format("'statics.method' is \"{}\", which moves all degrees of freedom; expected "
+                      "quasi-static with statics.{}",
+                      relax_method_names[static_cast<std::size_t>(method_of(statics))],
+                      statics.budget_us ? "budget_us" : "active"));
     const bool has_solvent = scene.force_field.solvent != Solvent::None;
     check(
         !has_solvent || !scene.statics.cutoff_angstrom, "statics.cutoff_angstrom",

@@ -32,6 +32,9 @@ struct MoleculeDescription {
     Motion motion = Motion::Fixed;
     Shape shape = Shape::Rigid;
     bool structural_water = false;  // its waters are part of the structure, in implicit water
+    // Atoms ("25 CA") or residues ("25") that springs hold where the structure has them.
+    std::vector<std::string> anchors;
+    double anchor_kcal_per_mol_angstrom2 = 5;
 };
 
 // Which bonds of flexible molecules turn.

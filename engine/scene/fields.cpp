@@ -63,6 +63,17 @@ void visit_molecule(FieldVisitor& v, MoleculeDescription& m) {
             .meaning = "with `force_field.solvent`: its waters are part of the structure, without "
                        "volume or solvation energy; any others are refused there"},
            m.structural_water);
+    v.texts(
+        {.key = "anchors",
+         .meaning = "atoms (\"25 CA\") or residues (\"25\") that springs hold where the "
+                    "structure has them while it moves by itself, so that the hand does not carry "
+                    "all of it along"},
+        m.anchors);
+    v.real({.key = "anchor_kcal_per_mol_angstrom2",
+            .meaning = "stiffness k of these springs, E = k x²/2",
+            .lowest = 1e-3,
+            .highest = 1e4},
+           m.anchor_kcal_per_mol_angstrom2);
     v.leave_table();
 }
 
@@ -602,9 +613,10 @@ void visit_coupling_keys(FieldVisitor& v, CouplingDescription& c) {
                      .highest = 1e6},
                     c.feel_pN);
     v.optional_real({.key = "feel_within_pN",
-                     .meaning = "how far the force may be from what all joints would give; where "
-                                "something moves by itself, active joints and steps follow "
-                                "(quasi-static); unset: they are as [statics] has them",
+                     .meaning = "how far the force may be from that of complete relaxation; where "
+                                "something moves by itself, how far pairs are exact, the age of "
+                                "the model and its evaluations follow (second-order), or active "
+                                "joints and steps (quasi-static); unset: as [statics] has them",
                      .lowest = 1e-6,
                      .highest = 1e6},
                     c.feel_within_pN);

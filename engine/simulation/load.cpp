@@ -167,6 +167,27 @@ void start_grabbed(const SceneDescription& scene, const HandTables& tables, Enti
     grip.is_new = false;
 }
 
+// Springs from atoms of a molecule that moves by itself to where its structure has them.
+void add_anchors(const SceneDescription& scene, const MoleculeDescription& molecule, World& world) {
+    if (molecule.anchors.empty()) return;
+    const TextPlace place = scene.place_of(fmt::format("molecules.{}.anchors", molecule.name));
+    const Entity entity = molecule_called(world, molecule.name);
+    const Mobility& mobility = *world.find<Mobility>(entity);
+    if (mobility.shape != Shape::Flexible && mobility.motion != Motion::Free) return;
+    for (const std::string& name : molecule.anchors) {
+        Restraint restraint;
+        restraint.ends.push_back({entity, atoms_called(world, entity, name)});
+        if (restraint.ends.front().atoms.empty()) {
+            throw LoadError(place, fmt::format("'{}' has no atom or residue \"{}\"; expected "
+                                               "\"25 CA\" or \"25\"",
+                                               molecule.name, name));
+        }
+        restraint.place = middle_of(world, restraint.ends.front());
+        restraint.k = molecule.anchor_kcal_per_mol_angstrom2;
+        world.set(world.create(), std::move(restraint));
+    }
+}
+
 // What the hand holds at first, and how it moves it.
 Grip build_grip(const SceneDescription& scene, const HandTables& tables, const World& world) {
     const GrabDescription& grab = tables.grab;
@@ -263,6 +284,7 @@ World load_world(const SceneDescription& scene, const StageFunction& on_stage) {
     check_laws(scene);
     World world = read_world(scene, on_stage);
     add_hands(scene, world);
+    for (const MoleculeDescription& molecule : scene.molecules) add_anchors(scene, molecule, world);
     if (needs_mechanics(world)) {
         tell(on_stage, "finding bonded terms");
         bonded_terms(world);

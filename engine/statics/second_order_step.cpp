@@ -368,8 +368,9 @@ private:
         return report_.is_finite;
     }
 
-    // Where hands stand still, a renewal after some steps, until the whole energy is at rest. False
-    // where there is nothing to do.
+    // Where hands stand still, after some steps everything relaxes on the whole energy alone: along
+    // soft coordinates the model's minimum may lie where the energy is higher. False where there
+    // is nothing else to do.
     bool prepare_still(double way) {
         constexpr double moved = 0.01;  // of a stride
         if (way > moved * settings_.stride) {
@@ -378,10 +379,13 @@ private:
             return true;
         }
         if (statics_.is_at_rest) return way > 0;
-        if (++statics_.still_steps < settings_.still_steps) return true;
-        statics_.still_steps = 0;
+        if (is_old()) statics_.still_steps = settings_.still_steps;
+        if (statics_.still_steps < settings_.still_steps) {
+            ++statics_.still_steps;
+            return true;
+        }
         (void)renew(settings_.renews_at_once);
-        return report_.is_finite;
+        return false;
     }
 
     bool is_old() const {

@@ -94,6 +94,10 @@ TEST_CASE("what is wrong with a solvation table is told with its line", "[charmm
     CHECK_THAT(error_of(head + "C,1,0,0,0,0,0,2,a\n"), Contains("a lambda of 0 Å"));
     CHECK_THAT(error_of(head + "C,-1,0,0,0,0,3.5,2,a\n"), Contains("a volume of -1 Å^3"));
     CHECK_THAT(error_of(head + "C,1,0,0,0,0,3.5,-2,a\n"), Contains("a radius of -2 Å"));
+    CHECK_THAT(error_of(head + "C,1e5,0,0,0,0,3.5,2,a\n"), Contains("a volume of 100000 Å^3"));
+    CHECK_THAT(error_of(head + "C,1,0,-1e5,0,0,3.5,2,a\n"), Contains("an energy of -100000"));
+    CHECK_THAT(error_of(head + "C,1,0,0,0,0,1e4,2,a\n"), Contains("a lambda of 10000 Å"));
+    CHECK_THAT(error_of(head + "C,1,0,0,0,0,3.5,1e3,a\n"), Contains("a radius of 1000 Å"));
     CHECK_THAT(error_of(head + "C,1,0,0,0,0,3.5,2,a,b\n"), Contains("'a,b' is no source"));
     CHECK_THAT(error_of(head + "C,1,0,0,0,0,3.5,2,\"a\n"), Contains("is no source"));
     CHECK_THAT(error_of(head + ",1,0,0,0,0,3.5,2,a\n"), Contains("'' is no atom type"));
@@ -248,7 +252,7 @@ TEST_CASE("the types of TL-3 are there by our assignment, and listed", "[charmm]
     CHECK(find_uncovered_types(all, eef1sb_table()).empty());
     const std::vector<std::string> assigned = find_assigned_types(ligand, eef1sb_table());
     CHECK(assigned.size() == 10);
-    CHECK(std::ranges::count(assigned, "CG331: as CT3 (CH3); used by TL-3") == 1);
+    CHECK(std::ranges::count(assigned, "CG331: as CT3 (CH3); chosen for TL-3") == 1);
     CHECK(find_assigned_types(all, eef1sb_table()).size() == 10);  // the protein has published ones
     // What TL-3 gains from water when alone in many small molecules: solvent.md's table by hand.
     const double by_hand = 24 * 0.057 + 10 * -0.187 + 4 * 0.372 + 6 * 1.089 + 6 * -5.95 +

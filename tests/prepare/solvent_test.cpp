@@ -140,7 +140,7 @@ TEST_CASE("with EEF1-SB ionic groups are neutral, and all of it is told", "[prep
     CHECK_THAT(report, Contains("charge +0.00 e") || Contains("charge -0.00 e"));
     CHECK_THAT(report, Contains("NBFIX of NC2 and OC: off"));
     CHECK_THAT(report,
-               Contains("left out, as the parameter files have it; EEF1-SB with CHARMM36m"));
+               Contains("left out: the parameter files do not have it; EEF1-SB with CHARMM36m"));
 
     const std::string psf = format_psf(system.connectivity, topology_title(system, "title"));
     CHECK_THAT(psf, Contains(" REMARKS Charges: EEF1-SB, every ionic group neutral;"));

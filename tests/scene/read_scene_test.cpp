@@ -418,6 +418,18 @@ TEST_CASE("fields that contradict each other are told at one of them", "[scene][
                StartsWith(at(row.line, row.column)) && Contains(row.what));
 }
 
+TEST_CASE("few degrees of freedom, or a time, are of the quasi-static step alone",
+          "[scene][read][errors]") {
+    const std::string method = base + "[statics]\nmethod = \"second-order\"\n";
+    CHECK_NOTHROW(parse_scene(method + "active = 1000000\n", file));
+    CHECK_NOTHROW(parse_scene(base + "[statics]\nactive = 40\n", file));
+    CHECK_THAT(error_of(method + "active = 40\n"),
+               Contains("'statics.method' is \"second-order\", which moves all degrees of freedom; "
+                        "expected quasi-static with statics.active"));
+    CHECK_THAT(error_of(method + "budget_us = 900\n"),
+               Contains("expected quasi-static with statics.budget_us"));
+}
+
 TEST_CASE("a scene is in vacuum unless it names a solvent", "[scene][read]") {
     const auto scene = [](const std::string& solvent) {
         return replaced(base, "[force_field]\n", "[force_field]\nsolvent = \"" + solvent + "\"\n");

@@ -49,6 +49,8 @@ TEST_CASE("odd values survive being written and read, to the last bit", "[scene]
     scene.molecules[0].name = "a.b \"c\"\n";
     scene.molecules[0].segment = " FIX ";
     scene.molecules[0].structural_water = true;
+    scene.molecules[0].anchors = {"25 CA", "26"};
+    scene.molecules[0].anchor_kcal_per_mol_angstrom2 = 0.1 + 0.2;
     scene.force_field.solvent = Solvent::Eef1Sb;
     scene.molecules[1].name = "";
     scene.molecules[1].segment = "#";
@@ -102,6 +104,8 @@ TEST_CASE("odd values survive being written and read, to the last bit", "[scene]
     CHECK(back.statics.near_angstrom == scene.statics.near_angstrom);
     CHECK(back.force_field.solvent == Solvent::Eef1Sb);
     CHECK(back.molecules[0].structural_water);
+    CHECK(back.molecules[0].anchors == scene.molecules[0].anchors);
+    CHECK(back.molecules[0].anchor_kcal_per_mol_angstrom2 == 0.1 + 0.2);
     CHECK_FALSE(back.molecules[1].structural_water);
     CHECK(back.hand.start_angstrom == scene.hand.start_angstrom);
     CHECK(std::signbit(back.hand.kick_N_s));

@@ -315,6 +315,51 @@ TEST_CASE("a spring pulls at the hand with k times its stretch", "[simulation][f
     CHECK((tethered() - start).x() > 0.1);
 }
 
+TEST_CASE("anchors pull at the hand from where the file has their atoms",
+          "[simulation][flexible]") {
+    // So far from the other molecule that nothing else acts.
+    const World world =
+        load_peptides({"molecules.held.anchors=[\"2 CA\", \"4\"]",
+                       "molecules.held.anchor_kcal_per_mol_angstrom2=0.03",
+                       "hand.start_offset_angstrom=[20, 0, 0]", "statics.cutoff_angstrom=10"});
+    const Structure file = read_peptides();
+    const AtomTable& atoms = world.resource<AtomTable>();
+    // Of atom CA of residue 2, and all of residue 4, by hand.
+    Vec3 pull = Vec3::Zero();
+    for (const bool is_residue : {false, true}) {
+        Vec3 then = Vec3::Zero(), now = Vec3::Zero();
+        double mass = 0;
+        for (std::size_t i = 0; i < atoms.size(); ++i) {
+            const AtomName& name = atoms.names[i];
+            const bool is_one =
+                is_residue ? name.number == "4" : name.number == "2" && name.atom == "CA";
+            if (name.segment != "PEPB" || !is_one) continue;
+            const auto same = [&](const AtomName& other) {
+                return other.segment == name.segment && other.number == name.number &&
+                       other.atom == name.atom;
+            };
+            const auto there = std::ranges::find_if(file.names, same) - file.names.begin();
+            then += atoms.mass[i] * file.positions[static_cast<std::size_t>(there)];
+            now += atoms.mass[i] * atoms.positions[i];
+            mass += atoms.mass[i];
+        }
+        pull += 0.03 * (then - now) / mass;
+    }
+    const Vec3 felt = local_contact_of(world).model.force_newton;
+    CHECK(pull.norm() > 1);
+    CHECK((felt - pull * units::newton_per_kcal_per_mol_angstrom).norm() < 1e-9 * felt.norm());
+}
+
+TEST_CASE("anchors that are not there are refused", "[simulation][flexible][errors]") {
+    const std::string error =
+        load_error_of([] { load_peptides({"molecules.resting.anchors=[\"2 CA\", \"7 CA\"]"}); });
+    CHECK_THAT(error, Contains("'resting' has no atom or residue \"7 CA\"; expected"));
+    // What does not move needs none.
+    const World rigid =
+        load_peptides({"molecules.resting.anchors=[\"2 CA\"]", "molecules.resting.shape=rigid"});
+    CHECK(rigid.resource<TorsionState>().springs.empty());
+}
+
 TEST_CASE("joints outside of a region are held, and counted", "[simulation][flexible]") {
     const World everywhere = load_peptides();
     const std::string around = GENERATE("", "resting");

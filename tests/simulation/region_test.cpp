@@ -45,7 +45,8 @@ SceneDescription read_flap(std::vector<std::string> settings = {}) {
     for (const char* const setting :
          {"joints.region_angstrom=6", "molecules.protease_b.motion=fixed",
           "molecules.inhibitor.motion=free", "grab.molecule=protease_b", "grab.atom=\"50\"",
-          "statics.cutoff_angstrom=9", "statics.pairs=double", "statics.relax_steps=0"})
+          "statics.cutoff_angstrom=9", "statics.pairs=double", "statics.relax_steps=0",
+          "molecules.protease_a.anchors=[]", "molecules.protease_b.anchors=[]"})
         settings.insert(settings.begin(), setting);
     return read_scene(test::in_project("scenes/hiv/flexible.toml"), settings);
 }

@@ -512,6 +512,37 @@ TEST_CASE("a tolerance that nothing meets renews once at a place, and goes on",
     }
 }
 
+TEST_CASE("while a hand stands still the whole energy never rises, and comes to rest",
+          "[statics][second-order]") {
+    const HeldPair rest;
+    const LinearisedModel linear = rest.linearised();
+    std::mt19937 random(7);
+    std::normal_distribution<double> normal;
+    for (int trial = 0; trial < 12; ++trial) {
+        INFO("trial " << trial);
+        HeldPair c = rest;
+        c.settings.near_reach = 1;  // Å: nearly all is quadratic
+        Eigen::VectorXd at(linear.coordinates.size());
+        for (double& x : at) x = 3 * normal(random);
+        at.tail(linear.hands()).setZero();
+        place_about(c.model, linear.coordinates, linear.at, at, c.state);
+        SecondOrderStatics statics = build_second_order_statics(c.model, c.held);
+        const auto step = [&] {
+            REQUIRE(step_second_order(c.model, c.settings, c.state, statics).is_finite);
+            return statics.linear->at.energy();
+        };
+        for (std::size_t k = 0; k <= c.settings.still_steps; ++k) (void)step();
+        double energy = step();
+        for (int k = 0; k < 200; ++k) {
+            const double next = step();
+            CHECK(next <= energy + 1e-9 * std::abs(energy));
+            energy = next;
+        }
+        CHECK(statics.is_at_rest);
+        CHECK(rms_of(statics.linear->gradient.head(statics.linear->mobile())) < 1);
+    }
+}
+
 TEST_CASE("out and back without a snap the hand's force is what it was",
           "[statics][second-order]") {
     HeldPair c;

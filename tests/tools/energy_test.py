@@ -174,6 +174,14 @@ class Energy(unittest.TestCase):
             for name, value in energy(*toppar).items():
                 self.assertAlmostEqual(value, whole[name], delta=1e-9, msg=name)
 
+    def test_structural_water_has_no_solvation(self):
+        water = BRIDGE.parent / "water"
+        arguments = [water / "dimer.crd", "--toppar", water / "tip3p.str", "--solvent", "eef1-sb"]
+        refused = self.palpa(*arguments)
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("--structural-water", refused.stderr)
+        self.assertEqual(self.energy(*arguments, "--structural-water")["solvation"], 0)
+
     def test_tetrapeptides_have_charmm_s_solvation(self):
         if not SHARED:
             self.skipTest("PALPA_DATA names no folder with data/energies and reference/solvent")
@@ -204,6 +212,7 @@ class Energy(unittest.TestCase):
                 ([path, *toppar, "--forces", "/dev/full"], "cannot be written"),
                 ([path, *toppar, "--solvent", "eef1"], "expected one of none, eef1-sb"),
                 ([path, *toppar, "--solvent-end", "sharp"], "expected --solvent eef1-sb"),
+                ([path, *toppar, "--structural-water"], "expected --solvent eef1-sb"),
                 ([path, *toppar, "--solvent", "eef1-sb", "--method", "cutoff"], "--solvent-end sharp"),
                 ([path, *toppar, "--solvent", "eef1-sb", "--solvent-table", PEPTIDES / "aera_c36m.prm"],
                  "no head of a solvation table"),

@@ -174,6 +174,7 @@ class Prepare(PrepareCase):
         self.assertEqual(vacuum.returncode, 2)
         self.assertIn("neutral charges", vacuum.stderr)
         self.refuse(self.data / "structures" / "1crn.pdb", "--solvent", "water")
+        self.refuse(self.data / "structures" / "1crn.pdb", "--solvent", "none", "--structural-water", "A:301")
 
     def test_an_interrupt_leaves_no_files_behind(self):
         """The scene is tried out in a temporary folder; Ctrl+C while it is there removes it."""

@@ -89,7 +89,7 @@ struct Method {
     bool has_cutoff = false;     // begins at rest with that, and is judged by it, too
 };
 
-std::vector<Method> build_methods(const BenchStart& start, double cutoff) {
+std::vector<Method> build_methods(const BenchStart& start, std::optional<double> cutoff) {
     const auto build = [&](const SceneDescription& scene) {
         return build_mechanics_world(scene, model_of(start.world), held_part(start.world));
     };
@@ -105,7 +105,7 @@ std::vector<Method> build_methods(const BenchStart& start, double cutoff) {
     SceneDescription bfgs = with_cutoff(start.scene, {});
     bfgs.statics.method = RelaxMethod::InverseMass;
     bfgs.statics.steps = 1;
-    const std::string with = fmt::format("/cutoff={}", cutoff);
+    const std::string with = fmt::format("/cutoff={}", cutoff.value_or(0));
     std::vector<Method> methods;
     methods.push_back(
         {"default", build(start.scene), 0, start.scene.statics.cutoff_angstrom.has_value()});
@@ -118,12 +118,12 @@ std::vector<Method> build_methods(const BenchStart& start, double cutoff) {
             {responses == 0 ? "responses=all" : fmt::format("responses={}", responses),
              build(scene)});
     }
-    methods.push_back({"near=6" + with, near(6, cutoff), 0, true});
+    if (cutoff) methods.push_back({"near=6" + with, near(6, cutoff), 0, true});
     methods.push_back({"full-second-order", {}, 2});
     methods.push_back({"bfgs", build(bfgs)});
     methods.push_back({"paper-40", paper(40, {})});
     methods.push_back({"paper-all", paper(everything, {})});
-    methods.push_back({"paper-all" + with, paper(everything, cutoff), 0, true});
+    if (cutoff) methods.push_back({"paper-all" + with, paper(everything, cutoff), 0, true});
     return methods;
 }
 

@@ -50,7 +50,7 @@ Vec3 force_of(const HandHold& hand, const LinearisedModel& linear) {
 
 PosedModel posed_model(const Truths& truths, const TorsionState& state) {
     return {state.positions.size(), state.angles.size(), state.turns.size(), state.springs.size(),
-            truths.cutoff};
+            truths.cutoff.value_or(0)};
 }
 
 RestPose rest_pose_of(const Truth& truth, const RestStart& start) {
@@ -151,7 +151,9 @@ SceneDescription with_cutoff(SceneDescription scene, std::optional<double> cutof
 Truths build_truths(const BenchStart& start) {
     const TorsionModel& model = model_of(start.world);
     const SceneDescription scene = second_order_scene(start.scene);
-    const double cutoff = scene.statics.cutoff_angstrom.value_or(usual_cutoff);
+    std::optional<double> cutoff;
+    if (scene.force_field.solvent == Solvent::None)
+        cutoff = scene.statics.cutoff_angstrom.value_or(usual_cutoff);
     const auto build = [&](std::optional<double> pairs_end) {
         const World world =
             build_mechanics_world(with_cutoff(scene, pairs_end), model, held_part(start.world));
@@ -166,11 +168,14 @@ std::vector<AnswerPose> find_poses(Truths& truths, TorsionState state, int count
     std::vector<AnswerPose> poses;
     for (int i = 0; i < count; ++i) {
         if (i > 0) (void)truths.all_pairs.follow(state, {way_angstrom / count, 0, 0}, truth_stride);
-        say(fmt::format("pose {} of {}, all pairs and {} Å", i + 1, count, truths.cutoff));
+        const std::string kinds =
+            truths.cutoff ? fmt::format(", all pairs and {} Å", *truths.cutoff) : "";
+        say(fmt::format("pose {} of {}{}", i + 1, count, kinds));
         AnswerPose pose;
         pose.all_pairs = find_rest_start(truths.all_pairs, state);
         TorsionState other = state;
-        pose.with_cutoff = find_rest_start(truths.with_cutoff, other);
+        pose.with_cutoff =
+            truths.cutoff ? find_rest_start(truths.with_cutoff, other) : pose.all_pairs;
         poses.push_back(std::move(pose));
     }
     return poses;

@@ -73,10 +73,10 @@ struct AnswerPose {
     RestStart all_pairs, with_cutoff;
 };
 
-// Of both kinds of forces.
+// Of both kinds of forces. In implicit water, whose forces have ends of their own, of one kind.
 struct Truths {
     Truth all_pairs, with_cutoff;
-    double cutoff;  // Å
+    std::optional<double> cutoff;  // Å
 };
 
 // All pairs, and the scene's own cutoff or one of 12 Å.

@@ -53,10 +53,12 @@ SolvationEnd find_end(const EnergyOptions& options) {
             choice_called("--solvent-end", options.solvent_end.value_or("smooth"), end_names);
         return end == 0 ? SolvationEnd::Smooth : SolvationEnd::Sharp;
     }
-    if (options.solvent_end || options.solvent_exp || options.solvent_table || options.per_atom) {
+    if (options.solvent_end || options.solvent_exp || options.solvent_table || options.per_atom ||
+        options.structural_water) {
         throw LoadError({"--solvent " + options.solvent},
-                        "--solvent-end, --solvent-exp, --solvent-table and --per-atom are of a "
-                        "solvent; expected --solvent eef1-sb with them");
+                        "--solvent-end, --solvent-exp, --solvent-table, --per-atom and "
+                        "--structural-water are of a solvent; expected --solvent eef1-sb with "
+                        "them");
     }
     return SolvationEnd::None;
 }
@@ -209,7 +211,10 @@ Topology build_solvated_topology(const EnergyOptions& options, const Connectivit
                                      ? parse_solvation_table(read_text_file(*options.solvent_table),
                                                              options.solvent_table->string())
                                      : eef1sb_table();
-    topology.solvation = assign_solvation(connectivity, force_field, table);
+    std::vector<std::uint8_t> is_structural;
+    if (options.structural_water)
+        is_structural = find_water_atoms(connectivity.names, connectivity.mass);
+    topology.solvation = assign_solvation(connectivity, force_field, table, is_structural);
     return topology;
 }
 
@@ -306,6 +311,8 @@ void add_energy(CLI::App& program, ProgramCommand& chosen) {
         .add_option("--solvent-table", options.solvent_table,
                     "CSV file of solvation by atom type, instead of the program's")
         ->type_name("FILE");
+    energy.add_flag("--structural-water", options.structural_water,
+                    "waters are part of the structure, without volume or solvation energy");
     energy.add_option("--per-atom", options.per_atom, "CSV file for the solvation of every atom")
         ->type_name("FILE");
     energy

@@ -18,6 +18,7 @@ struct EnergyOptions {
     // "smooth" and "exact" unless given
     std::optional<std::string> solvent_end, solvent_exp;
     std::optional<std::filesystem::path> solvent_table;        // instead of the program's
+    bool structural_water = false;                             // all waters are
     double coulomb_constant = units::charmm_coulomb_constant;  // kcal Å/mol/e^2
     std::optional<double> dielectric;                          // 1, with a solvent 1.5
     bool distance_dielectric = false;                          // with a solvent always

@@ -76,6 +76,10 @@ PrepareSettings build_settings(const PrepareOptions& options) {
         settings.structural_waters.push_back(
             read_choice(text, "--structural-water", "CHAIN:NUMBER, as in A:301"));
     }
+    if (options.solvent == "none" && !options.structural_waters.empty()) {
+        throw LoadError({"--structural-water " + options.structural_waters.front()},
+                        "is of implicit water; expected --keep-waters with --solvent none");
+    }
     settings.solvent.reset();
     for (std::size_t i = 0; i < solvent_names.size(); ++i) {
         if (options.solvent == solvent_names[i]) settings.solvent = static_cast<Solvent>(i);

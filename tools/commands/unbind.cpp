@@ -145,7 +145,7 @@ void add_unbind(CLI::App& program, ProgramCommand& chosen) {
         unbinding.add_option("--modes", options.modes, "coupling modes (default guarded,4)")
             ->delimiter(',');
     CLI::Option* const active =
-        unbinding.add_option("--active", options.active, "active degrees of freedom (default 40)")
+        unbinding.add_option("--active", options.active, "active degrees of freedom (default all)")
             ->delimiter(',')
             ->check(in_range(0, 1e6));
     unbinding
