@@ -39,12 +39,16 @@ Vec3 find_rigid_force(const World& world, const MoleculePose& pose) {
     return field_on(world, hand, group).force;
 }
 
-// All joints and all pairs, without choices of joints or error estimates.
+// Complete relaxation of all joints on all pairs, whatever was asked.
 class RelaxedReference {
 public:
     RelaxedReference(SceneDescription scene, const World& world) {
+        scene.statics.method.reset();  // by second order, where it is not too large for that
         scene.statics.active = StaticsDescription{}.active;
         scene.statics.steps = 1;
+        scene.statics.responses = 0;
+        scene.statics.renewal_ms = 0;
+        scene.statics.renews_beside = false;
         scene.statics.budget_us.reset();
         scene.statics.cutoff_angstrom.reset();
         scene.coupling.feel_within_pN.reset();
@@ -52,8 +56,7 @@ public:
     }
 
     // On what is held (kcal/mol/Å), from where a state is, once that is held at that place (Å):
-    // after 200 of the paper's steps, whatever was asked, and how much the last 50 of them still
-    // changed.
+    // after 200 steps, and how much the last 50 of them still changed.
     struct Found {
         Vec3 force;
         double change;

@@ -148,7 +148,7 @@ std::vector<std::string> draw_unbinding(Draws& draws) {
     if (draws.below(2) == 1)
         settings.push_back(fmt::format("statics.active={}", std::lround(draws.scale(10, 100))));
     settings.push_back(fmt::format("run.period_ms={}", std::lround(draws.scale(5, 100))));
-    const double way = draws.between(29, 34), out_s = lead_s + way / draws.scale(1.5, 8);
+    const double way = draws.between(45, 55), out_s = lead_s + way / draws.scale(1.5, 8);
     const double turn_s = out_s + draws.between(0.01, 1);
     settings.emplace_back("hand.stroke=lead");
     settings.push_back(fmt::format(
@@ -170,7 +170,8 @@ bool UnbindingResult::is_back() const noexcept {
 
 bool UnbindingResult::meets_bars() const noexcept {
     return ripple_N.value_or(0) <= most_unbinding_ripple_N && cut_share == 0 &&
-           summary.steps_not_finite == 0 && !summary.stopped && !summary.went_through;
+           summary.steps_not_finite == 0 && !summary.stopped && !summary.went_through &&
+           (is_out() || active < StaticsDescription{}.active);
 }
 
 bool UnbindingResult::is_guarded() const noexcept { return mode == "guarded"; }

@@ -52,7 +52,8 @@ struct UnbindingResult {
     // And back: its heavy atoms end within 1.5 Å rms of where they began.
     bool is_back() const noexcept;
 
-    // Ripple, nothing cut at 3 nN or less, finite, none through. Bars of guarded coupling.
+    // Ripple, nothing cut at 3 nN or less, finite, none through, and out where all degrees of
+    // freedom move. Bars of guarded coupling.
     bool meets_bars() const noexcept;
     bool is_guarded() const noexcept;
 };

@@ -441,13 +441,12 @@ public:
             summary.other_hands.back().device = hands[i].device.spec().name;
         }
         summary.accuracy = accuracy_.report(summary.step_median_us);
-        if (unbinding_) {
-            // Where molecules make room for each other, one may well be on either side of another.
-            constexpr double on_top = 1;  // Å
-            summary.unbinding = unbinding_->unbinding();
-            summary.went_through = summary.unbinding->closest < on_top;
-        }
+        if (unbinding_) summary.unbinding = unbinding_->unbinding();
         if (!has_mobile(world)) return summary;
+        // Where molecules make room for each other, one may well be on either side of another.
+        constexpr double on_top = 1;  // Å
+        summary.went_through =
+            (unbinding_ ? summary.unbinding->closest : summary.closest_angstrom) < on_top;
         const AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();
         const ForceMemory& memory =
             adaptive ? adaptive->statics.memory : world.resource<Solver>().statics.memory;

@@ -2,21 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 #include <utility>
 
 namespace palpa {
 namespace {
-
-std::uint32_t find_farthest(std::span<const Vec3> before, std::span<const Vec3> after) {
-    std::uint32_t farthest = 0;
-    double most = 0;
-    for (std::uint32_t atom = 0; atom < before.size(); ++atom) {
-        const double way = (after[atom] - before[atom]).squaredNorm();
-        if (way > most) std::tie(farthest, most) = std::tuple(atom, way);
-    }
-    return farthest;
-}
 
 // ---- hands -------------------------------------------------------------------------------------
 
@@ -54,41 +43,12 @@ Eigen::VectorXd find_hand_coordinates(const TorsionModel& model, const Linearise
     return d;
 }
 
-constexpr double arm =
-    5;  // Å: turns and torques of a hand count as at an atom so far from the axis
-
-// The longest of the hands' displacements or forces; turns and torques are multiplied by `of_turn`.
-double find_longest(std::span<const HandHold> hands, const Eigen::VectorXd& values,
-                    double of_turn) {
-    double longest = 0;
-    Eigen::Index next = 0;
-    for (const HandHold& hand : hands) {
-        if (hand.turns) {
-            longest = std::max(longest, of_turn * values.segment<3>(next).norm());
-            next += 3;
-        }
-        longest = std::max(longest, values.segment<3>(next).norm());
-        next += 3;
-    }
-    return longest;
-}
-
-// The farthest way of a hand by these coordinates, Å.
-double find_length(std::span<const HandHold> hands, const Eigen::VectorXd& d) {
-    return find_longest(hands, d, arm);
-}
-
-// The largest force on a hand, kcal/mol/Å.
-double find_force(std::span<const HandHold> hands, const Eigen::VectorXd& gradient) {
-    return find_longest(hands, gradient, 1 / arm);
-}
-
 // By how much the force on a hand would change if the model relaxed from here: -G^T H^-1 g.
 double find_unrelaxed(std::span<const HandHold> hands, const SecondOrderStatics& statics) {
     const LinearisedModel& linear = *statics.linear;
     const Eigen::VectorXd change =
         linear.answer().transpose() * statics.value.gradient.head(linear.mobile());
-    return find_force(hands, change);
+    return find_largest_force(hands, change);
 }
 
 // ---- steps on the model ------------------------------------------------------------------------
@@ -208,33 +168,13 @@ bool is_finite(const SecondOrderStatics& statics) {
     return std::isfinite(statics.value.energy) && statics.value.gradient.allFinite();
 }
 
-// Relaxes on the whole energy while hands stay.
-JointRelaxReport relax_fully(const TorsionModel& model, const SecondOrderSettings& settings,
-                             TorsionState& state, RenewalMemory& memory) {
-    RelaxSettings relax;
-    relax.step.forces = settings.forces;
-    relax.largest_move = settings.relax_move;
-    relax.force_tolerance = settings.rest;
-    if (const auto& last = memory.last) {
-        relax.precondition = [&](const Coordinates& v) -> Coordinates {
-            return find_response(last->factor, v);
-        };
-    }
-    const std::size_t before = memory.full.memory.evaluations;
-    return relax_joints(model, relax, state, memory.full, [&](const RelaxProgress& progress) {
-        const std::size_t used = memory.full.memory.evaluations - before;
-        if (used >= settings.most_relaxation) return false;
-        return used < settings.least_relaxation || progress.rms_force > settings.relaxed;
-    });
-}
-
 // How far the state is from the point of linearisation, in units of the region in which the model
 // holds.
 double find_relative_age(const TorsionModel& model, const SecondOrderSettings& settings,
                          const TorsionState& state, const SecondOrderStatics& statics) {
     const LinearisedModel& linear = *statics.linear;
     return std::max(
-        find_length(statics.renewals.lineariser.held.hands, statics.at.tail(linear.hands())) /
+        find_farthest_way(statics.renewals.lineariser.held.hands, statics.at.tail(linear.hands())) /
             settings.renew_hand,
         find_largest_move(model.mobile_atoms, linear.at.positions, state.positions) /
             settings.renew_atom);
@@ -302,7 +242,7 @@ public:
         const std::size_t before = statics_.model_evaluations;
         if (!statics_.linear && !renew(true)) return report_;
         if (!place_with_springs()) return report_;
-        const double way = find_length(hands(), left());
+        const double way = find_farthest_way(hands(), left());
         if (prepare_still(way)) follow(way);
         describe(before);
         if (wants_renewal_ && report_.is_finite && !statics_.pending)
@@ -389,7 +329,7 @@ private:
     }
 
     bool is_old() const {
-        const double way = find_length(hands(), statics_.at.tail(linear().hands()));
+        const double way = find_farthest_way(hands(), statics_.at.tail(linear().hands()));
         const double farthest =
             find_largest_move(model_.mobile_atoms, linear().at.positions, state_.positions);
         if (!statics_.is_settled || farthest > settings_.renew_atom) return true;
@@ -417,7 +357,7 @@ private:
                 if (!report_.is_finite) return;
             }
             const Eigen::VectorXd rest = left();
-            const double length = find_length(hands(), rest);
+            const double length = find_farthest_way(hands(), rest);
             is_there = length <= stride;
             const Eigen::VectorXd by = is_there ? rest : Eigen::VectorXd(rest * (stride / length));
             report_.lags = (wants_renewal_ || statics_.refused_way) && is_beyond(by);
@@ -440,9 +380,9 @@ private:
 
     bool is_beyond(const Eigen::VectorXd& by) const {
         const Eigen::VectorXd d = statics_.at.tail(linear().hands());
-        const double next = find_length(hands(), d + by);
+        const double next = find_farthest_way(hands(), d + by);
         if (statics_.refused_way && next >= *statics_.refused_way) return true;
-        return next > settings_.farthest_hand && next > find_length(hands(), d);
+        return next > settings_.farthest_hand && next > find_farthest_way(hands(), d);
     }
 
     // False, and everything is as it was, where an atom would leave the region of the model, or
@@ -457,7 +397,7 @@ private:
         ++statics_.discarded;
         go_back(at, value);
         if (!is_at_point()) {
-            statics_.refused_way = find_length(hands(), at.tail(linear().hands()) + by);
+            statics_.refused_way = find_farthest_way(hands(), at.tail(linear().hands()) + by);
             return false;
         }
         statics_.at.tail(linear().hands()) += by;
@@ -497,7 +437,7 @@ private:
         if (!report_.is_finite) return;
         report_.energy = statics_.value.energy;
         report_.rms_force = rms_of(statics_.value.gradient.head(linear().mobile()));
-        report_.age = find_length(hands(), statics_.at.tail(linear().hands()));
+        report_.age = find_farthest_way(hands(), statics_.at.tail(linear().hands()));
         report_.farthest =
             find_largest_move(model_.mobile_atoms, linear().at.positions, state_.positions);
         report_.largest_move =
@@ -517,31 +457,6 @@ private:
 };
 
 }  // namespace
-
-Renewal make_renewal(const TorsionModel& model, const SecondOrderSettings& settings,
-                     RenewalRequest request, RenewalMemory& memory) {
-    Renewal renewal;
-    const std::vector<Vec3> before = request.state.positions;
-    renewal.relaxed = relax_fully(model, settings, request.state, memory);
-    renewal.farthest_atom = find_farthest(before, request.state.positions);
-    if (renewal.relaxed.end == RelaxEnd::NotFinite || !std::isfinite(request.state.energy()))
-        return renewal;
-    auto linear = std::make_shared<LinearisedModel>();
-    LineariseSettings linearise_settings = settings;
-    if (request.near_reach > 0) linearise_settings.near_reach = request.near_reach;
-    if (!linearise(model, linearise_settings, request.state, memory.lineariser, *linear))
-        return renewal;
-    if (request.felt.size() == linear->hands()) {
-        renewal.error = find_force(memory.lineariser.held.hands,
-                                   request.felt - linear->gradient.tail(linear->hands()));
-        renewal.model_error = find_force(memory.lineariser.held.hands,
-                                         request.at_rest - linear->gradient.tail(linear->hands()));
-        renewal.error_age = request.age;
-    }
-    memory.last = linear;
-    renewal.linear = std::move(linear);
-    return renewal;
-}
 
 SecondOrderStatics build_second_order_statics(const TorsionModel& model, HeldParts held) {
     SecondOrderStatics statics;

@@ -109,7 +109,7 @@ int run_unbind(const UnbindCommand& command) {
     } else {
         fmt::print(
             "\n{} of {} out, {} back; {} of {} guarded ones missed a bar (ripple {} N, nothing "
-            "cut at 3 nN or less, finite, none through)\n",
+            "cut at 3 nN or less, finite, none through, out where all moves)\n",
             out, results.size(), back, missed, count(is_guarded), most_unbinding_ripple_N);
         for (const UnbindingResult& r : results) {
             if (!is_guarded(r) || r.meets_bars()) continue;
