@@ -63,7 +63,6 @@ public:
     };
     Found find_force(const TorsionState& state, const Vec3& held_at) {
         constexpr int steps = 200, last_steps = 50;
-        // A first step is short, and they grow by a fifth.
         put_state(world_, state);
         move_held(world_, held_at - held_place(world_, first_hand(world_)));
         Vec3 before = Vec3::Zero();

@@ -140,6 +140,14 @@ std::vector<std::vector<std::string>> list_choices(const UnbindingOptions& optio
     return all;
 }
 
+bool is_to_leave(const SceneDescription& scene) {
+    return scene.hand.stroke == Stroke::Lead &&
+           method_of(scene.statics) == RelaxMethod::SecondOrder &&
+           std::ranges::any_of(scene.hand.path, [](const PathPoint& point) {
+               return std::hypot(point.place[0], point.place[1], point.place[2]) >= 10;
+           });
+}
+
 // Out at a speed of their own, a rest, and back.
 std::vector<std::string> draw_unbinding(Draws& draws) {
     constexpr double lead_s = 0.5;
@@ -171,7 +179,7 @@ bool UnbindingResult::is_back() const noexcept {
 bool UnbindingResult::meets_bars() const noexcept {
     return ripple_N.value_or(0) <= most_unbinding_ripple_N && cut_share == 0 &&
            summary.steps_not_finite == 0 && !summary.stopped && !summary.went_through &&
-           (is_out() || active < StaticsDescription{}.active);
+           (is_out() || !is_to_leave);
 }
 
 bool UnbindingResult::is_guarded() const noexcept { return mode == "guarded"; }
@@ -205,6 +213,7 @@ UnbindingResult play_unbinding(const UnbindingOptions& options, std::vector<std:
     result.mode = coupling_mode_names[static_cast<std::size_t>(scene.coupling.mode)];
     result.period_ms = scene.period_ms;
     result.active = scene.statics.active;
+    result.is_to_leave = is_to_leave(scene);
     result.summary = summary;
     result.wall_s = took.count();
     return result;

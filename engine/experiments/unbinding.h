@@ -52,8 +52,10 @@ struct UnbindingResult {
     // And back: its heavy atoms end within 1.5 Å rms of where they began.
     bool is_back() const noexcept;
 
-    // Ripple, nothing cut at 3 nN or less, finite, none through, and out where all degrees of
-    // freedom move. Bars of guarded coupling.
+    // The stroke leads the molecule 10 Å or farther, and all degrees of freedom answer the hand.
+    bool is_to_leave = false;
+    // Ripple, nothing cut at 3 nN or less, finite, none through, and out where it is to leave. Bars
+    // of guarded coupling.
     bool meets_bars() const noexcept;
     bool is_guarded() const noexcept;
 };

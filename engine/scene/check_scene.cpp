@@ -255,6 +255,11 @@ void check_ranges(const SceneDescription& scene, Problems& problems) {
                     scene.statics.cutoff_angstrom.value_or(0),
                     solvent_names[static_cast<std::size_t>(scene.force_field.solvent)]));
     for (const MoleculeDescription& molecule : scene.molecules) {
+        const std::string anchors = fmt::format("molecules.{}.anchors", molecule.name);
+        for (auto i = molecule.anchors.begin(); i != molecule.anchors.end(); ++i) {
+            check(std::find(molecule.anchors.begin(), i, *i) == i, anchors,
+                  fmt::format("'{}' names \"{}\" twice; expected each once", anchors, *i));
+        }
         const std::string key = fmt::format("molecules.{}.structural_water", molecule.name);
         check(has_solvent || !molecule.structural_water, key,
               fmt::format("'{}' is true without a solvent, where waters are as all molecules; "

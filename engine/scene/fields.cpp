@@ -65,9 +65,10 @@ void visit_molecule(FieldVisitor& v, MoleculeDescription& m) {
            m.structural_water);
     v.texts(
         {.key = "anchors",
-         .meaning = "atoms (\"25 CA\") or residues (\"25\") that springs hold where the "
-                    "structure has them while it moves by itself, so that the hand does not carry "
-                    "all of it along"},
+         .meaning = "atoms (\"25 CA\") or residues (\"25\", their centre of mass) that "
+                    "springs hold where the structure has them, while the molecule moves by "
+                    "itself, so that the hand does not carry all of it along; their energy is part "
+                    "of the potential energy, and an anchor of what is in the hand is felt"},
         m.anchors);
     v.real({.key = "anchor_kcal_per_mol_angstrom2",
             .meaning = "stiffness k of these springs, E = k x²/2",
@@ -234,7 +235,8 @@ void visit_statics(FieldVisitor& v, StaticsDescription& s) {
               s.choose_every);
     v.real({.key = "rest_kcal_per_mol",
             .meaning = "on loading all is relaxed until the rms force along the coordinates "
-                       "(per radian and per Å) is below this",
+                       "(per radian and per Å) is below this; there limited-memory and "
+                       "inverse-mass end in a step, too",
             .lowest = 1e-6,
             .highest = 1e6},
            s.rest_kcal_per_mol);

@@ -445,8 +445,7 @@ public:
         if (!has_mobile(world)) return summary;
         // Where molecules make room for each other, one may well be on either side of another.
         constexpr double on_top = 1;  // Å
-        summary.went_through =
-            (unbinding_ ? summary.unbinding->closest : summary.closest_angstrom) < on_top;
+        summary.went_through = summary.unbinding && summary.unbinding->closest < on_top;
         const AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();
         const ForceMemory& memory =
             adaptive ? adaptive->statics.memory : world.resource<Solver>().statics.memory;

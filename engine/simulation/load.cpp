@@ -167,13 +167,12 @@ void start_grabbed(const SceneDescription& scene, const HandTables& tables, Enti
     grip.is_new = false;
 }
 
-// Springs from atoms of a molecule that moves by itself to where its structure has them.
+// Springs from atoms of a molecule to where its structure has them; they act while it moves by
+// itself.
 void add_anchors(const SceneDescription& scene, const MoleculeDescription& molecule, World& world) {
     if (molecule.anchors.empty()) return;
     const TextPlace place = scene.place_of(fmt::format("molecules.{}.anchors", molecule.name));
     const Entity entity = molecule_called(world, molecule.name);
-    const Mobility& mobility = *world.find<Mobility>(entity);
-    if (mobility.shape != Shape::Flexible && mobility.motion != Motion::Free) return;
     for (const std::string& name : molecule.anchors) {
         Restraint restraint;
         restraint.ends.push_back({entity, atoms_called(world, entity, name)});

@@ -286,6 +286,14 @@ Spring build_spring(const World& world, const ModelAtoms& atoms, const Restraint
     return spring;
 }
 
+std::vector<Spring> build_restraints(const World& world, const ModelAtoms& atoms) {
+    std::vector<Spring> springs;
+    world.each<Restraint>([&](Entity, const Restraint& restraint) {
+        springs.push_back(build_spring(world, atoms, restraint));
+    });
+    return springs;
+}
+
 // ---- settings --------------------------------------------------------------------------------
 
 RelaxSettings build_settings(const SceneDescription& scene) {
@@ -549,9 +557,8 @@ void set_mechanics(const SceneDescription& scene, TorsionModel model, ModelAtoms
             grip.is_new ? find_centre_of_mass(model, part.spring->atoms, state.positions)
                         : Vec3(grip.anchor + grip.pose.place_angstrom);
     });
-    world.each<Restraint>([&](Entity, const Restraint& restraint) {
-        state.springs.push_back(build_spring(world, atoms, restraint));
-    });
+    for (Spring& spring : build_restraints(world, atoms))
+        state.springs.push_back(std::move(spring));
     world.remove_resource<AdaptiveState>();
     world.remove_resource<SecondOrder>();
     world.remove_resource<ErrorEstimate>();
@@ -699,6 +706,7 @@ void relax_and_build_mechanics(World& world, const RelaxProgressFunction& on_rel
     }
     const TorsionModel loose = build_model(world, plan, std::move(bases));
     TorsionState rest = build_torsion_state(loose);
+    rest.springs = build_restraints(world, plan.atoms);
     QuasiStatics statics = build_quasi_statics(loose);
     RelaxSettings to_rest;
     to_rest.step.forces = build_settings(scene).step.forces;

@@ -9,12 +9,6 @@ namespace {
 
 // ---- hands -------------------------------------------------------------------------------------
 
-// Where a hand has what it moves.
-struct HandPlace {
-    Vec3 place;
-    Quat turn;
-};
-
 HandPlace find_place(const TorsionModel& model, const TorsionState& state, const HandHold& hand) {
     if (hand.spring) return {state.springs[*hand.spring].place, Quat::Identity()};
     return {state.positions[model.bases[hand.molecule].pivot], state.turns[hand.molecule]};
@@ -25,22 +19,28 @@ Vec3 rotation_vector(const Quat& turn) {
     return angle.angle() * angle.axis();
 }
 
-// The hands' coordinates about the point of linearisation, from where they are.
-Eigen::VectorXd find_hand_coordinates(const TorsionModel& model, const LinearisedModel& linear,
-                                      std::span<const HandHold> hands,
-                                      std::span<const HandPlace> places) {
-    Eigen::VectorXd d(linear.hands());
-    Eigen::Index next = 0;
+std::vector<HandPlace> find_places(const TorsionModel& model, const TorsionState& state,
+                                   std::span<const HandHold> hands) {
+    std::vector<HandPlace> places;
+    for (const HandHold& hand : hands) places.push_back(find_place(model, state, hand));
+    return places;
+}
+
+// The hands' coordinates about where they were.
+Eigen::VectorXd find_hand_coordinates(std::span<const HandHold> hands,
+                                      std::span<const HandPlace> from,
+                                      std::span<const HandPlace> to) {
+    std::vector<double> coordinates;
     for (std::size_t i = 0; i < hands.size(); ++i) {
-        const HandPlace origin = find_place(model, linear.at, hands[i]);
+        const Vec3 way = to[i].place - from[i].place;
         if (hands[i].turns) {
-            d.segment<3>(next) = rotation_vector(places[i].turn * origin.turn.conjugate());
-            next += 3;
+            const Vec3 turn = rotation_vector(to[i].turn * from[i].turn.conjugate());
+            coordinates.insert(coordinates.end(), turn.begin(), turn.end());
         }
-        d.segment<3>(next) = places[i].place - origin.place;
-        next += 3;
+        coordinates.insert(coordinates.end(), way.begin(), way.end());
     }
-    return d;
+    return Eigen::Map<Eigen::VectorXd>(coordinates.data(),
+                                       static_cast<Eigen::Index>(coordinates.size()));
 }
 
 // By how much the force on a hand would change if the model relaxed from here: -G^T H^-1 g.
@@ -234,7 +234,7 @@ public:
     Step(const TorsionModel& model, const SecondOrderSettings& settings, TorsionState& state,
          SecondOrderStatics& statics, const AwaitFunction& await)
         : model_(model), settings_(settings), state_(state), statics_(statics), await_(await) {
-        for (const HandHold& hand : hands()) places_.push_back(find_place(model, state, hand));
+        places_ = find_places(model, state, hands());
     }
 
     SecondOrderReport run() {
@@ -256,7 +256,7 @@ private:
 
     // The hands' coordinates that the model has not followed yet.
     Eigen::VectorXd left() const {
-        return find_hand_coordinates(model_, linear(), hands(), places_) -
+        return find_hand_coordinates(hands(), find_places(model_, linear().at, hands()), places_) -
                statics_.at.tail(linear().hands());
     }
 
@@ -308,12 +308,23 @@ private:
         return report_.is_finite;
     }
 
+    // Whether hands are not where they came to stand, however slowly they go.
+    bool has_moved() {
+        constexpr double moved = 0.01;  // of a stride
+        std::vector<HandPlace>& still = statics_.still_at;
+        if (still.size() == places_.size() &&
+            find_farthest_way(hands(), find_hand_coordinates(hands(), still, places_)) <=
+                moved * settings_.stride)
+            return false;
+        still = places_;
+        return true;
+    }
+
     // Where hands stand still, after some steps everything relaxes on the whole energy alone: along
     // soft coordinates the model's minimum may lie where the energy is higher. False where there
     // is nothing else to do.
     bool prepare_still(double way) {
-        constexpr double moved = 0.01;  // of a stride
-        if (way > moved * settings_.stride) {
+        if (has_moved()) {
             statics_.still_steps = 0;
             statics_.is_at_rest = false;
             return true;

@@ -42,6 +42,12 @@ struct [[nodiscard]] SecondOrderReport {
     std::uint32_t farthest_relaxed = 0;  // the atom that it moved farthest
 };
 
+// Where a hand has what it moves.
+struct HandPlace {
+    Vec3 place;  // Å
+    Quat turn;
+};
+
 // What steps keep from one to the next.
 struct SecondOrderStatics {
     RenewalMemory renewals;
@@ -51,10 +57,11 @@ struct SecondOrderStatics {
     Eigen::VectorXd at;                             // where the state is, about it
     ModelValue value;                               // of the model there
     CurvaturePairs pairs{false};
-    NearPairs near;               // the model's, with kernel memory of its own
-    bool is_settled = true;       // the model's point was relaxed enough
-    bool is_at_rest = false;      // the whole energy is, where the hands are
-    std::size_t still_steps = 0;  // since hands last moved, or a renewal
+    NearPairs near;                   // the model's, with kernel memory of its own
+    bool is_settled = true;           // the model's point was relaxed enough
+    bool is_at_rest = false;          // the whole energy is, where the hands are
+    std::size_t still_steps = 0;      // since hands last moved
+    std::vector<HandPlace> still_at;  // where hands were then
     // Of the hands (Å), where this model did not hold any more: until there is another, hands go no
     // farther.
     std::optional<double> refused_way;

@@ -212,8 +212,12 @@ Topology build_solvated_topology(const EnergyOptions& options, const Connectivit
                                                              options.solvent_table->string())
                                      : eef1sb_table();
     std::vector<std::uint8_t> is_structural;
-    if (options.structural_water)
+    if (options.structural_water) {
         is_structural = find_water_atoms(connectivity.names, connectivity.mass);
+        if (std::ranges::find(is_structural, 1) == is_structural.end()) {
+            throw LoadError({"--structural-water"}, "there is no water in this system");
+        }
+    }
     topology.solvation = assign_solvation(connectivity, force_field, table, is_structural);
     return topology;
 }

@@ -26,7 +26,7 @@ constexpr double force_nN = units::newton_per_kcal_per_mol_angstrom * 1e9;  // o
 // Of ways to relax that do not bring all surroundings to rest in a step.
 constexpr const char* unrelaxed_note =
     "not complete in a step: the force can be several times that of surroundings\n"
-    "              at rest (README.md, Limits)";
+    "              at rest; method = \"second-order\" relaxes it completely";
 
 int freedom_of_hands(const World& world) {
     int freedom = 0;

@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 #include <algorithm>
 #include <cstdio>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -109,7 +110,8 @@ int run_unbind(const UnbindCommand& command) {
     } else {
         fmt::print(
             "\n{} of {} out, {} back; {} of {} guarded ones missed a bar (ripple {} N, nothing "
-            "cut at 3 nN or less, finite, none through, out where all moves)\n",
+            "cut at 3 nN or less, finite, none through, out where the stroke leads 10 Å and all "
+            "moves)\n",
             out, results.size(), back, missed, count(is_guarded), most_unbinding_ripple_N);
         for (const UnbindingResult& r : results) {
             if (!is_guarded(r) || r.meets_bars()) continue;
@@ -145,8 +147,12 @@ void add_unbind(CLI::App& program, ProgramCommand& chosen) {
         unbinding.add_option("--modes", options.modes, "coupling modes (default guarded,4)")
             ->delimiter(',');
     CLI::Option* const active =
-        unbinding.add_option("--active", options.active, "active degrees of freedom (default all)")
+        unbinding
+            .add_option("--active", options.active,
+                        "active degrees of freedom, a number or all (default all)")
             ->delimiter(',')
+            ->transform(CLI::Transformer(std::map<std::string, std::string>{
+                {"all", fmt::format("{}", StaticsDescription{}.active)}}))
             ->check(in_range(0, 1e6));
     unbinding
         .add_option("--random", options.random,
