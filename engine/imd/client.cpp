@@ -31,8 +31,15 @@ ImdClient::~ImdClient() {
 }
 
 void ImdClient::connect(double now_s) {
+    if (phase_ == Phase::Running) say_farewell(Phase::Leaving);
+    now_s_ = now_s;
+    loss_.clear();
+    begin();
+}
+
+void ImdClient::begin() {
     drop();
-    now_s_ = since_s_ = now_s;
+    since_s_ = now_s_;
     decoder_ = ImdDecoder::of_engine(options_.limits);
     session_ = {};
     frames_of_session_ = 0;
@@ -59,6 +66,7 @@ void ImdClient::drop() {
 void ImdClient::set_state(ImdState state, std::string why) {
     state_ = state;
     why_ = fmt::format("the engine at {}:{} {}", options_.address, options_.port, why);
+    if (state == ImdState::Waiting && !loss_.empty()) why_ += "; before, it " + loss_;
 }
 
 void ImdClient::lose(const std::string& why) {
@@ -72,12 +80,7 @@ void ImdClient::lose(const std::string& why) {
 
 bool ImdClient::poll(double now_s, int at_most_ms) {
     now_s_ = now_s;
-    if (is_tried_again()) {
-        connect(now_s);
-        if (state_ == ImdState::Waiting) {
-            set_state(state_, fmt::format("is being connected to again; before, it {}", loss_));
-        }
-    }
+    if (is_tried_again()) begin();
     wait(at_most_ms);
     if (phase_ == Phase::Connecting && has_room_) {
         if (const std::error_code error = socket_.find_error()) {
@@ -152,6 +155,7 @@ bool ImdClient::take(std::span<const std::byte> bytes) {
             since_s_ = now_s_;
             ++frames_;
             ++frames_of_session_;
+            loss_.clear();
             // The same molecule is expected when the engine comes back.
             options_.limits.atoms = decoder_.atoms();
         } else if (message->type == ImdType::Disconnect || message->type == ImdType::Kill ||
@@ -178,6 +182,9 @@ void ImdClient::take_greeting() {
 }
 
 void ImdClient::judge_lateness() {
+    // A pause counts to its end, whenever that was.
+    if (phase_ == Phase::Running && (is_paused_ || was_judged_paused_)) since_s_ = now_s_;
+    was_judged_paused_ = is_paused_;
     const double passed_s = now_s_ - since_s_;
     switch (phase_) {
         case Phase::Connecting:
@@ -201,8 +208,7 @@ void ImdClient::judge_lateness() {
             return;
     }
     if (frames_of_session_ == 0) return;
-    if (is_paused_) since_s_ = now_s_;
-    if (is_paused_ || passed_s <= options_.late_after_s) {
+    if (passed_s <= options_.late_after_s) {
         set_state(ImdState::Connected, is_paused_ ? "is paused" : "sends frames");
     } else if (passed_s <= options_.lost_after_s) {
         // Nobody feels what these forces do.
@@ -255,11 +261,6 @@ void ImdClient::let_go() {
     if (phase_ != Phase::Running || pulled_.empty()) return;
     pull_.emplace();
     write();
-}
-
-void ImdClient::resume() noexcept {
-    if (is_paused_) since_s_ = now_s_;
-    is_paused_ = false;
 }
 
 // With zeros for atoms that are let go.

@@ -39,14 +39,14 @@ struct ImdClientOptions {
     std::string address = "127.0.0.1";  // of numbers, or "localhost"
     std::uint16_t port = imd_port;
     // With limits.atoms of 0, what the engine sends first; the same after it was lost.
-    ImdLimits limits;
-    std::optional<ImdUnits> units;        // of the wire; nothing: imd_units_of its version
-    int rate = 0;                         // steps between frames; 0: as the engine has it
-    bool pulls_in_version_3 = false;      // an experiment: engines do not agree on its forces
-    double answer_within_s = 5;           // to the connection and with the handshake
-    double late_after_s = 1;              // without a frame
-    double lost_after_s = 30;             // without a frame
-    std::optional<double> retry_after_s;  // once it was lost; nothing: never
+    ImdLimits limits{};
+    std::optional<ImdUnits> units{};        // of the wire; nothing: imd_units_of its version
+    int rate = 0;                           // steps between frames; 0: as the engine has it
+    bool pulls_in_version_3 = false;        // an experiment: engines do not agree on its forces
+    double answer_within_s = 5;             // to the connection and with the handshake
+    double late_after_s = 1;                // without a frame
+    double lost_after_s = 30;               // without a frame
+    std::optional<double> retry_after_s{};  // once it was lost; nothing: never
 };
 
 class ImdClient {
@@ -85,7 +85,7 @@ public:
     std::uint64_t pulls_sent() const noexcept { return pulls_sent_; }  // that were not all let go
 
     void pause() noexcept { is_paused_ = true; }
-    void resume() noexcept;
+    void resume() noexcept { is_paused_ = false; }
     bool is_paused() const noexcept { return is_paused_; }
     // Steps between frames; less than 1 for the engine's own.
     void set_rate(int rate) noexcept { rate_ = rate; }
@@ -97,6 +97,7 @@ private:
         std::vector<Vec3> forces;
     };
 
+    void begin();
     bool is_tried_again() const noexcept;
     void wait(int at_most_ms);
     bool read();
@@ -134,6 +135,7 @@ private:
     std::vector<std::int32_t> pulled_;  // what the engine pulls, or will by outgoing_
     std::uint64_t pulls_sent_ = 0;
     bool is_paused_ = false, was_paused_ = false;  // asked for, and told
+    bool was_judged_paused_ = false;               // at the last poll
     int rate_, told_rate_ = 0;
 };
 

@@ -27,11 +27,11 @@ struct ImdServerOptions {
     std::string address = "127.0.0.1";
     std::uint16_t port = imd_port;  // 0: any that is free
     int version = 2;                // or 3
-    ImdSession session;             // of version 3; coordinates are always sent
+    ImdSession session{};           // of version 3; coordinates are always sent
     std::size_t atoms = 0;
-    std::size_t max_clients = 4;    // 60 at most
-    int rate = 1;                   // steps between frames, until a client asks for another
-    std::optional<ImdUnits> units;  // of the wire; nothing: imd_units_of(version)
+    std::size_t max_clients = 4;      // 60 at most
+    int rate = 1;                     // steps between frames, until a client asks for another
+    std::optional<ImdUnits> units{};  // of the wire; nothing: imd_units_of(version)
     bool may_pull = true, may_pause = true, may_kill = false;
     double go_within_s = 1;     // after the handshake, as the protocol has it
     double stuck_after_s = 10;  // a client that takes nothing of what is sent to it

@@ -9,6 +9,7 @@
 #include <vector>
 
 using namespace palpa;
+using test::go;
 using test::hex;
 using test::operator+;
 using test::Wire;
@@ -189,7 +190,6 @@ std::string problem_of_client(const Wire& wire, int version = 2) {
 
 const Wire greeting = hex("00000004 00000002");
 const Wire greeting_3 = hex("00000004 00000003");
-const Wire go = hex("00000003 00000000");
 
 // One atom at (x, 0, 0), big-endian.
 Wire atom_at(float x) { return test::vectors(std::endian::big, 2, {x, 0, 0}); }

@@ -73,4 +73,13 @@ inline Wire client_forces(std::endian order, const std::vector<std::int32_t>& at
     return std::move(wire) + floats(order, values);
 }
 
+constexpr std::endian native = std::endian::native;
+constexpr std::endian turned =
+    native == std::endian::little ? std::endian::big : std::endian::little;
+
+// Messages of clients.
+inline const Wire go = hex("00000003 00000000");
+inline const Wire leave = hex("00000000 00000000");
+inline const Wire pause_or_resume = hex("00000007 00000000");
+
 }  // namespace palpa::test
