@@ -69,13 +69,24 @@ void ImdClient::set_state(ImdState state, std::string why) {
     if (state == ImdState::Waiting && !loss_.empty()) why_ += "; before, it " + loss_;
 }
 
-void ImdClient::lose(const std::string& why) {
-    if (phase_ == Phase::Running) say_farewell(Phase::Lost);
-    drop();
-    phase_ = Phase::Lost;
+// An engine that can still hear is told, and its bytes are read on for a while: to close with some
+// unread would take back what was written last.
+void ImdClient::lose(const std::string& why, bool is_ended) {
+    const bool was_running = phase_ == Phase::Running;
+    if (was_running) say_farewell(Phase::Leaving);
+    if (!was_running || is_ended) {
+        drop();
+        phase_ = Phase::Lost;
+    }
     since_s_ = now_s_;
     loss_ = why;
     set_state(ImdState::Lost, why);
+}
+
+void ImdClient::finish_leaving(const char* how) {
+    drop();
+    phase_ = state_ == ImdState::Lost ? Phase::Lost : Phase::Closed;
+    if (phase_ == Phase::Closed) set_state(ImdState::Closed, how);
 }
 
 bool ImdClient::poll(double now_s, int at_most_ms) {
@@ -118,17 +129,11 @@ bool ImdClient::read() {
     for (std::size_t total = 0; total < most && socket_.is_open();) {
         const SocketTransfer got = socket_.read(bytes);
         if (phase_ == Phase::Leaving) {
-            // Until the engine has closed too: to close with bytes unread would take back what was
-            // written last.
-            if (got.is_ended || got.error) {
-                drop();
-                phase_ = Phase::Closed;
-                set_state(ImdState::Closed, "was left in order");
-            }
+            if (got.is_ended || got.error) finish_leaving("was left in order");
         } else if (got.is_ended) {
-            lose(fmt::format("closed the connection {}", decoder_.find_place()));
+            lose(fmt::format("closed the connection {}", decoder_.find_place()), true);
         } else if (got.error) {
-            lose(fmt::format("is lost {}: {}", decoder_.find_place(), got.error.message()));
+            lose(fmt::format("is lost {}: {}", decoder_.find_place(), got.error.message()), true);
         } else {
             is_newer |= take(std::span(bytes).first(got.bytes));
         }
@@ -162,7 +167,7 @@ bool ImdClient::take(std::span<const std::byte> bytes) {
                    message->type == ImdType::Error) {
             lose(fmt::format("ended the session by a '{}' message", imd_name(message->type)));
         }
-        if (!socket_.is_open()) break;
+        if (phase_ != Phase::Greeting && phase_ != Phase::Running) break;
     }
     return is_newer;
 }
@@ -196,11 +201,7 @@ void ImdClient::judge_lateness() {
             }
             return;
         case Phase::Leaving:
-            if (passed_s > leave_within_s) {
-                drop();
-                phase_ = Phase::Closed;
-                set_state(ImdState::Closed, "was left, and did not close its end");
-            }
+            if (passed_s > leave_within_s) finish_leaving("was left, and did not close its end");
             return;
         case Phase::Running:
             break;

@@ -109,7 +109,8 @@ private:
     void say_farewell(Phase next);
     void judge_lateness();
     void drop();
-    void lose(const std::string& why);
+    void lose(const std::string& why, bool is_ended = false);
+    void finish_leaving(const char* how);
     void set_state(ImdState state, std::string why);
     std::string find_pull_problem(std::span<const std::int32_t> atoms,
                                   std::span<const Vec3> forces) const;

@@ -106,7 +106,7 @@ inline constexpr float imd_strongest_pull = 1e6F;
 // Takes bytes as they come and gives messages that are whole and checked: their order, lengths,
 // numbers of atoms; all numbers finite, coordinates and edges within imd_farthest, client forces
 // within imd_strongest_pull and of atoms that are there. After the first that is not so it takes
-// nothing more. Holds no more than about three times the bytes of one message, of those that have
+// nothing more. Holds no more than about four times the bytes of one message, of those that have
 // come, whatever a header promises.
 class ImdDecoder {
 public:
