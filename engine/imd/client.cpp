@@ -13,9 +13,7 @@ constexpr std::size_t read_size = 1 << 16;
 constexpr double leave_within_s = 1;
 
 // As much as a poll reads: some frames, and always enough to get on.
-std::size_t most_read(std::size_t atoms) noexcept {
-    return (std::size_t{1} << 20) + 4 * 40 * atoms;
-}
+std::size_t most_read(std::size_t atoms) noexcept { return (std::size_t{1} << 20) + 160 * atoms; }
 
 }  // namespace
 
@@ -300,7 +298,8 @@ void ImdClient::fill_outgoing() {
         add_imd_command(outgoing_, ImdType::Rate, rate_);
         told_rate_ = rate_;
     }
-    if (pull_) add_pull(*std::exchange(pull_, std::nullopt));
+    if (pull_) add_pull(*pull_);
+    pull_.reset();
     if (is_paused_ != was_paused_) {
         const bool toggles = decoder_.version() == 2;
         add_imd_command(outgoing_, is_paused_ || toggles ? ImdType::Pause : ImdType::Resume);

@@ -24,8 +24,8 @@ bool is_known(ImdType type) noexcept {
     return number >= 0 && number < static_cast<std::int32_t>(type_names.size());
 }
 
-template <std::size_t size>
-using Unsigned = std::conditional_t<size == 4, std::uint32_t, std::uint64_t>;
+template <std::size_t Size>
+using Unsigned = std::conditional_t<Size == 4, std::uint32_t, std::uint64_t>;
 
 template <class Number>
 Number read_number(const std::byte* bytes, std::endian order) noexcept {

@@ -458,7 +458,7 @@ TEST_CASE("of forces that find no room the newest are sent", "[imd][client]") {
     constexpr std::int32_t atoms = 50'000;
     Session session({.limits = {.atoms = atoms}});
     session.greet(test::handshake(native, 2));
-    session.send_frame(frame_of(std::vector<float>(3 * atoms)));
+    session.send_frame(frame_of(std::vector<float>(std::size_t{3} * atoms)));
     std::vector<std::int32_t> all(atoms);
     for (std::int32_t i = 0; i < atoms; ++i) all[static_cast<std::size_t>(i)] = i;
 
