@@ -50,7 +50,7 @@ using test::Wire;
 
 namespace {
 
-constexpr std::size_t little = 16 * 1024;  // sentences and what is held without atoms
+constexpr std::size_t little = 16'384;  // sentences and what is held without atoms
 
 // Of what `act` allocates at the same time.
 template <class Act>
@@ -89,7 +89,7 @@ TEST_CASE("the decoder holds what has come, not what a header promises", "[imd][
     CHECK(peak_of([&] {
               ImdDecoder decoder = ImdDecoder::of_engine({});
               feed(decoder, frames);
-          }) < 3 * 12 * atoms + little);
+          }) < 36 * atoms + little);
 
     Wire pull = go + test::header(6, atoms);
     for (std::size_t i = 0; i < atoms; ++i) {
@@ -99,7 +99,7 @@ TEST_CASE("the decoder holds what has come, not what a header promises", "[imd][
     CHECK(peak_of([&] {
               ImdDecoder decoder = ImdDecoder::of_client(2, native, {.atoms = atoms});
               feed(decoder, pull);
-          }) < 4 * 16 * atoms + little);
+          }) < 64 * atoms + little);
 }
 
 TEST_CASE("hostile streams make the decoder hold little", "[imd][memory]") {
