@@ -26,7 +26,8 @@ inline constexpr double kilojoule_per_kcal = units::joule_per_kcal / 1000;
 // 2025 converts nothing in version 3 either.
 inline constexpr ImdUnits imd_units_of_namd{};
 // GROMACS in version 2, of its sources (src/gromacs/imd/imd.cpp): forces of clients are kcal/mol/Å,
-// which it converts, and energies its own, kJ/mol.
+// which it converts, and energies its own, kJ/mol. So do runs of GROMACS 2022.5: 1 kcal/mol/Å on an
+// atom of 40 amu gives it 10.46 Å/ps^2.
 inline constexpr ImdUnits imd_units_of_gromacs{.energy = kilojoule_per_kcal};
 // Version 3 as it is documented.
 inline constexpr ImdUnits imd_units_of_version_3{.energy = kilojoule_per_kcal,
