@@ -12,8 +12,8 @@
 // What engines do with forces: GROMACS (-imdpull) and LAMMPS replace their whole list by each
 // message; NAMD replaces that of each atom named, and forgets an atom that is given zero. So atoms
 // that are let go are sent zeros once, which every engine takes; also before an orderly end, since
-// GROMACS and NAMD go on with the last forces of a client that has left. LAMMPS in version 2 applies forces
-// only at steps of which it sends no coordinates: with a rate of 1, never.
+// GROMACS and NAMD go on with the last forces of a client that has left. LAMMPS in version 2
+// applies forces only at steps of which it sends no coordinates: with a rate of 1, never.
 #pragma once
 #include "imd/frame.h"
 #include "platform/socket.h"
