@@ -139,11 +139,11 @@ private:
     void add_row(std::uint64_t end) {
         std::vector<ModelRows>& models = table_.models;
         if (models.empty() || models.back().number != model_) {
-            check_atoms();
             if (!numbers_.insert(std::string(model_)).second) {
                 throw LoadError({file_, last_line_},
                                 fmt::format("model {} again; expected its atoms together", model_));
             }
+            check_atoms();
             models.push_back({row_begin_, end, 0, std::string(model_)});
         }
         models.back().end = end;
