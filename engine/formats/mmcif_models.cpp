@@ -125,12 +125,13 @@ private:
 
     void check_table(const CifToken& value) {
         for (std::size_t i = 0; i < 3; ++i) {
-            if (!columns_[i]) {
+            if (const std::optional<std::size_t> column = columns_[i]) {
+                table_.coordinates[i] = *column;
+            } else {
                 fail(value,
-                     "atoms without a column _atom_site.Cartn_x, Cartn_y or Cartn_z; "
-                     "expected all of them");
+                     "atoms without a column _atom_site.Cartn_x, Cartn_y or Cartn_z; expected all "
+                     "of them");
             }
-            table_.coordinates[i] = *columns_[i];
         }
         table_.columns = loop_columns_;
         is_table_known_ = true;

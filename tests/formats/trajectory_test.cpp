@@ -82,7 +82,7 @@ TEST_CASE("the models of a PDB file are frames", "[formats][trajectory]") {
 }
 
 TEST_CASE("frames of a PDB file may be separated by END, or stand alone", "[formats][trajectory]") {
-    const std::string atoms = two_models.substr(two_models.find("ATOM"), 2 * 79);
+    const std::string atoms = two_models.substr(two_models.find("ATOM"), 158);
     const auto ends = open_pdb_bytes(atoms + "END\n" + atoms + "END\n" + atoms);
     const auto alone = open_pdb_bytes(atoms.substr(0, atoms.size() - 1));
     std::string returns;

@@ -42,7 +42,7 @@ struct TrrByHand {
             bytes.integer(bytes_if(there, 3 * atoms));
         }
         bytes.integer(atoms).integer(step).integer(0);
-        const auto add = [&](std::vector<double> numbers) {
+        const auto add = [&](const std::vector<double>& numbers) {
             for (const double number : numbers) {
                 if (is_double) {
                     bytes.add(number);
