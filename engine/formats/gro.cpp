@@ -20,7 +20,7 @@ namespace {
 [[noreturn]] void fail_gro(const Structure& structure, std::size_t atom, const std::string& what) {
     const std::size_t line = structure.lines.empty() ? 0 : structure.lines[atom];
     throw LoadError({structure.file, line},
-                    fmt::format("{} of {}", what, to_string(structure.names[atom])));
+                    fmt::format("{}: {}", to_string(structure.names[atom]), what));
 }
 
 // Five digits, which begin again behind 99999.

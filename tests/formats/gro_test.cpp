@@ -71,8 +71,8 @@ TEST_CASE("numbers of a GRO file begin again behind 99999", "[formats][gro]") {
 
 TEST_CASE("what does not fit a GRO file is told", "[formats][gro]") {
     CHECK(gro_error({"A", "RESIDUE", "1", "CA"}) ==
-          "w.pdb:7: the residue name 'RESIDUE' does not fit the 5 columns of a GRO file of A "
-          "RESIDUE 1 CA");
+          "w.pdb:7: A RESIDUE 1 CA: the residue name 'RESIDUE' does not fit the 5 columns of a GRO "
+          "file");
     CHECK_THAT(gro_error({"A", "ALA", "1", "ATOM00"}), Contains("the atom name 'ATOM00'"));
     CHECK_THAT(gro_error({"A", "ALA", "x", "CA"}), Contains("'x' is no residue number"));
     CHECK_THAT(gro_error({"A", "ALA", "-10000", "CA"}), Contains("'-10000'"));
