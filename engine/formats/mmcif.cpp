@@ -7,11 +7,13 @@
 #include "formats/lines.h"
 #include "formats/mmcif_assemblies.h"
 #include "formats/structure_builder.h"
+#include "molecule/element.h"
 
 #include <fmt/format.h>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -283,6 +285,67 @@ private:
     MmcifAssemblies& assemblies_;
 };
 
+// A value as CIF writes it: as it is, or in the quotes that it does not hold.
+std::string quoted(const Structure& structure, std::size_t atom, const std::string& value) {
+    if (!is_name(value)) {
+        const std::size_t line = structure.lines.empty() ? 0 : structure.lines[atom];
+        throw LoadError({structure.file, line},
+                        fmt::format("'{}' of {} cannot be a name in a CIF file; expected printable "
+                                    "letters without blanks",
+                                    value, to_string(structure.names[atom])));
+    }
+    // What the grammar takes for something else, and what would be "not given".
+    const std::string upper = upper_case(value);
+    const bool plain = std::string_view("_#$'\"[];").find(value[0]) == std::string_view::npos &&
+                       value != "?" && value != "." && !upper.starts_with("DATA_") &&
+                       !upper.starts_with("SAVE_") && upper != "LOOP_" && upper != "STOP_" &&
+                       upper != "GLOBAL_";
+    if (plain) return value;
+    // Quotes end a value only where a blank follows, and names have none.
+    return value.back() == '"' ? fmt::format("'{}'", value) : fmt::format("\"{}\"", value);
+}
+
+// A to Z, AA to ZA, AB to ZB and so on, as the archive names chains.
+std::string chain_name(std::size_t number) {
+    std::string name;
+    for (++number; number > 0; number = (number - 1) / 26) {
+        name += static_cast<char>('A' + (number - 1) % 26);
+    }
+    return name;
+}
+
+// Residue number and insertion code, '?' without one.
+std::pair<std::string, std::string> number_and_code(const Structure& structure, std::size_t atom) {
+    std::string number = structure.names[atom].number;
+    std::string code = "?";
+    if (!number.empty() && (number.back() < '0' || number.back() > '9')) {
+        code = quoted(structure, atom, number.substr(number.size() - 1));
+        number.pop_back();
+    }
+    if (!find_integer(number)) {
+        const std::size_t line = structure.lines.empty() ? 0 : structure.lines[atom];
+        throw LoadError(
+            {structure.file, line},
+            fmt::format("'{}' of {} is no residue number of a CIF file; expected a "
+                        "whole number with one letter behind it, or none",
+                        structure.names[atom].number, to_string(structure.names[atom])));
+    }
+    return {number, code};
+}
+
+std::string element_of(const Structure& structure, std::size_t atom) {
+    if (!structure.records.empty()) return structure.records[atom].element;
+    const AtomName& name = structure.names[atom];
+    std::string element = find_element_of_name(name.atom, name.residue);
+    if (element.empty()) {
+        const std::size_t line = structure.lines.empty() ? 0 : structure.lines[atom];
+        throw LoadError({structure.file, line},
+                        fmt::format("the name of {} tells no element, which a CIF file needs",
+                                    to_string(name)));
+    }
+    return element;
+}
+
 }  // namespace
 
 Structure parse_mmcif(std::string_view text, const std::string& file) {
@@ -298,6 +361,66 @@ Structure parse_mmcif(std::string_view text, const std::string& file) {
 
 Structure read_mmcif(const std::filesystem::path& path) {
     return parse_mmcif(read_text_file(path), path.string());
+}
+
+std::string format_mmcif(const Structure& structure, std::string_view name) {
+    std::string block;
+    for (const char c : name) {
+        const bool plain =
+            (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '-';
+        block += plain ? c : '_';
+    }
+    if (block.empty()) block = "structure";
+    std::string text = fmt::format("data_{}\n#\nloop_\n", block);
+    for (const std::string_view column : {"group_PDB",         "id",
+                                          "type_symbol",       "label_atom_id",
+                                          "label_alt_id",      "label_comp_id",
+                                          "label_asym_id",     "label_entity_id",
+                                          "label_seq_id",      "pdbx_PDB_ins_code",
+                                          "Cartn_x",           "Cartn_y",
+                                          "Cartn_z",           "occupancy",
+                                          "B_iso_or_equiv",    "pdbx_formal_charge",
+                                          "auth_seq_id",       "auth_comp_id",
+                                          "auth_asym_id",      "auth_atom_id",
+                                          "pdbx_PDB_model_num"}) {
+        text += fmt::format("_atom_site.{}\n", column);
+    }
+    std::size_t chain = 0;
+    auto end = structure.chain_ends.begin();
+    for (std::size_t atom = 0; atom < structure.names.size(); ++atom) {
+        const AtomName& names = structure.names[atom];
+        const AtomRecord record =
+            structure.records.empty() ? AtomRecord{} : structure.records[atom];
+        const auto chain_of = [&](std::size_t i) {
+            const bool has_chain =
+                !structure.records.empty() && !structure.records[i].chain.empty();
+            return has_chain ? structure.records[i].chain : structure.names[i].segment;
+        };
+        if (atom > 0) {
+            bool is_end = chain_of(atom) != chain_of(atom - 1);
+            for (; end != structure.chain_ends.end() && *end <= atom; ++end) is_end = true;
+            if (is_end) ++chain;
+            const bool is_next_model =
+                !structure.records.empty() && record.model != structure.records[atom - 1].model;
+            if (is_next_model) chain = 0;
+        }
+        const std::string author = chain_of(atom);
+        const auto [number, code] = number_and_code(structure, atom);
+        const auto quote = [&](const std::string& value) { return quoted(structure, atom, value); };
+        const Vec3& p = structure.positions[atom];
+        fmt::format_to(
+            std::back_inserter(text),
+            "{} {} {} {} {} {} {} ? . {} {:.5f} {:.5f} {:.5f} {:.2f} {:.2f} {} {} {} {} {} {}\n",
+            record.hetero ? "HETATM" : "ATOM", atom + 1, element_of(structure, atom),
+            quote(names.atom), record.alternate == ' ' ? "." : quote({record.alternate}),
+            quote(names.residue),
+            quote(record.label_chain.empty() ? chain_name(chain) : record.label_chain), code, p.x(),
+            p.y(), p.z(), record.occupancy, record.b_factor,
+            record.formal_charge == 0 ? "?" : fmt::format("{}", record.formal_charge), number,
+            quote(names.residue), quote(author.empty() ? chain_name(chain) : author),
+            quote(names.atom), record.model);
+    }
+    return text + "#\n";
 }
 
 }  // namespace palpa

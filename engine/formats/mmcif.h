@@ -20,4 +20,12 @@ namespace palpa {
 Structure read_mmcif(const std::filesystem::path& path);
 Structure parse_mmcif(std::string_view text, const std::string& file);
 
+// The table _atom_site in a data block `name` (letters, digits, '_' and '-'; others become '_'):
+// positions to five decimals, all names, numbers and models as wide as they are. Chains are the
+// structure's label_chain, or else are named A to Z, AA and so on from one end of a chain to the
+// next. Without `records` (a structure from a CRD file) the author's chain is the segment, elements
+// are guessed and one model is written. Throws LoadError where a name cannot be written, an element
+// cannot be guessed, or a residue number is none.
+std::string format_mmcif(const Structure& structure, std::string_view name);
+
 }  // namespace palpa

@@ -1,10 +1,14 @@
 // Counts what readers allocate, by operators new and delete that remember sizes.
 #include "core/load_error.h"
 #include "formats/crd.h"
+#include "formats/dcd.h"
 #include "formats/mmcif.h"
 #include "formats/pdb.h"
 #include "formats/psf.h"
+#include "formats/trajectory.h"
+#include "formats/xtc.h"
 #include "tests/support/replaced.h"
+#include "tests/support/temporary_folder.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -13,6 +17,7 @@
 #include <cstdlib>
 #include <new>
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -192,4 +197,46 @@ TEST_CASE("no reader takes more than ten times the file's size and 64 KiB", "[fo
         check_peak(one_word("PSF\n\n1 !"), parse_psf);
         check_peak(one_word("data_x _atom_site.id "), parse_mmcif);
     }
+}
+
+TEST_CASE("an open trajectory holds where its frames are, and one frame", "[formats][memory]") {
+    constexpr std::size_t frames = 5000;
+    const test::TemporaryFolder folder;
+    const std::string name = GENERATE("w.dcd", "w.xtc", "w.pdb");
+    {
+        const std::vector<Vec3> positions(12, Vec3(1, 2, 3));
+        DcdWriter dcd(folder.path() / "w.dcd", positions.size(), {});
+        XtcWriter xtc(folder.path() / "w.xtc", positions.size());
+        std::string pdb;
+        for (std::size_t i = 0; i < frames; ++i) {
+            dcd.add_frame(positions);
+            xtc.add_frame(positions, 0, 0);
+            pdb += "MODEL\n";
+            for (std::size_t atom = 0; atom < positions.size(); ++atom) {
+                pdb += "ATOM      1  C   ALA A   1       1.000   2.000   3.000\n";
+            }
+            pdb += "ENDMDL\n";
+        }
+        folder.add_file("w.pdb", pdb);
+    }
+
+    const std::size_t before = held;
+    peak = held;
+    {
+        const auto trajectory = open_trajectory(folder.path() / name);
+        TrajectoryFrame frame;
+        for (std::size_t i = 0; i < frames; ++i) trajectory->read_frame(i, frame);
+        CHECK(trajectory->frame_count() == frames);
+    }
+    CHECK(held == before);
+    // Twice where each begins and ends, as a vector grows.
+    CHECK(peak - before <= 32 * frames + fixed_allowance);
+}
+
+TEST_CASE("a frame that promises too many atoms costs no memory", "[formats][memory]") {
+    // 1995, 250 million atoms, zeros, again, and packed bytes that are not there.
+    std::string xtc{0, 0, 7, '\xcb', 0xe, '\xe6', '\xb2', '\x80'};
+    xtc += std::string(44, '\0') + xtc.substr(4) + std::string(32, '\0') + "\x7f\xff\xff\xff";
+    check_peak(
+        xtc, [](const std::string& bytes, const char* file) { open_xtc(ByteSource(bytes, file)); });
 }

@@ -1,7 +1,9 @@
 #include "formats/mmcif.h"
 
+#include "formats/crd.h"
 #include "formats/pdb.h"
 #include "tests/support/load_error_of.h"
+#include "tests/support/paths.h"
 #include "tests/support/replaced.h"
 #include "tests/support/shared_data.h"
 
@@ -12,6 +14,7 @@
 #include <vector>
 
 using namespace palpa;
+using Catch::Contains;
 using Catch::StartsWith;
 using test::load_error_of;
 using test::replaced;
@@ -252,4 +255,110 @@ TEST_CASE("a structure reads the same from PDB and from mmCIF", "[formats][mmcif
         CHECK((r.occupancy == s.occupancy && r.b_factor == s.b_factor));
         CHECK(r.formal_charge == s.formal_charge);
     }
+}
+
+TEST_CASE("an mmCIF file is written by its dictionary, with names that need quotes",
+          "[formats][mmcif]") {
+    Structure structure;
+    structure.file = "w.pdb";
+    structure.names = {
+        {"A", "ALA", "-3A", "CA"}, {"A", "A", "100000", "O5'"}, {"B", "MG", "7", "MG"}};
+    structure.positions = {{1.234567, -2, 0}, {99999, 0, -1e-7}, {0, 0, 0}};
+    structure.lines = {1, 2, 3};
+    structure.records.resize(3);
+    for (std::size_t i = 0; i < 3; ++i) structure.records[i].chain = structure.names[i].segment;
+    structure.records[0].element = "C";
+    structure.records[0].alternate = 'B';
+    structure.records[0].occupancy = 0.5;
+    structure.records[1].element = "O";
+    structure.records[1].b_factor = 12.345;
+    structure.records[2].element = "MG";
+    structure.records[2].formal_charge = 2;
+    structure.records[2].hetero = true;
+    structure.records[2].model = 12;
+    structure.chain_ends = {1, 2};
+
+    const std::string written = format_mmcif(structure, "my model");
+
+    // Typed by hand.
+    CHECK_THAT(written, StartsWith("data_my_model\n#\nloop_\n_atom_site.group_PDB\n"));
+    CHECK(written.substr(written.find("ATOM ")) ==
+          "ATOM 1 C CA B ALA A ? . A 1.23457 -2.00000 0.00000 0.50 0.00 ? -3 ALA A CA 1\n"
+          "ATOM 2 O O5' . A B ? . ? 99999.00000 0.00000 -0.00000 1.00 12.35 ? 100000 A A O5' 1\n"
+          "HETATM 3 MG MG . MG A ? . ? 0.00000 0.00000 0.00000 1.00 0.00 2 7 MG B MG 12\n#\n");
+}
+
+TEST_CASE("an mmCIF file that is written reads back", "[formats][mmcif]") {
+    Structure structure;
+    for (const char* const name : {"C1'", "\"C\"", "'C", "_C", "#C", "C#", ";C", "[C", "$C", "C\"'",
+                                   "data_C", "LOOP_", "?", "C.", "'C\""}) {
+        structure.names.push_back({"SEGMENT8", "RESIDUE8", "1", name});
+        structure.positions.emplace_back(1, 2, 3);
+    }
+    structure.records.resize(structure.names.size());
+    for (AtomRecord& record : structure.records) {
+        record.element = "C";
+        record.chain = "CHAIN_AB";
+    }
+
+    const Structure back = parse_mmcif(format_mmcif(structure, ""), "w.cif");
+
+    REQUIRE(back.names.size() == structure.names.size());
+    for (std::size_t i = 0; i < back.names.size(); ++i) {
+        CHECK(back.names[i].atom == structure.names[i].atom);
+        CHECK(back.names[i].residue == "RESIDUE8");
+        CHECK(back.records[i].chain == "CHAIN_AB");
+        CHECK(back.positions[i] == Vec3(1, 2, 3));
+    }
+}
+
+TEST_CASE("a structure without records is written with its segments as chains",
+          "[formats][mmcif]") {
+    const Structure structure = read_crd(test::in_project("scenes/water/dimer.crd"));
+
+    const Structure back = parse_mmcif(format_mmcif(structure, "dimer"), "w.cif");
+
+    REQUIRE(back.names.size() == 6);
+    CHECK(back.chain_ends == std::vector<std::size_t>{3, 6});
+    for (std::size_t i = 0; i < 6; ++i) {
+        CHECK(to_string(back.names[i]) == to_string(structure.names[i]));
+        CHECK(back.records[i].element == (i % 3 == 0 ? "O" : "H"));
+        CHECK((back.positions[i] - structure.positions[i]).cwiseAbs().maxCoeff() < 0.51e-5);
+    }
+}
+
+TEST_CASE("chains without names are named as the archive does", "[formats][mmcif]") {
+    Structure structure;
+    for (int i = 0; i < 29; ++i) {
+        structure.names.push_back({"", "ION", std::to_string(i), "SOD"});
+        structure.positions.emplace_back(i, 0, 0);
+        structure.chain_ends.push_back(static_cast<std::size_t>(i) + 1);
+    }
+
+    const Structure back = parse_mmcif(format_mmcif(structure, "x"), "w.cif");
+
+    CHECK(back.records[0].chain == "A");
+    CHECK(back.records[25].chain == "Z");
+    CHECK(back.records[26].chain == "AA");
+    CHECK(back.records[27].chain == "BA");
+    CHECK(back.chain_ends.size() == 29);
+}
+
+TEST_CASE("what cannot be written to an mmCIF file is told", "[formats][mmcif]") {
+    Structure structure;
+    structure.file = "w.crd";
+    structure.names = {{"A", "ALA", "1", "CA"}};
+    structure.positions = {{0, 0, 0}};
+    structure.lines = {4};
+    const auto error_with = [&](const AtomName& name) {
+        structure.names[0] = name;
+        return load_error_of([&] { format_mmcif(structure, "x"); });
+    };
+
+    CHECK(error_with({"A", "ALA", "1", "CA"}) == "no error");
+    CHECK_THAT(error_with({"A", "AL A", "1", "CA"}), StartsWith("w.crd:4: 'AL A' of A AL A 1 CA"));
+    CHECK_THAT(error_with({"A", "ALA", "1AB", "CA"}),
+               Contains("'1AB'") && Contains("no residue number"));
+    CHECK_THAT(error_with({"A", "ALA", "", "CA"}), Contains("no residue number"));
+    CHECK_THAT(error_with({"A", "ALA", "1", "1"}), Contains("tells no element"));
 }

@@ -1,8 +1,11 @@
-// Any text is a structure or a LoadError; what was read survives being written and read.
+// Any text is a structure or a LoadError, and so it is as a trajectory; what was read survives
+// being written and read.
 #include "core/load_error.h"
 #include "formats/pdb.h"
+#include "formats/pdb_models.h"
 #include "tests/fuzz/expect.h"
 #include "tests/fuzz/expect_structure.h"
+#include "tests/fuzz/expect_trajectory.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -36,6 +39,9 @@ std::optional<std::string> write_or_refuse(const Structure& structure) {
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view text(reinterpret_cast<const char*>(data), size);
+    const auto models = test::open_or_refuse(
+        [&] { return open_pdb_models(ByteSource(std::string(text), "fuzz.pdb")); });
+    if (models) test::expect_whole(*models);
     const std::optional<Structure> structure = read_or_refuse(text);
     if (!structure) return 0;
 

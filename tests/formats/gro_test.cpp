@@ -1,0 +1,88 @@
+#include "formats/gro.h"
+
+#include "formats/box.h"
+#include "formats/pdb.h"
+#include "tests/support/load_error_of.h"
+#include "tests/support/trajectory_bytes.h"
+
+#include <catch2/catch.hpp>
+#include <string>
+
+using namespace palpa;
+using Catch::Contains;
+using test::load_error_of;
+
+namespace {
+
+Structure one_atom(const AtomName& name, const Vec3& position) {
+    Structure structure;
+    structure.file = "w.pdb";
+    structure.names = {name};
+    structure.positions = {position};
+    structure.lines = {7};
+    return structure;
+}
+
+std::string gro_error(const AtomName& name, const Vec3& position = Vec3::Zero()) {
+    return load_error_of([&] { format_gro(one_atom(name, position), ""); });
+}
+
+}  // namespace
+
+TEST_CASE("a GRO file is to the letter what GROMACS writes of the same structure",
+          "[formats][gro]") {
+    // names.gro is what gmx editconf made of names.pdb.
+    const Structure structure = read_pdb(test::trajectory_path("names.pdb"));
+    const auto box = find_box_deg({30, 40, 50}, {80, 75, 70});
+
+    CHECK(format_gro(structure, "names for GRO\nand no more", box) ==
+          test::bytes_of(test::trajectory_path("names.gro")));
+}
+
+TEST_CASE("the box of a GRO file has three numbers where it is rectangular", "[formats][gro]") {
+    const Structure structure = one_atom({"W", "TIP3", "1", "OH2"}, {1, 2, 3});
+    // By the format of GROMACS's manual.
+    const std::string atom = "water\n    1\n    1TIP3   OH2    1   0.100   0.200   0.300\n";
+
+    CHECK(format_gro(structure, "water", find_box_deg({30, 40, 50}, {90, 90, 90})) ==
+          atom + "   3.00000   4.00000   5.00000\n");
+    CHECK(format_gro(structure, "water") == atom + "   0.00000   0.00000   0.00000\n");
+    Mat3 turned = Mat3::Identity();
+    turned(2, 0) = 0.1;
+    CHECK_THAT(load_error_of([&] { format_gro(structure, "", turned); }),
+               Contains("a box that a GRO file cannot tell"));
+}
+
+TEST_CASE("numbers of a GRO file begin again behind 99999", "[formats][gro]") {
+    Structure structure;
+    for (int i = 1; i <= 100'001; ++i) {
+        structure.names.push_back({"W", "TIP3", std::to_string(i), "OH2"});
+        structure.positions.emplace_back(0, 0, 0);
+    }
+
+    const std::string text = format_gro(structure, "");
+
+    CHECK_THAT(text, Contains("\n100001\n") && Contains("\n99999TIP3   OH299999 ") &&
+                         Contains("\n    0TIP3   OH2    0 ") &&
+                         Contains("\n    1TIP3   OH2    1 "));
+    // All lines as long as each other.
+    CHECK(text.size() == 1 + 7 + 100'001 * 45 + 31);
+}
+
+TEST_CASE("what does not fit a GRO file is told", "[formats][gro]") {
+    CHECK(gro_error({"A", "RESIDUE", "1", "CA"}) ==
+          "w.pdb:7: A RESIDUE 1 CA: the residue name 'RESIDUE' does not fit the 5 columns of a GRO "
+          "file");
+    CHECK_THAT(gro_error({"A", "ALA", "1", "ATOM00"}), Contains("the atom name 'ATOM00'"));
+    CHECK_THAT(gro_error({"A", "ALA", "x", "CA"}), Contains("'x' is no residue number"));
+    CHECK_THAT(gro_error({"A", "ALA", "-10000", "CA"}), Contains("'-10000'"));
+    CHECK_THAT(gro_error({"A", "ALA", "1", "CA"}, {0, 1e5, 0}),
+               Contains("the coordinate 100000 Å"));
+    CHECK_THAT(gro_error({"A", "ALA", "1", "CA"}, {0, -1e4, 0}), Contains("-10000"));
+    CHECK(gro_error({"A", "ALA", "1", "CA"}, {0, 99999, -9999.99}) == "no error");
+    const std::string two =
+        "MODEL        1\nATOM      1  C   ALA A   1       1.000   2.000   3.000\nENDMDL\n"
+        "MODEL        2\nATOM      1  C   ALA A   1       1.000   2.000   3.000\nENDMDL\nEND\n";
+    CHECK_THAT(load_error_of([&] { format_gro(parse_pdb(two, "w.pdb"), ""); }),
+               Contains("several models"));
+}
