@@ -350,6 +350,30 @@ TEST_CASE("anchors pull at the hand from where the file has their atoms",
     CHECK((felt - pull * units::newton_per_kcal_per_mol_angstrom).norm() < 1e-9 * felt.norm());
 }
 
+TEST_CASE("loading relaxes what anchors leave free", "[simulation][flexible]") {
+    const Structure file = read_peptides();
+    // How far the farthest alpha carbon of the molecule in the hand is from where the file has it.
+    const auto way = [&](const std::vector<std::string>& settings) {
+        const World world = load_peptides(settings);
+        const AtomTable& atoms = world.resource<AtomTable>();
+        double farthest = 0;
+        for (std::size_t i = 0; i < atoms.size(); ++i) {
+            if (atoms.names[i].segment != "PEPB" || atoms.names[i].atom != "CA") continue;
+            const auto same = [&](const AtomName& other) {
+                return other.segment == "PEPB" && other.number == atoms.names[i].number &&
+                       other.atom == "CA";
+            };
+            const auto there = std::ranges::find_if(file.names, same) - file.names.begin();
+            const Vec3& then = file.positions[static_cast<std::size_t>(there)];
+            farthest = std::max(farthest, (atoms.positions[i] - then).norm());
+        }
+        return farthest;
+    };
+    CHECK(way({}) > 0.5);
+    CHECK(way({"molecules.held.anchors=[\"1 CA\", \"2 CA\", \"3 CA\", \"4 CA\"]",
+               "molecules.held.anchor_kcal_per_mol_angstrom2=10000"}) < 0.05);
+}
+
 TEST_CASE("anchors that are not there are refused", "[simulation][flexible][errors]") {
     const std::string error =
         load_error_of([] { load_peptides({"molecules.resting.anchors=[\"2 CA\", \"7 CA\"]"}); });
