@@ -308,9 +308,10 @@ private:
         return report_.is_finite;
     }
 
+    static constexpr double moved = 0.01;  // of a stride: less is no move
+
     // Whether hands are not where they came to stand, however slowly they go.
     bool has_moved() {
-        constexpr double moved = 0.01;  // of a stride
         std::vector<HandPlace>& still = statics_.still_at;
         if (still.size() == places_.size() &&
             find_farthest_way(hands(), find_hand_coordinates(hands(), still, places_)) <=
@@ -324,7 +325,7 @@ private:
     // soft coordinates the model's minimum may lie where the energy is higher. False where there
     // is nothing else to do.
     bool prepare_still(double way) {
-        if (has_moved()) {
+        if (has_moved() || way > moved * settings_.stride) {
             statics_.still_steps = 0;
             statics_.is_at_rest = false;
             return true;
