@@ -257,11 +257,11 @@ private:
                        const char* what) const {
         const char* const content = at + mark_bytes;
         for (const char* const mark : {at, content + bytes}) {
-            const auto told = number<std::int32_t>(mark);
-            if (told >= 0 && static_cast<std::uint64_t>(told) == bytes) continue;
+            const auto length = number<std::int32_t>(mark);
+            if (length >= 0 && static_cast<std::uint64_t>(length) == bytes) continue;
             fail_frame(
                 source_.name(), frame,
-                fmt::format("a mark of the {} says {} bytes; expected {}", what, told, bytes));
+                fmt::format("a mark of the {} says {} bytes; expected {}", what, length, bytes));
         }
         at = content + bytes + mark_bytes;
         return content;

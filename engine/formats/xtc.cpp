@@ -79,7 +79,8 @@ private:
     // Notes the frame at `next_`, which moves behind it; nothing if the file ends before.
     bool find_frame() {
         const std::uint64_t room = source_.size() - next_;
-        // All that is there of what stands before the coordinates: a damaged frame is told as that.
+        // Reads as much of the frame's header as the file has, so that an error can name the
+        // damage.
         bytes_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(room, packed_at)));
         source_.read(next_, bytes_);
         if (room < 4) return false;

@@ -253,9 +253,9 @@ private:
     void write_group(std::size_t first, std::size_t small_count, std::int32_t change) {
         const bool exchanged = small_count > 0;
         bits_.put_whole(differences(places_[first + (exchanged ? 1 : 0)], least_, 0), whole_);
-        const bool told = small_count != last_count_ || change != 0;
-        bits_.put(told ? 1 : 0, 1);
-        if (told)
+        const bool is_changed = small_count != last_count_ || change != 0;
+        bits_.put(is_changed ? 1 : 0, 1);
+        if (is_changed)
             bits_.put(static_cast<std::uint32_t>(3 * small_count + 1) +
                           static_cast<std::uint32_t>(change),
                       5);
@@ -316,7 +316,7 @@ std::string unpack_places(const IntegerPlace& least, const IntegerPlace& greates
     }
     const WholePlaces whole(least, greatest);
     BitReader reader(bits);
-    std::size_t small_count = 0;  // stays until another is told
+    std::size_t small_count = 0;  // stays until a group changes it
     for (std::size_t atom = 0; atom < places.size();) {
         if (small < first_small || small > last_small) {
             return fmt::format("small differences of {} bits behind atom {}; expected {} to {}",
@@ -329,9 +329,9 @@ std::string unpack_places(const IntegerPlace& least, const IntegerPlace& greates
         }
         std::int32_t change = 0;
         if (reader.take(1) == 1) {
-            const std::uint32_t told = reader.take(5);
-            small_count = told / 3;
-            change = static_cast<std::int32_t>(told % 3) - 1;
+            const std::uint32_t code = reader.take(5);
+            small_count = code / 3;
+            change = static_cast<std::int32_t>(code % 3) - 1;
         }
         if (reader.is_exhausted())
             return fmt::format("packed coordinates end in atom {}", atom + 1);

@@ -43,7 +43,7 @@ void ImdClient::begin() {
     frames_of_session_ = 0;
     pulled_.clear();
     is_paused_ = was_paused_ = false;
-    told_rate_ = 0;
+    sent_rate_ = 0;
     std::error_code error;
     socket_ = Socket::connect(options_.address, options_.port, error);
     if (error == std::errc::invalid_argument) {
@@ -67,8 +67,8 @@ void ImdClient::set_state(ImdState state, std::string why) {
     if (state == ImdState::Waiting && !loss_.empty()) why_ += "; before, it " + loss_;
 }
 
-// An engine that can still hear is told, and its bytes are read on for a while: to close with some
-// unread would take back what was written last.
+// An engine that is still connected gets a farewell, and its bytes are read for a while longer:
+// closing a socket with unread bytes would discard what was written last.
 void ImdClient::lose(const std::string& why, bool is_ended) {
     const bool was_running = phase_ == Phase::Running;
     if (was_running) say_farewell(Phase::Leaving);
@@ -100,7 +100,7 @@ bool ImdClient::poll(double now_s, int at_most_ms) {
         }
     }
     const bool is_newer = has_input_ && read();
-    judge_lateness();
+    check_delay();
     if (phase_ == Phase::Running || phase_ == Phase::Leaving) write();
     return is_newer;
 }
@@ -184,10 +184,10 @@ void ImdClient::take_greeting() {
     set_state(ImdState::Waiting, "has not sent a frame yet");
 }
 
-void ImdClient::judge_lateness() {
+void ImdClient::check_delay() {
     // A pause counts to its end, whenever that was.
-    if (phase_ == Phase::Running && (is_paused_ || was_judged_paused_)) since_s_ = now_s_;
-    was_judged_paused_ = is_paused_;
+    if (phase_ == Phase::Running && (is_paused_ || was_paused_at_check_)) since_s_ = now_s_;
+    was_paused_at_check_ = is_paused_;
     const double passed_s = now_s_ - since_s_;
     switch (phase_) {
         case Phase::Connecting:
@@ -210,7 +210,7 @@ void ImdClient::judge_lateness() {
     if (passed_s <= options_.late_after_s) {
         set_state(ImdState::Connected, is_paused_ ? "is paused" : "sends frames");
     } else if (passed_s <= options_.lost_after_s) {
-        // Nobody feels what these forces do.
+        // The hand cannot feel what these forces do.
         let_go();
         set_state(ImdState::Late, fmt::format("has not sent a frame for {:.1f} s", passed_s));
     } else {
@@ -294,9 +294,9 @@ void ImdClient::fill_outgoing() {
     outgoing_.clear();
     sent_ = 0;
     if (phase_ != Phase::Running) return;
-    if (rate_ != told_rate_) {
+    if (rate_ != sent_rate_) {
         add_imd_command(outgoing_, ImdType::Rate, rate_);
-        told_rate_ = rate_;
+        sent_rate_ = rate_;
     }
     if (pull_) add_pull(*pull_);
     pull_.reset();

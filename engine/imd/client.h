@@ -1,6 +1,6 @@
 // A client of a remote engine: takes its newest frame, pulls its atoms. No thread and no clock
-// inside: `poll` waits no longer than it is told, so that a caller may keep the client on a thread
-// of its own, and times are the caller's, in seconds of any clock that never goes back.
+// inside: `poll` waits no longer than its argument says, so that a caller may keep the client on a
+// thread of its own, and times are the caller's, in seconds of any clock that never goes back.
 //
 //     ImdClient client({.port = 8888, .limits = {.atoms = 3274}});
 //     client.connect(now());
@@ -31,7 +31,7 @@ enum class ImdState : std::uint8_t {
     Closed,     // not asked to connect, or left in order
     Waiting,    // connects, greets, awaits its first frame, tries again, or leaves
     Connected,  // frames come, or the client has paused them
-    Late,       // no frame for some time; the engine has been told to let go
+    Late,       // no frame for some time; the engine has been sent zero forces
     Lost,       // over, and why() says what came and what was expected
 };
 
@@ -107,7 +107,7 @@ private:
     void fill_outgoing();
     void add_pull(const Pull& pull);
     void say_farewell(Phase next);
-    void judge_lateness();
+    void check_delay();
     void drop();
     void lose(const std::string& why, bool is_ended = false);
     void finish_leaving(const char* how);
@@ -135,9 +135,9 @@ private:
     std::optional<Pull> pull_;          // not yet among them
     std::vector<std::int32_t> pulled_;  // what the engine pulls, or will by outgoing_
     std::uint64_t pulls_sent_ = 0;
-    bool is_paused_ = false, was_paused_ = false;  // asked for, and told
-    bool was_judged_paused_ = false;               // at the last poll
-    int rate_, told_rate_ = 0;
+    bool is_paused_ = false, was_paused_ = false;  // asked for, and sent
+    bool was_paused_at_check_ = false;             // at the last poll
+    int rate_, sent_rate_ = 0;
 };
 
 }  // namespace palpa

@@ -126,9 +126,9 @@ public:
     // Of an engine: 0 before its handshake.
     int version() const noexcept { return version_; }
     std::endian order() const noexcept { return order_; }
-    // 0 before anything told them.
+    // 0 until a message or the limits give them.
     std::size_t atoms() const noexcept { return limits_.atoms; }
-    // Of an engine: that it may be told to go. In version 3 the session has come too.
+    // Of an engine: that "go" may be sent. In version 3 the session has come too.
     bool is_ready() const noexcept { return is_ready_; }
     // Where a stream that ends now would be cut: "inside a 'coordinates' message, after 12 of 36
     // bytes", or "between two messages".

@@ -69,7 +69,7 @@ public:
     // By the client that pulls, or by any where none does; over when that client leaves.
     bool is_paused() const noexcept { return pauser_ != 0; }
     bool is_killed() const noexcept { return is_killed_; }  // by the same, where it may
-    std::size_t clients() const noexcept;                   // that were told to go
+    std::size_t clients() const noexcept;                   // that have sent "go"
     std::uint64_t frames_skipped() const noexcept { return frames_skipped_; }
     // One sentence each on who came, left, was dropped or not heard, since the last call; of many
     // the newest 100.

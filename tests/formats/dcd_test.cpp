@@ -170,8 +170,8 @@ TEST_CASE("the cell is read as NAMD, CHARMM and older programs write it", "[form
     CHECK(box_of_cell({20, 60, 30, 90, 90, 40}, 24)(2, 0) == 0);
     CHECK(box_of_cell({20, 90, 30, 90, 90, 40}, 24) == right);
     CHECK(box_of_cell({20, 0, 30, 0, 0, 40}, 24) == right);
-    // CHARMM's lower triangle of a symmetric matrix, in all versions that are told and in some that
-    // are not: no angles could be negative.
+    // CHARMM's lower triangle of a symmetric matrix, in all versions that can be recognised and in
+    // some that cannot: no angles could be negative.
     CHECK(box_of_cell({20, 0, 30, 0, 0, 40}, 39) == right);
     Mat3 symmetric;
     symmetric << 48, 13, 0.5, 13, 47, 2, 0.5, 2, 51;
@@ -276,7 +276,7 @@ TEST_CASE("frames are written as bytes put together by hand, and counted after e
     writer.close();
 }
 
-TEST_CASE("a DCD file cut anywhere is told, and its whole frames are read", "[formats][dcd]") {
+TEST_CASE("a DCD file cut anywhere is noted, and its whole frames are read", "[formats][dcd]") {
     DcdByHand hand;
     hand.control[11] = 1;
     if (GENERATE(false, true)) {
@@ -335,7 +335,7 @@ TEST_CASE("every damaged byte of a DCD file is a frame or a sentence", "[formats
     }
 }
 
-TEST_CASE("what is wrong with a DCD file is told", "[formats][dcd]") {
+TEST_CASE("what is wrong with a DCD file is reported", "[formats][dcd]") {
     const auto error_of_bytes = [](const std::string& bytes) {
         return load_error_of([&] { open_dcd_bytes(bytes); });
     };
@@ -345,7 +345,7 @@ TEST_CASE("what is wrong with a DCD file is told", "[formats][dcd]") {
     CHECK_THAT(error_of_bytes(std::string(200, 'x')), Contains("w.dcd: is no DCD file"));
     hand.kind = "VELD";
     CHECK_THAT(error_of_bytes(hand.head() + frames), Contains("velocities (VELD)"));
-    hand.kind = "XXXX";
+    hand.kind = "CORR";
     CHECK_THAT(error_of_bytes(hand.head() + frames), Contains("expected CORD"));
     hand = {};
     hand.control[13] = 1;

@@ -69,7 +69,7 @@ TEST_CASE("numbers of a GRO file begin again behind 99999", "[formats][gro]") {
     CHECK(text.size() == 1 + 7 + 100'001 * 45 + 31);
 }
 
-TEST_CASE("what does not fit a GRO file is told", "[formats][gro]") {
+TEST_CASE("what does not fit a GRO file is reported", "[formats][gro]") {
     CHECK(gro_error({"A", "RESIDUE", "1", "CA"}) ==
           "w.pdb:7: A RESIDUE 1 CA: the residue name 'RESIDUE' does not fit the 5 columns of a GRO "
           "file");

@@ -159,7 +159,7 @@ TEST_CASE("TRR files of MDAnalysis and GROMACS are read as gmx dump prints them"
     check_trr_as_text("waters_double.trr");  // with GROMACS in double precision
 }
 
-TEST_CASE("a TRR file cut anywhere is told, and its whole frames are read", "[formats][trr]") {
+TEST_CASE("a TRR file cut anywhere is noted, and its whole frames are read", "[formats][trr]") {
     TrrByHand hand;
     hand.is_double = GENERATE(false, true);
     const std::string one = hand.text(), whole = one + one;
@@ -205,7 +205,7 @@ TEST_CASE("every damaged byte of a TRR file is a frame or a sentence", "[formats
     }
 }
 
-TEST_CASE("what is wrong with a TRR file is told with its frame", "[formats][trr]") {
+TEST_CASE("what is wrong with a TRR file is reported with its frame", "[formats][trr]") {
     const std::string one = TrrByHand{}.text();
     const auto open_error = [](std::string bytes) {
         return load_error_of([&] { open_trr_bytes(std::move(bytes)); });

@@ -37,10 +37,11 @@ Bytes xtc_head(std::int32_t atoms, std::int32_t step, double time) {
 // description in formats/xtc_packing.h. Ranges are 10, 1 and 1, their product 10 has 4 bits. The
 // first i is 9, its size 8 and half of it 4: a difference (dx, 0, 0) is ((dx + 4) 8 + 4) 8 + 4 =
 // 64 dx + 292, in 9 bits as the low byte and then the one bit above it.
-//   group 1: exchanged, so atom 1 at the whole place x = 1: 0001; told 1; 5 bits, 3*8 + 0 + 1 = 25:
+//   group 1: exchanged, so atom 1 at the whole place x = 1: 0001; change 1; 5 bits, 3*8 + 0 + 1 =
+//   25:
 //     11001; atom 0 by dx = -1: 228 = 0.11100100: 11100100 0; atom 2 behind atom 0 by dx = 2: 420 =
 //     1.10100100: 10100100 1; atoms 3 to 8, dx = 1 each: 356 = 1.01100100: 01100100 1, six times
-//   group 2: atom 9 at x = 9: 1001; told 1; 3*0 + 0 + 1 = 1: 00001
+//   group 2: atom 9 at x = 9: 1001; change 1; 3*0 + 0 + 1 = 1: 00001
 // All bits in bytes: 0001 1 11001 111001000 101001001 6 x 011001001 1001 1 00001
 std::string packed_by_hand() {
     std::string bits =
@@ -268,7 +269,7 @@ TEST_CASE("places too far apart for other readers are not packed", "[formats][xt
     CHECK_FALSE(pack_places(std::vector<IntegerPlace>{{-2147483647, 0, 0}, {2147483647, 0, 0}}));
 }
 
-TEST_CASE("an XTC file cut anywhere is told, and its whole frames are read", "[formats][xtc]") {
+TEST_CASE("an XTC file cut anywhere is noted, and its whole frames are read", "[formats][xtc]") {
     const std::string whole = GENERATE(plain_frame(3).text + plain_frame(4).text,
                                        hand_packed_frame(3).text + hand_packed_frame(4).text,
                                        test::bytes_of(test::trajectory_path("waters.xtc")));
@@ -314,7 +315,7 @@ TEST_CASE("every damaged byte of an XTC file is a frame or a sentence", "[format
     }
 }
 
-TEST_CASE("what is wrong with an XTC file is told with its frame", "[formats][xtc]") {
+TEST_CASE("what is wrong with an XTC file is reported with its frame", "[formats][xtc]") {
     const auto open_error = [](std::string bytes) {
         return load_error_of([&] { open_xtc_bytes(std::move(bytes)); });
     };
@@ -348,7 +349,7 @@ TEST_CASE("what is wrong with an XTC file is told with its frame", "[formats][xt
           "w.xtc: has no frame 2; expected one of its 1 frame");
 }
 
-TEST_CASE("what cannot be written to an XTC file is told", "[formats][xtc]") {
+TEST_CASE("what cannot be written to an XTC file is reported", "[formats][xtc]") {
     const test::TemporaryFolder folder;
     const auto path = folder.path() / "w.xtc";
     XtcWriter writer(path, 10, 1e6F);

@@ -334,7 +334,7 @@ TEST_CASE("an engine that says what is no IMD is left with a sentence", "[imd][c
         session.expect(test::client_forces(native, {1, 0}, {1, 2, 3, -4, 0, 0.5F}));
         session.engine.send(frame_at(nan));
         session.expect_lost("for its atom 0, expected numbers within a million Å");
-        // The engine goes on, so it has to be told.
+        // The engine goes on, so it needs the message.
         session.expect(test::client_forces(native, {0, 1}, {0, 0, 0, 0, 0, 0}) + leave);
     }
     {

@@ -252,7 +252,7 @@ TEST_CASE("a server of hostile clients goes on, and no force of theirs outlives 
             client.close();
         }
 
-        // What became of it is told, whatever that was.
+        // A note says what became of it, whatever that was.
         std::vector<std::string> notes;
         const std::string name = "client " + std::to_string(i + 2) + " ";
         const auto is_end = [&](const std::string& note) {

@@ -364,8 +364,9 @@ TEST_CASE("a frame that is not sound is not sent", "[imd][server]") {
     engine.expect(client, wire_at(4));
 }
 
-TEST_CASE("a server listens on this machine alone unless told, and says where it cannot",
-          "[imd][server]") {
+TEST_CASE(
+    "a server listens on this machine alone unless it gets an address, and says where it cannot",
+    "[imd][server]") {
     CHECK(ImdServerOptions{}.address == "127.0.0.1");
     const Engine engine;
     const ImdServer second({.port = engine.server->port(), .atoms = 1});

@@ -91,7 +91,7 @@ Socket Socket::accept(std::error_code& error) const {
     error.clear();
     Socket socket(::accept(static_cast<int>(handle_), nullptr, nullptr));
     if (socket.is_open() && prepare_socket(static_cast<int>(socket.handle_))) return socket;
-    // Who connected and went again is nobody.
+    // A connection that ended before it was accepted is no error.
     if (!is_not_yet(errno) && errno != ECONNABORTED) error = last_socket_error();
     return {};
 }
@@ -122,8 +122,8 @@ SocketTransfer Socket::read(std::span<std::byte> into) const noexcept {
     if (got < 0 && is_not_yet(errno)) return {};
     if (got < 0) return {.error = last_socket_error()};
 #ifdef TCP_QUICKACK
-    // Linux would keep the receipt back for 40 ms, and who sends small messages one by one waits
-    // for it before the next ones; it forgets the wish after a while.
+    // Linux delays acknowledgements by 40 ms, and a sender of small messages waits for them. The
+    // option does not last, so each read sets it again.
     set_option(static_cast<int>(handle_), IPPROTO_TCP, TCP_QUICKACK);
 #endif
     return {.bytes = static_cast<std::size_t>(got), .is_ended = got == 0 && !into.empty()};
