@@ -1,4 +1,4 @@
-// Counts what readers allocate, by operators new and delete that remember sizes.
+// Counts what readers allocate.
 #include "core/load_error.h"
 #include "formats/crd.h"
 #include "formats/dcd.h"
@@ -7,6 +7,7 @@
 #include "formats/psf.h"
 #include "formats/trajectory.h"
 #include "formats/xtc.h"
+#include "tests/support/count_allocations.h"
 #include "tests/support/replaced.h"
 #include "tests/support/temporary_folder.h"
 
@@ -14,37 +15,8 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstddef>
-#include <cstdlib>
-#include <new>
 #include <string>
 #include <vector>
-
-namespace {
-
-std::size_t held = 0, peak = 0;
-
-// Before each block its size, in as many bytes as keep the block aligned.
-constexpr std::size_t head = alignof(std::max_align_t);
-
-}  // namespace
-
-void* operator new(std::size_t size) {
-    void* const block = std::malloc(head + size);
-    if (!block) throw std::bad_alloc();
-    *static_cast<std::size_t*>(block) = size;
-    held += size;
-    peak = std::max(peak, held);
-    return static_cast<std::byte*>(block) + head;
-}
-
-void operator delete(void* pointer) noexcept {
-    if (!pointer) return;
-    void* const block = static_cast<std::byte*>(pointer) - head;
-    held -= *static_cast<std::size_t*>(block);
-    std::free(block);
-}
-
-void operator delete(void* pointer, std::size_t /*size*/) noexcept { operator delete(pointer); }
 
 using namespace palpa;
 using test::replaced;
@@ -135,14 +107,15 @@ std::size_t allowed(const std::string& text) { return 9 * text.size() + fixed_al
 // In bytes, beside the text itself; what is read is freed, an error is thrown and caught.
 template <class Read>
 std::size_t peak_of(const std::string& text, const Read& read) {
-    const std::size_t before = held;
-    peak = held;
-    try {
-        read(text, "x");
-    } catch (const LoadError&) {
-    }
-    CHECK(held == before);
-    return peak - before;
+    const std::size_t before = test::held_bytes;
+    const std::size_t peak = test::peak_of([&] {
+        try {
+            read(text, "x");
+        } catch (const LoadError&) {
+        }
+    });
+    CHECK(test::held_bytes == before);
+    return peak;
 }
 
 template <class Read>
@@ -220,17 +193,17 @@ TEST_CASE("an open trajectory holds where its frames are, and one frame", "[form
         folder.add_file("w.pdb", pdb);
     }
 
-    const std::size_t before = held;
-    peak = held;
+    const std::size_t before = test::held_bytes;
+    test::peak_bytes = before;
     {
         const auto trajectory = open_trajectory(folder.path() / name);
         TrajectoryFrame frame;
         for (std::size_t i = 0; i < frames; ++i) trajectory->read_frame(i, frame);
         CHECK(trajectory->frame_count() == frames);
     }
-    CHECK(held == before);
+    CHECK(test::held_bytes == before);
     // Twice where each begins and ends, as a vector grows.
-    CHECK(peak - before <= 32 * frames + fixed_allowance);
+    CHECK(test::peak_bytes - before <= 32 * frames + fixed_allowance);
 }
 
 TEST_CASE("a frame that promises too many atoms costs no memory", "[formats][memory]") {

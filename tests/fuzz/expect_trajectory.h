@@ -1,9 +1,9 @@
 // What holds of every trajectory that a reader opens.
 #pragma once
-#include "core/load_error.h"
 #include "formats/lines.h"
 #include "formats/trajectory.h"
 #include "tests/fuzz/expect.h"
+#include "tests/fuzz/or_refused.h"
 
 #include <cmath>
 #include <cstddef>
@@ -14,21 +14,16 @@ namespace palpa::test {
 // Nothing where it is refused.
 template <class Open>
 std::unique_ptr<Trajectory> open_or_refuse(const Open& open) {
-    try {
-        return open();
-    } catch (const LoadError&) {
-        return nullptr;
-    }
+    return or_refused(open).value_or(nullptr);
 }
 
 // Whether the frame is one; into `frame`.
 inline bool read_or_refuse_frame(Trajectory& trajectory, std::size_t i, TrajectoryFrame& frame) {
-    try {
+    const auto read = [&] {
         trajectory.read_frame(i, frame);
         return true;
-    } catch (const LoadError&) {
-        return false;
-    }
+    };
+    return or_refused(read).has_value();
 }
 
 inline void expect_whole_frame(const Trajectory& trajectory, const TrajectoryFrame& frame) {

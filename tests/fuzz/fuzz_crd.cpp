@@ -1,7 +1,7 @@
 // Any text is a coordinate file or a LoadError; what was read survives being written and read.
-#include "core/load_error.h"
 #include "formats/crd.h"
 #include "tests/fuzz/expect.h"
+#include "tests/fuzz/or_refused.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,11 +16,7 @@ using namespace palpa;
 namespace {
 
 std::optional<Structure> read_or_refuse(std::string_view text) {
-    try {
-        return parse_crd(text, "fuzz.crd");
-    } catch (const LoadError&) {
-        return std::nullopt;
-    }
+    return test::or_refused([&] { return parse_crd(text, "fuzz.crd"); });
 }
 
 bool is_plain(const std::string& name) {

@@ -8,6 +8,7 @@
 #include "core/load_error.h"
 #include "core/text.h"
 #include "tests/fuzz/expect.h"
+#include "tests/fuzz/or_refused.h"
 
 #include <cmath>
 #include <cstddef>
@@ -23,13 +24,11 @@ using namespace palpa;
 namespace {
 
 std::optional<ForceField> read_or_refuse(std::string_view text) {
-    ForceField force_field;
-    try {
+    return test::or_refused([&] {
+        ForceField force_field;
         parse_force_field(text, "fuzz.str", force_field);
-    } catch (const LoadError&) {
-        return std::nullopt;
-    }
-    return force_field;
+        return force_field;
+    });
 }
 
 void expect_name(const std::string& name) {

@@ -5,6 +5,7 @@
 #include "session/journal.h"
 #include "session/play_journal.h"
 #include "tests/fuzz/expect.h"
+#include "tests/fuzz/or_refused.h"
 #include "tests/support/paths.h"
 
 #include <cstddef>
@@ -20,11 +21,7 @@ using namespace palpa;
 namespace {
 
 std::optional<Journal> read_or_refuse(std::string_view text) {
-    try {
-        return parse_journal(text, "journal.txt");
-    } catch (const LoadError&) {
-        return std::nullopt;
-    }
+    return test::or_refused([&] { return parse_journal(text, "journal.txt"); });
 }
 
 std::string formatted(const Journal& journal) {

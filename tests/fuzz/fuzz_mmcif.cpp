@@ -1,10 +1,10 @@
 // Any text is a structure or a LoadError, and so it is as a trajectory; what was read survives
 // being written and read.
-#include "core/load_error.h"
 #include "formats/mmcif.h"
 #include "formats/mmcif_models.h"
 #include "tests/fuzz/expect_structure.h"
 #include "tests/fuzz/expect_trajectory.h"
+#include "tests/fuzz/or_refused.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -17,20 +17,12 @@ using namespace palpa;
 namespace {
 
 std::optional<Structure> read_or_refuse(std::string_view text) {
-    try {
-        return parse_mmcif(text, "fuzz.cif");
-    } catch (const LoadError&) {
-        return std::nullopt;
-    }
+    return test::or_refused([&] { return parse_mmcif(text, "fuzz.cif"); });
 }
 
 // Names may have letters, or blanks, that are not written.
 std::optional<std::string> write_or_refuse(const Structure& structure) {
-    try {
-        return format_mmcif(structure, "fuzz");
-    } catch (const LoadError&) {
-        return std::nullopt;
-    }
+    return test::or_refused([&] { return format_mmcif(structure, "fuzz"); });
 }
 
 }  // namespace

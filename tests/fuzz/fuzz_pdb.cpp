@@ -1,11 +1,11 @@
 // Any text is a structure or a LoadError, and so it is as a trajectory; what was read survives
 // being written and read.
-#include "core/load_error.h"
 #include "formats/pdb.h"
 #include "formats/pdb_models.h"
 #include "tests/fuzz/expect.h"
 #include "tests/fuzz/expect_structure.h"
 #include "tests/fuzz/expect_trajectory.h"
+#include "tests/fuzz/or_refused.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -18,20 +18,12 @@ using namespace palpa;
 namespace {
 
 std::optional<Structure> read_or_refuse(std::string_view text) {
-    try {
-        return parse_pdb(text, "fuzz.pdb");
-    } catch (const LoadError&) {
-        return std::nullopt;
-    }
+    return test::or_refused([&] { return parse_pdb(text, "fuzz.pdb"); });
 }
 
 // Numbers may be written with more digits than the writer's columns hold.
 std::optional<std::string> write_or_refuse(const Structure& structure) {
-    try {
-        return format_pdb(structure, "fuzz");
-    } catch (const LoadError&) {
-        return std::nullopt;
-    }
+    return test::or_refused([&] { return format_pdb(structure, "fuzz"); });
 }
 
 }  // namespace

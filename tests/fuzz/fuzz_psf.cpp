@@ -1,8 +1,8 @@
 // Any text is a structure file or a LoadError; what was read is whole, and survives being written
 // and read.
-#include "core/load_error.h"
 #include "formats/psf.h"
 #include "tests/fuzz/expect.h"
+#include "tests/fuzz/or_refused.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,11 +17,7 @@ using namespace palpa;
 namespace {
 
 std::optional<Connectivity> read_or_refuse(std::string_view text) {
-    try {
-        return parse_psf(text, "fuzz.psf");
-    } catch (const LoadError&) {
-        return std::nullopt;
-    }
+    return test::or_refused([&] { return parse_psf(text, "fuzz.psf"); });
 }
 
 template <class Tuples>

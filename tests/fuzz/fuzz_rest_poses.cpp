@@ -1,7 +1,7 @@
 // Any text is a file of poses or a LoadError; one that is reads the same once written.
-#include "core/load_error.h"
 #include "experiments/rest_poses.h"
 #include "tests/fuzz/expect.h"
+#include "tests/fuzz/or_refused.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -14,11 +14,7 @@ using namespace palpa;
 namespace {
 
 std::optional<RestPoses> read_or_refuse(std::string_view text) {
-    try {
-        return parse_rest_poses(text, "poses.txt");
-    } catch (const LoadError&) {
-        return std::nullopt;
-    }
+    return test::or_refused([&] { return parse_rest_poses(text, "poses.txt"); });
 }
 
 void check_rest(const RestPose& rest, const PosedModel& of) {

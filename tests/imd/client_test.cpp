@@ -53,11 +53,7 @@ struct Session {
     }
 
     void accept() {
-        until([&] {
-            std::error_code error;
-            engine = Peer(listening.accept(error));
-            return engine.is_open();
-        });
+        engine = test::accept_from(listening, [&] { poll(); });
     }
 
     void greet(const Wire& greeting, const Wire& more = {}) {

@@ -62,6 +62,16 @@ Outcome outcome_of(ImdDecoder decoder, const Wire& wire, const std::vector<std::
     return outcome;
 }
 
+// Of a stream whole, which is that of its pieces.
+Outcome checked_outcome(const ImdDecoder& decoder, const Wire& wire,
+                        const std::vector<std::size_t>& ends) {
+    const Outcome whole = outcome_of(decoder, wire, {wire.size()});
+    CHECK((whole == outcome_of(decoder, wire, ends)));
+    CHECK((whole.problem.empty() || is_one_line(whole.problem)));
+    CHECK(whole.problem.find("NOT SOUND") == std::string::npos);
+    return whole;
+}
+
 // What a client has said, read by hand: Go, then forces in the byte order of `is_turned`, then
 // Disconnect, whole.
 struct Said {
@@ -108,13 +118,8 @@ TEST_CASE("no stream of an engine breaks the decoder, and splits change nothing"
         HostileStreams random(i);
         const Wire wire = random.from_engine();
 
-        const Outcome whole = outcome_of(ImdDecoder::of_engine({}), wire, {wire.size()});
-        const Outcome split =
-            outcome_of(ImdDecoder::of_engine({}), wire, random.splits(wire.size()));
-
-        CHECK((whole == split));
-        CHECK((whole.problem.empty() || is_one_line(whole.problem)));
-        CHECK(whole.problem.find("NOT SOUND") == std::string::npos);
+        const Outcome whole =
+            checked_outcome(ImdDecoder::of_engine({}), wire, random.splits(wire.size()));
         refused += whole.problem.empty() ? 0 : 1;
         frames += whole.frames;
     }
@@ -130,14 +135,8 @@ TEST_CASE("no stream of a client breaks the decoder, and splits change nothing",
         HostileStreams random(i);
         const int version = i % 2 == 0 ? 2 : 3;
         const Wire wire = random.from_client(version);
-        const auto decoder = ImdDecoder::of_client(version, native, {.atoms = 2});
-
-        const Outcome whole = outcome_of(decoder, wire, {wire.size()});
-        const Outcome split = outcome_of(decoder, wire, random.splits(wire.size()));
-
-        CHECK((whole == split));
-        CHECK((whole.problem.empty() || is_one_line(whole.problem)));
-        CHECK(whole.problem.find("NOT SOUND") == std::string::npos);
+        const Outcome whole = checked_outcome(ImdDecoder::of_client(version, native, {.atoms = 2}),
+                                              wire, random.splits(wire.size()));
         refused += whole.problem.empty() ? 0 : 1;
         messages += whole.messages;
     }
@@ -158,7 +157,6 @@ TEST_CASE(
                           .limits = {.max_atoms = 1000},
                           .pulls_in_version_3 = true});
         client.connect(0);
-        Peer engine;
         const auto poll = [&] {
             client.poll(0, 0);
             if (!client.frame()) return;
@@ -167,13 +165,7 @@ TEST_CASE(
             for (std::size_t k = 0; k < atoms; ++k) all[k] = static_cast<std::int32_t>(k);
             client.pull(all, std::vector<Vec3>(atoms, Vec3(1, 2, 3)));
         };
-        test::until(
-            [&] {
-                std::error_code error;
-                engine = Peer(listening.accept(error));
-                return engine.is_open();
-            },
-            poll);
+        Peer engine = test::accept_from(listening, poll);
         std::size_t begin = 0;
         for (const std::size_t end : random.splits(wire.size())) {
             engine.send(Wire(wire.begin() + static_cast<std::ptrdiff_t>(begin),

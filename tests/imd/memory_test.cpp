@@ -1,65 +1,28 @@
-// Counts what the other end can make this one allocate, by operators new and delete that remember
-// sizes.
+// Counts what the other end can make this one allocate.
 #include "imd/client.h"
 #include "imd/server.h"
 #include "tests/imd/hostile_streams.h"
 #include "tests/imd/peer.h"
+#include "tests/support/count_allocations.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstddef>
-#include <cstdlib>
-#include <new>
 #include <optional>
 #include <vector>
-
-namespace {
-
-std::size_t held = 0, peak = 0;
-
-// Before each block its size, in as many bytes as keep the block aligned.
-constexpr std::size_t head = alignof(std::max_align_t);
-
-}  // namespace
-
-void* operator new(std::size_t size) {
-    void* const block = std::malloc(head + size);
-    if (!block) throw std::bad_alloc();
-    *static_cast<std::size_t*>(block) = size;
-    held += size;
-    peak = std::max(peak, held);
-    return static_cast<std::byte*>(block) + head;
-}
-
-void operator delete(void* pointer) noexcept {
-    if (!pointer) return;
-    void* const block = static_cast<std::byte*>(pointer) - head;
-    held -= *static_cast<std::size_t*>(block);
-    std::free(block);
-}
-
-void operator delete(void* pointer, std::size_t /*size*/) noexcept { operator delete(pointer); }
 
 using namespace palpa;
 using test::go;
 using test::hex;
 using test::native;
 using test::operator+;
+using test::peak_of;
 using test::Peer;
 using test::Wire;
 
 namespace {
 
 constexpr std::size_t little = 16'384;  // sentences and what is held without atoms
-
-// Of what `act` allocates at the same time.
-template <class Act>
-std::size_t peak_of(const Act& act) {
-    const std::size_t before = held;
-    peak = held;
-    act();
-    return peak - before;
-}
 
 // In pieces as a socket gives them.
 void feed(ImdDecoder& decoder, const Wire& wire) {
@@ -126,15 +89,8 @@ TEST_CASE("a client holds a few frames, however fast they come and slowly its fo
     const Socket listening = test::listen_on_loopback();
     ImdClient client({.port = listening.find_port()});
     client.connect(0);
-    Peer engine;
     const auto poll = [&] { client.poll(0, test::a_moment_ms); };
-    test::until(
-        [&] {
-            std::error_code error;
-            engine = Peer(listening.accept(error));
-            return engine.is_open();
-        },
-        poll);
+    Peer engine = test::accept_from(listening, poll);
     engine.send(test::handshake(native, 2));
     const Wire frame = test::header(2, atoms) + zeros(12 * atoms);
     std::vector<std::int32_t> all(atoms);

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <system_error>
+#include <utility>
 
 namespace palpa::test {
 
@@ -80,6 +81,20 @@ inline Socket listen_on_loopback() {
     INFO("the loopback interface: " << error.message());
     REQUIRE(listening.is_open());
     return listening;
+}
+
+// Who connects there, while `step` lets it.
+template <class Step>
+Peer accept_from(const Socket& listening, const Step& step) {
+    Socket accepted;
+    until(
+        [&] {
+            std::error_code error;
+            accepted = listening.accept(error);
+            return accepted.is_open();
+        },
+        step);
+    return Peer(std::move(accepted));
 }
 
 inline Socket connect_on_loopback(std::uint16_t port) {

@@ -1,13 +1,16 @@
 // Trajectories for tests: what other programs' files hold, as text, and bytes put together by hand.
 #pragma once
 #include "formats/trajectory.h"
+#include "tests/support/load_error_of.h"
 #include "tests/support/paths.h"
 
 #include <bit>
+#include <catch2/catch.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <initializer_list>
 #include <iterator>
 #include <sstream>
 #include <stdexcept>
@@ -90,6 +93,26 @@ inline std::vector<Vec3> positions_of(Trajectory& trajectory, std::size_t frame)
     TrajectoryFrame into;
     trajectory.read_frame(frame, into);
     return into.positions;
+}
+
+// Opens the file with each of these bits of each byte turned, and reads all its frames: finite
+// positions, or a LoadError.
+template <class Open>
+void expect_frames_or_errors(const std::string& whole, std::initializer_list<int> bits,
+                             const Open& open) {
+    for (std::size_t at = 0; at < whole.size(); ++at) {
+        for (const int bit : bits) {
+            std::string damaged = whole;
+            damaged[at] = static_cast<char>(damaged[at] ^ (1 << bit));
+            load_error_of([&] {
+                const auto trajectory = open(damaged);
+                for (std::size_t i = 0; i < trajectory->frame_count(); ++i) {
+                    for (const Vec3& position : positions_of(*trajectory, i))
+                        REQUIRE(position.allFinite());
+                }
+            });
+        }
+    }
 }
 
 }  // namespace palpa::test

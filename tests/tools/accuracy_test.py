@@ -55,6 +55,9 @@ class Feel(unittest.TestCase):
         self.assertTrue(any(what.startswith("the tolerance") for what in tight["gave_way"]))
         self.assertEqual(tight["unsaid"], [])
         self.assertGreater(tight["steps_mean"], loose["steps_mean"])
+        # The reference is at rest, though these runs make the paper's steps.
+        for row in (loose, tight):
+            self.assertLess(row["reference_moving_pN"], 1e-6)
 
     def test_a_run_tells_it_and_replays_to_the_last_digit(self):
         asked = ["--set", "coupling.feel_pN=[100, 20000]", "--set", "coupling.feel_within_pN=20",

@@ -45,6 +45,19 @@ class Journey(unittest.TestCase):
                 self.assertEqual("out_s" in row, out)
                 self.assertEqual("back_s" in row, back)
 
+    def test_what_is_led_far_and_does_not_get_out_is_a_miss(self):
+        for led, what, missed in ((12, [], 1), (6, [], 0), (12, ["--active", "10"], 0)):
+            way = ["--hands", "firm", "--periods", "14", "--modes", "guarded", "--json",
+                   "--set", "hand.stroke=lead", "--set", f"hand.path=[[0.2,0],[9,{led}]]",
+                   "--set", "run.seconds=0.6", *what]
+            if not what:
+                way += ["--set", "statics.method=second-order"]
+            with self.subTest(way=way):
+                result = journey(PEPTIDES, *way)
+                report = json.loads(result.stdout)
+                self.assertEqual((report["out"], report["missed"]), (0, missed))
+                self.assertEqual(result.returncode, missed)
+
     def test_random_ones_repeat(self):
         arguments = PEPTIDES, "--random", 2, "--set", "run.seconds=1", "--json"
         first, again = (json.loads(journey(*arguments).stdout)["journeys"] for _ in range(2))
@@ -76,7 +89,7 @@ class Journey(unittest.TestCase):
 
     def test_all_active_are_told_in_words(self):
         result = journey(PEPTIDES, "--periods", "50", "--hands", "firm", "--modes", "guarded",
-                         "--active", "1000000", "--set", "run.seconds=0.5")
+                         "--active", "all", "--set", "run.seconds=0.5")
         self.assertIn("| all | 50 |", result.stdout)
 
 

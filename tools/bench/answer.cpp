@@ -105,7 +105,7 @@ std::vector<Method> build_methods(const BenchStart& start, std::optional<double>
     SceneDescription bfgs = with_cutoff(start.scene, {});
     bfgs.statics.method = RelaxMethod::InverseMass;
     bfgs.statics.steps = 1;
-    const std::string with = fmt::format("/cutoff={}", cutoff.value_or(0));
+    const std::string with = cutoff ? fmt::format("/cutoff={}", *cutoff) : "";
     std::vector<Method> methods;
     methods.push_back(
         {"default", build(start.scene), 0, start.scene.statics.cutoff_angstrom.has_value()});
