@@ -167,6 +167,18 @@ void start_grabbed(const SceneDescription& scene, const HandTables& tables, Enti
     grip.is_new = false;
 }
 
+// Of a molecule, an atom or a residue that the scene names at `place`.
+std::vector<std::uint32_t> find_named_atoms(const World& world, Entity molecule,
+                                            const std::string& name, const TextPlace& place) {
+    std::vector<std::uint32_t> atoms = atoms_called(world, molecule, name);
+    if (atoms.empty()) {
+        throw LoadError(place, fmt::format("'{}' has no atom or residue \"{}\"; expected \"25 CA\" "
+                                           "or \"25\"",
+                                           world.find<Molecule>(molecule)->name, name));
+    }
+    return atoms;
+}
+
 // Springs from atoms of a molecule to where its structure has them; they act while it moves by
 // itself.
 void add_anchors(const SceneDescription& scene, const MoleculeDescription& molecule, World& world) {
@@ -175,12 +187,7 @@ void add_anchors(const SceneDescription& scene, const MoleculeDescription& molec
     const Entity entity = molecule_called(world, molecule.name);
     for (const std::string& name : molecule.anchors) {
         Restraint restraint;
-        restraint.ends.push_back({entity, atoms_called(world, entity, name)});
-        if (restraint.ends.front().atoms.empty()) {
-            throw LoadError(place, fmt::format("'{}' has no atom or residue \"{}\"; expected "
-                                               "\"25 CA\" or \"25\"",
-                                               molecule.name, name));
-        }
+        restraint.ends.push_back({entity, find_named_atoms(world, entity, name, place)});
         restraint.place = middle_of(world, restraint.ends.front());
         restraint.k = molecule.anchor_kcal_per_mol_angstrom2;
         world.set(world.create(), std::move(restraint));
@@ -196,14 +203,9 @@ Grip build_grip(const SceneDescription& scene, const HandTables& tables, const W
     const Mobility& mobility = *world.find<Mobility>(grip.molecule);
     grip.before = mobility;
     if (!grab.atom.empty()) {
-        grip.atoms = atoms_called(world, grip.molecule, grab.atom);
+        grip.atoms = find_named_atoms(world, grip.molecule, grab.atom,
+                                      scene.place_of(tables.grab_key + ".atom"));
         grip.k = grab.spring_kcal_per_mol_angstrom2;
-        if (grip.atoms.empty()) {
-            throw LoadError(scene.place_of(tables.grab_key + ".atom"),
-                            fmt::format("'{}' has no atom or residue \"{}\"; expected \"25 CA\" or "
-                                        "\"25\"",
-                                        grab.molecule, grab.atom));
-        }
     } else {
         grip.before.motion = scene.has_statics() ? Motion::Free : Motion::Fixed;
     }
