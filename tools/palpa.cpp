@@ -3,8 +3,10 @@
 #include "core/load_error.h"
 #include "core/version.h"
 #include "gpu/device.h"
+#include "simulation/remote_engine.h"
 #include "tools/commands/command.h"
 #include "tools/commands/command_line.h"
+#include "tools/commands/run.h"
 #include "tools/commands/start.h"
 #include "window/window.h"
 
@@ -25,6 +27,7 @@ constexpr int bad_input = 2, own_fault = 3;
 // In the order of the help.
 void add_commands(CLI::App& program, palpa::ProgramCommand& chosen) {
     palpa::add_run(program, chosen);
+    palpa::add_connect(program, chosen);
     palpa::add_devices(program, chosen);
     palpa::add_prepare(program, chosen);
     palpa::add_relax(program, chosen);
@@ -92,6 +95,9 @@ int main(int argc, char** argv) {
     } catch (const palpa::GpuError& error) {
         fmt::print(stderr, "palpa: {}\n", error.what());
         return bad_input;
+    } catch (const palpa::EngineLost& error) {
+        fmt::print(stderr, "{}\n", error.what());
+        return palpa::engine_lost;
     } catch (const palpa::LoadError& error) {
         fmt::print(stderr, "{}\n", palpa::cite_as_typed(error.what(), arguments));
         for (const std::string& problem : error.further()) fmt::print(stderr, "{}\n", problem);

@@ -1,5 +1,6 @@
 #include "formats/gro.h"
 
+#include "core/files.h"
 #include "core/load_error.h"
 #include "core/text.h"
 #include "core/units.h"
@@ -12,7 +13,10 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <utility>
+#include <vector>
 
 namespace palpa {
 namespace {
@@ -74,7 +78,126 @@ std::string gro_box(const Structure& structure, const std::optional<Mat3>& box) 
     return text + "\n";
 }
 
+constexpr std::array<std::string_view, 10> water_names{"SOL", "HOH", "WAT",  "TIP3", "TIP4",
+                                                       "TP3", "TIP", "TIP5", "SPC",  "H2O"};
+
+// As read_gro says.
+void name_segments(Structure& structure) {
+    std::vector<AtomName>& names = structure.names;
+    std::map<std::string, int> counts;  // of segments of a kind so far
+    std::string kind, segment;
+    std::int64_t last = 0;
+    for (std::size_t first = 0, next = 0; first < names.size(); first = next) {
+        while (next < names.size() && names[next].number == names[first].number &&
+               names[next].residue == names[first].residue)
+            ++next;
+        const bool is_water =
+            std::ranges::find(water_names, names[first].residue) != water_names.end();
+        const std::string now = is_water ? "WAT" : next - first == 1 ? "ION" : "M";
+        const std::int64_t number = find_integer(names[first].number).value_or(0);
+        if (now != kind || (now == "M" && number < last)) {
+            kind = now;
+            const int count = ++counts[kind];
+            segment = kind == "M" || count > 1 ? fmt::format("{}{}", kind, count) : kind;
+        }
+        last = number;
+        for (std::size_t i = first; i < next; ++i) names[i].segment = segment;
+    }
+}
+
+class GroReader {
+public:
+    GroReader(std::string_view text, const std::string& file)
+        : lines_(text), size_(text.size()), structure_{file, {}, {}, {}} {}
+
+    Structure read() {
+        if (lines_.at_end()) fail("is empty; expected a title, a number of atoms, and atoms");
+        lines_.advance();
+        read_count();
+        constexpr std::size_t shortest = 44;
+        structure_.names.reserve(std::min(count_, size_ / shortest));
+        for (; structure_.names.size() < count_; lines_.advance()) {
+            if (lines_.at_end()) {
+                fail(fmt::format("ends after {} of {} atoms", structure_.names.size(), count_));
+            }
+            read_atom();
+        }
+        if (lines_.at_end() || trimmed(lines_.line()).empty())
+            fail("has no line of the box behind its atoms; expected three numbers, nm");
+        for (lines_.advance(); !lines_.at_end(); lines_.advance()) {
+            if (!trimmed(lines_.line()).empty())
+                fail("goes on behind the box; expected one frame (a trajectory is .xtc or .trr)");
+        }
+        name_segments(structure_);
+        return std::move(structure_);
+    }
+
+private:
+    [[noreturn]] void fail(const std::string& what) const {
+        throw LoadError({structure_.file, lines_.number()}, what);
+    }
+
+    void read_count() {
+        const auto count = find_integer(lines_.line());
+        constexpr std::int64_t most = 100'000'000;
+        if (!count || *count < 1 || *count > most) {
+            fail(fmt::format("'{}' is not a number of atoms; expected a count from 1",
+                             shortened(trimmed(lines_.line()))));
+        }
+        count_ = static_cast<std::size_t>(*count);
+        lines_.advance();
+    }
+
+    std::string word(Columns columns, const char* what) const {
+        const std::string_view text = find_field(lines_.line(), columns);
+        if (!is_name(text)) fail(fmt::format("no {} in column {}", what, columns.first + 1));
+        return std::string(text);
+    }
+
+    // Columns of a coordinate: from one decimal point to the next.
+    std::size_t find_width() const {
+        constexpr std::size_t first = 20;
+        const std::string_view line = lines_.line();
+        const std::size_t one = line.find('.', first);
+        const std::size_t two = one == line.npos ? one : line.find('.', one + 1);
+        if (two == line.npos || two - one > 30) fail("has no three coordinates, nm");
+        return two - one;
+    }
+
+    void read_atom() {
+        if (width_ == 0) width_ = find_width();
+        AtomName name{"", word({5, 5}, "residue name"), word({0, 5}, "residue number"),
+                      word({10, 5}, "atom name")};
+        if (!find_integer(name.number)) fail(fmt::format("'{}' is no residue number", name.number));
+        Vec3 place;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::string_view text = find_field(lines_.line(), {20 + i * width_, width_});
+            const std::optional<double> nm = find_coordinate(text);
+            if (!nm || std::abs(*nm) * units::angstrom_per_nm > farthest_coordinate) {
+                fail(fmt::format("'{}' is not a coordinate; expected nm within ±{}",
+                                 shortened(text), farthest_coordinate / units::angstrom_per_nm));
+            }
+            place[static_cast<Eigen::Index>(i)] = *nm * units::angstrom_per_nm;
+        }
+        structure_.names.push_back(std::move(name));
+        structure_.positions.push_back(place);
+        structure_.lines.push_back(lines_.number());
+    }
+
+    LineReader lines_;
+    std::size_t size_, count_ = 0, width_ = 0;
+    Structure structure_;
+};
+
 }  // namespace
+
+Structure parse_gro(std::string_view text, const std::string& file) {
+    return GroReader(text, file).read();
+}
+
+Structure read_gro(const std::filesystem::path& path) {
+    return parse_gro(read_text_file(path), path.string());
+}
 
 std::string format_gro(const Structure& structure, std::string_view title,
                        const std::optional<Mat3>& box) {

@@ -1,12 +1,21 @@
-// GRO structure files of GROMACS, out.
+// GRO structure files of GROMACS, in and out.
 #pragma once
 #include "molecule/atoms.h"
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
 
 namespace palpa {
+
+// A file has one frame; velocities and the box are left out. Coordinates may have more digits, as
+// GROMACS writes them: the distance of the decimal points tells. A GRO file has no segments: here
+// each is a run of atoms, WAT (and WAT2, ...) of water, ION of residues of one atom, and M1, M2,
+// ... of the rest, where the next one begins where a residue's number is lower than that before it.
+// Throws LoadError with the line of what is wrong.
+Structure read_gro(const std::filesystem::path& path);
+Structure parse_gro(std::string_view text, const std::string& file);
 
 // The fixed columns of GROMACS's reference manual: "%5d%-5s%5s%5d%8.3f%8.3f%8.3f", nm; then the
 // box, whose columns are edges, Å: its diagonal, nm, and where it is not rectangular the other six

@@ -172,6 +172,10 @@ bool ImdClient::take(std::span<const std::byte> bytes) {
 
 void ImdClient::take_greeting() {
     if (!decoder_.is_ready()) return;
+    if (options_.version && decoder_.version() != *options_.version) {
+        return lose(fmt::format("is left: it speaks version {}, expected {}", decoder_.version(),
+                                *options_.version));
+    }
     if (decoder_.version() == 3) session_ = decoder_.message()->session;
     if (decoder_.version() == 3 && !session_.coordinates) {
         return lose("is left: it announced frames without coordinates, expected some");

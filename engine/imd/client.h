@@ -42,6 +42,7 @@ struct ImdClientOptions {
     ImdLimits limits{};
     std::optional<ImdUnits> units{};        // of the wire; nothing: imd_units_of its version
     int rate = 0;                           // steps between frames; 0: as the engine has it
+    std::optional<int> version{};           // that it must speak; nothing: any
     bool pulls_in_version_3 = false;        // an experiment: engines do not agree on its forces
     double answer_within_s = 5;             // to the connection and with the handshake
     double late_after_s = 1;                // without a frame

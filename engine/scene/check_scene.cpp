@@ -89,7 +89,7 @@ const MoleculeDescription* check_hold(const SceneDescription& scene, const HandT
     const std::string from = by.grab_key + ".measured_from";
     const MoleculeDescription* const origin =
         find_named(scene, problems, from, by.grab.measured_from);
-    if (origin && origin->motion != Motion::Fixed) {
+    if (origin && origin->motion != Motion::Fixed && !scene.engine) {
         problems.add(problems.place_of(from),
                      fmt::format("'{}' is \"{}\", whose motion is \"{}\"; expected a fixed "
                                  "molecule",
@@ -97,6 +97,7 @@ const MoleculeDescription* check_hold(const SceneDescription& scene, const HandT
     }
     const MoleculeDescription* const grabbed =
         find_named(scene, problems, by.grab_key + ".molecule", by.grab.molecule);
+    if (scene.engine) return grabbed;  // which moves everything
     if (!grabbed || !check_grabbed(scene, by, *grabbed, problems)) return nullptr;
     check_start(by, grabbed->motion == Motion::AlongX, problems);
     return grabbed;
@@ -138,7 +139,7 @@ void check_grab(const SceneDescription& scene, Problems& problems) {
         grabbed.push_back(check_hold(scene, hand, problems));
     }
     // Without the right molecules in hand, what the others do is no problem of its own.
-    if (std::ranges::find(grabbed, nullptr) != grabbed.end()) return;
+    if (scene.engine || std::ranges::find(grabbed, nullptr) != grabbed.end()) return;
     check_motions(scene, grabbed, problems);
     if (!scene.joints.around.empty())
         find_named(scene, problems, "joints.around", scene.joints.around);
@@ -146,6 +147,24 @@ void check_grab(const SceneDescription& scene, Problems& problems) {
         problems.add(problems.place_of("joints.within_angstrom"),
                      "'joints.within_angstrom' is given beside 'joints.region_angstrom'; expected "
                      "one of them");
+    }
+}
+
+void check_engine(const EngineDescription& engine, Problems& problems) {
+    const std::size_t colon = engine.address.rfind(':');
+    const auto port = colon == std::string::npos
+                          ? std::nullopt
+                          : find_integer(std::string_view(engine.address).substr(colon + 1));
+    if (colon == 0 || !port || *port < 1 || *port > 65535) {
+        problems.add(problems.place_of("engine.address"),
+                     fmt::format("'engine.address' is \"{}\"; expected HOST:PORT, as "
+                                 "\"127.0.0.1:8888\"",
+                                 engine.address));
+    }
+    if (engine.program == EngineProgram::Lammps && engine.rate == 1) {
+        problems.add(problems.place_of("engine.rate"),
+                     "'engine.rate' is 1, at which LAMMPS takes no forces; expected 2 or more, or "
+                     "0: as its input has it");
     }
 }
 
@@ -312,6 +331,7 @@ void check_coupling(const CouplingDescription& c, Problems& problems) {
 
 void check_scene(const SceneDescription& scene, Problems& problems) {
     check_grab(scene, problems);
+    if (scene.engine) check_engine(*scene.engine, problems);
     check_coupling(scene.coupling, problems);
     check_ranges(scene, problems);
     for (const HandTables& hand : list_hands(scene)) check_hand(hand, problems);

@@ -20,6 +20,15 @@ inline constexpr std::array<std::string_view, 2> shape_names{"rigid", "flexible"
 enum class Solvent { None, Eef1Sb };
 inline constexpr std::array<std::string_view, 2> solvent_names{"none", "eef1-sb"};
 
+// Remote engines, which differ in the units of energies that they send.
+enum class EngineProgram { Unknown, Gromacs, Lammps, Namd };
+inline constexpr std::array<std::string_view, 4> engine_program_names{"unknown", "gromacs",
+                                                                      "lammps", "namd"};
+
+// Versions of IMD.
+enum class EngineProtocol { Any, Two, Three };
+inline constexpr std::array<std::string_view, 3> engine_protocol_names{"any", "2", "3"};
+
 enum class PairPrecision { Double, Fast };
 inline constexpr std::array<std::string_view, 2> pair_precision_names{"double", "fast"};
 

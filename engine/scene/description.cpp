@@ -10,6 +10,7 @@ TextPlace SceneDescription::place_of(std::string_view key) const {
 }
 
 bool SceneDescription::has_statics() const {
+    if (engine) return false;
     const bool by_spring = !grab.atom.empty() || (second && !second->grab.atom.empty());
     return by_spring || std::ranges::any_of(molecules, [](const MoleculeDescription& m) {
                return m.shape == Shape::Flexible || m.motion == Motion::TranslateAndTurn ||

@@ -37,6 +37,21 @@ struct MoleculeDescription {
     double anchor_kcal_per_mol_angstrom2 = 5;
 };
 
+// A remote engine that moves all atoms, over IMD, in place of our own mechanics.
+struct EngineDescription {
+    std::string address = "127.0.0.1:8888";
+    EngineProgram program = EngineProgram::Unknown;
+    EngineProtocol protocol = EngineProtocol::Any;
+    std::filesystem::path atoms;  // which of its atoms are the scene's; empty: all, in this order
+    std::int64_t rate = 0;        // steps of the engine between frames; 0: as it has it
+    double force_scale = 1;       // the engine's share of the force that the hand feels
+    double most_force_nN = 1;     // of the spring between hand and atoms
+    double smoothing_ms = 50;     // time constant of the low-pass of what is held
+    double late_s = 1;            // without a frame for so long, no force
+
+    friend bool operator==(const EngineDescription&, const EngineDescription&) = default;
+};
+
 // Which bonds of flexible molecules turn.
 struct JointsDescription {
     bool backbone = true;
@@ -176,6 +191,7 @@ struct SceneDescription {
     std::vector<MoleculeDescription> molecules;  // in the order of the file
     JointsDescription joints;
     StaticsDescription statics;
+    std::optional<EngineDescription> engine;
     GrabDescription grab;
     HandDescription hand;
     std::optional<SecondHand> second;

@@ -9,13 +9,16 @@
 namespace palpa {
 namespace {
 
-void visit_force_field(FieldVisitor& v, ForceFieldDescription& f) {
+void visit_force_field(FieldVisitor& v, ForceFieldDescription& f, bool is_required) {
     v.enter_table(
-        {.key = "force_field", .meaning = "where the forces come from", .required = true});
-    v.files({.key = "files",
-             .meaning = "CHARMM topology, parameter and stream files, in the order of reading",
-             .required = true},
-            f.files);
+        {.key = "force_field", .meaning = "where the forces come from", .required = is_required});
+    const Field files{
+        .key = "files",
+        .meaning =
+            "CHARMM topology, parameter and stream files, in the order of reading; not "
+            "needed with [engine]",
+        .required = is_required};
+    if (is_required || v.is_there(files, !f.files.empty())) v.files(files, f.files);
     v.real({.key = "coulomb_constant",
             .meaning = "kcal Å/mol/e²; the default is CHARMM's own",
             .lowest = 0,
@@ -30,9 +33,12 @@ void visit_force_field(FieldVisitor& v, ForceFieldDescription& f) {
     v.leave_table();
 }
 
-void visit_molecule(FieldVisitor& v, MoleculeDescription& m) {
+void visit_molecule(FieldVisitor& v, MoleculeDescription& m, bool is_remote) {
     v.enter_table({.key = m.name, .meaning = "one molecule"});
-    v.file({.key = "structure", .meaning = "structure file: .crd, .pdb or .cif", .required = true},
+    v.file({.key = "structure",
+            .meaning = "structure file: .crd, .pdb, .cif or .gro; with [engine] also .psf, and the "
+                       "engine tells where atoms are",
+            .required = true},
            m.structure);
     v.file({.key = "topology",
             .meaning = "PSF file for types, charges, masses and bonds; unset: they come from the "
@@ -44,8 +50,9 @@ void visit_molecule(FieldVisitor& v, MoleculeDescription& m) {
            m.segment);
     v.text({.key = "reference_atom",
             .meaning = "atom that stands for the molecule's place: its name, with the residue "
-                       "number before it where the name alone is not enough (\"25 CG\")",
-            .required = true},
+                       "number before it where the name alone is not enough (\"25 CG\"); with "
+                       "[engine], unset: the first",
+            .required = !is_remote},
            m.reference_atom);
     choose(v,
            {.key = "motion",
@@ -78,7 +85,7 @@ void visit_molecule(FieldVisitor& v, MoleculeDescription& m) {
     v.leave_table();
 }
 
-void visit_molecules(FieldVisitor& v, std::vector<MoleculeDescription>& molecules) {
+void visit_molecules(FieldVisitor& v, std::vector<MoleculeDescription>& molecules, bool is_remote) {
     v.enter_table({.key = "molecules", .meaning = "the molecules", .required = true});
     std::vector<std::string> names;
     for (const MoleculeDescription& molecule : molecules) names.push_back(molecule.name);
@@ -86,24 +93,27 @@ void visit_molecules(FieldVisitor& v, std::vector<MoleculeDescription>& molecule
     molecules.resize(names.size());
     for (std::size_t i = 0; i < names.size(); ++i) {
         molecules[i].name = names[i];
-        visit_molecule(v, molecules[i]);
+        visit_molecule(v, molecules[i], is_remote);
     }
     v.leave_table();
 }
 
-void visit_grab(FieldVisitor& v, const Field& table, GrabDescription& g) {
+void visit_grab(FieldVisitor& v, const Field& table, GrabDescription& g, bool is_remote) {
     v.enter_table(table);
     v.text({.key = "molecule",
             .meaning = "name of the molecule that the hand moves",
             .required = true},
            g.molecule);
-    v.text({.key = "measured_from",
-            .meaning = "name of the molecule whose reference atom distances are measured from",
-            .required = true},
-           g.measured_from);
+    v.text(
+        {.key = "measured_from",
+         .meaning = "name of the molecule whose reference atom distances are measured from; with "
+                    "[engine], unset: the one in the hand",
+         .required = !is_remote},
+        g.measured_from);
     v.text({.key = "atom",
             .meaning = "atom of that molecule (\"25 CA\") or residue (\"25\", its centre of mass) "
-                       "that the hand pulls at by a spring; unset: it moves the whole molecule"},
+                       "that the hand pulls at by a spring, or its Nth atom (\"#17\"); unset: it "
+                       "moves the whole molecule, with [engine] by a spring too"},
            g.atom);
     v.real({.key = "spring_kcal_per_mol_angstrom2",
             .meaning = "stiffness k of that spring, E = k x²/2",
@@ -306,7 +316,7 @@ void visit_hand(FieldVisitor& v, const Field& table, HandDescription& h) {
     v.leave_table();
 }
 
-void visit_second(FieldVisitor& v, std::optional<SecondHand>& second) {
+void visit_second(FieldVisitor& v, std::optional<SecondHand>& second, bool is_remote) {
     const Field table{.key = "second", .meaning = "a second hand"};
     if (!v.is_there(table, second.has_value())) return;
     if (!second) second.emplace();
@@ -316,8 +326,63 @@ void visit_second(FieldVisitor& v, std::optional<SecondHand>& second) {
                 .meaning = "what a second hand holds, on a device of its own",
                 .required = true,
                 .like = "grab"},
-               second->grab);
+               second->grab, is_remote);
     visit_hand(v, {.key = "hand", .meaning = "what it does", .like = "hand"}, second->hand);
+    v.leave_table();
+}
+
+void visit_engine(FieldVisitor& v, std::optional<EngineDescription>& engine) {
+    const Field table{.key = "engine",
+                      .meaning =
+                          "a remote engine that moves all atoms, over IMD: GROMACS, LAMMPS, "
+                          "NAMD; unset: Palpa itself"};
+    if (!v.is_there(table, engine.has_value())) return;
+    if (!engine) engine.emplace();
+    v.enter_table(table);
+    v.text({.key = "address", .meaning = "where it listens, HOST:PORT; the host in numbers"},
+           engine->address);
+    choose(
+        v,
+        {.key = "program",
+         .meaning = "what it is, which decides the unit of energies that it sends: GROMACS sends "
+                    "kJ/mol in version 2, the others kcal/mol"},
+        engine_program_names, engine->program);
+    choose(v, {.key = "protocol", .meaning = "version of IMD that it must speak"},
+           engine_protocol_names, engine->protocol);
+    v.file(
+        {.key = "atoms",
+         .meaning = "which of the engine's atoms are which of the scene's: the engine's own as a "
+                    "PSF or GRO file, found by residue and name; or an index file (.ndx) whose "
+                    "first group says, of each that it sends, the scene's number; unset: all of "
+                    "the scene's, in their order"},
+        engine->atoms);
+    v.integer({.key = "rate",
+               .meaning = "steps of the engine between two frames; 0: as the engine has it. LAMMPS "
+                          "takes no forces at a rate of 1",
+               .lowest = 0,
+               .highest = 1e6},
+              engine->rate);
+    v.real({.key = "force_scale",
+            .meaning = "force on the engine's atoms, as a share of what the hand feels",
+            .lowest = 0,
+            .highest = 100},
+           engine->force_scale);
+    v.real({.key = "most_force_nN",
+            .meaning = "of the spring between hand and atoms; it is softer beyond",
+            .lowest = 1e-3,
+            .highest = 100},
+           engine->most_force_nN);
+    v.real({.key = "smoothing_ms",
+            .meaning = "time constant of the low-pass through which the spring sees the atoms, so "
+                       "that heat does not shake the hand; the force is later by as much",
+            .lowest = 0,
+            .highest = 1e4},
+           engine->smoothing_ms);
+    v.real({.key = "late_s",
+            .meaning = "without a frame for so long there is no force until the next",
+            .lowest = 0.05,
+            .highest = 60},
+           engine->late_s);
     v.leave_table();
 }
 
@@ -471,6 +536,7 @@ public:
         return all;
     }
     bool is_there(const Field& /*field*/, bool /*there*/) override { return true; }
+    bool is_listing() const noexcept override { return true; }
     void real(const Field& field, double& value) override {
         add(field, fmt::format("number{}", range(field)), fmt::format("{}", value));
     }
@@ -684,13 +750,16 @@ void visit_scene(FieldVisitor& v, SceneDescription& scene) {
          .meaning = "how the files that the scene names are made, for who reads it; nothing runs "
                     "it"},
         scene.made_by);
-    visit_force_field(v, scene.force_field);
-    visit_molecules(v, scene.molecules);
+    visit_engine(v, scene.engine);
+    const bool is_remote = scene.engine && !v.is_listing();
+    visit_force_field(v, scene.force_field, !is_remote);
+    visit_molecules(v, scene.molecules, is_remote);
     visit_joints(v, scene.joints);
     visit_statics(v, scene.statics);
-    visit_grab(v, {.key = "grab", .meaning = "what the hand holds", .required = true}, scene.grab);
+    visit_grab(v, {.key = "grab", .meaning = "what the hand holds", .required = true}, scene.grab,
+               is_remote);
     visit_hand(v, {.key = "hand", .meaning = "the hand on the emulated device"}, scene.hand);
-    visit_second(v, scene.second);
+    visit_second(v, scene.second, is_remote);
     visit_device(v, scene.device);
     visit_coupling(v, scene.coupling);
     visit_view(v, scene.view);

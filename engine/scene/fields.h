@@ -51,6 +51,8 @@ public:
                                             std::size_t chosen) = 0;
     // Whether to visit what has no value of its own for "unset"; a reader looks into the file.
     virtual bool is_there(const Field& field, bool there) = 0;
+    // Whether keys are listed for people: then every table is there.
+    virtual bool is_listing() const noexcept { return false; }
 
     virtual void real(const Field& field, double& value) = 0;
     virtual void optional_real(const Field& field, std::optional<double>& value) = 0;

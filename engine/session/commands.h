@@ -52,6 +52,7 @@ struct Readout {
     bool holds_something = true;      // the hand
     std::uint64_t refused_edits = 0;  // so far, but for undo and redo
     std::string problem;              // why the last Reset or edit failed; else empty
+    std::string engine;               // how a remote engine fares, a sentence; empty: there is none
     std::string edit_under_way;       // its key in a scene file; empty: none
 };
 

@@ -7,6 +7,7 @@
 #include "simulation/held.h"
 #include "simulation/load.h"
 #include "simulation/mechanics.h"
+#include "simulation/remote_engine.h"
 #include "simulation/resources.h"
 #include "simulation/step.h"
 #include "simulation/systems/follow_hands.h"
@@ -88,6 +89,7 @@ void LiveSimulation::play(const StepEvent& event) {
         {poses_, felt_, event.took_us, event.adopts_renewal, [this] { renewals_.await(); }});
     readout_.step_ms = 1e-3 * report.took_us;
     ++readout_.steps;
+    readout_.engine = describe_engine(world_);
     time_s_ += world_.resource<Clock>().period_s;
 }
 
@@ -147,6 +149,7 @@ void LiveSimulation::obey(const LiveSettings& settings) {
 void LiveSimulation::obey(const Pause& pause) {
     if (!all_stand_still()) play(HoldEvent{});  // not what was travelled since the last look
     readout_.paused = pause.paused;
+    pause_engine(world_, pause.paused);
     post_orders();
 }
 

@@ -419,6 +419,14 @@ std::string format_summary(const SceneDescription& scene, const Summary& summary
                               {"snaps", r.snaps},
                               {"released_kcal_per_mol", r.released}};
     }
+    if (summary.engine) {
+        const EngineSummary& e = *summary.engine;
+        json["engine"] = {{"frames", e.frames},
+                          {"frames_per_s", e.frames_per_s},
+                          {"delay_ms", e.delay_ms},
+                          {"interruptions", e.interruptions},
+                          {"state", e.state}};
+    }
     if (summary.accuracy) json["feel"] = accuracy_as_json(*summary.accuracy);
     add_safety(summary, json);
     json["overruns"] = summary.overruns;

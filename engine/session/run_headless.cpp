@@ -10,6 +10,7 @@
 #include "simulation/components.h"
 #include "simulation/edit.h"
 #include "simulation/held.h"
+#include "simulation/remote_engine.h"
 #include "simulation/resources.h"
 #include "simulation/step.h"
 
@@ -405,6 +406,18 @@ std::vector<std::string> list_neglected(const SceneDescription& scene, const Wor
     return neglected;
 }
 
+std::optional<EngineSummary> sum_up_engine(const World& world) {
+    const RemoteEngine* const engine = find_remote_engine(world);
+    if (!engine) return {};
+    EngineSummary summary;
+    summary.frames = engine->frames;
+    if (engine->frame_interval_s > 0) summary.frames_per_s = 1 / engine->frame_interval_s;
+    summary.delay_ms = 1e3 * find_engine_delay(world);
+    summary.interruptions = engine->interruptions;
+    summary.state = describe_engine(world);
+    return summary;
+}
+
 // What a run gathers beside its recording.
 class RunLog {
 public:
@@ -442,6 +455,7 @@ public:
         }
         summary.accuracy = accuracy_.report(summary.step_median_us);
         if (unbinding_) summary.unbinding = unbinding_->unbinding();
+        summary.engine = sum_up_engine(world);
         if (!has_mobile(world)) return summary;
         // Where molecules make room for each other, one may well be on either side of another.
         constexpr double on_top = 1;  // Å

@@ -38,6 +38,15 @@ struct RelaxationSummary {
     double released = 0;
 };
 
+// Of a run that a remote engine moved.
+struct EngineSummary {
+    std::uint64_t frames = 0;         // that were taken
+    double frames_per_s = 0;          // wall time, towards the end; 0: not known
+    double delay_ms = 0;              // from the atoms' motion to the force on the hand
+    std::uint64_t interruptions = 0;  // how often frames ceased to come
+    std::string state;                // at the end, a sentence
+};
+
 struct Summary {
     std::string device = "emulated Omni";
     std::uint64_t ticks = 0, steps = 0;
@@ -66,6 +75,7 @@ struct Summary {
     std::optional<UnbindingPath> unbinding;  // in space, where something moves by itself
     std::optional<Activity> activity;
     std::optional<RelaxationSummary> relaxation;
+    std::optional<EngineSummary> engine;
     std::vector<std::string> neglected;      // of the interactions and the motion of the molecules
     std::optional<AccuracyReport> accuracy;  // where the scene says what must be felt
     std::vector<std::string> warnings;

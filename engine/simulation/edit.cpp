@@ -8,6 +8,7 @@
 #include "simulation/load.h"
 #include "simulation/mechanics.h"
 #include "simulation/molecules.h"
+#include "simulation/remote_engine.h"
 #include "simulation/resources.h"
 #include "simulation/sources.h"
 #include "simulation/systems/publish_contact.h"
@@ -257,8 +258,15 @@ void forget(World& world, Entity molecule) {
 
 void take(World& world, Entity hand, const TakeEdit& edit) {
     edit_whole(world, [&](World& changed) {
-        const AtomsOf what = find_atoms(changed, edit.what);
+        AtomsOf what = find_atoms(changed, edit.what);
         release(changed, hand);
+        // A remote engine's atoms are held by springs alone.
+        if (find_remote_engine(changed)) {
+            if (what.atoms.empty()) what.atoms = all_atoms_of(changed, what.molecule);
+            changed.set(hand, build_grip(changed, what));
+            take_hold_anew(changed, hand);
+            return;
+        }
         const bool is_whole = what.atoms.empty();
         const Entity other = other_holder(changed, hand, what.molecule);
         if (is_whole && other != Entity{} && grip_of(changed, other).atoms.empty()) {
@@ -415,7 +423,22 @@ Entity hand_at(const World& world, std::size_t slot) {
 }
 
 // Each edit and the function above that makes it.
+// What a remote engine moves can be held and looked at.
+void check_engine_allows(const World& world, const EditDescription& edit) {
+    const EditAction& action = edit.action;
+    if (!find_remote_engine(world) || std::holds_alternative<TakeEdit>(action) ||
+        std::holds_alternative<LetGoEdit>(action) ||
+        std::holds_alternative<AppearanceEdit>(action) ||
+        std::holds_alternative<CouplingEdit>(action))
+        return;
+    refuse(
+        fmt::format("a remote engine moves everything here, and '{}' is not for it; expected "
+                    "take, let_go, appearance or coupling",
+                    edit_names[action.index()]));
+}
+
 void make(World& world, const EditDescription& edit) {
+    check_engine_allows(world, edit);
     const auto visit = [&](const auto& action) {
         using Action = std::decay_t<decltype(action)>;
         if constexpr (std::is_same_v<Action, TakeEdit>)

@@ -102,6 +102,12 @@ std::vector<std::uint32_t> held_atoms(const World& world, Entity hand) {
     return atoms;
 }
 
+std::vector<std::uint32_t> all_atoms_of(const World& world, Entity molecule) {
+    std::vector<std::uint32_t> atoms(world.find<Molecule>(molecule)->atoms.count);
+    std::iota(atoms.begin(), atoms.end(), 0U);
+    return atoms;
+}
+
 std::vector<std::uint32_t> numbers_of(const World& world, const AtomsOf& atoms) {
     const std::uint32_t first = world.find<Molecule>(atoms.molecule)->atoms.first;
     std::vector<std::uint32_t> numbers;
@@ -126,6 +132,12 @@ std::vector<std::uint32_t> atoms_called(const World& world, Entity molecule,
     std::vector<std::uint32_t> found;
     if (words.empty() || words.size() > 2) return found;
     const AtomRange range = world.find<Molecule>(molecule)->atoms;
+    if (words[0].starts_with('#')) {
+        const auto number = find_integer(words[0].substr(1));
+        const bool is_there = words.size() == 1 && number && *number >= 1 && *number <= range.count;
+        if (is_there) found.push_back(static_cast<std::uint32_t>(*number - 1));
+        return found;
+    }
     for (std::uint32_t i = 0; i < range.count; ++i) {
         const AtomName& atom = world.resource<AtomTable>().names[range.first + i];
         if (atom.number == words[0] && (words.size() == 1 || atom.atom == words[1]))
@@ -308,7 +320,7 @@ std::size_t find_active_freedom(const World& world) noexcept {
 
 Vec3 find_force_on_held(const World& world, Entity hand) noexcept {
     const Grip* const grip = world.find<Grip>(hand);
-    if (!grip || !is_mobile(*grip)) return Vec3::Zero();
+    if (!grip || !is_mobile(*grip) || !has_mobile(world)) return Vec3::Zero();
     const AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();
     if (adaptive && grip->spring < 0)
         return find_wrench_on(adaptive->statics, static_cast<std::size_t>(grip->base)).tail<3>();

@@ -35,14 +35,17 @@ const Spring* spring_of(const World& world, Entity hand) noexcept;
 // The atoms that it holds: those at its spring, or all of the molecule.
 std::vector<std::uint32_t> held_atoms(const World& world, Entity hand);
 
+// Of a molecule, counted from its first: all.
+std::vector<std::uint32_t> all_atoms_of(const World& world, Entity molecule);
+
 // The same atoms, as the table numbers them.
 std::vector<std::uint32_t> numbers_of(const World& world, const AtomsOf& atoms);
 
 // Their centre of mass.
 Vec3 middle_of(const World& world, const AtomsOf& atoms);
 
-// Of a molecule, counted from its first: the atom "25 CA", or all of residue "25" ("27A" with its
-// insertion code). Nothing where there is none.
+// Of a molecule, counted from its first: the atom "25 CA", all of residue "25" ("27A" with its
+// insertion code), or its 17th atom, "#17". Nothing where there is none.
 std::vector<std::uint32_t> atoms_called(const World& world, Entity molecule, std::string_view name);
 
 // Of a hand that holds something: where the reference atom of that is, or its end of the spring (Å,

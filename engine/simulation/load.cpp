@@ -15,6 +15,7 @@
 #include "simulation/mechanics.h"
 #include "simulation/molecules.h"
 #include "simulation/probe.h"
+#include "simulation/remote_engine.h"
 #include "simulation/solvent.h"
 #include "simulation/sources.h"
 
@@ -39,6 +40,7 @@ constexpr double resting_force = 20e-12 / units::newton_per_kcal_per_mol_angstro
 // By name, or by residue number and name.
 std::uint32_t find_reference_atom(const MoleculeDescription& molecule, const AtomTable& atoms,
                                   AtomRange range) {
+    if (molecule.reference_atom.empty()) return range.first;  // of a remote engine's
     const std::vector<std::string_view> words = split_words(molecule.reference_atom);
     std::uint32_t reference = 0;
     int matches = 0;
@@ -59,11 +61,15 @@ std::uint32_t find_reference_atom(const MoleculeDescription& molecule, const Ato
     return reference;
 }
 
-void add_molecule(const MoleculeDescription& molecule, const ForceField& force_field,
-                  SourceFiles& files, World& world) {
+void add_molecule(const SceneDescription& scene, const MoleculeDescription& molecule,
+                  const ForceField& force_field, SourceFiles& files, World& world) {
     AtomTable& atoms = world.resource<AtomTable>();
-    Source source = find_source(molecule.structure, molecule.topology, molecule.segment, files);
-    const AtomRange range = add_segment_atoms(force_field, source, atoms);
+    Source source =
+        scene.engine
+            ? find_engine_source(molecule.structure, molecule.topology, molecule.segment, files)
+            : find_source(molecule.structure, molecule.topology, molecule.segment, files);
+    const AtomRange range = scene.engine ? add_engine_atoms(source, atoms)
+                                         : add_segment_atoms(force_field, source, atoms);
     const std::uint32_t reference = find_reference_atom(molecule, atoms, range);
     create_molecule(world, {molecule.name, range, reference}, {molecule.motion, molecule.shape},
                     std::move(source));
@@ -142,7 +148,7 @@ void start_grabbed(const SceneDescription& scene, const HandTables& tables, Enti
     const Molecule& grabbed = *world.find<Molecule>(grip.molecule);
     const Molecule& origin = *world.find<Molecule>(grip.measured_from);
     const bool on_line = grip.freedom == 1;
-    const bool is_rigid = grip.base < 0;
+    const bool is_rigid = !is_mobile(grip);
     if (!on_line && is_rigid) relax_grabbed(scene, tables, hand, world);
 
     grip.anchor = world.resource<AtomTable>().positions[origin.reference_atom];
@@ -199,18 +205,22 @@ Grip build_grip(const SceneDescription& scene, const HandTables& tables, const W
     const GrabDescription& grab = tables.grab;
     Grip grip;
     grip.molecule = molecule_called(world, grab.molecule);
-    grip.measured_from = molecule_called(world, grab.measured_from);
+    grip.measured_from =
+        molecule_called(world, grab.measured_from.empty() ? grab.molecule : grab.measured_from);
     const Mobility& mobility = *world.find<Mobility>(grip.molecule);
     grip.before = mobility;
     if (!grab.atom.empty()) {
         grip.atoms = find_named_atoms(world, grip.molecule, grab.atom,
                                       scene.place_of(tables.grab_key + ".atom"));
         grip.k = grab.spring_kcal_per_mol_angstrom2;
+    } else if (scene.engine) {
+        grip.atoms = all_atoms_of(world, grip.molecule);
+        grip.k = grab.spring_kcal_per_mol_angstrom2;
     } else {
         grip.before.motion = scene.has_statics() ? Motion::Free : Motion::Fixed;
     }
-    if (mobility.motion == Motion::AlongX) return grip;
-    grip.freedom = mobility.motion == Motion::WithHandle ? 6 : 3;
+    if (mobility.motion == Motion::AlongX && !scene.engine) return grip;
+    grip.freedom = mobility.motion == Motion::WithHandle && !scene.engine ? 6 : 3;
     grip.projector = Mat3::Identity();
     return grip;
 }
@@ -265,7 +275,7 @@ World read_world(const SceneDescription& scene, const StageFunction& on_stage) {
         tell(on_stage, "reading and typing atoms",
              static_cast<double>(world.entity_count()) /
                  static_cast<double>(scene.molecules.size()));
-        add_molecule(molecule, *force_field, files, world);
+        add_molecule(scene, molecule, *force_field, files, world);
     }
     world.set_resource(SceneFile{scene, std::move(force_field), scene.coupling});
     set_interactions(world);
@@ -279,12 +289,27 @@ void check_laws(const SceneDescription& scene) {
                     "A_f_min at F_0; expected others, or coupling.force_law = \"printed\"");
 }
 
+// Where the engine alone knows where atoms are.
+bool lacks_coordinates(const SceneDescription& scene) {
+    return std::ranges::any_of(scene.molecules, [](const MoleculeDescription& molecule) {
+        return is_psf(molecule.structure);
+    });
+}
+
 }  // namespace
 
 World load_world(const SceneDescription& scene, const StageFunction& on_stage) {
     check_laws(scene);
     World world = read_world(scene, on_stage);
     add_hands(scene, world);
+    if (scene.engine) {
+        set_remote_engine(scene, world);
+        hold_engine_atoms(world);
+        if (lacks_coordinates(scene)) {
+            tell(on_stage, "waiting for the engine's first frame");
+            await_engine(world);
+        }
+    }
     for (const MoleculeDescription& molecule : scene.molecules) add_anchors(scene, molecule, world);
     if (needs_mechanics(world)) {
         tell(on_stage, "finding bonded terms");

@@ -8,6 +8,7 @@
 #include "core/units.h"
 #include "simulation/held.h"
 #include "simulation/region.h"
+#include "simulation/remote_engine.h"
 #include "simulation/solvent.h"
 #include "simulation/systems/choose_active.h"
 #include "simulation/systems/relax.h"
@@ -609,6 +610,7 @@ void clear_mechanics(World& world) {
 }  // namespace
 
 bool needs_mechanics(const World& world) {
+    if (find_remote_engine(world)) return false;
     bool needs = false;
     world.each<Mobility>([&](Entity, const Mobility& mobility) {
         needs = needs || mobility.shape == Shape::Flexible || mobility.motion == Motion::Free ||
@@ -652,6 +654,7 @@ const BondedTerms& bonded_terms(World& world) {
 }
 
 void rebuild_mechanics(World& world) {
+    if (find_remote_engine(world)) return hold_engine_atoms(world);
     if (!needs_mechanics(world)) {
         clear_mechanics(world);
         return;

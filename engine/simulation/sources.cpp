@@ -4,6 +4,7 @@
 #include "charmm/complete.h"
 #include "charmm/generate.h"
 #include "core/load_error.h"
+#include "core/text.h"
 #include "formats/psf.h"
 #include "formats/structure.h"
 #include "molecule/alternatives.h"
@@ -104,6 +105,28 @@ Source find_source(const std::filesystem::path& structure, const std::filesystem
     source.structure = find_or_read(files.structures, structure, read_whole_structure);
     if (!topology.empty())
         source.connectivity = find_or_read(files.connectivities, topology, read_psf);
+    source.segment = segment;
+    return source;
+}
+
+bool is_psf(const std::filesystem::path& path) {
+    return upper_case(path.extension().string()) == ".PSF";
+}
+
+Source find_engine_source(const std::filesystem::path& structure,
+                          const std::filesystem::path& topology, const std::string& segment,
+                          SourceFiles& files) {
+    if (!is_psf(structure)) return find_source(structure, topology, segment, files);
+    Source source;
+    source.connectivity =
+        find_or_read(files.connectivities, topology.empty() ? structure : topology, read_psf);
+    source.structure = find_or_read(files.structures, structure, [&](const auto& path) {
+        const Connectivity connectivity = read_psf(path);
+        return Structure{.file = path.string(),
+                         .names = connectivity.names,
+                         .positions = std::vector<Vec3>(connectivity.names.size(), Vec3::Zero()),
+                         .lines = connectivity.lines};
+    });
     source.segment = segment;
     return source;
 }

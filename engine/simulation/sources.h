@@ -24,6 +24,15 @@ struct SourceFiles {
 Source find_source(const std::filesystem::path& structure, const std::filesystem::path& topology,
                    const std::string& segment, SourceFiles& files);
 
+// The same of a remote engine's molecule, whose structure may be a PSF file: then all is at the
+// origin.
+Source find_engine_source(const std::filesystem::path& structure,
+                          const std::filesystem::path& topology, const std::string& segment,
+                          SourceFiles& files);
+
+// By its name.
+bool is_psf(const std::filesystem::path& path);
+
 // The rest make a segment `name` that holds this molecule alone.
 
 // One of the segments that the files have; no segment: the only one. Throws LoadError as

@@ -5,6 +5,7 @@
 #include "simulation/mechanics.h"
 #include "simulation/observe.h"
 #include "simulation/systems/choose_active.h"
+#include "simulation/systems/follow_engine.h"
 #include "simulation/systems/follow_hands.h"
 #include "simulation/systems/measure.h"
 #include "simulation/systems/publish_contact.h"
@@ -24,6 +25,7 @@ constexpr System systems[] = {
     follow_hands,     // device poses to poses of what is held, and ends of springs
     choose_active,    // which joints and bases move
     relax,            // these towards rest
+    follow_engine,    // or all atoms where a remote engine has them
     publish_contact,  // a contact model for every hand
     measure,          // what can be read
 };

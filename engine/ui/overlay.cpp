@@ -332,6 +332,7 @@ void Overlay::draw_warnings(const Readout& readout, const OverlayStatus& status)
         warnings.emplace_back("the molecule was pushed through the other one: R brings it back");
     }
     if (!readout.problem.empty()) warnings.push_back(readout.problem);
+    if (!readout.engine.empty()) warnings.push_back(readout.engine);
     if (!readout.edit_under_way.empty())
         warnings.push_back(fmt::format("{}: being prepared", readout.edit_under_way));
     if (readout.paused) warnings.emplace_back("paused: P goes on");

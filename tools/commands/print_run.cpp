@@ -271,6 +271,12 @@ void print_summary(const SceneDescription& scene, const Summary& s) {
             a.active, a.choices, 100 * a.within_budget);
     }
     if (s.accuracy) print_accuracy(*s.accuracy);
+    if (s.engine) {
+        fmt::print("  engine      {} frames, {:.0f} a second at the end; the force is {:.0f} ms late; "
+                   "{} interruptions\n",
+                   s.engine->frames, s.engine->frames_per_s, s.engine->delay_ms,
+                   s.engine->interruptions);
+    }
     if (s.relaxation) print_relaxation(*s.relaxation);
     fmt::print("  clamped     {:.1f} % of the time\n", 100 * s.clamped_share);
     fmt::print("  step        {:.2f} µs median, {:.2f} µs p99 of {} steps\n", s.step_median_us,

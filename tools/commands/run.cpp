@@ -12,6 +12,7 @@
 #include "session/run_headless.h"
 #include "simulation/held.h"
 #include "simulation/load.h"
+#include "simulation/remote_engine.h"
 #include "simulation/step.h"
 #include "tools/commands/command.h"
 #include "tools/commands/devices.h"
@@ -156,9 +157,12 @@ int run_without_window(SceneDescription scene, World& world,
     print_warnings(warnings);
     const Summary summary =
         run_headless(scene, world, hands, warnings, recording ? &*recording : nullptr,
-                     progress.shares("playing"), frames, {}, [] { return noted_interrupt() != 0; });
+                     progress.shares("playing"), frames, {},
+                     [&] { return noted_interrupt() != 0 || is_engine_gone(world); });
     progress.wipe();
-    if (noted_interrupt() != 0) scene.seconds = static_cast<double>(summary.ticks) / servo_rate_hz;
+    const bool is_gone = is_engine_gone(world);
+    if (noted_interrupt() != 0 || is_gone)
+        scene.seconds = static_cast<double>(summary.ticks) / servo_rate_hz;
     print_warnings(std::span(summary.warnings).subspan(warnings.size()));
     if (options.json) {
         fmt::print("{}", format_summary(scene, summary));
@@ -166,17 +170,27 @@ int run_without_window(SceneDescription scene, World& world,
         print_summary(scene, summary);
         if (options.record) fmt::print("recorded in {}\n", options.record->string());
     }
-    return exit_code_after(0);
+    if (is_gone) {
+        fmt::print(stderr, "{}; expected one that listens there and sends frames\n",
+                   printable(describe_engine(world)));
+    }
+    return exit_code_after(is_gone ? engine_lost : 0);
 }
 
 }  // namespace
 
 int run_command(const RunOptions& options) {
-    const SceneDescription scene = read_scene(options.scene, options.settings);
+    return run_scene(read_scene(options.scene, options.settings), options);
+}
+
+int run_scene(const SceneDescription& scene, const RunOptions& options) {
     check_options(options);
     check_second(options, scene);
     ProgressLine progress(!options.json);
     World world = load_world(scene, progress.stages());
+    if (RemoteEngine* const engine = world.find_resource<RemoteEngine>();
+        engine && options.headless)
+        engine->wait_s = options.engine_wait_s;
     tell(progress.stages(), "planning the hand's way");
     const EmulatedOmniSettings settings = build_emulated_omni(scene, world);
     std::vector<std::string> warnings =

@@ -1,5 +1,7 @@
 // palpa run: a scene in a window, or headless under the emulated hand.
 #pragma once
+#include "scene/description.h"
+
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -27,6 +29,7 @@ struct RunOptions {
     std::filesystem::path screenshots = ".";         // folder for those of the window
     std::optional<std::filesystem::path> last_shot;  // of the window, which then closes
     double last_shot_s = 5;
+    double engine_wait_s = 10;  // headless: for a remote engine's first frame
     std::uint64_t lose_device_at = 0;
     bool validation = false;  // of all that Vulkan is told
 };
@@ -36,5 +39,10 @@ void print_scene_keys();
 
 // Throws LoadError on bad input. Returns the exit code.
 int run_command(const RunOptions& options);
+// The same of a scene that was read.
+int run_scene(const SceneDescription& scene, const RunOptions& options);
+
+// Where a remote engine does not answer, or was lost for good.
+inline constexpr int engine_lost = 4;
 
 }  // namespace palpa

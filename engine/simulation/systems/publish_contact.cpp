@@ -3,6 +3,7 @@
 #include "core/units.h"
 #include "simulation/held.h"
 #include "simulation/relaxed_contact.h"
+#include "simulation/remote_engine.h"
 #include "simulation/resources.h"
 
 #include <algorithm>
@@ -205,6 +206,23 @@ Pull find_pull_of(const World& world, const Spring& spring) {
     return pull;
 }
 
+// At a remote engine's atoms that of its low-passed middle; nothing while no frames come.
+Pull find_engine_pull(const World& world, Entity hand) {
+    const RemoteEngine& engine = world.resource<RemoteEngine>();
+    const EngineHold& hold = *world.find<EngineHold>(hand);
+    Pull pull;
+    if (const ImdFrame* const frame = engine.client->frame(); frame && frame->energies)
+        pull.energy = frame->energies->potential;
+    if (!hold.is_live) return pull;
+    const double most =
+        1e-9 * engine.settings.most_force_nN / units::newton_per_kcal_per_mol_angstrom;
+    const EngineSpring spring =
+        find_engine_spring(grip_of(world, hand).k, hold.smoothed - held_place(world, hand), most);
+    pull.force = spring.force;
+    pull.stiffness = spring.stiffness;
+    return pull;
+}
+
 // One that moves a molecule feels what all others do to it, with the stiffness that it would have
 // if they stayed where they are.
 Pull find_pull(const World& world, Entity hand, const LocalField& field) {
@@ -331,6 +349,12 @@ void update_contact(World& world, Entity hand, const HandPose& pose) {
 
 LocalContactModel build_local_contact(const World& world, Entity hand, const HandPose& pose) {
     LocalContactModel contact;
+    if (const EngineHold* const hold = world.find<EngineHold>(hand)) {
+        contact.model = build_model(world, hand, pose, find_engine_pull(world, hand));
+        contact.model.is_compliant = true;
+        contact.model.is_still = !hold->is_live;
+        return contact;
+    }
     if (const Spring* const spring = spring_of(world, hand)) {
         contact.model = build_model(world, hand, pose, find_pull_of(world, *spring));
         return contact;

@@ -1,0 +1,433 @@
+#include "simulation/remote_engine.h"
+
+#include "core/interrupt.h"
+#include "core/load_error.h"
+#include "core/text.h"
+#include "core/units.h"
+#include "formats/gro.h"
+#include "formats/index_file.h"
+#include "formats/psf.h"
+#include "molecule/element.h"
+#include "simulation/held.h"
+#include "simulation/resources.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <tuple>
+#include <utility>
+
+namespace palpa {
+namespace {
+
+// Wall time of connections.
+double now_s() {
+    using namespace std::chrono;
+    return duration<double>(steady_clock::now().time_since_epoch()).count();
+}
+
+// ---- atoms -------------------------------------------------------------------------------------
+
+struct ElementData {
+    const char* symbol;
+    double mass;    // amu
+    double radius;  // Å, covalent (Cordero and others, Dalton Trans. 2008, 2832)
+};
+
+constexpr ElementData elements[] = {
+    {"H", 1.008, 0.31},   {"C", 12.011, 0.76},  {"N", 14.007, 0.71},  {"O", 15.999, 0.66},
+    {"F", 18.998, 0.57},  {"NA", 22.990, 1.66}, {"MG", 24.305, 1.41}, {"P", 30.974, 1.07},
+    {"S", 32.06, 1.05},   {"CL", 35.45, 1.02},  {"K", 39.098, 2.03},  {"CA", 40.078, 1.76},
+    {"MN", 54.938, 1.39}, {"FE", 55.845, 1.32}, {"CU", 63.546, 1.32}, {"ZN", 65.38, 1.22},
+    {"SE", 78.971, 1.20}, {"BR", 79.904, 1.20}, {"I", 126.904, 1.39}};
+
+const ElementData& element_of(std::string_view symbol) {
+    const auto* const found = std::ranges::find(
+        elements, symbol, [](const ElementData& e) { return std::string_view(e.symbol); });
+    return found == std::end(elements) ? elements[1] : *found;
+}
+
+// By mass; hydrogen that was made heavier keeps being the lightest.
+std::string element_of_mass(double mass) {
+    if (mass < 4.5) return mass > 0 ? "H" : "";
+    const auto nearest = std::ranges::min_element(
+        elements, {}, [&](const ElementData& element) { return std::abs(element.mass - mass); });
+    return nearest->symbol;
+}
+
+void add_atom(const AtomName& name, const Vec3& place, std::string element, double mass,
+              double charge, AtomTable& table) {
+    table.names.push_back(name);
+    table.positions.push_back(place);
+    table.element.push_back(std::move(element));
+    table.mass.push_back(mass);
+    table.charge.push_back(charge);
+    table.sqrt_epsilon.push_back(0);
+    table.half_rmin.push_back(0);
+    table.type.push_back(0);
+}
+
+// Pairs nearer than their covalent radii and 0.4 Å, in cells of the largest such distance.
+void add_bonds_by_distance(AtomRange range, AtomTable& table) {
+    constexpr double slack = 0.4, cell = 2.6;  // Å; metals have no bonds here
+    using Cell = std::tuple<int, int, int>;
+    const auto cell_of = [&](std::uint32_t i, int dx, int dy, int dz) {
+        const Vec3 place = table.positions[i] / cell;
+        return Cell{static_cast<int>(std::floor(place.x())) + dx,
+                    static_cast<int>(std::floor(place.y())) + dy,
+                    static_cast<int>(std::floor(place.z())) + dz};
+    };
+    std::map<Cell, std::vector<std::uint32_t>> cells;
+    for (std::uint32_t i = range.first; i < range.first + range.count; ++i) {
+        for (int neighbour = 0; neighbour < 27; ++neighbour) {
+            const auto found =
+                cells.find(cell_of(i, neighbour % 3 - 1, neighbour / 3 % 3 - 1, neighbour / 9 - 1));
+            if (found == cells.end()) continue;
+            for (const std::uint32_t j : found->second) {
+                const ElementData &a = element_of(table.element[i]),
+                                  &b = element_of(table.element[j]);
+                if (a.radius > 1.3 || b.radius > 1.3 || (a.mass < 2 && b.mass < 2)) continue;
+                const double reach = a.radius + b.radius + slack;
+                if ((table.positions[i] - table.positions[j]).squaredNorm() < reach * reach)
+                    table.bonds.push_back({j, i});
+            }
+        }
+        cells[cell_of(i, 0, 0, 0)].push_back(i);
+    }
+}
+
+using AtomKey = std::tuple<std::string, std::string, std::string>;
+
+AtomKey key_of(const AtomName& name, bool has_segments) {
+    return {has_segments ? name.segment : "", name.number, name.atom};
+}
+
+// The engine's atoms as a file has them; masses where it tells.
+struct EngineFile {
+    std::vector<AtomName> names;
+    std::vector<double> masses;
+    bool has_segments = false;
+};
+
+EngineFile read_engine_file(const std::filesystem::path& path) {
+    if (upper_case(path.extension().string()) == ".PSF") {
+        Connectivity connectivity = read_psf(path);
+        return {std::move(connectivity.names), std::move(connectivity.mass), true};
+    }
+    return {read_gro(path).names, {}, false};
+}
+
+EngineAtoms match_names(const SceneDescription& scene, const AtomTable& table) {
+    const std::filesystem::path& path = scene.engine->atoms;
+    const EngineFile file = read_engine_file(path);
+    std::map<AtomKey, std::vector<std::int32_t>> places;
+    for (std::size_t i = 0; i < file.names.size(); ++i)
+        places[key_of(file.names[i], file.has_segments)].push_back(static_cast<std::int32_t>(i));
+    EngineAtoms atoms{std::vector<std::int32_t>(file.names.size(), -1), {}};
+    for (std::size_t i = 0; i < table.size(); ++i) {
+        const AtomName& name = table.names[i];
+        const auto found = places.find(key_of(name, file.has_segments));
+        if (found == places.end() || found->second.size() != 1) {
+            throw LoadError(
+                scene.place_of("engine.atoms"),
+                fmt::format("{} has {} atoms called {} {}; expected one, for {} of the scene",
+                            path.string(), found == places.end() ? 0 : found->second.size(),
+                            name.number, name.atom, to_string(name)));
+        }
+        const std::int32_t at = found->second.front();
+        constexpr double most_off = 0.1;  // amu
+        const auto place = static_cast<std::size_t>(at);
+        if (!file.masses.empty() && std::abs(file.masses[place] - table.mass[i]) > most_off) {
+            throw LoadError(
+                scene.place_of("engine.atoms"),
+                fmt::format("{} has {} with {} amu, the scene with {}; expected the "
+                            "same atom",
+                            path.string(), to_string(name), file.masses[place], table.mass[i]));
+        }
+        atoms.in_table[place] = static_cast<std::int32_t>(i);
+        atoms.in_engine.push_back(at);
+    }
+    return atoms;
+}
+
+EngineAtoms match_index(const SceneDescription& scene, const AtomTable& table) {
+    const std::filesystem::path& path = scene.engine->atoms;
+    const IndexGroup group = read_index_file(path).front();
+    EngineAtoms atoms{std::vector<std::int32_t>(group.atoms.size(), -1),
+                      std::vector<std::int32_t>(table.size(), -1)};
+    for (std::size_t i = 0; i < group.atoms.size(); ++i) {
+        const std::uint32_t atom = group.atoms[i];
+        if (atom >= table.size() || atoms.in_engine[atom] >= 0) {
+            throw LoadError({path.string(), group.line},
+                            fmt::format("group '{}' has atom {} {}; expected each of the scene's "
+                                        "{} atoms once at most",
+                                        group.name, atom + 1,
+                                        atom >= table.size() ? "that the scene has not" : "twice",
+                                        table.size()));
+        }
+        atoms.in_table[i] = static_cast<std::int32_t>(atom);
+        atoms.in_engine[atom] = static_cast<std::int32_t>(i);
+    }
+    if (group.atoms.empty())
+        throw LoadError({path.string(), group.line}, "has no atoms; expected some");
+    return atoms;
+}
+
+// ---- holds -------------------------------------------------------------------------------------
+
+Vec3 middle_of(const AtomTable& table, const EngineHold& hold) {
+    Vec3 middle = Vec3::Zero();
+    for (std::size_t i = 0; i < hold.atoms.size(); ++i)
+        middle += hold.shares[i] * table.positions[hold.atoms[i]];
+    return middle;
+}
+
+EngineHold build_hold(const AtomTable& table, std::vector<std::uint32_t> atoms) {
+    EngineHold hold;
+    hold.atoms = std::move(atoms);
+    double mass = 0;
+    for (const std::uint32_t atom : hold.atoms) mass += table.mass[atom];
+    for (const std::uint32_t atom : hold.atoms) {
+        hold.shares.push_back(mass > 0 ? table.mass[atom] / mass
+                                       : 1.0 / static_cast<double>(hold.atoms.size()));
+    }
+    hold.middle = hold.smoothed = middle_of(table, hold);
+    return hold;
+}
+
+ImdClientOptions client_options(const SceneDescription& scene, std::size_t atoms) {
+    const EngineDescription& engine = *scene.engine;
+    ImdClientOptions options;
+    const std::size_t colon = engine.address.rfind(':');
+    options.address = engine.address.substr(0, colon);
+    options.port = static_cast<std::uint16_t>(
+        find_integer(std::string_view(engine.address).substr(colon + 1)).value_or(imd_port));
+    options.limits.atoms = atoms;
+    if (engine.program == EngineProgram::Gromacs && engine.protocol != EngineProtocol::Three)
+        options.units = imd_units_of_gromacs;
+    options.rate = static_cast<int>(engine.rate);
+    if (engine.protocol != EngineProtocol::Any)
+        options.version = engine.protocol == EngineProtocol::Two ? 2 : 3;
+    // Who asks for version 3 means it.
+    options.pulls_in_version_3 = engine.protocol == EngineProtocol::Three;
+    options.late_after_s = engine.late_s;
+    constexpr double again_s = 0.5;
+    options.retry_after_s = again_s;
+    return options;
+}
+
+// Waited for a frame this long, a connection is late or lost anyway.
+double patience_s(const RemoteEngine& engine) {
+    if (!engine.wait_s) return 0;
+    return engine.frames == 0 ? *engine.wait_s : engine.settings.late_s;
+}
+
+void note_frame(RemoteEngine& engine, double time_s) {
+    constexpr double newest = 0.1;
+    if (engine.frames > 0 && !engine.lost_at_s) {
+        const double interval = time_s - engine.frame_time_s;
+        engine.frame_interval_s +=
+            (engine.frame_interval_s > 0 ? newest : 1) * (interval - engine.frame_interval_s);
+    }
+    engine.frame_time_s = time_s;
+    engine.lost_at_s.reset();
+}
+
+}  // namespace
+
+EngineSpring find_engine_spring(double k, const Vec3& stretch, double most) noexcept {
+    const double distance = stretch.norm();
+    if (k * distance <= most) return {k * stretch, k * Mat3::Identity()};
+    const Vec3 along = stretch / distance;
+    return {most * along, most / distance * (Mat3::Identity() - along * along.transpose())};
+}
+
+AtomRange add_engine_atoms(const Source& source, AtomTable& table) {
+    const Structure& structure = *source.structure;
+    const Connectivity* const connectivity = source.connectivity.get();
+    const std::string& segment = source.segment;
+    if (table.type_names.empty()) table.type_names.emplace_back("of the engine");
+    AtomRange range{static_cast<std::uint32_t>(table.size()), 0};
+    std::vector<std::int64_t> at(connectivity ? connectivity->names.size() : 0, -1);
+    std::map<std::string, std::size_t> places;
+    for (std::size_t i = 0; i < structure.names.size(); ++i) {
+        if (structure.names[i].segment != segment) continue;
+        if (connectivity) {
+            places.emplace(to_string(structure.names[i]), i);
+            continue;
+        }
+        const AtomName& name = structure.names[i];
+        const std::string element = find_element_of_name(name.atom, name.residue);
+        add_atom(name, structure.positions[i], element, element_of(element).mass, 0, table);
+    }
+    for (std::size_t i = 0; i < at.size(); ++i) {
+        const AtomName& name = connectivity->names[i];
+        if (name.segment != segment) continue;
+        const auto found = places.find(to_string(name));
+        if (found == places.end()) {
+            throw LoadError(
+                {connectivity->file, connectivity->lines[i]},
+                fmt::format("atom {} has no place in {}", to_string(name), structure.file));
+        }
+        at[i] = static_cast<std::int64_t>(table.size());
+        add_atom(name, structure.positions[found->second], element_of_mass(connectivity->mass[i]),
+                 connectivity->mass[i], connectivity->charge[i], table);
+    }
+    range.count = static_cast<std::uint32_t>(table.size()) - range.first;
+    if (range.count == 0) {
+        throw LoadError({structure.file}, fmt::format("no segment '{}'", segment));
+    }
+    if (!connectivity) {
+        add_bonds_by_distance(range, table);
+        return range;
+    }
+    for (const auto& [a, b] : connectivity->bonds) {
+        if (at[a] < 0 || at[b] < 0) continue;
+        table.bonds.push_back(
+            {static_cast<std::uint32_t>(at[a]), static_cast<std::uint32_t>(at[b])});
+    }
+    return range;
+}
+
+EngineAtoms find_engine_atoms(const SceneDescription& scene, const AtomTable& table) {
+    const std::filesystem::path& path = scene.engine->atoms;
+    const std::string ending = upper_case(path.extension().string());
+    if (ending == ".NDX") return match_index(scene, table);
+    if (!path.empty() && ending != ".PSF" && ending != ".GRO") {
+        throw LoadError(scene.place_of("engine.atoms"),
+                        fmt::format("'{}' is no list of the engine's atoms; expected a .psf, .gro "
+                                    "or .ndx file",
+                                    path.string()));
+    }
+    if (!path.empty()) return match_names(scene, table);
+    EngineAtoms atoms;
+    for (std::size_t i = 0; i < table.size(); ++i)
+        atoms.in_table.push_back(static_cast<std::int32_t>(i));
+    atoms.in_engine = atoms.in_table;
+    return atoms;
+}
+
+void set_remote_engine(const SceneDescription& scene, World& world) {
+    RemoteEngine engine;
+    engine.settings = *scene.engine;
+    engine.atoms = find_engine_atoms(scene, world.resource<AtomTable>());
+    engine.client =
+        std::make_shared<ImdClient>(client_options(scene, engine.atoms.in_table.size()));
+    world.set_resource(std::move(engine));
+}
+
+void hold_engine_atoms(World& world) {
+    const AtomTable& table = world.resource<AtomTable>();
+    TorsionState state;
+    std::vector<Entity> free;
+    world.each<Hand>([&](Entity hand, const Hand&) {
+        if (!world.find<Grip>(hand)) free.push_back(hand);
+    });
+    for (const Entity hand : free) {
+        if (world.find<EngineHold>(hand)) world.remove<EngineHold>(hand);
+    }
+    std::vector<std::pair<Entity, EngineHold>> holds;
+    world.each<Grip>([&](Entity hand, Grip& grip) {
+        std::vector<std::uint32_t> atoms = numbers_of(world, AtomsOf{grip.molecule, grip.atoms});
+        const EngineHold* const before = world.find<EngineHold>(hand);
+        const bool is_same = before && before->atoms == atoms;
+        holds.emplace_back(hand, is_same ? *before : build_hold(table, std::move(atoms)));
+        const EngineHold& hold = holds.back().second;
+        Spring spring;
+        spring.atoms = hold.atoms;
+        spring.k = grip.k;
+        spring.place = is_same ? Vec3(grip.anchor + grip.pose.place_angstrom) : hold.smoothed;
+        grip.base = -1;
+        grip.spring = static_cast<std::int32_t>(state.springs.size());
+        state.springs.push_back(std::move(spring));
+    });
+    for (auto& [hand, hold] : holds) world.set(hand, std::move(hold));
+    world.set_resource(std::move(state));
+}
+
+bool take_newest_frame(World& world) {
+    RemoteEngine& engine = world.resource<RemoteEngine>();
+    ImdClient& client = *engine.client;
+    const double begin = now_s();
+    if (client.state() == ImdState::Closed) client.connect(begin);
+    constexpr int slice_ms = 10;
+    const std::uint64_t before = client.frames();
+    const bool was_lost = engine.lost_at_s.has_value(), had_frames = engine.frames > 0;
+    double time_s = begin;
+    bool is_interrupted = false;
+    do {
+        client.poll(time_s, engine.wait_s ? slice_ms : 0);
+        time_s = now_s();
+        is_interrupted = is_interrupted || client.state() != ImdState::Connected;
+    } while (client.frames() == before && time_s - begin < patience_s(engine) &&
+             noted_interrupt() == 0);
+    const bool is_new = client.frames() != engine.frames && client.frame();
+    if (is_new) {
+        note_frame(engine, time_s);
+        engine.frames = client.frames();
+        std::vector<Vec3>& positions = world.resource<AtomTable>().positions;
+        const std::vector<Vec3>& sent = client.frame()->coordinates;
+        for (std::size_t i = 0; i < sent.size(); ++i) {
+            if (engine.atoms.in_table[i] >= 0)
+                positions[static_cast<std::size_t>(engine.atoms.in_table[i])] = sent[i];
+        }
+    }
+    // Also one that has ended meanwhile.
+    if (is_interrupted && !was_lost && had_frames) ++engine.interruptions;
+    if (client.state() != ImdState::Connected && !engine.lost_at_s) engine.lost_at_s = time_s;
+    return is_new;
+}
+
+void await_engine(World& world) {
+    RemoteEngine& engine = world.resource<RemoteEngine>();
+    const std::optional<double> wait_s = std::exchange(engine.wait_s, engine.wait_s.value_or(10));
+    const bool came = take_newest_frame(world);
+    engine.wait_s = wait_s;
+    if (!came) {
+        throw EngineLost({"engine " + engine.settings.address},
+                         engine.client->why() +
+                             "; expected one that listens there and sends "
+                             "frames: start it first, or wait longer (--wait)");
+    }
+}
+
+void pause_engine(World& world, bool is_paused) {
+    RemoteEngine* const engine = world.find_resource<RemoteEngine>();
+    if (!engine) return;
+    is_paused ? engine->client->pause() : engine->client->resume();
+    engine->client->poll(now_s(), 0);
+}
+
+const RemoteEngine* find_remote_engine(const World& world) noexcept {
+    return world.find_resource<RemoteEngine>();
+}
+
+bool is_engine_gone(const World& world) noexcept {
+    constexpr double give_up_s = 5;
+    const RemoteEngine* const engine = find_remote_engine(world);
+    if (!engine || !engine->wait_s || !engine->lost_at_s) return false;
+    const double most = engine->frames == 0 ? 0 : give_up_s;
+    return now_s() - *engine->lost_at_s > most;
+}
+
+double find_engine_delay(const World& world) noexcept {
+    const RemoteEngine* const engine = find_remote_engine(world);
+    if (!engine) return 0;
+    return world.resource<Clock>().period_s + engine->frame_interval_s +
+           1e-3 * engine->settings.smoothing_ms;
+}
+
+std::string describe_engine(const World& world) {
+    const RemoteEngine* const engine = find_remote_engine(world);
+    if (!engine) return {};
+    const ImdClient& client = *engine->client;
+    if (client.state() != ImdState::Connected) return client.why();
+    return fmt::format("engine at {}: {:.0f} frames/s, force {:.0f} ms late",
+                       engine->settings.address,
+                       engine->frame_interval_s > 0 ? 1 / engine->frame_interval_s : 0,
+                       1e3 * find_engine_delay(world));
+}
+
+}  // namespace palpa

@@ -1,0 +1,101 @@
+#include "simulation/systems/follow_engine.h"
+
+#include "core/units.h"
+#include "simulation/components.h"
+#include "simulation/held.h"
+#include "simulation/remote_engine.h"
+#include "simulation/resources.h"
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <vector>
+
+namespace palpa {
+namespace {
+
+// Farther from one frame to the next goes only what is moved into another image.
+constexpr double farthest_move = 8;  // Å
+
+Vec3 find_middle(const World& world, const EngineHold& hold) {
+    const std::vector<Vec3>& positions = world.resource<AtomTable>().positions;
+    Vec3 middle = Vec3::Zero();
+    for (std::size_t i = 0; i < hold.atoms.size(); ++i)
+        middle += hold.shares[i] * positions[hold.atoms[i]];
+    return middle;
+}
+
+// Without a stretch of its spring; the servo puts the hand's end there.
+void hold_anew(World& world, Entity hand, EngineHold& hold) {
+    Grip& grip = *world.find<Grip>(hand);
+    hold.smoothed = hold.middle;
+    hold.is_live = true;
+    grip.pose.place_angstrom = hold.middle - grip.anchor;
+    world.resource<TorsionState>().springs[static_cast<std::size_t>(grip.spring)].place =
+        hold.middle;
+    ++world.find<Contact>(hand)->answer.model.start;
+}
+
+void follow_atoms(World& world, Entity hand, bool is_live) {
+    EngineHold& hold = *world.find<EngineHold>(hand);
+    const RemoteEngine& engine = world.resource<RemoteEngine>();
+    const Vec3 middle = find_middle(world, hold);
+    const bool has_jumped = (middle - hold.middle).norm() > farthest_move;
+    hold.middle = middle;
+    if (!is_live) {
+        hold.is_live = false;
+    } else if (!hold.is_live || has_jumped) {
+        hold_anew(world, hand, hold);
+    } else {
+        const double constant_s = 1e-3 * engine.settings.smoothing_ms;
+        const double share =
+            constant_s > 0 ? 1 - std::exp(-world.resource<Clock>().period_s / constant_s) : 1;
+        hold.smoothed += share * (middle - hold.smoothed);
+    }
+}
+
+// Two hands may hold the same atoms.
+void send_forces(World& world) {
+    const RemoteEngine& engine = world.resource<RemoteEngine>();
+    const double most =
+        1e-9 * engine.settings.most_force_nN / units::newton_per_kcal_per_mol_angstrom;
+    std::map<std::int32_t, Vec3> pulls;
+    world.each<EngineHold>([&](Entity hand, const EngineHold& hold) {
+        if (!hold.is_live) return;
+        const Grip& grip = grip_of(world, hand);
+        const Vec3 force =
+            -engine.settings.force_scale *
+            find_engine_spring(grip.k, hold.smoothed - held_place(world, hand), most).force;
+        for (std::size_t i = 0; i < hold.atoms.size(); ++i) {
+            const std::int32_t atom = engine.atoms.in_engine[hold.atoms[i]];
+            if (atom < 0) continue;
+            pulls.try_emplace(atom, Vec3::Zero()).first->second += hold.shares[i] * force;
+        }
+    });
+    std::vector<std::int32_t> atoms;
+    std::vector<Vec3> forces;
+    for (const auto& [atom, force] : pulls) {
+        atoms.push_back(atom);
+        forces.push_back(force);
+    }
+    if (atoms.empty()) {
+        engine.client->let_go();
+    } else {
+        (void)engine.client->pull(atoms, forces);
+    }
+}
+
+}  // namespace
+
+void follow_engine(World& world, const StepInput& /*input*/) {
+    if (!world.find_resource<RemoteEngine>()) return;
+    take_newest_frame(world);
+    const bool is_live = world.resource<RemoteEngine>().client->state() == ImdState::Connected;
+    for (const Entity hand : find_hands(world)) {
+        if (world.find<EngineHold>(hand)) follow_atoms(world, hand, is_live);
+    }
+    if (is_live) send_forces(world);
+}
+
+}  // namespace palpa

@@ -1,0 +1,274 @@
+// palpa connect: a remote engine under the hand, without a scene file.
+#include "core/files.h"
+#include "core/load_error.h"
+#include "core/text.h"
+#include "formats/psf.h"
+#include "formats/structure.h"
+#include "molecule/alternatives.h"
+#include "scene/read_scene.h"
+#include "scene/write_scene.h"
+#include "tools/commands/command.h"
+#include "tools/commands/command_line.h"
+#include "tools/commands/run.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace palpa {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ConnectOptions {
+    RunOptions run;
+    std::string address;
+    fs::path topology;
+    std::optional<fs::path> coordinates, scene;  // `scene`: to write
+    std::string hold;
+    std::array<double, 3> lead{};
+    EngineDescription engine;
+    std::string program = "unknown", protocol = "any";
+    double spring = 5, seconds = 60, period_ms = 10;
+};
+
+bool is_psf_file(const fs::path& path) { return upper_case(path.extension().string()) == ".PSF"; }
+
+// A run of atoms of one segment.
+struct Part {
+    std::string segment;
+    std::size_t first = 0, count = 0;
+    bool is_solvent = false;  // water or ions
+};
+
+std::vector<AtomName> read_names(const fs::path& path) {
+    if (is_psf_file(path)) return read_psf(path).names;
+    const Structure structure = read_structure(path);
+    refuse_alternatives(structure);
+    return structure.names;
+}
+
+bool is_solvent(const std::vector<AtomName>& names, const Part& part) {
+    constexpr std::array<std::string_view, 8> water{"TIP3", "SOL", "HOH", "WAT",
+                                                    "TP3",  "SPC", "T3P", "TIP4"};
+    // Water, or a first residue of one atom.
+    const AtomName& name = names[part.first];
+    if (std::ranges::find(water, name.residue) != water.end()) return true;
+    return part.count == 1 || !is_same_residue(name, names[part.first + 1]);
+}
+
+std::vector<Part> find_parts(const fs::path& file, const std::vector<AtomName>& names) {
+    std::vector<Part> parts;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        const std::string& segment = names[i].segment;
+        if (parts.empty() || parts.back().segment != segment) {
+            if (std::ranges::find(parts, segment, &Part::segment) != parts.end()) {
+                throw LoadError({file.string()},
+                                fmt::format("segment '{}' is in several parts; expected the atoms "
+                                            "of each together, as in a PSF or GRO file",
+                                            segment));
+            }
+            parts.push_back({segment, i, 0, false});
+        }
+        ++parts.back().count;
+    }
+    for (Part& part : parts) part.is_solvent = is_solvent(names, part);
+    return parts;
+}
+
+std::string name_of(const Part& part) { return part.segment.empty() ? "all" : part.segment; }
+
+struct Hold {
+    std::string molecule, atom;
+};
+
+Hold hold_atom(const std::vector<Part>& parts, std::size_t atom) {
+    const auto part = std::ranges::find_if(
+        parts, [&](const Part& p) { return atom >= p.first && atom - p.first < p.count; });
+    return {name_of(*part), fmt::format("#{}", atom - part->first + 1)};
+}
+
+[[noreturn]] void refuse_hold(const std::string& hold, const std::string& why,
+                              const std::vector<Part>& parts) {
+    std::vector<std::string> names;
+    for (const Part& part : parts) names.push_back(name_of(part));
+    throw LoadError(
+        {"--hold"},
+        fmt::format("\"{}\" {}; expected an atom's number in the file (\"17\"), its name "
+                    "and residue number (\"CA 25\", \"SEGMENT CA 25\"), or a segment: {}",
+                    hold, why, fmt::join(names, ", ")));
+}
+
+// "CA 25", "25 CA", "PROA CA 25".
+Hold hold_named(const std::string& hold, const std::vector<AtomName>& names,
+                const std::vector<Part>& parts) {
+    std::vector<std::string_view> words = split_words(hold);
+    std::optional<std::string_view> segment;
+    if (words.size() == 3) {
+        segment = words.front();
+        words.erase(words.begin());
+    }
+    if (words.size() != 2) refuse_hold(hold, "is not understood", parts);
+    const bool number_first = find_integer(words[0]).has_value();
+    const std::string_view number = words[number_first ? 0 : 1], atom = words[number_first ? 1 : 0];
+    std::vector<std::size_t> found;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        if (names[i].number == number && names[i].atom == atom &&
+            (!segment || names[i].segment == *segment))
+            found.push_back(i);
+    }
+    if (found.size() != 1) refuse_hold(hold, fmt::format("names {} atoms", found.size()), parts);
+    return hold_atom(parts, found.front());
+}
+
+// Where nothing is asked for, the smallest segment that is neither water nor ions, as a whole.
+Hold find_hold(const std::string& hold, const std::vector<AtomName>& names,
+               const std::vector<Part>& parts) {
+    if (hold.empty()) {
+        const Part* smallest = nullptr;
+        for (const Part& part : parts) {
+            if (part.is_solvent) continue;
+            if (!smallest || part.count < smallest->count) smallest = &part;
+        }
+        if (smallest) return {name_of(*smallest), ""};
+        // Of water alone its first molecule's first atom.
+        return hold_atom(parts, 0);
+    }
+    const auto part = std::ranges::find(parts, hold, name_of);
+    if (part != parts.end()) return {name_of(*part), ""};
+    if (const auto number = find_integer(hold)) {
+        if (*number < 1 || static_cast<std::size_t>(*number) > names.size())
+            refuse_hold(hold, fmt::format("is none of {} atoms", names.size()), parts);
+        return hold_atom(parts, static_cast<std::size_t>(*number - 1));
+    }
+    return hold_named(hold, names, parts);
+}
+
+SceneDescription build_scene(const ConnectOptions& options) {
+    const bool has_psf = is_psf_file(options.topology);
+    const std::vector<AtomName> names = read_names(options.topology);
+    const std::vector<Part> parts = find_parts(options.topology, names);
+    SceneDescription scene;
+    scene.title = fmt::format("{} at {}", options.topology.filename().string(), options.address);
+    for (const Part& part : parts) {
+        MoleculeDescription molecule;
+        molecule.name = name_of(part);
+        molecule.structure = options.coordinates.value_or(options.topology);
+        if (has_psf) molecule.topology = options.topology;
+        molecule.segment = part.segment;
+        scene.molecules.push_back(std::move(molecule));
+    }
+    scene.engine = options.engine;
+    scene.engine->address = options.address;
+    scene.engine->program = static_cast<EngineProgram>(
+        std::ranges::find(engine_program_names, options.program) - engine_program_names.begin());
+    scene.engine->protocol = static_cast<EngineProtocol>(
+        std::ranges::find(engine_protocol_names, options.protocol) - engine_protocol_names.begin());
+    const Hold hold = find_hold(options.hold, names, parts);
+    scene.grab.molecule = hold.molecule;
+    scene.grab.atom = hold.atom;
+    scene.grab.spring_kcal_per_mol_angstrom2 = options.spring;
+    scene.hand.stroke = Stroke::Hold;
+    const bool leads = options.lead != std::array<double, 3>{};
+    constexpr double begin_s = 0.5;
+    if (leads) {
+        scene.hand.stroke = Stroke::Lead;
+        PathPoint start, end;
+        start.time_s = begin_s;
+        end.time_s = std::max(begin_s + 0.5, options.seconds - begin_s);
+        end.place = options.lead;
+        scene.hand.path = {start, end};
+    }
+    scene.view.representation = Representation::InHand;
+    scene.seconds = options.seconds;
+    scene.period_ms = options.period_ms;
+    return scene;
+}
+
+int connect_command(const ConnectOptions& options) {
+    SceneDescription description = build_scene(options);
+    const auto absolute = [](const fs::path& path) { return fs::absolute(path).generic_string(); };
+    const std::string text = format_scene(description, absolute);
+    std::vector<std::string> settings = options.run.settings;
+    settings.emplace_back(allow_outside);  // the files were named by hand
+    const fs::path file = options.scene.value_or("palpa connect");
+    const SceneDescription scene = parse_scene(text, file, settings);
+    if (options.scene) {
+        const auto beside = [&](const fs::path& path) {
+            return fs::proximate(path, fs::absolute(*options.scene).parent_path()).generic_string();
+        };
+        write_text_file(*options.scene, format_scene(scene, beside),
+                        options.run.overwrites ? Existing::Replace : Existing::Refuse);
+        fmt::print("written: {}\n", options.scene->string());
+    }
+    return run_scene(scene, options.run);
+}
+
+}  // namespace
+
+void add_connect(CLI::App& program, ProgramCommand& chosen) {
+    CLI::App& connect = *program.add_subcommand(
+        "connect", "A running engine (GROMACS, LAMMPS, NAMD) under the hand, over IMD");
+    ConnectOptions& options = own_options<ConnectOptions>(connect, chosen, connect_command);
+    describe(connect, "Feel",
+             {"palpa connect 127.0.0.1:8888 --topology system.psf",
+              "palpa connect 127.0.0.1:8888 --topology run.gro --program gromacs --hold \"CA 25\"",
+              "palpa connect 127.0.0.1:8888 --topology system.psf --headless --seconds 10 --lead "
+              "5,0,0 --record recordings/pull"},
+             "Exit code 4: no engine answered, or it was lost for good.");
+    connect.add_option("address", options.address, "HOST:PORT of the engine, the host in numbers")
+        ->required();
+    connect
+        .add_option("--topology", options.topology,
+                    "the engine's atoms in its order: .psf, .gro, .pdb, .cif or .crd")
+        ->required();
+    connect.add_option("--coordinates", options.coordinates,
+                       "where they are before the engine tells, for a .psf");
+    connect.add_option("--hold", options.hold,
+                       "what the hand holds: an atom's number in that file, its name and residue "
+                       "number (\"CA 25\"), or a segment; unset: the smallest segment that is "
+                       "neither water nor ions");
+    connect
+        .add_option("--spring", options.spring,
+                    "stiffness of the spring that holds it, kcal/mol/Å², 5 unless given")
+        ->check(in_range(1e-3, 1e4));
+    connect
+        .add_option("--program", options.program,
+                    "gromacs, lammps or namd: decides the unit of energies")
+        ->check(CLI::IsMember({"unknown", "gromacs", "lammps", "namd"}));
+    connect.add_option("--protocol", options.protocol, "version of IMD that it must speak: 2 or 3")
+        ->check(CLI::IsMember({"any", "2", "3"}));
+    connect
+        .add_option("--wait", options.run.engine_wait_s,
+                    "seconds to wait for its first frame, 10 unless given")
+        ->check(in_range(0.0, 1e5));
+    connect.add_option("--write-scene", options.scene, "also write the scene that this makes");
+    connect.option_defaults()->group("Without a window");
+    connect.add_flag("--headless", options.run.headless,
+                     "as fast as frames come; the emulated hand holds still, or leads");
+    connect.add_option("--seconds", options.seconds, "length of the run, 60 unless given")
+        ->check(in_range(1e-3, 1e5));
+    connect
+        .add_option("--lead", options.lead,
+                    "X,Y,Z in Å: the emulated hand leads what it holds there by the end")
+        ->delimiter(',');
+    connect.add_flag("--json", options.run.json, "print the summary as JSON");
+    connect.option_defaults()->group("With and without a window");
+    connect
+        .add_option("--period-ms", options.period_ms, "time between two steps, ms, 10 unless given")
+        ->check(in_range(1.0, 1e4));
+    connect.add_option("--record", options.run.record, "record into this folder")
+        ->type_name("FOLDER");
+    add_overwrite_flag(connect, options.run.overwrites);
+    connect.add_option("--device", options.run.device, "mouse unless given");
+    add_set_option(connect, options.run.settings);
+}
+
+}  // namespace palpa
