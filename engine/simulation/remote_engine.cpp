@@ -393,6 +393,18 @@ void await_engine(World& world) {
     }
 }
 
+void leave_engine(World& world) {
+    RemoteEngine* const engine = world.find_resource<RemoteEngine>();
+    if (!engine || engine->client->state() == ImdState::Closed) return;
+    constexpr double most_s = 1;
+    constexpr int slice_ms = 10;
+    const double begin = now_s();
+    engine->client->disconnect(begin);
+    for (double time_s = begin;
+         engine->client->state() != ImdState::Closed && time_s - begin < most_s; time_s = now_s())
+        engine->client->poll(time_s, slice_ms);
+}
+
 void pause_engine(World& world, bool is_paused) {
     RemoteEngine* const engine = world.find_resource<RemoteEngine>();
     if (!engine) return;

@@ -85,6 +85,9 @@ public:
     using LoadError::LoadError;
 };
 
+// Lets go and leaves in order, which takes a second at most.
+void leave_engine(World& world);
+
 // Asks the engine to stand still meanwhile; nothing where there is none.
 void pause_engine(World& world, bool is_paused);
 

@@ -14,16 +14,17 @@ KCAL = 4.184  # kJ/mol: version 3 has kJ/mol/A
 
 
 class Engine(threading.Thread):
-    """Beads without mass: each moves by its force times `mobility` (A per kcal/mol/A, each frame).
+    """Beads in syrup: each moves by its force over its mass times `mobility` (amu A per kcal/mol/A, each frame).
 
     `script` is called before each frame with the engine and its number; it may change `places`, sleep, or
     send bytes of its own with `raw` and end the session by returning False.
     """
 
-    def __init__(self, places, version=2, order=">", mobility=0.02, frames=None, script=None, pause_s=0.002):
+    def __init__(self, places, version=2, order=">", mobility=0.5, masses=None, frames=None, script=None, pause_s=0.002):
         super().__init__(daemon=True)
         self.places = [list(place) for place in places]
         self.version, self.order, self.mobility = version, order, mobility
+        self.masses = masses or [16] * len(self.places)
         self.frames, self.script, self.pause_s = frames, script, pause_s
         self.pulls = {}      # atom: force, kcal/mol/A, as the client has them
         self.history = []    # of every frame: places, pulls
@@ -76,7 +77,7 @@ class Engine(threading.Thread):
                 return
             for atom, force in self.pulls.items():
                 for axis in range(3):
-                    self.places[atom][axis] += self.mobility * force[axis]
+                    self.places[atom][axis] += self.mobility * force[axis] / self.masses[atom]
             self.history.append(([list(p) for p in self.places], dict(self.pulls)))
             if self.version == 3:
                 self.send(TIME, 1, struct.pack(f"{self.order}ddq", 0.001, 0.001 * number, number))

@@ -20,7 +20,7 @@ NAMES = [(1, "LIG", "C1"), (1, "LIG", "C2"), (1, "LIG", "O3"), (2, "SOL", "OW"),
          (3, "SOL", "OW"), (3, "SOL", "HW1"), (3, "SOL", "HW2")]
 PLACES = [(10, 10, 10), (11.5, 10, 10), (12.5, 11, 10), (20, 20, 20), (20.9, 20, 20), (19.8, 20.9, 20), (25, 20, 20),
           (25.9, 20, 20), (24.8, 20.9, 20)]
-MASSES = [12.011, 12.011, 15.999]
+MASSES = [12.011, 12.011, 15.999] + 2 * [15.999, 1.008, 1.008]
 
 
 class Connected(unittest.TestCase):
@@ -32,7 +32,7 @@ class Connected(unittest.TestCase):
         write_gro(self.topology, PLACES, NAMES)
 
     def start(self, **arguments):
-        engine = Engine(PLACES, **arguments)
+        engine = Engine(PLACES, masses=MASSES, **arguments)
         engine.start()
         self.addCleanup(engine.stop)
         return engine
@@ -59,21 +59,21 @@ class Connected(unittest.TestCase):
         """The molecule went along x with the hand, and nothing else did."""
         places, pulls = engine.history[-1]
         for atom in range(3):
-            self.assertAlmostEqual(places[atom][0] - PLACES[atom][0], 3, delta=0.5)
+            self.assertAlmostEqual(places[atom][0] - PLACES[atom][0], 3, delta=0.2)
             self.assertAlmostEqual(places[atom][1], PLACES[atom][1], delta=0.05)
         self.assertEqual(places[3:], [list(place) for place in PLACES[3:]])
-        # By their masses, and the opposite of what the hand feels: the last one that was sent.
+        # By their masses, and the opposite of what the hand feels, which is some ticks ahead.
         pulled = [pulls for _, pulls in engine.history if pulls]
         self.assertEqual(set(pulled[-1]), {0, 1, 2})
         for atom in range(3):
-            share = MASSES[atom] / sum(MASSES)
+            share = MASSES[atom] / sum(MASSES[:3])
             self.assertAlmostEqual(pulled[-1][atom][0], share * sum(f[0] for f in pulled[-1].values()), delta=1e-4)
         self.assertGreater(max(sum(f[0] for f in p.values()) for p in pulled), 0.5)
         felt = [row["force_x_nN"] for row in rows]
         strongest = min(felt)
         self.assertLess(strongest, 0)
         most_sent = max(sum(f[0] for f in p.values()) for p in pulled)
-        self.assertAlmostEqual(-strongest, NM_OF_KCAL * most_sent, delta=0.05 * abs(strongest))
+        self.assertAlmostEqual(-strongest, NM_OF_KCAL * most_sent, delta=0.15 * abs(strongest))
 
     def test_a_molecule_is_led(self):
         for order in (">", "<"):

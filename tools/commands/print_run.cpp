@@ -272,10 +272,10 @@ void print_summary(const SceneDescription& scene, const Summary& s) {
     }
     if (s.accuracy) print_accuracy(*s.accuracy);
     if (s.engine) {
-        fmt::print("  engine      {} frames, {:.0f} a second at the end; the force is {:.0f} ms late; "
-                   "{} interruptions\n",
-                   s.engine->frames, s.engine->frames_per_s, s.engine->delay_ms,
-                   s.engine->interruptions);
+        fmt::print(
+            "  engine      {} frames, {:.0f} a second at the end; the force is {:.0f} ms late; "
+            "{} interruptions\n",
+            s.engine->frames, s.engine->frames_per_s, s.engine->delay_ms, s.engine->interruptions);
     }
     if (s.relaxation) print_relaxation(*s.relaxation);
     fmt::print("  clamped     {:.1f} % of the time\n", 100 * s.clamped_share);

@@ -161,6 +161,8 @@ int run_without_window(SceneDescription scene, World& world,
                      [&] { return noted_interrupt() != 0 || is_engine_gone(world); });
     progress.wipe();
     const bool is_gone = is_engine_gone(world);
+    const std::string engine = describe_engine(world);
+    leave_engine(world);
     if (noted_interrupt() != 0 || is_gone)
         scene.seconds = static_cast<double>(summary.ticks) / servo_rate_hz;
     print_warnings(std::span(summary.warnings).subspan(warnings.size()));
@@ -172,7 +174,7 @@ int run_without_window(SceneDescription scene, World& world,
     }
     if (is_gone) {
         fmt::print(stderr, "{}; expected one that listens there and sends frames\n",
-                   printable(describe_engine(world)));
+                   printable(engine));
     }
     return exit_code_after(is_gone ? engine_lost : 0);
 }
