@@ -23,6 +23,7 @@
 #include "simulation/systems/publish_contact.h"
 #include "tools/bench/adaptive.h"
 #include "tools/bench/answer.h"
+#include "tools/bench/engine.h"
 #include "tools/bench/kernel.h"
 #include "tools/bench/row.h"
 #include "tools/bench/servo.h"
@@ -202,6 +203,7 @@ int bench_command(const BenchOptions& options) {
     bench_files(options, rows);
     if (options.kernel && options.scenes.empty()) bench_gas_kernels(rows);
     if (options.servo) bench_made_up_servo(rows);
+    if (options.engine) bench_engine(rows);
     for (const std::filesystem::path& path : options.scenes) {
         const SceneDescription scene = read_scene(path, options.settings);
         const std::filesystem::path folder = std::filesystem::absolute(scene.file).parent_path();

@@ -20,6 +20,7 @@ struct BenchOptions {
     bool tree = false;      // passes over the assembly trees, likewise
     bool statics = false;   // ways to rest of flexible scenes, likewise
     bool servo = false;     // ticks of guarded coupling, likewise; needs no scene
+    bool engine = false;    // frames of a remote engine, likewise; needs no scene
     bool adaptive = false;  // few active joints in flexible scenes, likewise
     bool spheres = false;   // with it: of spheres cut from the scenes' systems
     bool best = false;      // with it: what the best choice of joints could do

@@ -85,8 +85,9 @@ void add_bench(CLI::App& program, ProgramCommand& chosen) {
     BenchOptions& options = *owned;
     bench.final_callback([owned, &chosen] {
         if (owned->scenes.empty() && owned->structures.empty() && owned->toppar.empty() &&
-            !owned->kernel && !owned->tree && !owned->servo) {
-            throw CLI::RequiredError("a scene, --kernel, --load, --servo, --toppar or --tree");
+            !owned->kernel && !owned->tree && !owned->servo && !owned->engine) {
+            throw CLI::RequiredError(
+                "a scene, --engine, --kernel, --load, --servo, --toppar or --tree");
         }
         if (owned->table && !owned->adaptive && !owned->answer)
             throw CLI::RequiredError("--table: --adaptive or --answer");
@@ -138,6 +139,10 @@ void add_bench(CLI::App& program, ProgramCommand& chosen) {
         ->excludes("--render")
         ->excludes("--kernel")
         ->excludes("--tree");
+    bench
+        .add_flag("--engine", options.engine,
+                  "time what a frame of a remote engine costs its client")
+        ->excludes("scenes");
     add_adaptive_options(bench, options);
     bench.add_flag("--json", options.json, "print JSON");
     add_set_option(bench, options.settings);
