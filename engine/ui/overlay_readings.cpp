@@ -51,7 +51,12 @@ const char* doing(bool on_axis, double force) {
 }
 
 // Which water is around the molecules, and what that leaves out.
-void show_solvent(Solvent solvent) {
+void show_solvent(Solvent solvent, bool is_remote) {
+    if (is_remote) {
+        return reading("water", "the engine's",
+                       "A remote engine moves the atoms, with its own force field, temperature and "
+                       "water.");
+    }
     if (solvent == Solvent::None) {
         return reading("water", "none: vacuum",
                        "Molecules are in vacuum. Nothing screens charges, so that ionic groups "
@@ -178,7 +183,7 @@ void Overlay::draw_readings(const Readout& readout, const OverlayStatus& status,
             has_flexible_ ? "Of all molecules, bonded terms too, kcal/mol"
                           : "Of the molecule in hand with all others: Lennard-Jones and Coulomb, "
                             "kcal/mol");
-    show_solvent(scene_.force_field.solvent);
+    show_solvent(scene_.force_field.solvent, scene_.engine.has_value());
     if (status.devices.empty()) {
         reading("device", status.device_name, "what the force is sent to, 1000 times a second");
     } else {
