@@ -8,6 +8,7 @@
 #include "simulation/resources.h"
 #include "view/first_view.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -205,18 +206,21 @@ bool LiveSession::pop_tick(ServoTick& tick) noexcept {
 
 ServoHealth LiveSession::servo_health() const noexcept { return {overruns_, real_time_, locked_}; }
 
-void LiveSession::begin_recording(const std::filesystem::path& folder, bool overwrites) {
+void LiveSession::begin_recording(const std::filesystem::path& folder, bool overwrites,
+                                  const std::optional<TrajectorySettings>& trajectory) {
     const std::lock_guard lock(recorder_mutex_);
     if (recorder_.is_recording())
         throw LoadError({folder.string()},
                         "another recording is under way; expected its end first");
     record_what_happened();
     recording_problem_.clear();
-    recorder_.begin(folder, overwrites);
+    recorder_.begin(folder, overwrites, trajectory);
+    if (trajectory) trajectory_queue_.begin(trajectory->per_second);
 }
 
 void LiveSession::end_recording() {
     const std::lock_guard lock(recorder_mutex_);
+    trajectory_queue_.end();
     record_what_happened();
     recorder_.end();
     if (recording_problem_.empty()) return;
@@ -227,6 +231,15 @@ std::optional<double> LiveSession::recorded_s() {
     const std::lock_guard lock(recorder_mutex_);
     if (!recorder_.is_recording()) return std::nullopt;
     return recorder_.recorded_s();
+}
+
+std::vector<std::string> LiveSession::take_recording_notes() {
+    const std::lock_guard lock(recorder_mutex_);
+    std::vector<std::string> notes = recorder_.take_notes();
+    if (const std::size_t lost = trajectory_queue_.take_lost(); lost > 0)
+        notes.push_back(
+            fmt::format("{} frames of the trajectory are missing: the disk was too slow", lost));
+    return notes;
 }
 
 // ---- the servos' thread ------------------------------------------------------------------------
@@ -345,8 +358,11 @@ void LiveSession::play(const LiveEvent& event) {
     }
     played.files = read_files(event);
     simulation_.play(event, poses_);
-    if (auto* const step = std::get_if<StepEvent>(&played.event))
-        step->took_us = simulation_.world().resource<StepReport>().took_us;
+    if (auto* const step = std::get_if<StepEvent>(&played.event)) {
+        const World& world = simulation_.world();
+        step->took_us = world.resource<StepReport>().took_us;
+        trajectory_queue_.pass(world, world.resource<Clock>().period_s, simulation_.edition());
+    }
     journal_queue_.push(std::move(played), line_->posted());
 }
 
@@ -455,6 +471,7 @@ void LiveSession::record_what_happened() {
     }
     try {
         journal_queue_.hand_to(recorder_);
+        for (const TrajectoryShot& shot : trajectory_queue_.take()) recorder_.add(shot);
     } catch (const LoadError& error) {  // a full disk
         recording_problem_ = error.what();
         recorder_.give_up();

@@ -96,11 +96,14 @@ public:
 
     // Records from now on into the folder, with the journal since the session began. Throws
     // LoadError where a Recording would, or where something is recorded already.
-    void begin_recording(const std::filesystem::path& folder, bool overwrites = false);
+    void begin_recording(const std::filesystem::path& folder, bool overwrites = false,
+                         const std::optional<TrajectorySettings>& trajectory = {});
     // Throws LoadError where not all could be written.
     void end_recording();
     // Seconds that are recorded so far; nothing where nothing is.
     std::optional<double> recorded_s();
+    // What a user should know of the recording, a sentence each, since the last call.
+    std::vector<std::string> take_recording_notes();
 
 private:
     class Line;
@@ -130,6 +133,7 @@ private:
     LiveSimulation simulation_;
     std::unique_ptr<Ticks> ticks_;
     JournalQueue journal_queue_;
+    TrajectoryQueue trajectory_queue_;
     Mailbox<LiveFrame> frames_;
     std::atomic<bool> frame_wanted_{true};
     std::atomic<std::uint64_t> overruns_{0};

@@ -88,7 +88,7 @@ Sandbox::Sandbox(const SceneDescription& scene, Device& device, const WindowOpti
     if (options.sound.is_on) (void)switch_sound(true);
     if (options.record) {
         recorded_in_ = *options.record;
-        session_.begin_recording(recorded_in_, options.overwrites);
+        session_.begin_recording(recorded_in_, options.overwrites, options.trajectory);
     }
     if (!options.notice.empty()) {
         notice(notice_.empty() ? options.notice : options.notice + "\n" + notice_, first_notice_s);

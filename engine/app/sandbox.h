@@ -110,6 +110,7 @@ private:
     void show_wish();
     void perform(Action action);
     void record_or_end();
+    void tell_recording_notes();
     void press_study_key();
     void press_key(const KeyPress& press);
     void press_in_dialog(const KeyPress& press);

@@ -73,15 +73,24 @@ void Sandbox::ask_to_quit() {
                   {Key::Escape, "Stay (Esc)"}}};
 }
 
+// On standard error too, where it stays.
+void Sandbox::tell_recording_notes() {
+    for (const std::string& note : session_.take_recording_notes()) {
+        fmt::print(stderr, "note: {}\n", note);
+        notice(note, first_notice_s);
+    }
+}
+
 void Sandbox::record_or_end() {
     try {
         if (session_.recorded_s()) {
             session_.end_recording();
+            tell_recording_notes();
             notice(fmt::format("recorded {0}; palpa replay {0} plays it", recorded_in_.string()),
                    first_notice_s);
         } else {
             recorded_in_ = next_recording(options_.screenshots);
-            session_.begin_recording(recorded_in_);
+            session_.begin_recording(recorded_in_, false, options_.trajectory);
             notice(fmt::format("recording into {}", recorded_in_.string()));
         }
     } catch (const LoadError& error) {

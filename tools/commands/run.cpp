@@ -10,6 +10,7 @@
 #include "scene/read_scene.h"
 #include "session/recording.h"
 #include "session/run_headless.h"
+#include "session/trajectory_recorder.h"
 #include "simulation/held.h"
 #include "simulation/load.h"
 #include "simulation/step.h"
@@ -55,6 +56,14 @@ void check_headless(const char* option, const std::string& device) {
 
 }  // namespace
 
+TrajectorySettings trajectory_settings(const RunOptions& options) {
+    TrajectorySettings settings{.writes_xtc = options.trajectory_xtc};
+    if (!options.trajectory_fps) return settings;
+    settings.per_second = *options.trajectory_fps;
+    settings.most_bytes.reset();  // who asks gets all of it
+    return settings;
+}
+
 void print_scene_keys() {
     fmt::print("| key | value | unless given | meaning |\n| --- | --- | --- | --- |\n");
     for (const FieldNote& field : list_fields()) {
@@ -70,6 +79,10 @@ void check_options(const RunOptions& options) {
     if (options.check_only) return;
     if (!options.headless) return check_window_options(options);
     if (options.record) check_record_folder(*options.record, options.overwrites);
+    if (!options.record && (options.trajectory_fps || options.trajectory_xtc)) {
+        throw LoadError({options.trajectory_fps ? "--trajectory-fps" : "--trajectory-xtc"},
+                        "is of a recording; expected --record FOLDER too");
+    }
     if (options.last_shot || options.play || options.sound) {
         throw LoadError({options.play    ? "--play"
                          : options.sound ? "--sound"
@@ -119,6 +132,10 @@ void print_warnings(std::span<const std::string> warnings) {
     }
 }
 
+void print_notes(const std::vector<std::string>& notes) {
+    for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", printable(note));
+}
+
 // The scene's hands on their devices.
 std::vector<std::unique_ptr<Device>> open_hands(const SceneDescription& scene, const World& world,
                                                 const RunOptions& options) {
@@ -141,6 +158,7 @@ int run_without_window(SceneDescription scene, World& world,
     std::optional<Recording> recording;
     if (options.record)
         recording.emplace(*options.record, scene, options.overwrites, devices.size());
+    if (recording) recording->begin_trajectory(trajectory_settings(options));
     std::vector<Device*> hands;
     for (const std::unique_ptr<Device>& device : devices) hands.push_back(device.get());
     if (options.record && (options.second.value_or("emulated") != "emulated" ||
@@ -160,6 +178,7 @@ int run_without_window(SceneDescription scene, World& world,
     progress.wipe();
     if (noted_interrupt() != 0) scene.seconds = static_cast<double>(summary.ticks) / servo_rate_hz;
     print_warnings(std::span(summary.warnings).subspan(warnings.size()));
+    if (recording) print_notes(recording->take_notes());
     if (options.json) {
         fmt::print("{}", format_summary(scene, summary));
     } else {
@@ -231,8 +250,8 @@ void add_headless_options(CLI::App& run, RunOptions& options) {
                  "in lockstep on a virtual clock: the same command gives the same bytes");
     CLI::Option* const record =
         run.add_option("--record", options.record,
-                       "record into this folder: trace.csv, summary.json, session.toml, frames; "
-                       "a window session also journal.txt")
+                       "record into this folder: trace.csv, summary.json, session.toml, "
+                       "trajectory.dcd with system.psf, frames; a window session also journal.txt")
             ->type_name("FOLDER")
             ->group("With and without a window");
     add_overwrite_flag(run, options.overwrites);
@@ -242,6 +261,13 @@ void add_headless_options(CLI::App& run, RunOptions& options) {
         ->check(in_range(0.01, 1000.0))
         ->needs(record);
     add_size_option(run, "--frame-size", options.frame_width, options.frame_height);
+    run.add_option("--trajectory-fps", options.trajectory_fps,
+                   "frames a simulated second of a recording's trajectory.dcd, 0 none; unless "
+                   "given 25, until there are 256 MiB")
+        ->check(in_range(0.0, 1000.0))
+        ->group("With and without a window");
+    run.add_flag("--trajectory-xtc", options.trajectory_xtc, "write trajectory.xtc too")
+        ->group("With and without a window");
     run.add_flag("--json", options.json, "print the summary as JSON");
 }
 

@@ -1,5 +1,7 @@
 // palpa run: a scene in a window, or headless under the emulated hand.
 #pragma once
+#include "session/trajectory_recorder.h"
+
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -15,6 +17,8 @@ struct RunOptions {
     bool overwrites = false;       // an earlier recording, or an earlier picture of --shot
     double frames_per_second = 0;  // 0: no frames in the recording
     std::uint32_t frame_width = 640, frame_height = 360;
+    std::optional<double> trajectory_fps;  // frames a simulated second; nothing: as usual
+    bool trajectory_xtc = false;           // as XTC too
     bool check_only = false;
     bool json = false;  // the summary as JSON on standard output
     bool headless = false;
@@ -30,6 +34,9 @@ struct RunOptions {
     std::uint64_t lose_device_at = 0;
     bool validation = false;  // of all that Vulkan is told
 };
+
+// Of the recordings of a run.
+TrajectorySettings trajectory_settings(const RunOptions& options);
 
 // All keys of a scene file as a Markdown table, as scenes/keys.md has it.
 void print_scene_keys();
