@@ -109,15 +109,17 @@ private:
 };
 
 LiveSession::LiveSession(const SceneDescription& scene, const ViewSettings& view,
-                         std::span<const LiveDevice> devices, LiveClock* clock)
+                         std::span<const LiveDevice> devices, LiveClock* clock,
+                         const std::optional<PlaybackChoice>& playback)
     : clock_(clock ? *clock : machine_clock_),
       devices_(devices.begin(), devices.end()),
       orders_(devices.size()),
       servos_(devices.size()),
       line_(std::make_unique<Line>(servos_)),
-      simulation_(scene, describe(devices), *line_),
+      simulation_(scene, describe(devices), *line_, playback),
       ticks_(std::make_unique<Ticks>()),
       journal_queue_(devices.size(), line_->posted()),
+      plays_(playback.has_value()),
       view_(view),
       poses_(devices.size()),
       atoms_(list_atoms(simulation_.world())),
@@ -184,6 +186,16 @@ void LiveSession::move_hand(const Vec3& target_m, std::size_t slot) {
     if (devices_[slot].orders) devices_[slot].orders->post(orders_[slot]);
 }
 
+World LiveSession::copy_world() {
+    std::unique_lock lock(mutex_);
+    world_wanted_ = true;
+    has_command_.notify_one();
+    world_copied_.wait(lock, [&] { return !world_wanted_; });
+    World world = std::move(*copied_world_);
+    copied_world_.reset();
+    return world;
+}
+
 bool LiveSession::read_frame(LiveFrame& frame) {
     const bool is_new = frames_.read(frame);
     frame_wanted_ = true;
@@ -209,6 +221,10 @@ ServoHealth LiveSession::servo_health() const noexcept { return {overruns_, real
 void LiveSession::begin_recording(const std::filesystem::path& folder, bool overwrites,
                                   const std::optional<TrajectorySettings>& trajectory) {
     const std::lock_guard lock(recorder_mutex_);
+    if (plays_)
+        throw LoadError({folder.string()},
+                        "cannot be recorded: the frames of a trajectory are not the session's, so "
+                        "that no replay would be the same");
     if (recorder_.is_recording())
         throw LoadError({folder.string()},
                         "another recording is under way; expected its end first");
@@ -335,13 +351,18 @@ void LiveSession::run_simulation() {
             {
                 std::unique_lock lock(mutex_);
                 waited = !clock_.wait_for_period(next, lock, has_command_, [&] {
-                    return stopping_ || !commands_.empty() || device_change_;
+                    return stopping_ || !commands_.empty() || device_change_ || world_wanted_;
                 });
                 commands.swap(commands_);
                 if (device_change_) {  // who asked for it waits
                     change_device(device_change_->event, device_change_->device);
                     device_change_.reset();
                     device_changed_.notify_one();
+                }
+                if (world_wanted_) {
+                    copied_world_ = simulation_.world();
+                    world_wanted_ = false;
+                    world_copied_.notify_one();
                 }
             }
             for (const Command& command : commands) obey(command);
@@ -371,6 +392,8 @@ void LiveSession::obey(const Command& command) {
         view_ = *view;
         return;
     }
+    if (const auto* const order = std::get_if<PlaybackOrder>(&command))
+        return simulation_.order(*order);
     if (const auto* const edit = std::get_if<EditDescription>(&command)) {
         if (!building_.valid()) return make(*edit);
         waiting_edits_.push_back(*edit);
@@ -437,6 +460,7 @@ void LiveSession::post_frame_if_wanted() {
         frame.readout.error_pN = adaptive->accuracy->error();
         frame.readout.work_budget = adaptive->accuracy->work_budget();
     }
+    frame.readout.playback = find_playback(world);
     frames_.post(frame);
 }
 

@@ -70,6 +70,7 @@ struct WindowOptions {
     std::optional<std::filesystem::path> record{};  // folder, from the first moment on
     bool overwrites = false;                        // a recording in it
     TrajectorySettings trajectory{};                // of recordings
+    std::optional<PlaybackChoice> playback{};       // a trajectory to play
     PadLink* pads = nullptr;                        // where game pads are posted
     DeviceMenu devices{};
     SoundChoice sound{};

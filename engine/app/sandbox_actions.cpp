@@ -2,6 +2,7 @@
 #include "app/sandbox.h"
 
 #include "core/load_error.h"
+#include "ui/playback_panel.h"
 #include "view/first_view.h"
 
 #include <fmt/format.h>
@@ -166,6 +167,18 @@ void Sandbox::perform(Action action) {
             break;
         case Action::Screenshot:
             wants_shot_ = true;
+            break;
+        case Action::Film:
+            film_or_end();
+            break;
+        case Action::Export:
+            ask_for_export();
+            break;
+        case Action::PlayTrajectory:
+            if (frame_.readout.playback) session_.send(play_or_pause(*frame_.readout.playback));
+            break;
+        case Action::TrajectoryStart:
+            if (frame_.readout.playback) session_.send(play_from_start());
             break;
         case Action::RestartGraphics:
             restart_graphics();

@@ -4,6 +4,7 @@
 #include "scene/description.h"
 #include "scene/edits.h"
 #include "simulation/accuracy_controller.h"
+#include "simulation/playback.h"
 #include "view/build_frame.h"
 
 #include <cstdint>
@@ -33,7 +34,8 @@ struct Reset {
     std::optional<double> start_angstrom{};
 };
 // An edit is made at once, whatever time it says.
-using Command = std::variant<LiveSettings, ViewSettings, Pause, StepOnce, Reset, EditDescription>;
+using Command = std::variant<LiveSettings, ViewSettings, Pause, StepOnce, Reset, EditDescription,
+                             PlaybackOrder>;
 
 inline EditDescription edit_now(EditAction action) {
     return {0, 0, std::move(action), {"not done"}};
@@ -49,10 +51,11 @@ struct Readout {
     std::optional<double> error_pN;
     WorkBudget work_budget;
     bool paused = false;
-    bool holds_something = true;      // the hand
-    std::uint64_t refused_edits = 0;  // so far, but for undo and redo
-    std::string problem;              // why the last Reset or edit failed; else empty
-    std::string edit_under_way;       // its key in a scene file; empty: none
+    bool holds_something = true;            // the hand
+    std::uint64_t refused_edits = 0;        // so far, but for undo and redo
+    std::string problem;                    // why the last Reset or edit failed; else empty
+    std::string edit_under_way;             // its key in a scene file; empty: none
+    std::optional<PlaybackState> playback;  // where a trajectory is played
 };
 
 // How the servo fares.

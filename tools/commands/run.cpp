@@ -64,6 +64,15 @@ TrajectorySettings trajectory_settings(const RunOptions& options) {
     return settings;
 }
 
+std::optional<PlaybackChoice> playback_choice(const RunOptions& options) {
+    if (!options.trajectory) return std::nullopt;
+    PlaybackOrder order{.paused = options.trajectory_speed == 0,
+                        .frames_per_s = options.trajectory_speed,
+                        .frame = options.trajectory_frame - 1};
+    if (*order.paused) order.frames_per_s.reset();  // that of whoever lets it play
+    return PlaybackChoice{*options.trajectory, order};
+}
+
 void print_scene_keys() {
     fmt::print("| key | value | unless given | meaning |\n| --- | --- | --- | --- |\n");
     for (const FieldNote& field : list_fields()) {
@@ -77,6 +86,11 @@ namespace {
 // What can be said of the options before anything is loaded.
 void check_options(const RunOptions& options) {
     if (options.check_only) return;
+    if (!options.trajectory && (options.trajectory_speed != 25 || options.trajectory_frame != 1)) {
+        throw LoadError(
+            {options.trajectory_speed != 25 ? "--trajectory-speed" : "--trajectory-frame"},
+            "is of a trajectory that is played; expected --trajectory FILE too");
+    }
     if (!options.headless) return check_window_options(options);
     if (options.record) check_record_folder(*options.record, options.overwrites);
     if (!options.record && (options.trajectory_fps || options.trajectory_xtc)) {
@@ -167,6 +181,12 @@ int run_without_window(SceneDescription scene, World& world,
             "session.toml of this recording plays the scene's own hand; whoever runs it again has "
             "to name --device and --second again");
     }
+    if (options.record && options.trajectory) {
+        warnings.emplace_back(
+            "session.toml of this recording has no trajectory to play; whoever runs it again has "
+            "to "
+            "name --trajectory again");
+    }
     FrameClock frames;
     if (writer) {
         frames = {options.frames_per_second, [&] { write_frame(writer, world, progress); }};
@@ -191,11 +211,14 @@ int run_without_window(SceneDescription scene, World& world,
 }  // namespace
 
 int run_command(const RunOptions& options) {
-    const SceneDescription scene = read_scene(options.scene, options.settings);
+    SceneDescription scene = read_scene(options.scene, options.settings);
+    if (options.trajectory) scene = as_played(std::move(scene));
     check_options(options);
     check_second(options, scene);
     ProgressLine progress(!options.json);
     World world = load_world(scene, progress.stages());
+    const std::optional<PlaybackChoice> playback = playback_choice(options);
+    if (playback) start_playback(world, playback->file, playback->order);
     tell(progress.stages(), "planning the hand's way");
     const EmulatedOmniSettings settings = build_emulated_omni(scene, world);
     std::vector<std::string> warnings =
@@ -261,6 +284,19 @@ void add_headless_options(CLI::App& run, RunOptions& options) {
         ->check(in_range(0.01, 1000.0))
         ->needs(record);
     add_size_option(run, "--frame-size", options.frame_width, options.frame_height);
+    run.add_option("--trajectory", options.trajectory,
+                   "play this trajectory of the scene's atoms: .dcd, .xtc, .trr, or models of .pdb "
+                   "or .cif; molecules move in one piece, or as its frames have them")
+        ->type_name("FILE")
+        ->group("With and without a window");
+    run.add_option("--trajectory-speed", options.trajectory_speed,
+                   "its frames a second, 25 unless given; 0: it stands")
+        ->check(in_range(0.0, 1e5))
+        ->group("With and without a window");
+    run.add_option("--trajectory-frame", options.trajectory_frame,
+                   "the one it begins with, 1 the first")
+        ->check(in_range(1.0, 1e9))
+        ->group("With and without a window");
     run.add_option("--trajectory-fps", options.trajectory_fps,
                    "frames a simulated second of a recording's trajectory.dcd, 0 none; unless "
                    "given 25, until there are 256 MiB")
@@ -279,7 +315,8 @@ void add_run(CLI::App& program, ProgramCommand& chosen) {
     describe(run, "Feel",
              {"palpa run hiv", "palpa run scenes/water --headless --record recordings/water",
               "palpa run scenes/water --headless --mode 2 --period-ms 14 --friction 0",
-              "palpa run scenes/hiv/flexible.toml --play"});
+              "palpa run scenes/hiv/flexible.toml --play",
+              "palpa run scenes/hiv --trajectory others.xtc"});
     run.add_option("scene", options.scene,
                    "scene folder or file, recorded session.toml, or the name of one of Palpa's own "
                    "scenes")

@@ -1,6 +1,7 @@
 // palpa run: a scene in a window, or headless under the emulated hand.
 #pragma once
 #include "session/trajectory_recorder.h"
+#include "simulation/playback.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -19,6 +20,9 @@ struct RunOptions {
     std::uint32_t frame_width = 640, frame_height = 360;
     std::optional<double> trajectory_fps;  // frames a simulated second; nothing: as usual
     bool trajectory_xtc = false;           // as XTC too
+    std::optional<std::filesystem::path> trajectory;  // of another program, to be played
+    double trajectory_speed = 25;                     // frames a second; 0: paused
+    std::size_t trajectory_frame = 1;                 // the first that is shown, from 1
     bool check_only = false;
     bool json = false;  // the summary as JSON on standard output
     bool headless = false;
@@ -37,6 +41,9 @@ struct RunOptions {
 
 // Of the recordings of a run.
 TrajectorySettings trajectory_settings(const RunOptions& options);
+
+// Of another program, to be played.
+std::optional<PlaybackChoice> playback_choice(const RunOptions& options);
 
 // All keys of a scene file as a Markdown table, as scenes/keys.md has it.
 void print_scene_keys();
