@@ -8,6 +8,7 @@
 #include "simulation/resources.h"
 #include "view/first_view.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -108,15 +109,17 @@ private:
 };
 
 LiveSession::LiveSession(const SceneDescription& scene, const ViewSettings& view,
-                         std::span<const LiveDevice> devices, LiveClock* clock)
+                         std::span<const LiveDevice> devices, LiveClock* clock,
+                         const std::optional<PlaybackChoice>& playback)
     : clock_(clock ? *clock : machine_clock_),
       devices_(devices.begin(), devices.end()),
       orders_(devices.size()),
       servos_(devices.size()),
       line_(std::make_unique<Line>(servos_)),
-      simulation_(scene, describe(devices), *line_),
+      simulation_(scene, describe(devices), *line_, playback),
       ticks_(std::make_unique<Ticks>()),
       journal_queue_(devices.size(), line_->posted()),
+      plays_(playback.has_value()),
       view_(view),
       poses_(devices.size()),
       atoms_(list_atoms(simulation_.world())),
@@ -183,6 +186,16 @@ void LiveSession::move_hand(const Vec3& target_m, std::size_t slot) {
     if (devices_[slot].orders) devices_[slot].orders->post(orders_[slot]);
 }
 
+World LiveSession::copy_world() {
+    std::unique_lock lock(mutex_);
+    world_wanted_ = true;
+    has_command_.notify_one();
+    world_copied_.wait(lock, [&] { return !world_wanted_; });
+    World world = std::move(*copied_world_);
+    copied_world_.reset();
+    return world;
+}
+
 bool LiveSession::read_frame(LiveFrame& frame) {
     const bool is_new = frames_.read(frame);
     frame_wanted_ = true;
@@ -205,18 +218,25 @@ bool LiveSession::pop_tick(ServoTick& tick) noexcept {
 
 ServoHealth LiveSession::servo_health() const noexcept { return {overruns_, real_time_, locked_}; }
 
-void LiveSession::begin_recording(const std::filesystem::path& folder, bool overwrites) {
+void LiveSession::begin_recording(const std::filesystem::path& folder, bool overwrites,
+                                  const std::optional<TrajectorySettings>& trajectory) {
     const std::lock_guard lock(recorder_mutex_);
+    if (plays_)
+        throw LoadError({folder.string()},
+                        "cannot be recorded: the frames of a trajectory are not the session's, so "
+                        "that no replay would be the same");
     if (recorder_.is_recording())
         throw LoadError({folder.string()},
                         "another recording is under way; expected its end first");
     record_what_happened();
     recording_problem_.clear();
-    recorder_.begin(folder, overwrites);
+    recorder_.begin(folder, overwrites, trajectory);
+    if (trajectory) trajectory_queue_.begin(trajectory->per_second);
 }
 
 void LiveSession::end_recording() {
     const std::lock_guard lock(recorder_mutex_);
+    trajectory_queue_.end();
     record_what_happened();
     recorder_.end();
     if (recording_problem_.empty()) return;
@@ -227,6 +247,15 @@ std::optional<double> LiveSession::recorded_s() {
     const std::lock_guard lock(recorder_mutex_);
     if (!recorder_.is_recording()) return std::nullopt;
     return recorder_.recorded_s();
+}
+
+std::vector<std::string> LiveSession::take_recording_notes() {
+    const std::lock_guard lock(recorder_mutex_);
+    std::vector<std::string> notes = recorder_.take_notes();
+    if (const std::size_t lost = trajectory_queue_.take_lost(); lost > 0)
+        notes.push_back(
+            fmt::format("{} frames of the trajectory are missing: the disk was too slow", lost));
+    return notes;
 }
 
 // ---- the servos' thread ------------------------------------------------------------------------
@@ -322,13 +351,18 @@ void LiveSession::run_simulation() {
             {
                 std::unique_lock lock(mutex_);
                 waited = !clock_.wait_for_period(next, lock, has_command_, [&] {
-                    return stopping_ || !commands_.empty() || device_change_;
+                    return stopping_ || !commands_.empty() || device_change_ || world_wanted_;
                 });
                 commands.swap(commands_);
                 if (device_change_) {  // who asked for it waits
                     change_device(device_change_->event, device_change_->device);
                     device_change_.reset();
                     device_changed_.notify_one();
+                }
+                if (world_wanted_) {
+                    copied_world_ = simulation_.world();
+                    world_wanted_ = false;
+                    world_copied_.notify_one();
                 }
             }
             for (const Command& command : commands) obey(command);
@@ -345,8 +379,11 @@ void LiveSession::play(const LiveEvent& event) {
     }
     played.files = read_files(event);
     simulation_.play(event, poses_);
-    if (auto* const step = std::get_if<StepEvent>(&played.event))
-        step->took_us = simulation_.world().resource<StepReport>().took_us;
+    if (auto* const step = std::get_if<StepEvent>(&played.event)) {
+        const World& world = simulation_.world();
+        step->took_us = world.resource<StepReport>().took_us;
+        trajectory_queue_.pass(world, world.resource<Clock>().period_s, simulation_.edition());
+    }
     journal_queue_.push(std::move(played), line_->posted());
 }
 
@@ -355,6 +392,8 @@ void LiveSession::obey(const Command& command) {
         view_ = *view;
         return;
     }
+    if (const auto* const order = std::get_if<PlaybackOrder>(&command))
+        return simulation_.order(*order);
     if (const auto* const edit = std::get_if<EditDescription>(&command)) {
         if (!building_.valid()) return make(*edit);
         waiting_edits_.push_back(*edit);
@@ -421,6 +460,7 @@ void LiveSession::post_frame_if_wanted() {
         frame.readout.error_pN = adaptive->accuracy->error();
         frame.readout.work_budget = adaptive->accuracy->work_budget();
     }
+    frame.readout.playback = find_playback(world);
     frames_.post(frame);
 }
 
@@ -455,6 +495,7 @@ void LiveSession::record_what_happened() {
     }
     try {
         journal_queue_.hand_to(recorder_);
+        for (const TrajectoryShot& shot : trajectory_queue_.take()) recorder_.add(shot);
     } catch (const LoadError& error) {  // a full disk
         recording_problem_ = error.what();
         recorder_.give_up();

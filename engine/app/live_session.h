@@ -65,7 +65,8 @@ public:
     // order; hands beyond these stand still. `clock`: null is the machine's. Throws LoadError, and
     // where a device must not be run with the scene's period (check_period).
     LiveSession(const SceneDescription& scene, const ViewSettings& view,
-                std::span<const LiveDevice> devices, LiveClock* clock = nullptr);
+                std::span<const LiveDevice> devices, LiveClock* clock = nullptr,
+                const std::optional<PlaybackChoice>& playback = {});
     // With one device.
     LiveSession(const SceneDescription& scene, const ViewSettings& view, Device& device,
                 HandOrders* orders, LiveClock* clock = nullptr);
@@ -87,6 +88,9 @@ public:
     // The newest frame; asks for the next one. False if none came since the last call.
     bool read_frame(LiveFrame& frame);
 
+    // The world between two steps; waits for the one that is under way.
+    World copy_world();
+
     // Every servo tick in its order, as long as somebody takes them out: of all hands, by slot.
     bool pop_ticks(std::span<ServoTick> ticks) noexcept;
     bool pop_tick(ServoTick& tick) noexcept;  // of the first hand
@@ -95,12 +99,16 @@ public:
     ServoHealth servo_health() const noexcept;
 
     // Records from now on into the folder, with the journal since the session began. Throws
-    // LoadError where a Recording would, or where something is recorded already.
-    void begin_recording(const std::filesystem::path& folder, bool overwrites = false);
+    // LoadError where a Recording would, where something is recorded already, and where a
+    // trajectory is played, which no journal has.
+    void begin_recording(const std::filesystem::path& folder, bool overwrites = false,
+                         const std::optional<TrajectorySettings>& trajectory = {});
     // Throws LoadError where not all could be written.
     void end_recording();
     // Seconds that are recorded so far; nothing where nothing is.
     std::optional<double> recorded_s();
+    // What a user should know of the recording, a sentence each, since the last call.
+    std::vector<std::string> take_recording_notes();
 
 private:
     class Line;
@@ -130,6 +138,7 @@ private:
     LiveSimulation simulation_;
     std::unique_ptr<Ticks> ticks_;
     JournalQueue journal_queue_;
+    TrajectoryQueue trajectory_queue_;
     Mailbox<LiveFrame> frames_;
     std::atomic<bool> frame_wanted_{true};
     std::atomic<std::uint64_t> overruns_{0};
@@ -144,6 +153,10 @@ private:
     };
     std::optional<DeviceChange> device_change_;  // until it is done
     std::condition_variable device_changed_;
+    std::optional<World> copied_world_;
+    bool world_wanted_ = false;
+    std::condition_variable world_copied_;
+    const bool plays_;  // a trajectory
     std::atomic<bool> stopping_{false}, servo_stopping_{false}, recorder_stopping_{false};
 
     // The simulation's thread's own.

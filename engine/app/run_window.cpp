@@ -69,8 +69,9 @@ Sandbox::Sandbox(const SceneDescription& scene, Device& device, const WindowOpti
       hands_(list_window_hands(device, options)),
       text_scale_(options.text_scale.scale),
       window_("Palpa - " + scene.title, options.width, options.height),
-      session_(scene, options.view, list_devices(hands_)),
+      session_(scene, options.view, list_devices(hands_), nullptr, options.playback),
       overlay_(scene),
+      title_(scene.title),
       saved_(overlay_.settings()),
       first_(scene.view),
       view_(options.view),
@@ -88,7 +89,7 @@ Sandbox::Sandbox(const SceneDescription& scene, Device& device, const WindowOpti
     if (options.sound.is_on) (void)switch_sound(true);
     if (options.record) {
         recorded_in_ = *options.record;
-        session_.begin_recording(recorded_in_, options.overwrites);
+        session_.begin_recording(recorded_in_, options.overwrites, options.trajectory);
     }
     if (!options.notice.empty()) {
         notice(notice_.empty() ? options.notice : options.notice + "\n" + notice_, first_notice_s);
@@ -152,7 +153,9 @@ void Sandbox::frame() {
         frame_.readout.holds_something = in_hand().held.count > 0;
         tell_what_is_held();
         tell_what_was_edited();
+        if (session_.recorded_s()) tell_recording_notes();
     }
+    tell_of_film();
     take_input();
     look_for_devices();
     play_force();
@@ -247,10 +250,13 @@ void Sandbox::draw() {
             g.renderer.record(buffer, shown_, size);
             blit(buffer, g.renderer.colour_image(), size, image, g.swapchain.size());
         },
-        [&](VkCommandBuffer buffer) { g.ui.draw(buffer); }, wants_shot_ ? &shot : nullptr);
+        [&](VkCommandBuffer buffer) { g.ui.draw(buffer); },
+        wants_shot_ || (film_ && film_->is_due()) ? &shot : nullptr);
     drawn_size_ = size;
     must_rebuild_ = !shows;
-    if (!shot.rgba.empty()) {
+    if (!shot.rgba.empty() && film_ && film_->is_due())
+        film_->add({shot.width, shot.height, shot.rgba, {}, {}});
+    if (!shot.rgba.empty() && wants_shot_) {
         wants_shot_ = false;
         save(shot);
     }

@@ -7,6 +7,7 @@
 #include "scene/description.h"
 #include "session/commands.h"
 #include "session/statistics.h"
+#include "session/trajectory_recorder.h"
 #include "ui/overlay.h"
 
 #include <cstdint>
@@ -68,6 +69,8 @@ struct WindowOptions {
     LedDevice second{};                             // in the scene's second hand, where it has one
     std::optional<std::filesystem::path> record{};  // folder, from the first moment on
     bool overwrites = false;                        // a recording in it
+    TrajectorySettings trajectory{};                // of recordings
+    std::optional<PlaybackChoice> playback{};       // a trajectory to play
     PadLink* pads = nullptr;                        // where game pads are posted
     DeviceMenu devices{};
     SoundChoice sound{};

@@ -1,6 +1,7 @@
 // The inside of run_window: the window's thread, what it knows and what it does. A file of
 // sandbox_* has what it does of one kind.
 #pragma once
+#include "app/film_recorder.h"
 #include "app/live_session.h"
 #include "app/render_scale.h"
 #include "app/run_window.h"
@@ -110,6 +111,12 @@ private:
     void show_wish();
     void perform(Action action);
     void record_or_end();
+    void tell_recording_notes();
+    void ask_for_export();
+    void ask_what_to_export(const std::string& ending);
+    void export_coordinates(const std::string& ending, const std::vector<std::string>& molecules);
+    void film_or_end();
+    void tell_of_film();
     void press_study_key();
     void press_key(const KeyPress& press);
     void press_in_dialog(const KeyPress& press);
@@ -156,7 +163,8 @@ private:
     LiveSession session_;
     std::unique_ptr<Graphics> graphics_;
     Overlay overlay_;
-    LiveSettings saved_;  // as the scene's file has them, or the file saved last
+    const std::string title_;  // of the scene
+    LiveSettings saved_;       // as the scene's file has them, or the file saved last
     std::optional<Question> question_;
     std::optional<Speaker> speaker_;  // while sound is on
 
@@ -188,7 +196,8 @@ private:
         std::string text{};
     };
     std::optional<Announced> announced_;
-    std::filesystem::path recorded_in_;
+    std::filesystem::path recorded_in_, filmed_in_;
+    std::unique_ptr<FilmRecorder> film_;
     std::string hover_;
     SteadyClock::time_point rests_since_ = SteadyClock::now();  // the mouse; or looked at anew
     bool drags_panel_ = false;  // the drag that is under way, or was the last one

@@ -2,6 +2,7 @@
 #include "app/sandbox.h"
 
 #include "core/load_error.h"
+#include "ui/playback_panel.h"
 #include "view/first_view.h"
 
 #include <fmt/format.h>
@@ -73,15 +74,24 @@ void Sandbox::ask_to_quit() {
                   {Key::Escape, "Stay (Esc)"}}};
 }
 
+// On standard error too, where it stays.
+void Sandbox::tell_recording_notes() {
+    for (const std::string& note : session_.take_recording_notes()) {
+        fmt::print(stderr, "note: {}\n", note);
+        notice(note, first_notice_s);
+    }
+}
+
 void Sandbox::record_or_end() {
     try {
         if (session_.recorded_s()) {
             session_.end_recording();
+            tell_recording_notes();
             notice(fmt::format("recorded {0}; palpa replay {0} plays it", recorded_in_.string()),
                    first_notice_s);
         } else {
             recorded_in_ = next_recording(options_.screenshots);
-            session_.begin_recording(recorded_in_);
+            session_.begin_recording(recorded_in_, false, options_.trajectory);
             notice(fmt::format("recording into {}", recorded_in_.string()));
         }
     } catch (const LoadError& error) {
@@ -157,6 +167,18 @@ void Sandbox::perform(Action action) {
             break;
         case Action::Screenshot:
             wants_shot_ = true;
+            break;
+        case Action::Film:
+            film_or_end();
+            break;
+        case Action::Export:
+            ask_for_export();
+            break;
+        case Action::PlayTrajectory:
+            if (frame_.readout.playback) session_.send(play_or_pause(*frame_.readout.playback));
+            break;
+        case Action::TrajectoryStart:
+            if (frame_.readout.playback) session_.send(play_from_start());
             break;
         case Action::RestartGraphics:
             restart_graphics();

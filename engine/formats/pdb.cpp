@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <set>
 #include <system_error>
@@ -389,6 +390,28 @@ Structure parse_pdb(std::string_view text, const std::string& file) {
 
 Structure read_pdb(const std::filesystem::path& path) {
     return parse_pdb(read_text_file(path), path.string());
+}
+
+Structure with_short_chains(Structure structure) {
+    constexpr std::string_view letters =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789";
+    std::map<std::string, std::string> names;
+    std::set<std::string> taken;
+    for (const AtomRecord& record : structure.records) {
+        if (record.chain.size() <= 1) taken.insert(record.chain);
+    }
+    for (AtomRecord& record : structure.records) {
+        if (record.chain.size() <= 1) continue;
+        const auto [name, is_new] = names.try_emplace(record.chain);
+        if (is_new) {
+            std::size_t at = 0;
+            while (at < letters.size() && taken.contains(std::string(1, letters[at]))) ++at;
+            name->second = std::string(1, letters[at < letters.size() ? at : 0]);
+            taken.insert(name->second);
+        }
+        record.chain = name->second;
+    }
+    return structure;
 }
 
 std::string format_pdb(const Structure& structure, std::string_view title) {

@@ -28,9 +28,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <optional>
-#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -81,29 +79,6 @@ void check_size(const Structure& structure) {
     throw LoadError({structure.file}, fmt::format("{} atoms; expected at most {}: leave out "
                                                   "what is not needed with --without, waters first",
                                                   atoms, most_atoms));
-}
-
-// A PDB file has one column for a chain; longer names become letters that are free, in turn.
-Structure with_short_chains(Structure structure) {
-    constexpr std::string_view letters =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789";
-    std::map<std::string, std::string> names;
-    std::set<std::string> taken;
-    for (const AtomRecord& record : structure.records) {
-        if (record.chain.size() <= 1) taken.insert(record.chain);
-    }
-    for (AtomRecord& record : structure.records) {
-        if (record.chain.size() <= 1) continue;
-        const auto [name, is_new] = names.try_emplace(record.chain);
-        if (is_new) {
-            std::size_t at = 0;
-            while (at < letters.size() && taken.contains(std::string(1, letters[at]))) ++at;
-            name->second = std::string(1, letters[at < letters.size() ? at : 0]);
-            taken.insert(name->second);
-        }
-        record.chain = name->second;
-    }
-    return structure;
 }
 
 // Names and numbers must fit the columns of the files that will be written, which is known before

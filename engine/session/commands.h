@@ -4,6 +4,7 @@
 #include "scene/description.h"
 #include "scene/edits.h"
 #include "simulation/accuracy_controller.h"
+#include "simulation/playback.h"
 #include "view/build_frame.h"
 
 #include <cstdint>
@@ -33,7 +34,8 @@ struct Reset {
     std::optional<double> start_angstrom{};
 };
 // An edit is made at once, whatever time it says.
-using Command = std::variant<LiveSettings, ViewSettings, Pause, StepOnce, Reset, EditDescription>;
+using Command = std::variant<LiveSettings, ViewSettings, Pause, StepOnce, Reset, EditDescription,
+                             PlaybackOrder>;
 
 inline EditDescription edit_now(EditAction action) {
     return {0, 0, std::move(action), {"not done"}};
@@ -54,6 +56,7 @@ struct Readout {
     std::string problem;              // why the last Reset or edit failed; else empty
     std::string engine;               // how a remote engine fares, a sentence; empty: there is none
     std::string edit_under_way;       // its key in a scene file; empty: none
+    std::optional<PlaybackState> playback;  // where a trajectory is played
 };
 
 // How the servo fares.

@@ -30,7 +30,8 @@ struct StepEvent {
 };
 // Whatever hands do meanwhile moves nothing, and they feel nothing.
 struct HoldEvent {};
-// All but ViewSettings, which are the window's business. `settles`: hands are not to be felt yet.
+// All but ViewSettings, which are the window's business, and PlaybackOrder: what plays a trajectory
+// is not recorded. `settles`: hands are not to be felt yet.
 // `is_long`: an edit, which another thread makes while the world stands still.
 struct CommandEvent {
     Command command;

@@ -49,7 +49,7 @@ SceneDescription as_live(SceneDescription scene) {
 }  // namespace
 
 LiveSimulation::LiveSimulation(const SceneDescription& scene, std::vector<HandDevice> devices,
-                               ServoLine& line)
+                               ServoLine& line, const std::optional<PlaybackChoice>& playback)
     : scene_(scene),
       devices_(std::move(devices)),
       line_(line),
@@ -61,6 +61,7 @@ LiveSimulation::LiveSimulation(const SceneDescription& scene, std::vector<HandDe
       orders_(devices_.size()) {
     PALPA_ASSERT(!devices_.empty() && devices_.size() <= find_hands(world_).size());
     for (const HandDevice& device : devices_) check_period(device.spec, scene.period_ms * 1e-3);
+    if (playback) start_playback(world_, playback->file, playback->order);
     play(PublishEvent{});
     post_orders();
 }
@@ -158,7 +159,9 @@ void LiveSimulation::obey(const Reset& reset) {
     const std::vector<std::uint32_t> last_starts = list_starts();
     renewals_.await();
     try {
-        world_ = load_world(as_live(scene_));
+        World start = load_world(as_live(scene_));
+        carry_playback(world_, start);
+        world_ = std::move(start);
     } catch (const LoadError& error) {  // the files changed meanwhile: what runs, runs on
         readout_.problem = error.what();
         return;

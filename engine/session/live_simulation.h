@@ -36,7 +36,10 @@ public:
     // Loads the scene and posts the first contact models and orders. `devices` are for the hands of
     // the world, in their order; hands beyond these stand still. Throws LoadError, and where a
     // device must not be run with the scene's period (check_period).
-    LiveSimulation(const SceneDescription& scene, std::vector<HandDevice> devices, ServoLine& line);
+    // `playback`: a trajectory of the scene's atoms to play (simulation/playback.h); its scene is
+    // one by as_played. Throws LoadError as start_playback does.
+    LiveSimulation(const SceneDescription& scene, std::vector<HandDevice> devices, ServoLine& line,
+                   const std::optional<PlaybackChoice>& playback = {});
 
     // `poses`: the newest of all hands.
     void play(const LiveEvent& event, std::span<const HandPose> poses);
@@ -51,6 +54,8 @@ public:
     // then adopts it. Edits and resets wait for that thread.
     void start_renewal();
     bool has_renewal();  // one is made, and not yet adopted
+
+    void order(const PlaybackOrder& order) { order_playback(world_, order); }
 
     const World& world() const noexcept { return world_; }
     const SceneDescription& scene() const noexcept { return scene_; }

@@ -22,6 +22,7 @@
 #include <set>
 #include <string_view>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 namespace palpa {
@@ -213,6 +214,7 @@ std::vector<fs::path> list_recorded(const fs::path& folder) {
         }
         files.push_back(file);
     }
+    for (fs::path& file : list_trajectory_files(folder)) files.push_back(std::move(file));
     for (const fs::path& file : list_own_folder(folder / "inputs")) {
         const std::string name = fmt::format("\"inputs/{}\"", file.filename().string());
         if (session.find(name) != std::string::npos) files.push_back(file);
@@ -506,8 +508,27 @@ void Recording::add_input(const std::string& name, const std::string& content) {
                     Existing::Replace);
 }
 
+void Recording::begin_trajectory(const TrajectorySettings& settings) {
+    trajectory_.emplace(folder_, settings);
+    sampler_.emplace(settings.per_second);
+}
+
+void Recording::add_frame(const TrajectoryShot& shot) {
+    if (trajectory_) trajectory_->add(shot);
+}
+
+void Recording::sample(const World& world, double time_s, std::uint64_t edition) {
+    if (!sampler_) return;
+    if (const auto shot = sampler_->take(world, time_s, edition)) add_frame(*shot);
+}
+
+std::vector<std::string> Recording::take_notes() {
+    return trajectory_ ? trajectory_->take_notes() : std::vector<std::string>();
+}
+
 void Recording::finish(const Summary& summary) {
     flush();
+    if (trajectory_) trajectory_->close();
     write_text_file(folder_ / "summary.json", format_summary(scene_, summary));
 }
 

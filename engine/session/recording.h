@@ -1,10 +1,12 @@
 // A session on disk: a folder with trace.csv, summary.json, session.toml and the scene's inputs;
-// one from a window has a journal.txt too (session/journal.h).
+// one from a window has a journal.txt too (session/journal.h), and where asked there is a
+// trajectory (session/trajectory_recorder.h).
 #pragma once
 #include "core/files.h"
 #include "haptics/servo.h"
 #include "scene/description.h"
 #include "session/statistics.h"
+#include "session/trajectory_recorder.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -13,6 +15,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace palpa {
 
@@ -73,6 +76,15 @@ public:
     // where it cannot be written.
     void add_input(const std::string& name, const std::string& content);
 
+    // A trajectory beside the trace, from its first frame on. What keeps it from being written is
+    // a note.
+    void begin_trajectory(const TrajectorySettings& settings);
+    void add_frame(const TrajectoryShot& shot);
+    // What a user should know of it, a sentence each, since the last call.
+    std::vector<std::string> take_notes();
+    // Of the run's world, where one runs in the recorder's own thread (run_headless).
+    void sample(const World& world, double time_s, std::uint64_t edition);
+
     // Writes what is left of the trace, and the summary.
     void finish(const Summary& summary);
 
@@ -84,6 +96,8 @@ private:
     std::size_t hands_;
     std::optional<FolderLock> lock_;
     std::optional<NewFile> trace_, journal_;
+    std::optional<TrajectoryFiles> trajectory_;
+    std::optional<TrajectorySampler> sampler_;
     std::string rows_;
     std::uint64_t tick_ = 0;
 };

@@ -537,11 +537,12 @@ Summary run_headless(const SceneDescription& scene, World& world, std::span<Devi
     EditPlayer edits(scene);
     EditHistory history;
 
-    std::uint64_t done = 0, drawn = 0;
+    std::uint64_t done = 0, drawn = 0, edition = 0;
     const auto step = [&](std::span<const HandPose> poses, std::span<const ContactModel> felt) {
         const double now_s = static_cast<double>(done - 1) * servo_tick_s;
         const std::vector<EditDescription> due = edits.take_due(now_s);
         for (const EditDescription& edit : due) history.apply(world, edit);
+        edition += due.size();
         if (!due.empty()) renew_servos(world, hands);
         step_world(world, {poses, felt});
         log.add_step(world);
@@ -555,6 +556,7 @@ Summary run_headless(const SceneDescription& scene, World& world, std::span<Devi
         }
         log.add_ticks(now);
         if (recording) recording->add(now);
+        if (recording) recording->sample(world, now_s, edition);
         if (watch) watch(now);
         ++done;
         if (progress && done % ticks_between_progress == 0 && done < ticks) {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 #include <variant>
 
 namespace palpa {
@@ -66,7 +67,19 @@ void SessionRecorder::add(std::span<const LiveTick> ticks) {
     if (writer_.size() > journal_flush_bytes) flush();
 }
 
-void SessionRecorder::begin(const std::filesystem::path& folder, bool overwrites) {
+void SessionRecorder::add(const TrajectoryShot& shot) {
+    if (recording_) recording_->add_frame(shot);
+}
+
+std::vector<std::string> SessionRecorder::take_notes() {
+    std::vector<std::string> notes = std::exchange(notes_, {});
+    if (!recording_) return notes;
+    for (std::string& note : recording_->take_notes()) notes.push_back(std::move(note));
+    return notes;
+}
+
+void SessionRecorder::begin(const std::filesystem::path& folder, bool overwrites,
+                            const std::optional<TrajectorySettings>& trajectory) {
     flush();
     if (!is_whole_) {
         throw LoadError({folder.string()},
@@ -80,6 +93,7 @@ void SessionRecorder::begin(const std::filesystem::path& folder, bool overwrites
         recording_.reset();
         throw;
     }
+    if (trajectory) recording_->begin_trajectory(*trajectory);
     recording_->add_journal(kept_);
     statistics_.assign(devices_.size(), Statistics(servo_tick_s));
     writer_.begin_recording();
@@ -99,6 +113,7 @@ void SessionRecorder::end() {
     warn_of_outcome(summary);
     try {
         recording_->finish(summary);
+        notes_ = recording_->take_notes();
     } catch (const LoadError&) {
         recording_.reset();
         throw;

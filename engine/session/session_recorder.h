@@ -30,7 +30,12 @@ public:
 
     // The ticks from now on go into the folder's trace. Throws LoadError where a Recording would,
     // or where the session's beginning is no longer known.
-    void begin(const std::filesystem::path& folder, bool overwrites);
+    void begin(const std::filesystem::path& folder, bool overwrites,
+               const std::optional<TrajectorySettings>& trajectory = {});
+    // A frame of its trajectory; nothing where nothing is recorded.
+    void add(const TrajectoryShot& shot);
+    // What a user should know of it, a sentence each, since the last call.
+    std::vector<std::string> take_notes();
     // As it is, without a summary.
     void give_up() noexcept { recording_.reset(); }
     // Ends in order; nothing where nothing is recorded. Throws LoadError where it cannot be
@@ -58,6 +63,7 @@ private:
     std::string kept_;
     bool is_whole_ = true;
     std::optional<Recording> recording_;
+    std::vector<std::string> notes_;      // of recordings that are over
     std::vector<Statistics> statistics_;  // of what is recorded, of each hand
 };
 

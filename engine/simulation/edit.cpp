@@ -8,6 +8,7 @@
 #include "simulation/load.h"
 #include "simulation/mechanics.h"
 #include "simulation/molecules.h"
+#include "simulation/playback.h"
 #include "simulation/remote_engine.h"
 #include "simulation/resources.h"
 #include "simulation/sources.h"
@@ -115,6 +116,7 @@ void keep_clock_and_devices(const World& world, World& other) {
         if (now && then) then->answer.model.start = now->answer.model.start + 1;
     });
     other.resource<Clock>() = world.resource<Clock>();
+    carry_playback(world, other);
 }
 
 // Changes a copy, which takes the world's place only if all went well.

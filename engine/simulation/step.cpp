@@ -8,6 +8,7 @@
 #include "simulation/systems/follow_engine.h"
 #include "simulation/systems/follow_hands.h"
 #include "simulation/systems/measure.h"
+#include "simulation/systems/play_trajectory.h"
 #include "simulation/systems/publish_contact.h"
 #include "simulation/systems/relax.h"
 
@@ -22,6 +23,7 @@ using System = void (*)(World&, const StepInput&);
 
 // The step.
 constexpr System systems[] = {
+    play_trajectory,  // the frame that is due, where one is played
     follow_hands,     // device poses to poses of what is held, and ends of springs
     choose_active,    // which joints and bases move
     relax,            // these towards rest

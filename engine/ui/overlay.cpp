@@ -7,6 +7,7 @@
 #include "simulation/held.h"
 #include "simulation/load.h"
 #include "ui/layout.h"
+#include "ui/playback_panel.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -244,7 +245,12 @@ void Overlay::draw(const Readout& readout, const OverlayStatus& status,
         draw_right_panel(commands);
         if (!status.hover.empty()) ImGui::SetTooltip("%s", status.hover.c_str());
     }
-    if (shows_lesson_ && !lesson_.steps().empty()) draw_lesson();
+    if (readout.playback) {  // in the lesson's place
+        const ImVec2 screen = ImGui::GetIO().DisplaySize;
+        draw_playback_panel(*readout.playback, free_area(screen.x, screen.y), commands);
+    } else if (shows_lesson_ && !lesson_.steps().empty()) {
+        draw_lesson();
+    }
     draw_warnings(readout, status);
     if (status.recorded_s) draw_recording(*status.recorded_s);
     if (shows_help_) draw_help();

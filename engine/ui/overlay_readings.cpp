@@ -131,6 +131,11 @@ void Overlay::draw_buttons(const Readout& readout, bool is_recording,
            Action::Save, actions);
     same_line_if_it_fits("Picture");
     button("Picture", "F12. A screenshot.", Action::Screenshot, actions);
+    same_line_if_it_fits("Film");
+    button("Film", "M. Films the window, until M again.", Action::Film, actions);
+    same_line_if_it_fits("Coordinates");
+    button("Coordinates", "E. Saves what is shown, or in hand: PDB, mmCIF, GRO, PSF and CRD.",
+           Action::Export, actions);
     same_line_if_it_fits(is_recording ? "End recording" : "Record");
     button(is_recording ? "End recording" : "Record",
            "F9. Writes what happens to a new folder, from which palpa replay plays it again.",

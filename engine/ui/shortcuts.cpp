@@ -17,6 +17,8 @@ constexpr std::array list = std::to_array<Shortcut>({
     {Key::Insert, false, Action::Add, "Insert", "add a molecule"},
     {Key::Delete, false, Action::Remove, "Delete", "remove the molecule in hand"},
     {Key::F9, false, Action::Record, "F9", "record the session; end the recording"},
+    {Key::T, false, Action::PlayTrajectory, "T", "trajectory: play, stop here"},
+    {Key::T, false, Action::TrajectoryStart, "Shift+T", "trajectory: from the beginning", true},
     {Key::Digit1, false, Action::Mode1, "1", "variable force and displacement gain"},
     {Key::Digit2, false, Action::Mode2, "2", "variable force gain"},
     {Key::Digit3, false, Action::Mode3, "3", "variable displacement gain"},
@@ -42,6 +44,8 @@ constexpr std::array list = std::to_array<Shortcut>({
     {Key::Minus, true, Action::SmallerText, "Ctrl+-", "smaller text"},
     {Key::Digit0, true, Action::UsualText, "Ctrl+0", "text as large as usual"},
     {Key::F12, false, Action::Screenshot, "F12", "screenshot"},
+    {Key::M, false, Action::Film, "M", "film the window; end the film"},
+    {Key::E, false, Action::Export, "E", "save coordinates for other programs"},
     {Key::F5, false, Action::RestartGraphics, "F5", "set the graphics up again"},
     {Key::Escape, false, Action::Quit, "Esc", "close a list or this help; quit"},
 });

@@ -157,6 +157,8 @@ int open_window(const SceneDescription& scene, const World& world, EmulatedOmniS
                     .second = {second.device.get(), second.orders, second.mouse_reach_m},
                     .record = options.record,
                     .overwrites = options.overwrites,
+                    .trajectory = trajectory_settings(options),
+                    .playback = playback_choice(options),
                     .pads = &devices.pads(),
                     .devices = options.play ? DeviceMenu() : devices.menu(),
                     .sound = build_sound_choice(options, preferences),

@@ -5,6 +5,7 @@
 #include "devices/emulated_omni.h"
 #include "experiments/emulated_hand.h"
 #include "formats/crd.h"
+#include "render/film.h"
 #include "render/picture.h"
 #include "scene/read_scene.h"
 #include "session/run_headless.h"
@@ -12,6 +13,7 @@
 #include "simulation/load.h"
 #include "tools/commands/choice.h"
 #include "tools/commands/command.h"
+#include "tools/commands/film.h"
 #include "tools/commands/progress.h"
 #include "view/clip.h"
 #include "view/first_view.h"
@@ -48,21 +50,20 @@ void apply_options(const RenderOptions& options, World& world, ViewDescription& 
     view.clip = options.clips.value_or(view.clip);
 }
 
-// Seen by that camera.
+// Stands first in what is written, by which it is known again.
+constexpr std::string_view coordinates_title = "Written by palpa render.\n";
+
+}  // namespace
+
 void finish_frame(const ViewDescription& view, const World& world, const OrbitCamera& camera,
                   FrameScene& frame) {
     if (view.clip) clip_in_front(held_range(world, first_hand(world)), camera, frame);
     frame.camera = frame_camera(camera, frame);
 }
 
-// Stands first in what is written, by which it is known again.
-constexpr std::string_view coordinates_title = "Written by palpa render.\n";
-
 float aspect_of(std::uint32_t width, std::uint32_t height) {
     return static_cast<float>(width) / static_cast<float>(std::max<std::uint32_t>(height, 1));
 }
-
-}  // namespace
 
 std::array<double, 3> read_camera(std::string_view text) {
     std::vector<double> numbers;
@@ -81,9 +82,28 @@ std::array<double, 3> read_camera(std::string_view text) {
     return {numbers[0], numbers[1], numbers[2]};
 }
 
+namespace {
+
+// What can be said of the options before anything is loaded.
+void check_render_options(const RenderOptions& options) {
+    if (options.image.empty() == !options.film)
+        throw LoadError({"palpa render"},
+                        "draws a picture or a film; expected -o FILE.png or "
+                        "--film FILE.mp4, one of them");
+    if (options.film && options.coordinates)
+        throw LoadError({"--coordinates"},
+                        "is of a picture; expected -o instead of --film, or palpa export");
+    if (options.film) check_film({*options.film, options.film_fps, options.overwrites});
+}
+
+}  // namespace
+
 int render_command(const RenderOptions& options) {
     SceneDescription scene = read_scene(options.scene, options.settings);
-    const Existing existing = check_output(options.image, picture_mark, options.overwrites);
+    check_render_options(options);
+    const Existing existing = options.film
+                                  ? Existing::Refuse
+                                  : check_output(options.image, picture_mark, options.overwrites);
     const Existing existing_coordinates =
         options.coordinates
             ? check_output(*options.coordinates, fmt::format("* {}", coordinates_title),
@@ -101,6 +121,7 @@ int render_command(const RenderOptions& options) {
     apply_options(options, world, scene.view);
     ViewSettings view = first_settings(scene.view, world);
     view.force_arrow = options.arrow;
+    if (options.film) return make_film(scene, world, view, options, progress);
     if (options.time_s > 0) {
         scene.seconds = options.time_s;
         EmulatedOmni device(build_emulated_omni(scene, world));
@@ -166,14 +187,28 @@ void FrameWriter::write(World& world) {
 void add_render(CLI::App& program, ProgramCommand& chosen) {
     CLI::App& render = *program.add_subcommand("render", "A picture of a scene; needs no display");
     RenderOptions& options = own_options<RenderOptions>(render, chosen, render_command);
-    describe(render, "Look and measure", {"palpa render scenes/hiv -o tunnel.png"});
+    describe(render, "Look and measure",
+             {"palpa render scenes/hiv -o tunnel.png",
+              "palpa render scenes/water --film water.mp4 --seconds 4"});
     render.add_option("scene", options.scene, "scene folder or file")->required();
-    render.add_option("-o,--output", options.image, "PNG file to write")->required();
+    render.add_option("-o,--output", options.image, "PNG file to write")->type_name("FILE.png");
+    CLI::Option* const film =
+        render
+            .add_option("--film", options.film,
+                        "a film instead, by ffmpeg; where that is not installed its pictures, in "
+                        "the folder FILE-frames")
+            ->type_name("FILE.mp4");
+    render.add_option("--seconds", options.film_seconds, "simulated, of the film, 10 unless given")
+        ->check(in_range(0.001, 1e5))
+        ->needs(film);
+    render.add_option("--fps", options.film_fps, "pictures in each of them, 25 unless given")
+        ->check(in_range(0.01, 1000.0))
+        ->needs(film);
     render.add_option("--coordinates", options.coordinates,
                       "CHARMM coordinates (.crd) to write too: where the atoms are in it");
     add_overwrite_flag(render, options.overwrites);
     add_size_option(render, "--size", options.width, options.height);
-    render.add_option("--time", options.time_s, "seconds that the hand plays before the picture")
+    render.add_option("--time", options.time_s, "seconds that the hand plays before")
         ->check(in_range(0.0, 1e5));
     render
         .add_option(

@@ -26,6 +26,8 @@ struct RenderOptions {
     std::optional<std::filesystem::path> coordinates;  // to write too
     std::uint32_t width = 1280, height = 720;
     double time_s = 0;  // simulated, under the emulated hand, before the picture
+    std::optional<std::filesystem::path> film;  // instead of the picture
+    double film_seconds = 10, film_fps = 25;    // simulated; pictures in each of them
     // Empty: as the scene's [view] says.
     std::string representation, colouring;
     std::string camera;   // azimuth, elevation in degrees, zoom
@@ -43,6 +45,13 @@ int render_command(const RenderOptions& options);
 // camera comes nearer than where it sees everything; as [view] has them. Throws LoadError that
 // names the option.
 std::array<double, 3> read_camera(std::string_view text);
+
+// Seen by that camera.
+void finish_frame(const ViewDescription& view, const World& world, const OrbitCamera& camera,
+                  FrameScene& frame);
+
+// Of a picture of this size.
+float aspect_of(std::uint32_t width, std::uint32_t height);
 
 // frames/0000.png and on in a recording, all from where the scene is seen at first.
 class FrameWriter {

@@ -10,6 +10,7 @@
 #include "scene/read_scene.h"
 #include "session/recording.h"
 #include "session/run_headless.h"
+#include "session/trajectory_recorder.h"
 #include "simulation/held.h"
 #include "simulation/load.h"
 #include "simulation/remote_engine.h"
@@ -56,6 +57,23 @@ void check_headless(const char* option, const std::string& device) {
 
 }  // namespace
 
+TrajectorySettings trajectory_settings(const RunOptions& options) {
+    TrajectorySettings settings{.writes_xtc = options.trajectory_xtc};
+    if (!options.trajectory_fps) return settings;
+    settings.per_second = *options.trajectory_fps;
+    settings.most_bytes.reset();  // who asks gets all of it
+    return settings;
+}
+
+std::optional<PlaybackChoice> playback_choice(const RunOptions& options) {
+    if (!options.trajectory) return std::nullopt;
+    PlaybackOrder order{.paused = options.trajectory_speed == 0,
+                        .frames_per_s = options.trajectory_speed,
+                        .frame = options.trajectory_frame - 1};
+    if (*order.paused) order.frames_per_s.reset();  // that of whoever lets it play
+    return PlaybackChoice{*options.trajectory, order};
+}
+
 void print_scene_keys() {
     fmt::print("| key | value | unless given | meaning |\n| --- | --- | --- | --- |\n");
     for (const FieldNote& field : list_fields()) {
@@ -69,8 +87,17 @@ namespace {
 // What can be said of the options before anything is loaded.
 void check_options(const RunOptions& options) {
     if (options.check_only) return;
+    if (!options.trajectory && (options.trajectory_speed != 25 || options.trajectory_frame != 1)) {
+        throw LoadError(
+            {options.trajectory_speed != 25 ? "--trajectory-speed" : "--trajectory-frame"},
+            "is of a trajectory that is played; expected --trajectory FILE too");
+    }
     if (!options.headless) return check_window_options(options);
     if (options.record) check_record_folder(*options.record, options.overwrites);
+    if (!options.record && (options.trajectory_fps || options.trajectory_xtc)) {
+        throw LoadError({options.trajectory_fps ? "--trajectory-fps" : "--trajectory-xtc"},
+                        "is of a recording; expected --record FOLDER too");
+    }
     if (options.last_shot || options.play || options.sound) {
         throw LoadError({options.play    ? "--play"
                          : options.sound ? "--sound"
@@ -120,6 +147,10 @@ void print_warnings(std::span<const std::string> warnings) {
     }
 }
 
+void print_notes(const std::vector<std::string>& notes) {
+    for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", printable(note));
+}
+
 // The scene's hands on their devices.
 std::vector<std::unique_ptr<Device>> open_hands(const SceneDescription& scene, const World& world,
                                                 const RunOptions& options) {
@@ -142,6 +173,7 @@ int run_without_window(SceneDescription scene, World& world,
     std::optional<Recording> recording;
     if (options.record)
         recording.emplace(*options.record, scene, options.overwrites, devices.size());
+    if (recording) recording->begin_trajectory(trajectory_settings(options));
     std::vector<Device*> hands;
     for (const std::unique_ptr<Device>& device : devices) hands.push_back(device.get());
     if (options.record && (options.second.value_or("emulated") != "emulated" ||
@@ -149,6 +181,12 @@ int run_without_window(SceneDescription scene, World& world,
         warnings.emplace_back(
             "session.toml of this recording plays the scene's own hand; whoever runs it again has "
             "to name --device and --second again");
+    }
+    if (options.record && options.trajectory) {
+        warnings.emplace_back(
+            "session.toml of this recording has no trajectory to play; whoever runs it again has "
+            "to "
+            "name --trajectory again");
     }
     FrameClock frames;
     if (writer) {
@@ -166,6 +204,7 @@ int run_without_window(SceneDescription scene, World& world,
     if (noted_interrupt() != 0 || is_gone)
         scene.seconds = static_cast<double>(summary.ticks) / servo_rate_hz;
     print_warnings(std::span(summary.warnings).subspan(warnings.size()));
+    if (recording) print_notes(recording->take_notes());
     if (options.json) {
         fmt::print("{}", format_summary(scene, summary));
     } else {
@@ -185,7 +224,8 @@ int run_command(const RunOptions& options) {
     return run_scene(read_scene(options.scene, options.settings), options);
 }
 
-int run_scene(const SceneDescription& scene, const RunOptions& options) {
+int run_scene(const SceneDescription& read, const RunOptions& options) {
+    const SceneDescription scene = options.trajectory ? as_played(read) : read;
     check_options(options);
     check_second(options, scene);
     ProgressLine progress(!options.json);
@@ -193,6 +233,8 @@ int run_scene(const SceneDescription& scene, const RunOptions& options) {
     if (RemoteEngine* const engine = world.find_resource<RemoteEngine>();
         engine && options.headless)
         engine->wait_s = options.engine_wait_s;
+    const std::optional<PlaybackChoice> playback = playback_choice(options);
+    if (playback) start_playback(world, playback->file, playback->order);
     tell(progress.stages(), "planning the hand's way");
     const EmulatedOmniSettings settings = build_emulated_omni(scene, world);
     std::vector<std::string> warnings =
@@ -247,8 +289,8 @@ void add_headless_options(CLI::App& run, RunOptions& options) {
                  "in lockstep on a virtual clock: the same command gives the same bytes");
     CLI::Option* const record =
         run.add_option("--record", options.record,
-                       "record into this folder: trace.csv, summary.json, session.toml, frames; "
-                       "a window session also journal.txt")
+                       "record into this folder: trace.csv, summary.json, session.toml, "
+                       "trajectory.dcd with system.psf, frames; a window session also journal.txt")
             ->type_name("FOLDER")
             ->group("With and without a window");
     add_overwrite_flag(run, options.overwrites);
@@ -258,6 +300,26 @@ void add_headless_options(CLI::App& run, RunOptions& options) {
         ->check(in_range(0.01, 1000.0))
         ->needs(record);
     add_size_option(run, "--frame-size", options.frame_width, options.frame_height);
+    run.add_option("--trajectory", options.trajectory,
+                   "play this trajectory of the scene's atoms: .dcd, .xtc, .trr, or models of .pdb "
+                   "or .cif; molecules move in one piece, or as its frames have them")
+        ->type_name("FILE")
+        ->group("With and without a window");
+    run.add_option("--trajectory-speed", options.trajectory_speed,
+                   "its frames a second, 25 unless given; 0: it stands")
+        ->check(in_range(0.0, 1e5))
+        ->group("With and without a window");
+    run.add_option("--trajectory-frame", options.trajectory_frame,
+                   "the one it begins with, 1 the first")
+        ->check(in_range(1.0, 1e9))
+        ->group("With and without a window");
+    run.add_option("--trajectory-fps", options.trajectory_fps,
+                   "frames a simulated second of a recording's trajectory.dcd, 0 none; unless "
+                   "given 25, until there are 256 MiB")
+        ->check(in_range(0.0, 1000.0))
+        ->group("With and without a window");
+    run.add_flag("--trajectory-xtc", options.trajectory_xtc, "write trajectory.xtc too")
+        ->group("With and without a window");
     run.add_flag("--json", options.json, "print the summary as JSON");
 }
 
@@ -269,7 +331,8 @@ void add_run(CLI::App& program, ProgramCommand& chosen) {
     describe(run, "Feel",
              {"palpa run hiv", "palpa run scenes/water --headless --record recordings/water",
               "palpa run scenes/water --headless --mode 2 --period-ms 14 --friction 0",
-              "palpa run scenes/hiv/flexible.toml --play"});
+              "palpa run scenes/hiv/flexible.toml --play",
+              "palpa run scenes/hiv --trajectory others.xtc"});
     run.add_option("scene", options.scene,
                    "scene folder or file, recorded session.toml, or the name of one of Palpa's own "
                    "scenes")

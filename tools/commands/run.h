@@ -1,6 +1,8 @@
 // palpa run: a scene in a window, or headless under the emulated hand.
 #pragma once
 #include "scene/description.h"
+#include "session/trajectory_recorder.h"
+#include "simulation/playback.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -17,6 +19,11 @@ struct RunOptions {
     bool overwrites = false;       // an earlier recording, or an earlier picture of --shot
     double frames_per_second = 0;  // 0: no frames in the recording
     std::uint32_t frame_width = 640, frame_height = 360;
+    std::optional<double> trajectory_fps;  // frames a simulated second; nothing: as usual
+    bool trajectory_xtc = false;           // as XTC too
+    std::optional<std::filesystem::path> trajectory;  // of another program, to be played
+    double trajectory_speed = 25;                     // frames a second; 0: paused
+    std::size_t trajectory_frame = 1;                 // the first that is shown, from 1
     bool check_only = false;
     bool json = false;  // the summary as JSON on standard output
     bool headless = false;
@@ -33,6 +40,12 @@ struct RunOptions {
     std::uint64_t lose_device_at = 0;
     bool validation = false;  // of all that Vulkan is told
 };
+
+// Of the recordings of a run.
+TrajectorySettings trajectory_settings(const RunOptions& options);
+
+// Of another program, to be played.
+std::optional<PlaybackChoice> playback_choice(const RunOptions& options);
 
 // All keys of a scene file as a Markdown table, as scenes/keys.md has it.
 void print_scene_keys();

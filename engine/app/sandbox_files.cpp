@@ -1,0 +1,106 @@
+// What a person takes out of the window: coordinates and films.
+#include "app/sandbox.h"
+#include "core/files.h"
+#include "core/load_error.h"
+#include "session/coordinates.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+namespace palpa {
+namespace {
+
+// The first palpa-0001.pdb and so on that is free, with all that is written beside it.
+std::filesystem::path next_file(const std::filesystem::path& folder, const std::string& ending) {
+    for (int number = 1;; ++number) {
+        std::filesystem::path path = folder / fmt::format("palpa-{:04}{}", number, ending);
+        const auto is_taken = [](const std::filesystem::path& file) {
+            std::error_code error;
+            return std::filesystem::exists(file, error);
+        };
+        std::filesystem::path crd = path, frames = path;
+        crd.replace_extension(".crd");
+        frames += "-frames";
+        if (!is_taken(path) && !is_taken(frames) && !(ending == ".psf" && is_taken(crd)))
+            return path;
+    }
+}
+
+}  // namespace
+
+// As what, and then of what, where something is in hand.
+void Sandbox::ask_for_export() {
+    if (!has_frame_) return;
+    const auto as = [this](const char* ending) {
+        return [this, ending] { ask_what_to_export(ending); };
+    };
+    question_ = {"Save coordinates, as they are now, as",
+                 {{Key::P, "PDB (P)", as(".pdb")},
+                  {Key::C, "mmCIF (C)", as(".cif")},
+                  {Key::G, "GRO (G)", as(".gro")},
+                  {Key::S, "PSF and CRD (S)", as(".psf")},
+                  {Key::Escape, "Not (Esc)"}}};
+}
+
+void Sandbox::ask_what_to_export(const std::string& ending) {
+    const std::string in_hand = molecule_in_hand();
+    if (in_hand.empty()) return export_coordinates(ending, {});
+    question_ = {
+        "Save coordinates of",
+        {{Key::A, "all that is shown (A)", [this, ending] { export_coordinates(ending, {}); }},
+         {Key::H, fmt::format("{} in hand (H)", in_hand),
+          [this, ending, in_hand] { export_coordinates(ending, {in_hand}); }},
+         {Key::Escape, "Not (Esc)"}}};
+}
+
+void Sandbox::export_coordinates(const std::string& ending,
+                                 const std::vector<std::string>& molecules) {
+    try {
+        const World world = session_.copy_world();
+        const std::filesystem::path file = next_file(options_.screenshots, ending);
+        const std::vector<std::uint32_t> atoms = select_atoms(world, molecules);
+        write_text_files(format_coordinates(world, atoms, file, title_));
+        notice(fmt::format("saved {}: {} atoms", file.string(), atoms.size()));
+    } catch (const LoadError& error) {
+        notice(error.what(), first_notice_s);
+    }
+}
+
+void Sandbox::film_or_end() {
+    if (film_) {
+        film_->end();
+        return;
+    }
+    try {
+        filmed_in_ = next_file(options_.screenshots, ".mp4");
+        film_ = std::make_unique<FilmRecorder>(FilmSettings{.file = filmed_in_});
+    } catch (const LoadError& error) {
+        notice(error.what(), first_notice_s);
+    }
+}
+
+// How far it is, and what became of it.
+void Sandbox::tell_of_film() {
+    if (!film_) return;
+    constexpr double while_it_lasts_s = 1;
+    if (const std::optional<std::string> outcome = film_->outcome()) {
+        film_.reset();
+        notice(*outcome, first_notice_s);
+    } else if (film_->is_ended()) {
+        notice(fmt::format("making {}: {} pictures are still to be written", filmed_in_.string(),
+                           film_->waiting()),
+               while_it_lasts_s);
+    } else {
+        notice(
+            fmt::format("filming {}: {:.0f} s; M ends it", filmed_in_.string(), film_->filmed_s()),
+            while_it_lasts_s);
+    }
+}
+
+}  // namespace palpa

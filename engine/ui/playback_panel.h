@@ -1,0 +1,19 @@
+// The panel under the picture while a trajectory is played.
+#pragma once
+#include "session/commands.h"
+#include "ui/layout.h"
+
+#include <vector>
+
+namespace palpa {
+
+// Describes it to the overlay library, in the middle of `area`: play and pause, which frame, how
+// fast. What the person asks for is appended.
+void draw_playback_panel(const PlaybackState& state, const ScreenArea& area,
+                         std::vector<Command>& commands);
+
+// What the key of "play, pause" and that of "from the beginning" ask for.
+PlaybackOrder play_or_pause(const PlaybackState& state);
+PlaybackOrder play_from_start();
+
+}  // namespace palpa
