@@ -61,15 +61,14 @@ std::vector<ImdType> list_announced(const ImdSession& session) {
     if (session.time) types.push_back(ImdType::Time);
     if (session.energies) types.push_back(ImdType::Energies);
     if (session.box) types.push_back(ImdType::Box);
-    if (session.coordinates) types.push_back(ImdType::AtomCoordinates);
+    if (session.coordinates) types.push_back(ImdType::Coordinates);
     if (session.velocities) types.push_back(ImdType::Velocities);
     if (session.forces) types.push_back(ImdType::Forces);
     return types;
 }
 
 bool is_per_atom(ImdType type) noexcept {
-    return type == ImdType::AtomCoordinates || type == ImdType::Velocities ||
-           type == ImdType::Forces;
+    return type == ImdType::Coordinates || type == ImdType::Velocities || type == ImdType::Forces;
 }
 
 bool is_of_frame(ImdType type) noexcept {
@@ -110,7 +109,7 @@ std::size_t body_size_of(ImdType type, std::size_t length) noexcept {
             return 24;
         case ImdType::Box:
             return 36;
-        case ImdType::AtomCoordinates:
+        case ImdType::Coordinates:
         case ImdType::Velocities:
         case ImdType::Forces:
             return 12 * length;
@@ -240,7 +239,7 @@ void ImdDecoder::check_order() {
     }
     if (!is_of_engine_ || !is_of_frame(type)) return;
     if (version_ == 2) {
-        message_.completes_frame = type == ImdType::AtomCoordinates;
+        message_.completes_frame = type == ImdType::Coordinates;
         return;
     }
     if (next_ == announced_.size() || announced_[next_] != type) {
@@ -267,7 +266,7 @@ void ImdDecoder::check_length() {
         case ImdType::Session:
             if (length != 7) refuse_length("7");
             return;
-        case ImdType::AtomCoordinates:
+        case ImdType::Coordinates:
         case ImdType::Velocities:
         case ImdType::Forces:
             if (limits_.atoms == 0) {
@@ -341,7 +340,7 @@ void ImdDecoder::read_body() {
                 }
             }
             return;
-        case ImdType::AtomCoordinates:
+        case ImdType::Coordinates:
             return read_vectors(bytes_, imd_farthest, "numbers within a million Å");
         case ImdType::Velocities:
             return read_vectors(bytes_, std::numeric_limits<float>::max(), "finite numbers");

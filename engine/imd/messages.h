@@ -21,23 +21,23 @@
 namespace palpa {
 
 enum class ImdType : std::int32_t {
-    Disconnect,       // from a client; an engine just closes
-    Energies,         // from the engine
-    AtomCoordinates,  // from the engine
-    Go,               // from a client, its answer to the handshake
-    Handshake,        // from the engine; the version
-    Kill,             // from a client: the engine should end
-    ClientForces,     // from a client (also called MDComm)
-    Pause,            // from a client; in version 2 a second one resumes
-    Rate,             // from a client: steps between frames, less than 1 for the engine's own
-    Error,            // never sent by engines in order
-    Session,          // from the engine; this and all below in version 3 alone
-    Resume,           // from a client
-    Time,             // from the engine
-    Box,              // from the engine
-    Velocities,       // from the engine
-    Forces,           // from the engine
-    Wait,             // from a client: 0, the engine goes on without clients
+    Disconnect,    // from a client; an engine just closes
+    Energies,      // from the engine
+    Coordinates,   // from the engine
+    Go,            // from a client, its answer to the handshake
+    Handshake,     // from the engine; the version
+    Kill,          // from a client: the engine should end
+    ClientForces,  // from a client (also called MDComm)
+    Pause,         // from a client; in version 2 a second one resumes
+    Rate,          // from a client: steps between frames, less than 1 for the engine's own
+    Error,         // never sent by engines in order
+    Session,       // from the engine; this and all below in version 3 alone
+    Resume,        // from a client
+    Time,          // from the engine
+    Box,           // from the engine
+    Velocities,    // from the engine
+    Forces,        // from the engine
+    Wait,          // from a client: 0, the engine goes on without clients
 };
 
 // As a sentence has it, "coordinates"; "type 99" where there is none.
