@@ -8,6 +8,7 @@
 #include "simulation/systems/follow_hands.h"
 #include "simulation/systems/measure.h"
 #include "simulation/systems/publish_contact.h"
+#include "simulation/systems/pull_by_clients.h"
 #include "simulation/systems/relax.h"
 
 #include <chrono>
@@ -22,6 +23,7 @@ using System = void (*)(World&, const StepInput&);
 // The step.
 constexpr System systems[] = {
     follow_hands,     // device poses to poses of what is held, and ends of springs
+    pull_by_clients,  // forces of clients to ends of springs
     choose_active,    // which joints and bases move
     relax,            // these towards rest
     publish_contact,  // a contact model for every hand
