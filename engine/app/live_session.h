@@ -9,6 +9,7 @@
 #include "render/frame_scene.h"
 #include "scene/description.h"
 #include "session/commands.h"
+#include "session/frame_server.h"
 #include "session/journal_queue.h"
 #include "session/live_simulation.h"
 #include "session/servo_bank.h"
@@ -62,10 +63,12 @@ struct LiveFrame {
 class LiveSession {
 public:
     // Loads the scene and starts all threads. `devices` are of the hands of the scene, in their
-    // order; hands beyond these stand still. `clock`: null is the machine's. Throws LoadError, and
-    // where a device must not be run with the scene's period (check_period).
+    // order; hands beyond these stand still. `clock`: null is the machine's. `server` serves the
+    // session and belongs to its simulation's thread meanwhile; null: nobody does. Throws
+    // LoadError, and where a device must not be run with the scene's period (check_period).
     LiveSession(const SceneDescription& scene, const ViewSettings& view,
-                std::span<const LiveDevice> devices, LiveClock* clock = nullptr);
+                std::span<const LiveDevice> devices, LiveClock* clock = nullptr,
+                FrameServer* server = nullptr);
     // With one device.
     LiveSession(const SceneDescription& scene, const ViewSettings& view, Device& device,
                 HandOrders* orders, LiveClock* clock = nullptr);
@@ -94,6 +97,9 @@ public:
 
     ServoHealth servo_health() const noexcept;
 
+    // What the server told since the last call.
+    std::vector<std::string> take_server_notes();
+
     // Records from now on into the folder, with the journal since the session began. Throws
     // LoadError where a Recording would, or where something is recorded already.
     void begin_recording(const std::filesystem::path& folder, bool overwrites = false);
@@ -114,6 +120,7 @@ private:
     void obey(const Command& command);
     void make(const EditDescription& edit);
     void adopt_edit();
+    void serve_clients(bool is_before_step);
     void change_device(const DeviceEvent& change, const LiveDevice& device);
     void post_frame_if_wanted();
     void record_what_happened();
@@ -128,6 +135,7 @@ private:
     ServoBank servos_;
     std::unique_ptr<Line> line_;
     LiveSimulation simulation_;
+    FrameServer* server_;
     std::unique_ptr<Ticks> ticks_;
     JournalQueue journal_queue_;
     Mailbox<LiveFrame> frames_;
@@ -138,6 +146,7 @@ private:
     std::mutex mutex_;  // of the commands
     std::condition_variable has_command_;
     std::vector<Command> commands_;
+    std::vector<std::string> server_notes_;
     struct DeviceChange {
         DeviceEvent event;
         LiveDevice device;

@@ -12,6 +12,7 @@
 #include "view/clip.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <algorithm>
 #include <cmath>
 #include <system_error>
@@ -69,7 +70,7 @@ Sandbox::Sandbox(const SceneDescription& scene, Device& device, const WindowOpti
       hands_(list_window_hands(device, options)),
       text_scale_(options.text_scale.scale),
       window_("Palpa - " + scene.title, options.width, options.height),
-      session_(scene, options.view, list_devices(hands_)),
+      session_(scene, options.view, list_devices(hands_), nullptr, options.server),
       overlay_(scene),
       saved_(overlay_.settings()),
       first_(scene.view),
@@ -153,6 +154,8 @@ void Sandbox::frame() {
         tell_what_is_held();
         tell_what_was_edited();
     }
+    if (const std::vector<std::string> notes = session_.take_server_notes(); !notes.empty())
+        notice(fmt::format("{}", fmt::join(notes, "\n")));
     take_input();
     look_for_devices();
     play_force();

@@ -4,6 +4,7 @@
 #include "scene/description.h"
 #include "scene/edits.h"
 #include "simulation/accuracy_controller.h"
+#include "simulation/client_pull.h"
 #include "view/build_frame.h"
 
 #include <cstdint>
@@ -32,8 +33,9 @@ struct Reset {
     // On a line, Å: where it is to start from now on, if not where it did.
     std::optional<double> start_angstrom{};
 };
-// An edit is made at once, whatever time it says.
-using Command = std::variant<LiveSettings, ViewSettings, Pause, StepOnce, Reset, EditDescription>;
+// An edit is made at once, whatever time it says. A pull lasts until the next one.
+using Command =
+    std::variant<LiveSettings, ViewSettings, Pause, StepOnce, Reset, EditDescription, ClientPull>;
 
 inline EditDescription edit_now(EditAction action) {
     return {0, 0, std::move(action), {"not done"}};

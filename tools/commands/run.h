@@ -1,5 +1,7 @@
 // palpa run: a scene in a window, or headless under the emulated hand.
 #pragma once
+#include "tools/commands/serve.h"
+
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -29,6 +31,7 @@ struct RunOptions {
     double last_shot_s = 5;
     std::uint64_t lose_device_at = 0;
     bool validation = false;  // of all that Vulkan is told
+    ServeChoice serve;
 };
 
 // All keys of a scene file as a Markdown table, as scenes/keys.md has it.
