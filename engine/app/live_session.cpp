@@ -109,7 +109,7 @@ private:
 };
 
 LiveSession::LiveSession(const SceneDescription& scene, const ViewSettings& view,
-                         std::span<const LiveDevice> devices, LiveClock* clock,
+                         std::span<const LiveDevice> devices, LiveClock* clock, FrameServer* server,
                          const std::optional<PlaybackChoice>& playback)
     : clock_(clock ? *clock : machine_clock_),
       devices_(devices.begin(), devices.end()),
@@ -117,6 +117,7 @@ LiveSession::LiveSession(const SceneDescription& scene, const ViewSettings& view
       servos_(devices.size()),
       line_(std::make_unique<Line>(servos_)),
       simulation_(scene, describe(devices), *line_, playback),
+      server_(server),
       ticks_(std::make_unique<Ticks>()),
       journal_queue_(devices.size(), line_->posted()),
       plays_(playback.has_value()),
@@ -329,6 +330,7 @@ void LiveSession::run_simulation() {
     LiveClock::Moment next = clock_.now();
     while (!stopping_) {
         adopt_edit();
+        serve_clients(false);
         const bool settles = clock_.now() < settled_;
         const bool is_paused = simulation_.readout().paused;
         if (building_.valid()) {
@@ -336,6 +338,7 @@ void LiveSession::run_simulation() {
             // same contact model lets their forces fade.
         } else if (!settles && (!is_paused || step_once_)) {
             step_once_ = false;
+            serve_clients(true);
             play(PublishEvent{});
             play(StepEvent{{}, simulation_.has_renewal()});
             simulation_.start_renewal();
@@ -412,6 +415,32 @@ void LiveSession::make(const EditDescription& edit) {
     const bool is_long = simulation_.takes_long(edit);
     play(CommandEvent{edit, clock_.now() < settled_, is_long});
     if (is_long) building_ = std::async(std::launch::async, [this] { simulation_.build_draft(); });
+}
+
+// Forces of clients are events of the session, so that a journal has them.
+void LiveSession::serve_clients(bool is_before_step) {
+    if (!server_) return;
+    if (is_before_step) {
+        server_->send(simulation_.world());
+        return;
+    }
+    server_->poll(0);
+    if (std::optional<ClientPull> pull = server_->take_pull())
+        play(CommandEvent{std::move(*pull), clock_.now() < settled_});
+    std::vector<std::string> notes = server_->take_notes();
+    if (notes.empty()) return;
+    const std::lock_guard lock(mutex_);
+    constexpr std::size_t most_notes = 100;
+    for (std::string& note : notes) server_notes_.push_back(std::move(note));
+    if (server_notes_.size() > most_notes) {
+        server_notes_.erase(server_notes_.begin(),
+                            server_notes_.end() - static_cast<std::ptrdiff_t>(most_notes));
+    }
+}
+
+std::vector<std::string> LiveSession::take_server_notes() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(server_notes_, {});
 }
 
 // As soon as it is built; then those that had to wait, up to the next that takes long.

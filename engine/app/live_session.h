@@ -9,6 +9,7 @@
 #include "render/frame_scene.h"
 #include "scene/description.h"
 #include "session/commands.h"
+#include "session/frame_server.h"
 #include "session/journal_queue.h"
 #include "session/live_simulation.h"
 #include "session/servo_bank.h"
@@ -62,11 +63,12 @@ struct LiveFrame {
 class LiveSession {
 public:
     // Loads the scene and starts all threads. `devices` are of the hands of the scene, in their
-    // order; hands beyond these stand still. `clock`: null is the machine's. Throws LoadError, and
-    // where a device must not be run with the scene's period (check_period).
+    // order; hands beyond these stand still. `clock`: null is the machine's. `server` serves the
+    // session and belongs to its simulation's thread meanwhile; null: nobody does. Throws
+    // LoadError, and where a device must not be run with the scene's period (check_period).
     LiveSession(const SceneDescription& scene, const ViewSettings& view,
                 std::span<const LiveDevice> devices, LiveClock* clock = nullptr,
-                const std::optional<PlaybackChoice>& playback = {});
+                FrameServer* server = nullptr, const std::optional<PlaybackChoice>& playback = {});
     // With one device.
     LiveSession(const SceneDescription& scene, const ViewSettings& view, Device& device,
                 HandOrders* orders, LiveClock* clock = nullptr);
@@ -98,6 +100,9 @@ public:
 
     ServoHealth servo_health() const noexcept;
 
+    // What the server told since the last call.
+    std::vector<std::string> take_server_notes();
+
     // Records from now on into the folder, with the journal since the session began. Throws
     // LoadError where a Recording would, where something is recorded already, and where a
     // trajectory is played, which no journal has.
@@ -122,6 +127,7 @@ private:
     void obey(const Command& command);
     void make(const EditDescription& edit);
     void adopt_edit();
+    void serve_clients(bool is_before_step);
     void change_device(const DeviceEvent& change, const LiveDevice& device);
     void post_frame_if_wanted();
     void record_what_happened();
@@ -136,6 +142,7 @@ private:
     ServoBank servos_;
     std::unique_ptr<Line> line_;
     LiveSimulation simulation_;
+    FrameServer* server_;
     std::unique_ptr<Ticks> ticks_;
     JournalQueue journal_queue_;
     TrajectoryQueue trajectory_queue_;
@@ -147,6 +154,7 @@ private:
     std::mutex mutex_;  // of the commands
     std::condition_variable has_command_;
     std::vector<Command> commands_;
+    std::vector<std::string> server_notes_;
     struct DeviceChange {
         DeviceEvent event;
         LiveDevice device;

@@ -12,6 +12,7 @@
 #include "view/clip.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <algorithm>
 #include <cmath>
 #include <system_error>
@@ -69,7 +70,8 @@ Sandbox::Sandbox(const SceneDescription& scene, Device& device, const WindowOpti
       hands_(list_window_hands(device, options)),
       text_scale_(options.text_scale.scale),
       window_("Palpa - " + scene.title, options.width, options.height),
-      session_(scene, options.view, list_devices(hands_), nullptr, options.playback),
+      session_(scene, options.view, list_devices(hands_), nullptr, options.server,
+               options.playback),
       overlay_(scene),
       title_(scene.title),
       saved_(overlay_.settings()),
@@ -156,6 +158,8 @@ void Sandbox::frame() {
         if (session_.recorded_s()) tell_recording_notes();
     }
     tell_of_film();
+    if (const std::vector<std::string> notes = session_.take_server_notes(); !notes.empty())
+        notice(fmt::format("{}", fmt::join(notes, "\n")));
     take_input();
     look_for_devices();
     play_force();

@@ -20,6 +20,8 @@
 
 namespace palpa {
 
+class FrameServer;
+
 // A device in the hand's place.
 struct WindowDevice {
     std::unique_ptr<Device> device;
@@ -78,7 +80,8 @@ struct WindowOptions {
     // Writes the scene with these settings, shown so, and says where; throws LoadError. Empty:
     // cannot.
     std::function<std::string(const LiveSettings&, const ViewDescription&)> save{};
-    std::string notice{};  // to begin with
+    std::string notice{};           // to begin with
+    FrameServer* server = nullptr;  // of the simulation's thread meanwhile
     double most_frames_per_s = 60;
     std::uint64_t lose_device_at = 0;  // frame at which the graphics device is given up, for tests
     StudyCourse* study = nullptr;      // the window is for this alone: no overlays, one key

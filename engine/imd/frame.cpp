@@ -53,7 +53,7 @@ bool ImdFrameBuilder::add(const ImdMessage& message, ImdFrame& frame) {
         case ImdType::Box:
             building_.box = message.box;
             break;
-        case ImdType::Coordinates:
+        case ImdType::Positions:
             read_vectors(message.values, 1, building_.coordinates);
             break;
         case ImdType::Velocities:
@@ -91,12 +91,12 @@ void add_imd_frame(ImdBytes& bytes, int version, std::endian order, const ImdSes
     };
     if (version == 2) {
         if (frame.energies) add_energies();
-        return add(ImdType::Coordinates, frame.coordinates, 1);
+        return add(ImdType::Positions, frame.coordinates, 1);
     }
     if (session.time) add_imd_time(bytes, order, frame.time.value_or(ImdTime{}));
     if (session.energies) add_energies();
     if (session.box) add_imd_box(bytes, order, frame.box.value_or(ImdBox{}));
-    if (session.coordinates) add(ImdType::Coordinates, frame.coordinates, 1);
+    if (session.coordinates) add(ImdType::Positions, frame.coordinates, 1);
     if (session.velocities) add(ImdType::Velocities, frame.velocities, 1);
     if (session.forces) add(ImdType::Forces, frame.forces, units.force);
 }

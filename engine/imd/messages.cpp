@@ -61,14 +61,14 @@ std::vector<ImdType> list_announced(const ImdSession& session) {
     if (session.time) types.push_back(ImdType::Time);
     if (session.energies) types.push_back(ImdType::Energies);
     if (session.box) types.push_back(ImdType::Box);
-    if (session.coordinates) types.push_back(ImdType::Coordinates);
+    if (session.coordinates) types.push_back(ImdType::Positions);
     if (session.velocities) types.push_back(ImdType::Velocities);
     if (session.forces) types.push_back(ImdType::Forces);
     return types;
 }
 
 bool is_per_atom(ImdType type) noexcept {
-    return type == ImdType::Coordinates || type == ImdType::Velocities || type == ImdType::Forces;
+    return type == ImdType::Positions || type == ImdType::Velocities || type == ImdType::Forces;
 }
 
 bool is_of_frame(ImdType type) noexcept {
@@ -109,7 +109,7 @@ std::size_t body_size_of(ImdType type, std::size_t length) noexcept {
             return 24;
         case ImdType::Box:
             return 36;
-        case ImdType::Coordinates:
+        case ImdType::Positions:
         case ImdType::Velocities:
         case ImdType::Forces:
             return 12 * length;
@@ -239,7 +239,7 @@ void ImdDecoder::check_order() {
     }
     if (!is_of_engine_ || !is_of_frame(type)) return;
     if (version_ == 2) {
-        message_.completes_frame = type == ImdType::Coordinates;
+        message_.completes_frame = type == ImdType::Positions;
         return;
     }
     if (next_ == announced_.size() || announced_[next_] != type) {
@@ -266,7 +266,7 @@ void ImdDecoder::check_length() {
         case ImdType::Session:
             if (length != 7) refuse_length("7");
             return;
-        case ImdType::Coordinates:
+        case ImdType::Positions:
         case ImdType::Velocities:
         case ImdType::Forces:
             if (limits_.atoms == 0) {
@@ -340,7 +340,7 @@ void ImdDecoder::read_body() {
                 }
             }
             return;
-        case ImdType::Coordinates:
+        case ImdType::Positions:
             return read_vectors(bytes_, imd_farthest, "numbers within a million Å");
         case ImdType::Velocities:
             return read_vectors(bytes_, std::numeric_limits<float>::max(), "finite numbers");

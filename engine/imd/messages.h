@@ -23,7 +23,7 @@ namespace palpa {
 enum class ImdType : std::int32_t {
     Disconnect,    // from a client; an engine just closes
     Energies,      // from the engine
-    Coordinates,   // from the engine
+    Positions,     // from the engine; "coordinates"
     Go,            // from a client, its answer to the handshake
     Handshake,     // from the engine; the version
     Kill,          // from a client: the engine should end

@@ -201,6 +201,17 @@ void ImdServer::remove_dropped() {
     std::erase_if(clients_, [](const Client& client) { return client.is_over; });
 }
 
+void ImdServer::change_atoms(std::size_t atoms) {
+    if (atoms == options_.atoms) return;
+    for (Client& client : clients_) {
+        drop(client, fmt::format("was dropped: there are {} atoms now, no more {}, and no message "
+                                 "can tell it",
+                                 atoms, options_.atoms));
+    }
+    remove_dropped();
+    options_.atoms = atoms;
+}
+
 bool ImdServer::count_step() {
     bool is_due = false;
     for (Client& client : clients_) {

@@ -57,6 +57,10 @@ public:
     // early where something came.
     void poll(double now_s, int at_most_ms);
 
+    // Frames have another number of atoms from now on, which no message can tell: who is here is
+    // dropped, and may come back.
+    void change_atoms(std::size_t atoms);
+
     // To be called once a step: whether a client is due for a frame.
     bool count_step();
     // To all that are due. A client that has not yet taken its last frame goes without this one. A

@@ -4,6 +4,7 @@
 #include "scene/description.h"
 #include "scene/edits.h"
 #include "simulation/accuracy_controller.h"
+#include "simulation/client_pull.h"
 #include "simulation/playback.h"
 #include "view/build_frame.h"
 
@@ -33,9 +34,9 @@ struct Reset {
     // On a line, Å: where it is to start from now on, if not where it did.
     std::optional<double> start_angstrom{};
 };
-// An edit is made at once, whatever time it says.
+// An edit is made at once, whatever time it says. A pull lasts until the next one.
 using Command = std::variant<LiveSettings, ViewSettings, Pause, StepOnce, Reset, EditDescription,
-                             PlaybackOrder>;
+                             PlaybackOrder, ClientPull>;
 
 inline EditDescription edit_now(EditAction action) {
     return {0, 0, std::move(action), {"not done"}};

@@ -10,6 +10,7 @@
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <system_error>
 #include <utility>
 
@@ -125,6 +126,13 @@ Json as_json(const CommandEvent& event) {
         json["reset"] = reset->start_angstrom ? Json(*reset->start_angstrom) : Json(nullptr);
     } else if (const auto* const edit = std::get_if<EditDescription>(&event.command)) {
         json["edit"] = format_edit(*edit);
+    } else if (const auto* const pull = std::get_if<ClientPull>(&event.command)) {
+        json["pull"] = Json::array();
+        for (std::size_t i = 0; i < pull->atoms.size(); ++i) {
+            const Vec3& force = pull->forces[i];
+            json["pull"].push_back({pull->atoms[i], force.x(), force.y(), force.z()});
+        }
+        json["of"] = pull->of;
     }
     return json;
 }
@@ -314,10 +322,42 @@ private:
         } else if (const auto reset = json.find("reset"); reset != json.end()) {
             event.command = Reset{};
             if (!reset->is_null()) event.command = Reset{read<double>(json, "reset")};
+        } else if (json.contains("pull")) {
+            event.command = read_pull(json);
         } else {
             event.command = parse_edit(read<std::string>(json, "edit"), place_);
         }
         return event;
+    }
+
+    ClientPull read_pull(const Json& json) const {
+        constexpr double most_atoms = 1e9, rounding = 1e-9;
+        const auto is_number_of_atoms = [](double number, double most) {
+            return number == std::floor(number) && number >= 0 && number < most;
+        };
+        const double of = read_amount(json, "of");
+        if (!is_number_of_atoms(of, most_atoms)) fail(fmt::format("'of' is {}", of), "atoms");
+        const Json& pulls = json["pull"];
+        if (!pulls.is_array() || pulls.size() > most_client_pulls)
+            fail("'pull' is no list, or too long", fmt::format("at most {}", most_client_pulls));
+        ClientPull pull{{}, {}, static_cast<std::size_t>(of)};
+        std::set<std::uint32_t> atoms;
+        for (const Json& one : pulls) {
+            if (!one.is_array() || one.size() != 4 ||
+                !std::ranges::all_of(one, [](const Json& x) { return x.is_number(); }))
+                fail("a pull is no atom with its force", "four numbers");
+            const auto atom = one[0].get<double>();
+            const Vec3 force(one[1].get<double>(), one[2].get<double>(), one[3].get<double>());
+            if (!is_number_of_atoms(atom, of) ||
+                !atoms.insert(static_cast<std::uint32_t>(atom)).second)
+                fail(fmt::format("atom {} is pulled", atom), fmt::format("one of {}, once", of));
+            if (!(force.norm() <= (1 + rounding) * strongest_client_pull))
+                fail("a pull is too strong",
+                     fmt::format("at most {} kcal/mol/Å", strongest_client_pull));
+            pull.atoms.push_back(static_cast<std::uint32_t>(atom));
+            pull.forces.push_back(force);
+        }
+        return pull;
     }
 
     LiveSettings read_settings(const Json& json) const {

@@ -85,6 +85,7 @@ void LiveSimulation::play(const PublishEvent& /*event*/) {
 void LiveSimulation::play(const StepEvent& event) {
     if (draft_) return;  // or the edit would undo what the step did
     for (const EditDescription& due : edits_.take_due(time_s_)) edit(due, false);
+    if (pull_) world_.set_resource(*pull_);  // what edits brought back has an older one
     const StepReport& report = step_world(
         world_,
         {poses_, felt_, event.took_us, event.adopts_renewal, [this] { renewals_.await(); }});
@@ -112,6 +113,8 @@ void LiveSimulation::play(const CommandEvent& event) {
         post_orders();
     } else if (const auto* const anew = std::get_if<Reset>(&event.command)) {
         obey(*anew);
+    } else if (const auto* const pull = std::get_if<ClientPull>(&event.command)) {
+        pull_ = *pull;
     } else if (const auto* const change = std::get_if<EditDescription>(&event.command)) {
         if (!event.is_long) return edit(*change, event.settles);
         renewals_.await();

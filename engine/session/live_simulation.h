@@ -7,6 +7,7 @@
 #include "session/commands.h"
 #include "session/edit_player.h"
 #include "session/live_events.h"
+#include "simulation/client_pull.h"
 #include "simulation/edit.h"
 #include "statics/renewal_worker.h"
 
@@ -101,7 +102,8 @@ private:
     };
     std::optional<Draft> draft_;
     EditPlayer edits_;
-    double time_s_ = 0;  // of the steps so far
+    std::optional<ClientPull> pull_;  // that acts in every step
+    double time_s_ = 0;               // of the steps so far
     std::vector<HandPose> poses_;
     // By the hands now; what the last step answered is the simulation's.
     std::vector<ContactModel> felt_;

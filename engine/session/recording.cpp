@@ -393,6 +393,7 @@ std::string format_summary(const SceneDescription& scene, const Summary& summary
     json["step_median_us"] = summary.step_median_us;
     json["step_p99_us"] = summary.step_p99_us;
     json["steps_not_finite"] = summary.steps_not_finite;
+    if (summary.client_pulls > 0) json["client_pulls"] = summary.client_pulls;
     add_felt(summary, json);
     if (summary.activity) {
         json["active_mean"] = summary.activity->active;

@@ -13,6 +13,7 @@
 #include "simulation/remote_engine.h"
 #include "simulation/resources.h"
 #include "simulation/step.h"
+#include "simulation/systems/pull_by_clients.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -432,6 +433,7 @@ public:
         const StepReport& report = world.resource<StepReport>();
         for (Statistics& each : statistics_) each.add_step(1e-6 * report.took_us, report.finite);
         if (unbinding_) unbinding_->add(world);
+        client_pulls_ += is_pulled_by_clients(world) ? 1 : 0;
         if (!report.relaxed) {
             accuracy_.add_answer(local_contact_of(world).model);
             return;
@@ -449,6 +451,7 @@ public:
     Summary summary(const World& world, std::span<const LockstepHand> hands) const {
         Summary summary = statistics_.front().summary();
         summary.device = hands.front().device.spec().name;
+        summary.client_pulls = client_pulls_;
         for (std::size_t i = 1; i < hands.size(); ++i) {
             summary.other_hands.push_back(statistics_[i].summary());
             summary.other_hands.back().device = hands[i].device.spec().name;
@@ -478,6 +481,7 @@ private:
     RelaxationLog relaxation_;
     AccuracyLog accuracy_;
     std::optional<UnbindingLog> unbinding_;
+    std::uint64_t client_pulls_ = 0;  // steps
 };
 
 namespace {
@@ -528,7 +532,8 @@ Summary run_headless(const SceneDescription& scene, World& world, Device& device
 Summary run_headless(const SceneDescription& scene, World& world, std::span<Device* const> devices,
                      const std::vector<std::string>& warnings, Recording* recording,
                      const ProgressFunction& progress, const FrameClock& frames,
-                     const HandTicksFunction& watch, const EndFunction& is_over) {
+                     const HandTicksFunction& watch, const EndFunction& is_over,
+                     const BeforeStepFunction& before_step) {
     const std::uint64_t ticks = count_ticks(scene);
     const auto ticks_per_step =
         static_cast<std::uint64_t>(std::lround(world.resource<Clock>().period_s / servo_tick_s));
@@ -544,6 +549,7 @@ Summary run_headless(const SceneDescription& scene, World& world, std::span<Devi
         for (const EditDescription& edit : due) history.apply(world, edit);
         edition += due.size();
         if (!due.empty()) renew_servos(world, hands);
+        if (before_step) before_step(world);
         step_world(world, {poses, felt});
         log.add_step(world);
         return list_contacts(world);

@@ -31,6 +31,9 @@ struct FrameClock {
     std::function<void()> draw;
 };
 
+// Called before each step, after the edits that are due.
+using BeforeStepFunction = std::function<void(World&)>;
+
 // Servo ticks of the scene's run.
 std::uint64_t count_ticks(const SceneDescription& scene) noexcept;
 
@@ -101,6 +104,7 @@ Summary run_headless(const SceneDescription& scene, World& world, Device& device
 Summary run_headless(const SceneDescription& scene, World& world, std::span<Device* const> devices,
                      const std::vector<std::string>& warnings, Recording* recording,
                      const ProgressFunction& progress, const FrameClock& frames = {},
-                     const HandTicksFunction& watch = {}, const EndFunction& is_over = {});
+                     const HandTicksFunction& watch = {}, const EndFunction& is_over = {},
+                     const BeforeStepFunction& before_step = {});
 
 }  // namespace palpa

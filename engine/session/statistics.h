@@ -51,6 +51,7 @@ struct Summary {
     std::string device = "emulated Omni";
     std::uint64_t ticks = 0, steps = 0;
     std::uint64_t steps_not_finite = 0;
+    std::uint64_t client_pulls = 0;  // steps in which clients pulled (ClientPull)
     // Sums of forces since the scene was loaded, and those that fast pairs left to double. 0 where
     // nothing moves by itself.
     std::uint64_t sums = 0, sums_in_double = 0;

@@ -3,6 +3,7 @@
 #include "core/assertion.h"
 #include "core/text.h"
 #include "field/frozen_field.h"
+#include "simulation/systems/pull_by_clients.h"
 
 #include <algorithm>
 #include <numeric>
@@ -357,7 +358,9 @@ const SecondOrder* find_second_order(const World& world) noexcept {
 
 double find_energy(const World& world) noexcept {
     const SecondOrder* const second = find_second_order(world);
-    return second ? second->statics.value.energy : world.resource<TorsionState>().energy();
+    const double energy =
+        second ? second->statics.value.energy : world.resource<TorsionState>().energy();
+    return energy - find_client_energy(world);
 }
 
 std::optional<double> find_error_estimate(const World& world) noexcept {

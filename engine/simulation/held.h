@@ -114,7 +114,8 @@ Vec6 find_pull_on_held(const World& world, Entity hand) noexcept;
 // Where everything mobile follows by second order and has a model; else null.
 const SecondOrder* find_second_order(const World& world) noexcept;
 
-// Energy of what is mobile, kcal/mol, without terms that are constant.
+// Energy of what is mobile, kcal/mol, without terms that are constant, and without what clients
+// pull by.
 double find_energy(const World& world) noexcept;
 
 // The last error estimate of the force on the first hand, pN.

@@ -38,8 +38,8 @@ struct BondedTerms {
     std::shared_ptr<const Topology> topology;
 };
 
-// Beside these: the AtomTable, whose positions every step writes, and the TorsionState, without
-// atoms where nothing is mobile.
+// Beside these: the AtomTable, whose positions every step writes, the TorsionState, without atoms
+// where nothing is mobile, and where clients pull a ClientPull.
 
 // What atoms do to each other, beside what the table says of each.
 struct Interactions {

@@ -10,6 +10,7 @@
 #include "simulation/systems/measure.h"
 #include "simulation/systems/play_trajectory.h"
 #include "simulation/systems/publish_contact.h"
+#include "simulation/systems/pull_by_clients.h"
 #include "simulation/systems/relax.h"
 
 #include <chrono>
@@ -25,6 +26,7 @@ using System = void (*)(World&, const StepInput&);
 constexpr System systems[] = {
     play_trajectory,  // the frame that is due, where one is played
     follow_hands,     // device poses to poses of what is held, and ends of springs
+    pull_by_clients,  // forces of clients to ends of springs
     choose_active,    // which joints and bases move
     relax,            // these towards rest
     follow_engine,    // or all atoms where a remote engine has them

@@ -3,11 +3,14 @@
 
 #include "app/live_session.h"
 #include "core/files.h"
+#include "core/units.h"
 #include "devices/emulated_omni.h"
 #include "devices/mouse_handle.h"
+#include "imd/client.h"
 #include "scene/read_scene.h"
 #include "session/play_journal.h"
 #include "session/replay.h"
+#include "simulation/load.h"
 #include "tests/support/load_error_of.h"
 #include "tests/support/paths.h"
 #include "tests/support/temporary_folder.h"
@@ -17,6 +20,7 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -30,7 +34,7 @@ namespace {
 
 // A window's hands without the window: each is led by a mouse that a test moves.
 struct TwoMice {
-    explicit TwoMice(const SceneDescription& scene, std::size_t hands) {
+    TwoMice(const SceneDescription& scene, std::size_t hands, FrameServer* server = nullptr) {
         std::vector<LiveDevice> devices;
         for (std::size_t slot = 0; slot < hands; ++slot) {
             MouseHandleSettings settings = mouse_handle_of(hand_model(HandGrip::Medium));
@@ -38,7 +42,7 @@ struct TwoMice {
             mice.push_back(std::make_unique<MouseHandle>(settings));
             devices.push_back({mice.back().get(), &orders[slot]});
         }
-        session = std::make_unique<LiveSession>(scene, ViewSettings{}, devices);
+        session = std::make_unique<LiveSession>(scene, ViewSettings{}, devices, nullptr, server);
     }
 
     bool wait_until(const std::function<bool(const LiveFrame&)>& is_so) {
@@ -101,6 +105,60 @@ void check_same(const std::filesystem::path& folder, std::uint64_t at_least) {
 }
 
 }  // namespace
+
+TEST_CASE("what a client pulls in a session is played again to the bit",
+          "[app][threads][journal]") {
+    const test::TemporaryFolder folder;
+    const std::filesystem::path recording = folder.path() / "recording";
+    const SceneDescription scene = test::water_scene({"statics.method=quasi-static", "mode=4"});
+    FrameServer server({.port = 0}, load_world(scene));
+    const std::string place = server.place();
+    {
+        TwoMice live(scene, 1, &server);
+        live.edit(AddEdit{"TIP3", "", "free", {0, 0, 60}});
+        live.edit(MobilityEdit{"free", Motion::Free, {}});
+        live.edit(TakeEdit{"free:1"});  // the hand feels what a client pulls at
+        REQUIRE(live.wait_until([](const LiveFrame& f) { return f.places.size() == 9; }));
+        REQUIRE(live.wait_for_steps(5));
+        live.session->begin_recording(recording);
+
+        const auto port = static_cast<std::uint16_t>(std::stoi(place.substr(place.find(':') + 1)));
+        ImdClient client({.port = port, .limits = {.atoms = 9}});
+        const auto now_s = [] {
+            return std::chrono::duration<double>(
+                       std::chrono::steady_clock::now().time_since_epoch())
+                .count();
+        };
+        const auto poll_until = [&](const std::function<bool()>& is_so) {
+            return live.wait_until([&](const LiveFrame&) {
+                (void)client.poll(now_s(), 1);
+                return is_so();
+            });
+        };
+        client.connect(now_s());
+        REQUIRE(poll_until([&] { return client.frames() > 0; }));
+        const std::int32_t atoms[] = {6, 7};
+        const Vec3 forces[] = {{0, 3, 0}, {0.5, 0, 1.0 / 3}};
+        REQUIRE(client.pull(atoms, forces).empty());
+        const auto is_felt = [&] {
+            const Vec3 felt = live.frame.hands[0].contact.force_newton;
+            return felt.y() > 2 * units::newton_per_kcal_per_mol_angstrom;
+        };
+        REQUIRE(poll_until(is_felt));
+        client.disconnect(now_s());
+        REQUIRE(poll_until([&] { return client.state() == ImdState::Closed && !is_felt(); }));
+        REQUIRE(live.wait_for_steps(50));
+        const std::vector<std::string> notes = live.session->take_server_notes();
+        CHECK(std::ranges::count(notes, "client 1 watches") == 1);
+        CHECK(std::ranges::count(notes, "client 1 pulls") == 1);
+        CHECK(std::ranges::count(notes, "client 1 left in order") == 1);
+        live.session->end_recording();
+    }
+    const std::string journal = read_text_file(recording / "journal.txt");
+    CHECK(journal.find(R"("pull":[[6,0.0,3.0,0.0],[7,0.5,0.0,)") != std::string::npos);
+    CHECK(journal.find(R"("pull":[])") != std::string::npos);
+    check_same(recording, 30);
+}
 
 TEST_CASE("a session that was recorded from its middle is played again to the bit",
           "[app][threads][journal]") {

@@ -20,7 +20,7 @@ bool are_finite(const std::vector<Vec3>& vectors) {
 }
 
 void expect_sound(const ImdMessage& message, const ImdDecoder& decoder) {
-    const bool has_atoms = message.type == ImdType::Coordinates ||
+    const bool has_atoms = message.type == ImdType::Positions ||
                            message.type == ImdType::Velocities || message.type == ImdType::Forces;
     if (has_atoms) PALPA_EXPECT(message.values.size() == 3 * decoder.atoms());
     if (message.type != ImdType::ClientForces) return;

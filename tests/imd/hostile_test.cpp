@@ -35,7 +35,7 @@ bool is_sound(const ImdMessage& message) {
     const bool has_two = message.type != ImdType::ClientForces || message.atoms.size() <= 2;
     return has_two && std::ranges::all_of(message.values, [&](float value) {
                return std::isfinite(value) &&
-                      (message.type != ImdType::Coordinates || std::abs(value) <= 1e6F);
+                      (message.type != ImdType::Positions || std::abs(value) <= 1e6F);
            });
 }
 

@@ -125,7 +125,7 @@ void check_version_2(const std::vector<ImdMessage>& messages) {
     CHECK(messages[1].type == ImdType::Energies);
     CHECK(messages[1].energies == energies_of_step_7);
     CHECK_FALSE(messages[1].completes_frame);
-    CHECK(messages[2].type == ImdType::Coordinates);
+    CHECK(messages[2].type == ImdType::Positions);
     CHECK(messages[2].values == std::vector<float>{1, 2, 0.5F, -1.5F, 10, 0});
     CHECK(messages[2].completes_frame);
 }
@@ -249,7 +249,7 @@ TEST_CASE("what is written has the bytes that were written by hand", "[imd][enco
         ImdBytes bytes;
         add_imd_handshake(bytes, 2, written.order);
         add_imd_energies(bytes, written.order, energies_of_step_7);
-        add_imd_vectors(bytes, written.order, ImdType::Coordinates,
+        add_imd_vectors(bytes, written.order, ImdType::Positions,
                         std::array{1.0F, 2.0F, 0.5F, -1.5F, 10.0F, 0.0F});
         CHECK((bytes == written.wire));
     }
@@ -260,7 +260,7 @@ TEST_CASE("what is written has the bytes that were written by hand", "[imd][enco
         add_imd_time(bytes, written.order, {0.002, 1.5, (std::int64_t{1} << 32) + 1});
         add_imd_energies(bytes, written.order, energies_of_step_7);
         add_imd_box(bytes, written.order, {10, 0, 0, 0, 10, 0, 0, 0, 2});
-        add_imd_vectors(bytes, written.order, ImdType::Coordinates, std::array{1.0F, 2.0F, 0.5F});
+        add_imd_vectors(bytes, written.order, ImdType::Positions, std::array{1.0F, 2.0F, 0.5F});
         add_imd_vectors(bytes, written.order, ImdType::Velocities, std::array{0.5F, 0.25F, 0.0F});
         add_imd_vectors(bytes, written.order, ImdType::Forces, std::array{-2.0F, 4.0F, 10.0F});
         CHECK((bytes == written.wire));

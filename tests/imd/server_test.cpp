@@ -348,6 +348,32 @@ TEST_CASE("a slow client gets whole frames, the newest when it has room", "[imd]
     });
 }
 
+TEST_CASE("another number of atoms drops who knows the old one", "[imd][server]") {
+    Engine engine;
+    Peer first = engine.join(), silent = engine.connect();
+    engine.expect(silent, greeting_of_2);
+    first.send(a_pull);
+    engine.expect_note("client 1 pulls");
+    engine.server->change_atoms(3);
+    CHECK(engine.server->clients() == 1);
+
+    engine.server->change_atoms(1);
+    CHECK(engine.server->clients() == 0);
+    CHECK(engine.server->pull().atoms.empty());
+    engine.expect_end(first);
+    engine.expect_end(silent);
+    engine.expect_note("client 1 was dropped: there are 1 atoms now, no more 3");
+    Peer again = engine.join();
+    again.send(test::client_forces(native, {0}, {1, 0, 0}));
+    engine.until([&] { return engine.server->pull().atoms.size() == 1; });
+    ImdFrame frame;
+    frame.coordinates = {Vec3(7, 0, 0)};
+    engine.step(frame);
+    engine.expect(again, test::vectors(native, 2, {7, 0, 0}));
+    again.send(test::client_forces(native, {1}, {1, 0, 0}));
+    engine.expect_note("client 3 was dropped: a force on atom 1 came");
+}
+
 TEST_CASE("a frame that is not sound is not sent", "[imd][server]") {
     Engine engine;
     Peer client = engine.join();

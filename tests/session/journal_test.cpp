@@ -133,6 +133,35 @@ TEST_CASE("a journal reads as it was written, to the last bit", "[session][journ
     CHECK(parse_journal(text.substr(0, text.size() - 5), "j").events.size() == 11);
 }
 
+TEST_CASE("a journal has the forces of clients, within their bounds", "[session][journal]") {
+    const ClientPull pull{{7, 0}, {{1.0 / 3, -0.0, 1e-300}, {0, 0, -143.9}}, 9};
+    JournalWriter writer(std::array{omni});
+    writer.add({CommandEvent{pull}, {1}});
+    writer.add({CommandEvent{ClientPull{{}, {}, 9}}, {1}});
+    const Journal journal = parse_journal(writer.take(), "journal.txt");
+    REQUIRE(journal.events.size() == 2);
+    CHECK(command_of<ClientPull>(journal, 0) == pull);
+    CHECK(command_of<ClientPull>(journal, 1) == ClientPull{{}, {}, 9});
+
+    const auto error_of_pull = [](const std::string& pulls) {
+        return error_of(fmt::format("c 1 {{\"pull\":{},\"of\":3}}\n", pulls));
+    };
+    CHECK(parse("c 1 {\"pull\":[[2,0,0,143.9]],\"of\":3}\n").events.size() == 1);
+    CHECK_THAT(error_of_pull("5"), Contains("'pull' is no list"));
+    CHECK_THAT(error_of_pull("[[1,2,3]]"), Contains("four numbers"));
+    CHECK_THAT(error_of_pull("[[1,2,3,null]]"), Contains("four numbers"));
+    CHECK_THAT(error_of_pull("[[3,1,0,0]]"), Contains("atom 3 is pulled"));
+    CHECK_THAT(error_of_pull("[[-1,1,0,0]]"), Contains("atom -1 is pulled"));
+    CHECK_THAT(error_of_pull("[[0.5,1,0,0]]"), Contains("atom 0.5 is pulled"));
+    CHECK_THAT(error_of_pull("[[1,1,0,0],[1,1,0,0]]"), Contains("one of 3, once"));
+    CHECK_THAT(error_of_pull("[[1,100,110,0]]"), Contains("too strong"));
+    std::string many = "[0,0,0,0]";
+    for (std::size_t i = 0; i < most_client_pulls; ++i) many += ",[0,0,0,0]";
+    CHECK_THAT(error_of_pull("[" + many + "]"), Contains("at most 1000"));
+    CHECK_THAT(error_of("c 1 {\"pull\":[]}\n"), Contains("has no 'of'"));
+    CHECK_THAT(error_of("c 1 {\"pull\":[],\"of\":1e99}\n"), Contains("'of' is"));
+}
+
 TEST_CASE("what a journal cannot hold is refused with its line", "[session][journal]") {
     const auto whole = [](const std::string& text) {
         return test::load_error_of([&] { (void)parse_journal(text, "journal.txt"); });

@@ -118,6 +118,10 @@ void check_window_options(const RunOptions& options) {
     if (options.play && options.device && *options.device != "emulated") {
         throw LoadError({"--play"}, "is of the emulated hand; expected it without --device");
     }
+    if (options.serve.waits || options.serve.is_as_fast) {
+        throw LoadError({options.serve.waits ? "--serve-wait" : "--serve-fast"},
+                        "is for runs without a window; expected --headless too");
+    }
     (void)check_shot(options);
 }
 
@@ -133,6 +137,9 @@ int open_window(const SceneDescription& scene, const World& world, EmulatedOmniS
     HandOrders second_orders;
     const WindowDevice second = open_second_of(scene, world, options, second_orders, devices);
     if (preferences.can_keep()) remember_scene(scene.file, preferences);
+    ServeChoice serve = options.serve;
+    serve.options.may_pause = false;  // somebody may have a device in the hand
+    const std::unique_ptr<FrameServer> server = open_server(serve, world, !options.json);
     SceneSaver saver(scene.file, options.screenshots);
     const ViewSettings first_view = first_settings(scene.view, world);
     const auto save = [&](const LiveSettings& live, const ViewDescription& view) {
@@ -165,6 +172,7 @@ int open_window(const SceneDescription& scene, const World& world, EmulatedOmniS
                     .text_scale = build_text_scale(preferences),
                     .save = save,
                     .notice = devices.notice(),
+                    .server = server.get(),
                     .lose_device_at = options.lose_device_at,
                     .validation = options.validation});
     const SceneDescription played = find_played(scene, report, options.play);

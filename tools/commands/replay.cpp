@@ -70,6 +70,19 @@ void check_device(const std::filesystem::path& folder) {
     if (summary.is_object() && summary.contains("hand_2")) check(summary["hand_2"]);
 }
 
+// What clients pulled is in no recording but a window's, which has a journal.
+void check_no_client_pulled(const std::filesystem::path& folder) {
+    const std::filesystem::path file = folder / "summary.json";
+    std::error_code error;
+    if (!std::filesystem::exists(file, error)) return;
+    const auto summary = nlohmann::json::parse(read_text_file(file), nullptr, false);
+    if (!summary.is_object() || !summary.contains("client_pulls")) return;
+    throw LoadError({file.string()},
+                    "clients pulled in this run (--serve), and the recording does not have their "
+                    "forces; expected a run that no client pulled, or one of a window, which has "
+                    "them in its journal");
+}
+
 // How much of a session is there.
 struct RecordedTime {
     double recorded_s, session_s;
@@ -168,6 +181,7 @@ bool has_journal(const std::filesystem::path& folder) {
 int replay_command(const ReplayOptions& options) {
     SceneDescription scene = read_session(options.recording);
     if (has_journal(options.recording)) return replay_journal(options, scene);
+    check_no_client_pulled(options.recording);
     if (!options.verify) {
         RunOptions run;
         run.scene = options.recording / "session.toml";

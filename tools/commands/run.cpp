@@ -188,15 +188,22 @@ int run_without_window(SceneDescription scene, World& world,
             "to "
             "name --trajectory again");
     }
+    const std::unique_ptr<FrameServer> server = open_server(options.serve, world, !options.json);
+    std::optional<ServedRun> served;
+    BeforeStepFunction before_step;
+    if (server) {
+        served.emplace(*server, options.serve, progress);
+        before_step = [&](World& next) { served->before_step(next); };
+    }
     FrameClock frames;
     if (writer) {
         frames = {options.frames_per_second, [&] { write_frame(writer, world, progress); }};
     }
     print_warnings(warnings);
-    const Summary summary =
-        run_headless(scene, world, hands, warnings, recording ? &*recording : nullptr,
-                     progress.shares("playing"), frames, {},
-                     [&] { return noted_interrupt() != 0 || is_engine_gone(world); });
+    const Summary summary = run_headless(
+        scene, world, hands, warnings, recording ? &*recording : nullptr,
+        progress.shares("playing"), frames, {},
+        [&] { return noted_interrupt() != 0 || is_engine_gone(world); }, before_step);
     progress.wipe();
     const bool is_gone = is_engine_gone(world);
     const std::string engine = describe_engine(world);
@@ -283,6 +290,34 @@ void add_window_options(CLI::App& run, RunOptions& options) {
     run.add_option("--lose-device-at", options.lose_device_at)->group("");  // a test's
 }
 
+void add_serve_options(CLI::App& run, ServeChoice& serve) {
+    run.option_defaults()->group("Other programs (IMD)");
+    CLI::Option* const port =
+        run.add_option("--serve", serve.port,
+                       "be an engine that VMD, imdclient and others watch and pull, on this port; "
+                       "0: one that is free")
+            ->type_name("PORT");
+    run.add_option("--serve-version", serve.options.version, "of IMD, 2 unless given, or 3")
+        ->check(CLI::IsMember({2, 3}))
+        ->needs(port);
+    run.add_option("--listen", serve.options.address,
+                   "address of this machine for clients on others, who need no password; 127.0.0.1 "
+                   "unless given: clients on this machine alone")
+        ->type_name("ADDRESS")
+        ->needs(port);
+    run.add_option("--serve-rate", serve.options.rate,
+                   "steps between frames unless a client asks for others; unless given about 30 "
+                   "frames a second")
+        ->check(in_range(1, 1e9))
+        ->type_name("N")
+        ->needs(port);
+    run.add_flag("--serve-wait", serve.waits, "begin when the first client does (headless)")
+        ->needs(port);
+    run.add_flag("--serve-fast", serve.is_as_fast,
+                 "as fast as it computes, not in real time (headless)")
+        ->needs(port);
+}
+
 void add_headless_options(CLI::App& run, RunOptions& options) {
     run.option_defaults()->group("Without a window");
     run.add_flag("--headless", options.headless,
@@ -332,7 +367,8 @@ void add_run(CLI::App& program, ProgramCommand& chosen) {
              {"palpa run hiv", "palpa run scenes/water --headless --record recordings/water",
               "palpa run scenes/water --headless --mode 2 --period-ms 14 --friction 0",
               "palpa run scenes/hiv/flexible.toml --play",
-              "palpa run scenes/hiv --trajectory others.xtc"});
+              "palpa run scenes/hiv --trajectory others.xtc",
+              "palpa run scenes/hiv/flexible.toml --headless --serve 8888"});
     run.add_option("scene", options.scene,
                    "scene folder or file, recorded session.toml, or the name of one of Palpa's own "
                    "scenes")
@@ -374,6 +410,7 @@ void add_run(CLI::App& program, ProgramCommand& chosen) {
     add_set_option(run, settings);
     add_window_options(run, options);
     add_headless_options(run, options);
+    add_serve_options(run, options.serve);
 }
 
 }  // namespace palpa

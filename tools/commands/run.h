@@ -3,6 +3,7 @@
 #include "scene/description.h"
 #include "session/trajectory_recorder.h"
 #include "simulation/playback.h"
+#include "tools/commands/serve.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -39,6 +40,7 @@ struct RunOptions {
     double engine_wait_s = 10;  // headless: for a remote engine's first frame
     std::uint64_t lose_device_at = 0;
     bool validation = false;  // of all that Vulkan is told
+    ServeChoice serve;
 };
 
 // Of the recordings of a run.
