@@ -86,3 +86,9 @@ TEST_CASE("what does not fit a GRO file is reported", "[formats][gro]") {
     CHECK_THAT(load_error_of([&] { format_gro(parse_pdb(two, "w.pdb"), ""); }),
                Contains("several models"));
 }
+
+TEST_CASE("a GRO file of more decimals has wider columns", "[formats][gro]") {
+    const std::string gro =
+        format_gro(one_atom({"A", "ALA", "1", "CA"}, Vec3(1.23456789012, -20, 0)), "", {}, 9);
+    CHECK_THAT(gro, Contains("   CA    1   0.123456789  -2.000000000   0.000000000\n"));
+}
