@@ -355,11 +355,12 @@ std::string format_ids(const std::vector<std::uint32_t>& atoms) {
 std::string format_input(const RunSystem& system, const RunOptions& options, const Terms& terms,
                          const AtomKinds& kinds) {
     const bool has_maps = !system.topology.cmap_terms.empty();
-    constexpr std::int64_t endless = 1'000'000'000'000;
+    constexpr std::int64_t most_steps = 2'000'000'000;  // of one command, in 32 bits
     std::string text = fmt::format(
         "# {}. Written by palpa engine.\nvariable port index {}\nvariable steps index {}\n"
         "variable rigid index {}\n\n",
-        system.title, options.port, options.steps < 0 ? endless : options.steps,
+        system.title, options.port,
+        options.steps < 0 ? most_steps : std::min(options.steps, most_steps),
         options.flexible ? 0 : 1);
     text += format_styles(system, terms);
     if (has_maps) text += "fix maps all cmap system.cmap\nfix_modify maps energy yes\n";

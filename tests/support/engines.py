@@ -2,7 +2,10 @@
 import os
 import re
 import shutil
+import socket
+import struct
 import subprocess
+import time
 from pathlib import Path
 
 # Debian's GROMACS refuses to run where the list of the processor's features lacks rdtscp. Virtual
@@ -69,3 +72,47 @@ def lammps_rows(folder, *variables):
             break
         rows.append(dict(zip(names, map(float, line.split()))))
     return rows
+
+
+
+ENERGIES, COORDINATES, GO, HANDSHAKE, KILL, FORCES = 1, 2, 3, 4, 5, 6  # of IMD
+
+
+def pull(port, running, frames):
+    """Joins an engine by IMD, version 2, pulls its first atom, and ends it. Atoms of each frame that came."""
+    until = time.monotonic() + 60
+    while True:
+        try:
+            connection = socket.create_connection(("127.0.0.1", port), timeout=60)
+            break
+        except OSError:
+            if time.monotonic() > until or running.poll() is not None:
+                raise
+            time.sleep(0.1)
+    with connection:
+        def receive(size):
+            data = b""
+            while len(data) < size:
+                more = connection.recv(size - len(data))
+                if not more:
+                    raise OSError("the engine hung up")
+                data += more
+            return data
+        kind, = struct.unpack(">i", receive(4))
+        order = "<" if struct.unpack("<i", receive(4))[0] == 2 else ">"
+        if kind != HANDSHAKE:
+            raise OSError(f"message {kind} in place of a handshake")
+        connection.sendall(struct.pack(">ii", GO, 0) + struct.pack(">ii", FORCES, 1) +
+                           struct.pack(order + "ifff", 0, 1.0, 0.0, 0.0))
+        sizes = []
+        while len(sizes) < frames:
+            kind, count = struct.unpack(">ii", receive(8))
+            if kind == ENERGIES:
+                receive(40)
+            elif kind == COORDINATES:
+                receive(12 * count)
+                sizes.append(count)
+            else:
+                raise OSError(f"message {kind}")
+        connection.sendall(struct.pack(">ii", KILL, 0))
+    return sizes

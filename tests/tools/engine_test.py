@@ -3,6 +3,7 @@ import json
 import math
 import os
 import re
+import socket
 import subprocess
 import sys
 import tempfile
@@ -146,6 +147,33 @@ class Lammps(Case):
             self.assertTrue(all(map(math.isfinite, row.values())), row)
             self.assertGreater(row["Temp"], 200)
             self.assertLess(row["Temp"], 400)
+
+
+class Live(Case):
+    def join(self, engine):
+        """Starts run.sh as it is, joins it, pulls an atom and ends it; sizes of the frames that came."""
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            port = free.getsockname()[1]
+        self.write(engine, box("peptide"), "--box", EDGES, "--send", "PEPA", "--port", port)
+        with open(self.folder / "out", "w") as out:
+            running = subprocess.Popen(["sh", "run.sh"], cwd=self.folder, env=engines.environment(self.folder),
+                                       stdin=subprocess.DEVNULL, stdout=out, stderr=out)
+        try:
+            return engines.pull(port, running, frames=20)
+        except OSError as error:
+            self.fail(f"{error}\n{(self.folder / 'out').read_text()[-2000:]}")
+        finally:
+            running.kill()
+            running.wait()
+
+    @unittest.skipIf(NO_GROMACS, NO_GROMACS)
+    def test_a_client_joins_gromacs(self):
+        self.assertEqual(self.join("gromacs"), [62] * 20)
+
+    @unittest.skipIf(NO_LAMMPS, NO_LAMMPS)
+    def test_a_client_joins_lammps(self):
+        self.assertEqual(self.join("lammps"), [62] * 20)
 
 
 class Files(Case):
