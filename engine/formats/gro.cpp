@@ -51,11 +51,15 @@ std::string gro_name(const Structure& structure, std::size_t atom, const std::st
              fmt::format("the {} '{}' does not fit the 5 columns of a GRO file", what, name));
 }
 
-std::string gro_coordinate(const Structure& structure, std::size_t atom, double value) {
-    const std::string text = fmt::format("{:8.3f}", value / units::angstrom_per_nm);
-    if (std::isfinite(value) && text.size() == 8) return text;
+std::string gro_coordinate(const Structure& structure, std::size_t atom, double value,
+                           int decimals) {
+    const int columns = decimals + 5;
+    const std::string text =
+        fmt::format("{:{}.{}f}", value / units::angstrom_per_nm, columns, decimals);
+    if (std::isfinite(value) && text.size() == static_cast<std::size_t>(columns)) return text;
     fail_gro(structure, atom,
-             fmt::format("the coordinate {} Å does not fit the 8 columns of a GRO file", value));
+             fmt::format("the coordinate {} Å does not fit the {} columns of a GRO file", value,
+                         columns));
 }
 
 std::string gro_box(const Structure& structure, const std::optional<Mat3>& box) {
@@ -200,7 +204,7 @@ Structure read_gro(const std::filesystem::path& path) {
 }
 
 std::string format_gro(const Structure& structure, std::string_view title,
-                       const std::optional<Mat3>& box) {
+                       const std::optional<Mat3>& box, int decimals) {
     const bool models = std::any_of(
         structure.records.begin(), structure.records.end(),
         [&](const AtomRecord& record) { return record.model != structure.records[0].model; });
@@ -218,7 +222,7 @@ std::string format_gro(const Structure& structure, std::string_view title,
                             gro_name(structure, atom, name.atom, "atom name"),
                             wrapped_number(static_cast<std::int64_t>(atom) + 1));
         for (const double value : structure.positions[atom]) {
-            text += gro_coordinate(structure, atom, value);
+            text += gro_coordinate(structure, atom, value, decimals);
         }
         text += '\n';
     }

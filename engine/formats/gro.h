@@ -20,11 +20,12 @@ Structure parse_gro(std::string_view text, const std::string& file);
 // The fixed columns of GROMACS's reference manual: "%5d%-5s%5s%5d%8.3f%8.3f%8.3f", nm; then the
 // box, whose columns are edges, Å: its diagonal, nm, and where it is not rectangular the other six
 // of its numbers; zeros without one. Numbers of residues and atoms go on from 0 behind 99999, and
-// insertion codes are left out, as GROMACS does. `title`: its first line is written. Throws
-// LoadError: a name of more than five letters or none, a residue number that is none, a coordinate
-// that does not fit its columns, a box whose edge a is not along x and b not in the plane of x and
-// y (which GROMACS refuses), several models.
+// insertion codes are left out, as GROMACS does. `title`: its first line is written. With more
+// `decimals` of coordinates, 3 to 12, columns are so much wider, which GROMACS reads as well.
+// Throws LoadError: a name of more than five letters or none, a residue number that is none, a
+// coordinate that does not fit its columns, a box whose edge a is not along x and b not in the
+// plane of x and y (which GROMACS refuses), several models.
 std::string format_gro(const Structure& structure, std::string_view title,
-                       const std::optional<Mat3>& box = {});
+                       const std::optional<Mat3>& box = {}, int decimals = 3);
 
 }  // namespace palpa

@@ -165,3 +165,9 @@ TEST_CASE("groups of an index file", "[formats][gro]") {
     CHECK_THAT(error("[ a ]\n0"), Contains("i.ndx:2") && Contains("'0' is no atom"));
     CHECK_THAT(error("[ a"), Contains("is no group"));
 }
+
+TEST_CASE("a GRO file of more decimals has wider columns", "[formats][gro]") {
+    const std::string gro =
+        format_gro(one_atom({"A", "ALA", "1", "CA"}, Vec3(1.23456789012, -20, 0)), "", {}, 9);
+    CHECK_THAT(gro, Contains("   CA    1   0.123456789  -2.000000000   0.000000000\n"));
+}

@@ -25,6 +25,7 @@ void add_relax(CLI::App& program, ProgramCommand& chosen);
 void add_render(CLI::App& program, ProgramCommand& chosen);
 void add_export(CLI::App& program, ProgramCommand& chosen);
 void add_energy(CLI::App& program, ProgramCommand& chosen);
+void add_engine(CLI::App& program, ProgramCommand& chosen);
 void add_bench(CLI::App& program, ProgramCommand& chosen);
 void add_report(CLI::App& program, ProgramCommand& chosen);
 void add_study(CLI::App& program, ProgramCommand& chosen);
