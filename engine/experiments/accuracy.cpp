@@ -1,5 +1,6 @@
 #include "experiments/accuracy.h"
 
+#include "core/load_error.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "devices/emulated_omni.h"
@@ -167,10 +168,23 @@ std::vector<std::string> AccuracyResult::unsaid() const {
     return unsaid;
 }
 
+namespace {
+
+void check_moves_itself(const SceneDescription& scene) {
+    if (!scene.engine) return;
+    throw LoadError(
+        scene.place_of("engine"),
+        "a remote engine moves all atoms here, and how exact its forces are is its own; "
+        "expected a scene without [engine]");
+}
+
+}  // namespace
+
 void check_accuracy(const AccuracyOptions& options) {
     for (const std::array<double, 2>& range_pN : options.ranges_pN)
         for (const double within_pN : options.tolerances_pN)
-            (void)read_scene(options.scene, list_settings(options, range_pN, within_pN));
+            check_moves_itself(
+                read_scene(options.scene, list_settings(options, range_pN, within_pN)));
 }
 
 AccuracyResult play_accuracy(const AccuracyOptions& options, const std::array<double, 2>& range_pN,

@@ -82,8 +82,9 @@ std::string gro_box(const Structure& structure, const std::optional<Mat3>& box) 
     return text + "\n";
 }
 
-constexpr std::array<std::string_view, 10> water_names{"SOL", "HOH", "WAT",  "TIP3", "TIP4",
-                                                       "TP3", "TIP", "TIP5", "SPC",  "H2O"};
+constexpr std::array<std::string_view, 14> water_names{"SOL", "HOH", "WAT",  "TIP3", "TIP4",
+                                                       "TP3", "TIP", "TIP5", "SPC",  "SPCE",
+                                                       "H2O", "T3P", "T4P",  "OPC"};
 
 // As read_gro says.
 void name_segments(Structure& structure) {
@@ -95,8 +96,7 @@ void name_segments(Structure& structure) {
         while (next < names.size() && names[next].number == names[first].number &&
                names[next].residue == names[first].residue)
             ++next;
-        const bool is_water =
-            std::ranges::find(water_names, names[first].residue) != water_names.end();
+        const bool is_water = is_water_residue(names[first].residue);
         const std::string now = is_water ? "WAT" : next - first == 1 ? "ION" : "M";
         const std::int64_t number = find_integer(names[first].number).value_or(0);
         if (now != kind || (now == "M" && number < last)) {
@@ -194,6 +194,10 @@ private:
 };
 
 }  // namespace
+
+bool is_water_residue(std::string_view residue) noexcept {
+    return std::ranges::find(water_names, residue) != water_names.end();
+}
 
 Structure parse_gro(std::string_view text, const std::string& file) {
     return GroReader(text, file).read();

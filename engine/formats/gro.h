@@ -9,6 +9,9 @@
 
 namespace palpa {
 
+// Residues that are water, by the names of CHARMM, GROMACS and others.
+bool is_water_residue(std::string_view residue) noexcept;
+
 // A file has one frame; velocities and the box are left out. Coordinates may have more digits, as
 // GROMACS writes them: the distance of the decimal points tells. A GRO file has no segments: here
 // each is a run of atoms, WAT (and WAT2, ...) of water, ION of residues of one atom, and M1, M2,

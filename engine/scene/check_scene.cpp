@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -152,13 +153,17 @@ void check_grab(const SceneDescription& scene, Problems& problems) {
 
 void check_engine(const EngineDescription& engine, Problems& problems) {
     const std::size_t colon = engine.address.rfind(':');
-    const auto port = colon == std::string::npos
-                          ? std::nullopt
-                          : find_integer(std::string_view(engine.address).substr(colon + 1));
-    if (colon == 0 || !port || *port < 1 || *port > 65535) {
+    const std::int64_t port =
+        colon == std::string::npos
+            ? 0
+            : find_integer(std::string_view(engine.address).substr(colon + 1)).value_or(0);
+    const std::string_view host = std::string_view(engine.address).substr(0, colon);
+    const bool is_host = host == "localhost" ||
+                         (!host.empty() && host.find_first_not_of("0123456789.") == host.npos);
+    if (!is_host || port < 1 || port > 65535) {
         problems.add(problems.place_of("engine.address"),
-                     fmt::format("'engine.address' is \"{}\"; expected HOST:PORT, as "
-                                 "\"127.0.0.1:8888\"",
+                     fmt::format("'engine.address' is \"{}\"; expected HOST:PORT with the host in "
+                                 "numbers, as \"127.0.0.1:8888\"",
                                  engine.address));
     }
     if (engine.program == EngineProgram::Lammps && engine.rate == 1) {
@@ -218,12 +223,15 @@ void check_edits(const SceneDescription& scene, Problems& problems) {
 
 namespace {
 
-void check_hand(const HandTables& by, Problems& problems) {
+void check_hand(const HandTables& by, bool is_remote, Problems& problems) {
     const HandDescription& h = by.hand;
     const std::string stroke = by.hand_key + ".stroke", path = by.hand_key + ".path";
     const auto check = [&](bool right, const std::string& key, const std::string& what) {
         if (!right) problems.add(problems.place_of(key), fmt::format("'{}' {}", key, what));
     };
+    check(h.stroke != Stroke::InOut || !is_remote, stroke,
+          "is \"in-out\", for which there is no wall to go to with [engine]; expected \"hold\", "
+          "\"path\" or \"lead\"");
     check(h.stroke != Stroke::InOut || h.grip != HandGrip::None, stroke,
           "is \"in-out\" with a grip of \"none\": nobody would move the handle; expected "
           "\"hold\", or a hand");
@@ -334,7 +342,8 @@ void check_scene(const SceneDescription& scene, Problems& problems) {
     if (scene.engine) check_engine(*scene.engine, problems);
     check_coupling(scene.coupling, problems);
     check_ranges(scene, problems);
-    for (const HandTables& hand : list_hands(scene)) check_hand(hand, problems);
+    for (const HandTables& hand : list_hands(scene))
+        check_hand(hand, scene.engine.has_value(), problems);
     check_view(scene.view, scene, problems);
     check_edits(scene, problems);
 }

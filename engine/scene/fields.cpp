@@ -353,8 +353,8 @@ void visit_engine(FieldVisitor& v, std::optional<EngineDescription>& engine) {
         {.key = "atoms",
          .meaning = "which of the engine's atoms are which of the scene's: the engine's own as a "
                     "PSF or GRO file, found by residue and name; or an index file (.ndx) whose "
-                    "first group says, of each that it sends, the scene's number; unset: all of "
-                    "the scene's, in their order"},
+                    "first group lists, in the order in which the engine sends its atoms, their "
+                    "numbers in the scene; unset: all of the scene's, in their order"},
         engine->atoms);
     v.integer({.key = "rate",
                .meaning = "steps of the engine between two frames; 0: as the engine has it. LAMMPS "
@@ -368,7 +368,8 @@ void visit_engine(FieldVisitor& v, std::optional<EngineDescription>& engine) {
             .highest = 100},
            engine->force_scale);
     v.real({.key = "most_force_nN",
-            .meaning = "of the spring between hand and atoms; it is softer beyond",
+            .meaning = "largest force of the spring between hand and atoms; beyond it the force "
+                       "stays constant",
             .lowest = 1e-3,
             .highest = 100},
            engine->most_force_nN);

@@ -66,6 +66,8 @@ LiveSimulation::LiveSimulation(const SceneDescription& scene, std::vector<HandDe
     post_orders();
 }
 
+LiveSimulation::~LiveSimulation() { leave_engine(world_); }
+
 bool LiveSimulation::all_stand_still() const noexcept {
     return std::ranges::all_of(devices_, &HandDevice::stands_still);
 }
@@ -110,6 +112,7 @@ void LiveSimulation::play(const CommandEvent& event) {
         obey(*pause);
     } else if (std::holds_alternative<StepOnce>(event.command)) {
         readout_.paused = true;
+        pause_engine(world_, true);
         post_orders();
     } else if (const auto* const anew = std::get_if<Reset>(&event.command)) {
         obey(*anew);
@@ -158,6 +161,10 @@ void LiveSimulation::obey(const Pause& pause) {
 }
 
 void LiveSimulation::obey(const Reset& reset) {
+    if (find_remote_engine(world_)) {
+        readout_.problem = "a remote engine's atoms are where they are: nothing puts them back";
+        return;
+    }
     if (reset.start_angstrom) scene_.hand.start_angstrom = reset.start_angstrom;
     const std::vector<std::uint32_t> last_starts = list_starts();
     renewals_.await();
@@ -192,7 +199,8 @@ bool LiveSimulation::takes_long(const EditDescription& edit) const noexcept {
     const bool makes_mobile = std::holds_alternative<MobilityEdit>(edit.action) ||
                               (take && take->what.find(':') != std::string::npos);
     return world_.resource<AtomTable>().positions.size() >= many_atoms &&
-           (needs_mechanics(world_) || makes_mobile) && !std::visit(is_quick, edit.action);
+           !find_remote_engine(world_) && (needs_mechanics(world_) || makes_mobile) &&
+           !std::visit(is_quick, edit.action);
 }
 
 void LiveSimulation::build_draft() noexcept {

@@ -41,6 +41,10 @@ public:
     // one by as_played. Throws LoadError as start_playback does.
     LiveSimulation(const SceneDescription& scene, std::vector<HandDevice> devices, ServoLine& line,
                    const std::optional<PlaybackChoice>& playback = {});
+    LiveSimulation(const LiveSimulation&) = delete;
+    LiveSimulation& operator=(const LiveSimulation&) = delete;
+    // Lets a remote engine go.
+    ~LiveSimulation();
 
     // `poses`: the newest of all hands.
     void play(const LiveEvent& event, std::span<const HandPose> poses);

@@ -40,7 +40,7 @@ struct RelaxationSummary {
 
 // Of a run that a remote engine moved.
 struct EngineSummary {
-    std::uint64_t frames = 0;         // that were taken
+    std::uint64_t frames = 0;         // that came
     double frames_per_s = 0;          // wall time, towards the end; 0: not known
     double delay_ms = 0;              // from the atoms' motion to the force on the hand
     std::uint64_t interruptions = 0;  // how often frames ceased to come

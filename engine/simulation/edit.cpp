@@ -117,6 +117,14 @@ void keep_clock_and_devices(const World& world, World& other) {
     });
     other.resource<Clock>() = world.resource<Clock>();
     carry_playback(world, other);
+    const RemoteEngine* const engine = find_remote_engine(world);
+    if (!engine) return;
+    // Its atoms are where they are; hands take hold of them there.
+    other.set_resource(*engine);
+    other.resource<AtomTable>().positions = world.resource<AtomTable>().positions;
+    for (const Entity hand : find_hands(other)) {
+        if (EngineHold* const hold = other.find<EngineHold>(hand)) hold->is_live = false;
+    }
 }
 
 // Changes a copy, which takes the world's place only if all went well.
@@ -424,7 +432,6 @@ Entity hand_at(const World& world, std::size_t slot) {
     return hands[slot];
 }
 
-// Each edit and the function above that makes it.
 // What a remote engine moves can be held and looked at.
 void check_engine_allows(const World& world, const EditDescription& edit) {
     const EditAction& action = edit.action;
@@ -439,6 +446,7 @@ void check_engine_allows(const World& world, const EditDescription& edit) {
                     edit_names[action.index()]));
 }
 
+// Each edit and the function above that makes it.
 void make(World& world, const EditDescription& edit) {
     check_engine_allows(world, edit);
     const auto visit = [&](const auto& action) {

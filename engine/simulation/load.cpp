@@ -289,13 +289,6 @@ void check_laws(const SceneDescription& scene) {
                     "A_f_min at F_0; expected others, or coupling.force_law = \"printed\"");
 }
 
-// Where the engine alone knows where atoms are.
-bool lacks_coordinates(const SceneDescription& scene) {
-    return std::ranges::any_of(scene.molecules, [](const MoleculeDescription& molecule) {
-        return is_psf(molecule.structure);
-    });
-}
-
 }  // namespace
 
 World load_world(const SceneDescription& scene, const StageFunction& on_stage) {
@@ -305,10 +298,6 @@ World load_world(const SceneDescription& scene, const StageFunction& on_stage) {
     if (scene.engine) {
         set_remote_engine(scene, world);
         hold_engine_atoms(world);
-        if (lacks_coordinates(scene)) {
-            tell(on_stage, "waiting for the engine's first frame");
-            await_engine(world);
-        }
     }
     for (const MoleculeDescription& molecule : scene.molecules) add_anchors(scene, molecule, world);
     if (needs_mechanics(world)) {

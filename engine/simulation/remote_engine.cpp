@@ -10,6 +10,7 @@
 #include "molecule/element.h"
 #include "simulation/held.h"
 #include "simulation/resources.h"
+#include "simulation/sources.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -33,23 +34,24 @@ double now_s() {
 struct ElementData {
     const char* symbol;
     double mass;    // amu
-    double radius;  // Å, covalent (Cordero and others, Dalton Trans. 2008, 2832)
+    double radius;  // Å, covalent (Cordero and others, Dalton Trans. 2008, 2832); 0: has no bonds
 };
 
 constexpr ElementData elements[] = {
-    {"H", 1.008, 0.31},   {"C", 12.011, 0.76},  {"N", 14.007, 0.71},  {"O", 15.999, 0.66},
-    {"F", 18.998, 0.57},  {"NA", 22.990, 1.66}, {"MG", 24.305, 1.41}, {"P", 30.974, 1.07},
-    {"S", 32.06, 1.05},   {"CL", 35.45, 1.02},  {"K", 39.098, 2.03},  {"CA", 40.078, 1.76},
-    {"MN", 54.938, 1.39}, {"FE", 55.845, 1.32}, {"CU", 63.546, 1.32}, {"ZN", 65.38, 1.22},
+    {"H", 1.008, 0.31},   {"C", 12.011, 0.76},  {"N", 14.007, 0.71}, {"O", 15.999, 0.66},
+    {"F", 18.998, 0.57},  {"NA", 22.990, 0},    {"MG", 24.305, 0},   {"P", 30.974, 1.07},
+    {"S", 32.06, 1.05},   {"CL", 35.45, 1.02},  {"K", 39.098, 0},    {"CA", 40.078, 0},
+    {"MN", 54.938, 0},    {"FE", 55.845, 0},    {"CU", 63.546, 0},   {"ZN", 65.38, 0},
     {"SE", 78.971, 1.20}, {"BR", 79.904, 1.20}, {"I", 126.904, 1.39}};
 
 const ElementData& element_of(std::string_view symbol) {
     const auto* const found = std::ranges::find(
         elements, symbol, [](const ElementData& e) { return std::string_view(e.symbol); });
-    return found == std::end(elements) ? elements[1] : *found;
+    // No mass where it is not known, as of virtual sites.
+    static constexpr ElementData unknown{"", 0, 0};
+    return found == std::end(elements) ? unknown : *found;
 }
 
-// By mass; hydrogen that was made heavier keeps being the lightest.
 std::string element_of_mass(double mass) {
     if (mass < 4.5) return mass > 0 ? "H" : "";
     const auto nearest = std::ranges::min_element(
@@ -71,7 +73,7 @@ void add_atom(const AtomName& name, const Vec3& place, std::string element, doub
 
 // Pairs nearer than their covalent radii and 0.4 Å, in cells of the largest such distance.
 void add_bonds_by_distance(AtomRange range, AtomTable& table) {
-    constexpr double slack = 0.4, cell = 2.6;  // Å; metals have no bonds here
+    constexpr double slack = 0.4, cell = 3.2;  // Å
     using Cell = std::tuple<int, int, int>;
     const auto cell_of = [&](std::uint32_t i, int dx, int dy, int dz) {
         const Vec3 place = table.positions[i] / cell;
@@ -88,7 +90,7 @@ void add_bonds_by_distance(AtomRange range, AtomTable& table) {
             for (const std::uint32_t j : found->second) {
                 const ElementData &a = element_of(table.element[i]),
                                   &b = element_of(table.element[j]);
-                if (a.radius > 1.3 || b.radius > 1.3 || (a.mass < 2 && b.mass < 2)) continue;
+                if (a.radius == 0 || b.radius == 0 || (a.mass < 2 && b.mass < 2)) continue;
                 const double reach = a.radius + b.radius + slack;
                 if ((table.positions[i] - table.positions[j]).squaredNorm() < reach * reach)
                     table.bonds.push_back({j, i});
@@ -98,10 +100,10 @@ void add_bonds_by_distance(AtomRange range, AtomTable& table) {
     }
 }
 
-using AtomKey = std::tuple<std::string, std::string, std::string>;
+using AtomKey = std::tuple<std::string, std::string, std::string, std::string>;
 
 AtomKey key_of(const AtomName& name, bool has_segments) {
-    return {has_segments ? name.segment : "", name.number, name.atom};
+    return {has_segments ? name.segment : "", name.residue, name.number, name.atom};
 }
 
 // The engine's atoms as a file has them; masses where it tells.
@@ -126,20 +128,25 @@ EngineAtoms match_names(const SceneDescription& scene, const AtomTable& table) {
     for (std::size_t i = 0; i < file.names.size(); ++i)
         places[key_of(file.names[i], file.has_segments)].push_back(static_cast<std::int32_t>(i));
     EngineAtoms atoms{std::vector<std::int32_t>(file.names.size(), -1), {}};
+    const bool has_masses =
+        !file.masses.empty() &&
+        std::ranges::none_of(scene.molecules, [](const MoleculeDescription& molecule) {
+            return molecule.topology.empty() && !is_psf(molecule.structure);
+        });
     for (std::size_t i = 0; i < table.size(); ++i) {
         const AtomName& name = table.names[i];
         const auto found = places.find(key_of(name, file.has_segments));
         if (found == places.end() || found->second.size() != 1) {
             throw LoadError(
                 scene.place_of("engine.atoms"),
-                fmt::format("{} has {} atoms called {} {}; expected one, for {} of the scene",
+                fmt::format("{} has {} atoms called {} {} {}; expected one, for {} of the scene",
                             path.string(), found == places.end() ? 0 : found->second.size(),
-                            name.number, name.atom, to_string(name)));
+                            name.residue, name.number, name.atom, to_string(name)));
         }
         const std::int32_t at = found->second.front();
         constexpr double most_off = 0.1;  // amu
         const auto place = static_cast<std::size_t>(at);
-        if (!file.masses.empty() && std::abs(file.masses[place] - table.mass[i]) > most_off) {
+        if (has_masses && std::abs(file.masses[place] - table.mass[i]) > most_off) {
             throw LoadError(
                 scene.place_of("engine.atoms"),
                 fmt::format("{} has {} with {} amu, the scene with {}; expected the "
@@ -207,6 +214,7 @@ ImdClientOptions client_options(const SceneDescription& scene, std::size_t atoms
     options.limits.atoms = atoms;
     if (engine.program == EngineProgram::Gromacs && engine.protocol != EngineProtocol::Three)
         options.units = imd_units_of_gromacs;
+    if (engine.program == EngineProgram::Lammps) options.units = imd_units_of_namd;
     options.rate = static_cast<int>(engine.rate);
     if (engine.protocol != EngineProtocol::Any)
         options.version = engine.protocol == EngineProtocol::Two ? 2 : 3;
@@ -218,16 +226,21 @@ ImdClientOptions client_options(const SceneDescription& scene, std::size_t atoms
     return options;
 }
 
-// Waited for a frame this long, a connection is late or lost anyway.
+// How long a step waits for a frame.
 double patience_s(const RemoteEngine& engine) {
     if (!engine.wait_s) return 0;
-    return engine.frames == 0 ? *engine.wait_s : engine.settings.late_s;
+    if (engine.frames == 0) return *engine.wait_s;
+    // One that does not send any more is looked for now and then.
+    constexpr double lost_s = 0.1;
+    const bool comes = engine.client->state() == ImdState::Connected;
+    return comes ? engine.settings.late_s : std::min(lost_s, engine.settings.late_s);
 }
 
 void note_frame(RemoteEngine& engine, double time_s) {
     constexpr double newest = 0.1;
     if (engine.frames > 0 && !engine.lost_at_s) {
-        const double interval = time_s - engine.frame_time_s;
+        const double interval = (time_s - engine.frame_time_s) /
+                                static_cast<double>(engine.client->frames() - engine.frames);
         engine.frame_interval_s +=
             (engine.frame_interval_s > 0 ? newest : 1) * (interval - engine.frame_interval_s);
     }
@@ -272,7 +285,10 @@ AtomRange add_engine_atoms(const Source& source, AtomTable& table) {
                 fmt::format("atom {} has no place in {}", to_string(name), structure.file));
         }
         at[i] = static_cast<std::int64_t>(table.size());
-        add_atom(name, structure.positions[found->second], element_of_mass(connectivity->mass[i]),
+        // The name first: hydrogens may have been given mass of their neighbours.
+        std::string element = find_element_of_name(name.atom, name.residue);
+        if (element.empty()) element = element_of_mass(connectivity->mass[i]);
+        add_atom(name, structure.positions[found->second], std::move(element),
                  connectivity->mass[i], connectivity->charge[i], table);
     }
     range.count = static_cast<std::uint32_t>(table.size()) - range.first;
@@ -380,17 +396,23 @@ bool take_newest_frame(World& world) {
     return is_new;
 }
 
-void await_engine(World& world) {
+bool lacks_coordinates(const SceneDescription& scene) {
+    return scene.engine &&
+           std::ranges::any_of(scene.molecules, [](const MoleculeDescription& molecule) {
+               return is_psf(molecule.structure);
+           });
+}
+
+void await_engine(World& world, double wait_s) {
     RemoteEngine& engine = world.resource<RemoteEngine>();
-    const std::optional<double> wait_s = std::exchange(engine.wait_s, engine.wait_s.value_or(10));
+    const std::optional<double> before = std::exchange(engine.wait_s, wait_s);
     const bool came = take_newest_frame(world);
-    engine.wait_s = wait_s;
-    if (!came) {
-        throw EngineLost({"engine " + engine.settings.address},
-                         engine.client->why() +
-                             "; expected one that listens there and sends "
-                             "frames: start it first, or wait longer (--wait)");
-    }
+    engine.wait_s = before;
+    if (came) return;
+    throw EngineLost({"engine " + engine.settings.address},
+                     engine.client->why() +
+                         "; expected one that listens there and sends frames: "
+                         "start it first, or wait longer (--wait)");
 }
 
 void leave_engine(World& world) {
@@ -436,6 +458,7 @@ std::string describe_engine(const World& world) {
     if (!engine) return {};
     const ImdClient& client = *engine->client;
     if (client.state() != ImdState::Connected) return client.why();
+    if (!engine->refusal.empty()) return fmt::format("no force: {}", engine->refusal);
     return fmt::format("engine at {}: {:.0f} frames/s, force {:.0f} ms late",
                        engine->settings.address,
                        engine->frame_interval_s > 0 ? 1 / engine->frame_interval_s : 0,

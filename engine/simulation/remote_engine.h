@@ -33,11 +33,12 @@ struct RemoteEngine {
     // step waits.
     std::optional<double> wait_s;
 
-    std::uint64_t frames = 0;         // that were taken
+    std::uint64_t frames = 0;         // that came so far
     double frame_interval_s = 0;      // between the last ones, wall time, smoothed; 0: not known
     double frame_time_s = 0;          // of the last one, of the same clock
     std::optional<double> lost_at_s;  // since when nothing comes
     std::uint64_t interruptions = 0;  // how often frames ceased to come
+    std::string refusal;              // why the last forces were not sent; empty where they were
 };
 
 // Component of a hand that holds atoms of the engine.
@@ -77,8 +78,12 @@ void hold_engine_atoms(World& world);
 // first.
 bool take_newest_frame(World& world);
 
-// Waits for the first frame and puts hands where it has what they hold. Throws EngineLost.
-void await_engine(World& world);
+// Whether the engine alone knows where atoms are, of a molecule whose structure is a PSF file:
+// until its first frame they are at the origin.
+bool lacks_coordinates(const SceneDescription& scene);
+
+// Waits so long, s, for the first frame. Throws EngineLost.
+void await_engine(World& world, double wait_s);
 
 class EngineLost : public LoadError {
 public:

@@ -121,7 +121,7 @@ TEST_CASE("an engine's atoms are found by number", "[simulation][engine]") {
                Contains("atom 8 that the scene has not"));
 }
 
-TEST_CASE("what a table [engine] must not say", "[simulation][engine]") {
+TEST_CASE("a table [engine] that is wrong is refused", "[simulation][engine]") {
     const test::TemporaryFolder folder;
     const auto error = [&](const std::string& engine) {
         return load_error_of([&] { load(folder.path(), scene_text(engine)); });

@@ -14,7 +14,7 @@ KCAL = 4.184  # kJ/mol: version 3 has kJ/mol/A
 
 
 class Engine(threading.Thread):
-    """Beads in syrup: each moves by its force over its mass times `mobility` (amu A per kcal/mol/A, each frame).
+    """Overdamped beads: each moves by its force over its mass times `mobility` (amu A per kcal/mol/A, each frame).
 
     `script` is called before each frame with the engine and its number; it may change `places`, sleep, or
     send bytes of its own with `raw` and end the session by returning False.
@@ -31,6 +31,7 @@ class Engine(threading.Thread):
         self.sessions = 0
         self.problem = None
         self.listening = socket.create_server(("127.0.0.1", 0))
+        self.listening.settimeout(0.2)
         self.port = self.listening.getsockname()[1]
         self.is_over = False
 
@@ -40,7 +41,6 @@ class Engine(threading.Thread):
         self.join(10)
 
     def run(self):
-        self.listening.settimeout(0.2)
         while not self.is_over:
             try:
                 connection, _ = self.listening.accept()

@@ -75,7 +75,7 @@ class Played(unittest.TestCase):
     def pull(self, *options):
         record = self.folder / "record"
         result = self.palpa("connect", f"127.0.0.1:{self.port}", "--topology", self.run_folder / "sent.psf",
-                            "--headless", "--seconds", 6, "--lead", f"{WAY},0,0", "--spring", SPRING, "--wait", 60,
+                            "--headless", "--seconds", 20, "--lead", f"{WAY},0,0", "--spring", SPRING, "--wait", 60,
                             "--record", record, "--json", *options)
         output = (self.folder / "output").read_text(errors="replace")[-2000:]
         self.assertEqual(result.returncode, 0, result.stderr + output)
@@ -90,13 +90,13 @@ class Played(unittest.TestCase):
             return [float(row[f"molecule_{axis}_angstrom"]) + float(row[f"force_{axis}_nN"]) / NM_OF_KCAL / SPRING
                     for axis in "xyz"]
 
-        last = [atoms_at(row) for row in rows[-300:]]
+        last = [atoms_at(row) for row in rows[-500:]]
         way = [sum(p[i] for p in last) / len(last) - atoms_at(rows[0])[i] for i in range(3)]
         # Where the hand led it, within what heat does to it.
         self.assertAlmostEqual(way[0], WAY, delta=1.2, msg=way)
         self.assertLess(math.hypot(way[1], way[2]), 1.5, way)
         # The water resists on the way.
-        middle = [float(row["force_x_nN"]) for row in rows[1000:5000]]
+        middle = [float(row["force_x_nN"]) for row in rows[2000:19000]]
         self.assertLess(sum(middle) / len(middle), -0.005)
         return way
 

@@ -29,6 +29,7 @@
 #include "tools/bench/servo.h"
 #include "tools/bench/statics.h"
 #include "tools/bench/tree.h"
+#include "tools/commands/command.h"
 #include "tools/commands/progress.h"
 #include "tools/report/answer.h"
 #include "view/build_frame.h"
@@ -206,6 +207,7 @@ int bench_command(const BenchOptions& options) {
     if (options.engine) bench_engine(rows);
     for (const std::filesystem::path& path : options.scenes) {
         const SceneDescription scene = read_scene(path, options.settings);
+        refuse_remote_engine(scene);
         const std::filesystem::path folder = std::filesystem::absolute(scene.file).parent_path();
         const std::string name = folder.filename().string();
         fmt::print(stderr, "timing {}\n", name);

@@ -1,5 +1,6 @@
 #include "tools/commands/command.h"
 
+#include "core/load_error.h"
 #include "core/text.h"
 #include "scene/read_scene.h"
 #include "tools/commands/render.h"
@@ -91,6 +92,13 @@ void add_toppar_option(CLI::App& command, std::vector<std::filesystem::path>& to
     command.add_option("--toppar", toppar, "CHARMM topology, parameter and stream files, in order")
         ->type_name("FILE")
         ->required();
+}
+
+void refuse_remote_engine(const SceneDescription& scene) {
+    if (!scene.engine) return;
+    throw LoadError(scene.place_of("engine"),
+                    "a remote engine moves all atoms here, and this command needs Palpa's own "
+                    "mechanics; expected a scene without [engine], or palpa run");
 }
 
 }  // namespace palpa

@@ -1,5 +1,6 @@
 // What the commands of the program have in common: how each comes into it, and options of several.
 #pragma once
+#include "scene/description.h"
 #include "tools/commands/command_line.h"
 
 #include <CLI/CLI.hpp>
@@ -44,6 +45,9 @@ Options& own_options(CLI::App& command, ProgramCommand& chosen, Function functio
     });
     return *options;
 }
+
+// Throws LoadError where a remote engine moves the scene's atoms.
+void refuse_remote_engine(const SceneDescription& scene);
 
 // --set, and what lets a scene name files outside of its folder.
 void add_set_option(CLI::App& command, std::vector<std::string>& settings);

@@ -2,6 +2,7 @@
 #include "core/files.h"
 #include "core/load_error.h"
 #include "core/text.h"
+#include "formats/gro.h"
 #include "formats/psf.h"
 #include "formats/structure.h"
 #include "molecule/alternatives.h"
@@ -56,11 +57,9 @@ std::vector<AtomName> read_names(const fs::path& path) {
 }
 
 bool is_solvent(const std::vector<AtomName>& names, const Part& part) {
-    constexpr std::array<std::string_view, 8> water{"TIP3", "SOL", "HOH", "WAT",
-                                                    "TP3",  "SPC", "T3P", "TIP4"};
     // Water, or a first residue of one atom.
     const AtomName& name = names[part.first];
-    if (std::ranges::find(water, name.residue) != water.end()) return true;
+    if (is_water_residue(name.residue)) return true;
     return part.count == 1 || !is_same_residue(name, names[part.first + 1]);
 }
 
@@ -68,6 +67,12 @@ std::vector<Part> find_parts(const fs::path& file, const std::vector<AtomName>& 
     std::vector<Part> parts;
     for (std::size_t i = 0; i < names.size(); ++i) {
         const std::string& segment = names[i].segment;
+        if (segment.empty()) {
+            throw LoadError({file.string()},
+                            fmt::format("{} has neither segment nor chain; expected a PSF or GRO "
+                                        "file, or chains with names",
+                                        to_string(names[i])));
+        }
         if (parts.empty() || parts.back().segment != segment) {
             if (std::ranges::find(parts, segment, &Part::segment) != parts.end()) {
                 throw LoadError({file.string()},
@@ -83,8 +88,6 @@ std::vector<Part> find_parts(const fs::path& file, const std::vector<AtomName>& 
     return parts;
 }
 
-std::string name_of(const Part& part) { return part.segment.empty() ? "all" : part.segment; }
-
 struct Hold {
     std::string molecule, atom;
 };
@@ -92,13 +95,13 @@ struct Hold {
 Hold hold_atom(const std::vector<Part>& parts, std::size_t atom) {
     const auto part = std::ranges::find_if(
         parts, [&](const Part& p) { return atom >= p.first && atom - p.first < p.count; });
-    return {name_of(*part), fmt::format("#{}", atom - part->first + 1)};
+    return {part->segment, fmt::format("#{}", atom - part->first + 1)};
 }
 
 [[noreturn]] void refuse_hold(const std::string& hold, const std::string& why,
                               const std::vector<Part>& parts) {
     std::vector<std::string> names;
-    for (const Part& part : parts) names.push_back(name_of(part));
+    for (const Part& part : parts) names.push_back(part.segment);
     throw LoadError(
         {"--hold"},
         fmt::format("\"{}\" {}; expected an atom's number in the file (\"17\"), its name "
@@ -137,12 +140,12 @@ Hold find_hold(const std::string& hold, const std::vector<AtomName>& names,
             if (part.is_solvent) continue;
             if (!smallest || part.count < smallest->count) smallest = &part;
         }
-        if (smallest) return {name_of(*smallest), ""};
+        if (smallest) return {smallest->segment, ""};
         // Of water alone its first molecule's first atom.
         return hold_atom(parts, 0);
     }
-    const auto part = std::ranges::find(parts, hold, name_of);
-    if (part != parts.end()) return {name_of(*part), ""};
+    const auto part = std::ranges::find(parts, hold, &Part::segment);
+    if (part != parts.end()) return {part->segment, ""};
     if (const auto number = find_integer(hold)) {
         if (*number < 1 || static_cast<std::size_t>(*number) > names.size())
             refuse_hold(hold, fmt::format("is none of {} atoms", names.size()), parts);
@@ -159,7 +162,7 @@ SceneDescription build_scene(const ConnectOptions& options) {
     scene.title = fmt::format("{} at {}", options.topology.filename().string(), options.address);
     for (const Part& part : parts) {
         MoleculeDescription molecule;
-        molecule.name = name_of(part);
+        molecule.name = part.segment;
         molecule.structure = options.coordinates.value_or(options.topology);
         if (has_psf) molecule.topology = options.topology;
         molecule.segment = part.segment;
@@ -193,6 +196,11 @@ SceneDescription build_scene(const ConnectOptions& options) {
 }
 
 int connect_command(const ConnectOptions& options) {
+    if (options.address.find(':') == std::string::npos) {
+        throw LoadError({options.address},
+                        "is no address of an engine; expected HOST:PORT, as "
+                        "127.0.0.1:8888");
+    }
     SceneDescription description = build_scene(options);
     const auto absolute = [](const fs::path& path) { return fs::absolute(path).generic_string(); };
     const std::string text = format_scene(description, absolute);
@@ -206,7 +214,8 @@ int connect_command(const ConnectOptions& options) {
         };
         write_text_file(*options.scene, format_scene(scene, beside),
                         options.run.overwrites ? Existing::Replace : Existing::Refuse);
-        fmt::print("written: {}\n", options.scene->string());
+        fmt::print("written: {}; run it with: palpa run {} {}\n", options.scene->string(),
+                   options.scene->string(), allow_outside);
     }
     return run_scene(scene, options.run);
 }

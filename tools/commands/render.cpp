@@ -100,6 +100,7 @@ void check_render_options(const RenderOptions& options) {
 
 int render_command(const RenderOptions& options) {
     SceneDescription scene = read_scene(options.scene, options.settings);
+    refuse_remote_engine(scene);
     check_render_options(options);
     const Existing existing = options.film
                                   ? Existing::Refuse

@@ -42,6 +42,7 @@ SceneDescription read_session(const std::filesystem::path& folder) {
 }
 
 void check_repeats(const SceneDescription& scene) {
+    refuse_remote_engine(scene);
     if (!scene.statics.budget_us) return;
     throw LoadError(
         scene.place_of("statics.budget_us"),

@@ -15,6 +15,7 @@
 #include "simulation/load.h"
 #include "simulation/remote_engine.h"
 #include "simulation/step.h"
+#include "simulation/systems/follow_engine.h"
 #include "tools/commands/command.h"
 #include "tools/commands/devices.h"
 #include "tools/commands/open_window.h"
@@ -121,7 +122,12 @@ int print_check(const SceneDescription& scene, const World& world,
                warnings.empty() ? "nothing wrong found"
                                 : fmt::format("can be run, with {} warning{}", warnings.size(),
                                               warnings.size() == 1 ? "" : "s"));
-    print_line(scene, world, progress);
+    if (scene.engine) {
+        fmt::print("  engine      {} moves {} atoms\n", printable(scene.engine->address),
+                   world.resource<AtomTable>().size());
+    } else {
+        print_line(scene, world, progress);
+    }
     for (const std::string& warning : warnings) {
         fmt::print("  warning: {}\n", printable(warning));
     }
@@ -225,6 +231,21 @@ int run_without_window(SceneDescription scene, World& world,
     return exit_code_after(is_gone ? engine_lost : 0);
 }
 
+// Without a window the run goes by the engine's frames; a window, which connects by itself, only
+// needs to know where atoms are.
+void meet_engine(const SceneDescription& scene, World& world, const RunOptions& options,
+                 ProgressLine& progress) {
+    if (!scene.engine || options.check_only) return;
+    if (!options.headless && !lacks_coordinates(scene)) return;
+    tell(progress.stages(), "waiting for the engine's first frame");
+    begin_with_engine(world, options.engine_wait_s);
+    if (options.headless) {
+        world.resource<RemoteEngine>().wait_s = options.engine_wait_s;
+    } else {
+        leave_engine(world);
+    }
+}
+
 }  // namespace
 
 int run_command(const RunOptions& options) {
@@ -237,9 +258,7 @@ int run_scene(const SceneDescription& read, const RunOptions& options) {
     check_second(options, scene);
     ProgressLine progress(!options.json);
     World world = load_world(scene, progress.stages());
-    if (RemoteEngine* const engine = world.find_resource<RemoteEngine>();
-        engine && options.headless)
-        engine->wait_s = options.engine_wait_s;
+    meet_engine(scene, world, options, progress);
     const std::optional<PlaybackChoice> playback = playback_choice(options);
     if (playback) start_playback(world, playback->file, playback->order);
     tell(progress.stages(), "planning the hand's way");

@@ -5,11 +5,12 @@
 #include "simulation/held.h"
 #include "simulation/remote_engine.h"
 #include "simulation/resources.h"
+#include "simulation/systems/publish_contact.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <vector>
 
 namespace palpa {
@@ -17,6 +18,8 @@ namespace {
 
 // Farther from one frame to the next goes only what is moved into another image.
 constexpr double farthest_move = 8;  // Å
+// Farther out nothing is held.
+constexpr double farthest_place = 1e5;  // Å
 
 Vec3 find_middle(const World& world, const EngineHold& hold) {
     const std::vector<Vec3>& positions = world.resource<AtomTable>().positions;
@@ -43,7 +46,7 @@ void follow_atoms(World& world, Entity hand, bool is_live) {
     const Vec3 middle = find_middle(world, hold);
     const bool has_jumped = (middle - hold.middle).norm() > farthest_move;
     hold.middle = middle;
-    if (!is_live) {
+    if (!is_live || middle.cwiseAbs().maxCoeff() > farthest_place) {
         hold.is_live = false;
     } else if (!hold.is_live || has_jumped) {
         hold_anew(world, hand, hold);
@@ -55,12 +58,17 @@ void follow_atoms(World& world, Entity hand, bool is_live) {
     }
 }
 
+struct AtomForce {
+    std::int32_t atom;  // of the engine
+    Vec3 force;         // kcal/mol/Å
+};
+
 // Two hands may hold the same atoms.
-void send_forces(World& world) {
+std::vector<AtomForce> list_forces(const World& world) {
     const RemoteEngine& engine = world.resource<RemoteEngine>();
     const double most =
         1e-9 * engine.settings.most_force_nN / units::newton_per_kcal_per_mol_angstrom;
-    std::map<std::int32_t, Vec3> pulls;
+    std::vector<AtomForce> all, forces;
     world.each<EngineHold>([&](Entity hand, const EngineHold& hold) {
         if (!hold.is_live) return;
         const Grip& grip = grip_of(world, hand);
@@ -69,20 +77,35 @@ void send_forces(World& world) {
             find_engine_spring(grip.k, hold.smoothed - held_place(world, hand), most).force;
         for (std::size_t i = 0; i < hold.atoms.size(); ++i) {
             const std::int32_t atom = engine.atoms.in_engine[hold.atoms[i]];
-            if (atom < 0) continue;
-            pulls.try_emplace(atom, Vec3::Zero()).first->second += hold.shares[i] * force;
+            if (atom >= 0) all.push_back({atom, hold.shares[i] * force});
         }
     });
+    std::ranges::stable_sort(all, {}, &AtomForce::atom);
+    for (const AtomForce& next : all) {
+        if (!forces.empty() && forces.back().atom == next.atom) {
+            forces.back().force += next.force;
+        } else {
+            forces.push_back(next);
+        }
+    }
+    return forces;
+}
+
+// Where the engine cannot have them the hand feels nothing either.
+void send_forces(World& world) {
+    RemoteEngine& engine = world.resource<RemoteEngine>();
     std::vector<std::int32_t> atoms;
     std::vector<Vec3> forces;
-    for (const auto& [atom, force] : pulls) {
-        atoms.push_back(atom);
-        forces.push_back(force);
+    for (const AtomForce& next : list_forces(world)) {
+        atoms.push_back(next.atom);
+        forces.push_back(next.force);
     }
-    if (atoms.empty()) {
-        engine.client->let_go();
-    } else {
-        (void)engine.client->pull(atoms, forces);
+    engine.refusal.clear();
+    if (atoms.empty()) return engine.client->let_go();
+    engine.refusal = engine.client->pull(atoms, forces);
+    if (engine.refusal.empty()) return;
+    for (const Entity hand : find_hands(world)) {
+        if (EngineHold* const hold = world.find<EngineHold>(hand)) hold->is_live = false;
     }
 }
 
@@ -96,6 +119,14 @@ void follow_engine(World& world, const StepInput& /*input*/) {
         if (world.find<EngineHold>(hand)) follow_atoms(world, hand, is_live);
     }
     if (is_live) send_forces(world);
+}
+
+void begin_with_engine(World& world, double wait_s) {
+    await_engine(world, wait_s);
+    follow_engine(world, {});
+    for (const Entity hand : find_hands(world)) {
+        if (world.find<EngineHold>(hand)) update_contact(world, hand, {});
+    }
 }
 
 }  // namespace palpa
