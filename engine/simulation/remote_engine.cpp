@@ -60,7 +60,7 @@ std::string element_of_mass(double mass) {
 }
 
 void add_atom(const AtomName& name, const Vec3& place, std::string element, double mass,
-              double charge, AtomTable& table) {
+              double charge, const std::string& type, AtomTable& table) {
     table.names.push_back(name);
     table.positions.push_back(place);
     table.element.push_back(std::move(element));
@@ -68,7 +68,9 @@ void add_atom(const AtomName& name, const Vec3& place, std::string element, doub
     table.charge.push_back(charge);
     table.sqrt_epsilon.push_back(0);
     table.half_rmin.push_back(0);
-    table.type.push_back(0);
+    const auto found = std::ranges::find(table.type_names, type);
+    table.type.push_back(static_cast<std::uint32_t>(found - table.type_names.begin()));
+    if (found == table.type_names.end()) table.type_names.push_back(type);
 }
 
 // Pairs nearer than their covalent radii and 0.4 Å, in cells of the largest such distance.
@@ -258,10 +260,10 @@ EngineSpring find_engine_spring(double k, const Vec3& stretch, double most) noex
 }
 
 AtomRange add_engine_atoms(const Source& source, AtomTable& table) {
+    const std::string unknown_type = "X";
     const Structure& structure = *source.structure;
     const Connectivity* const connectivity = source.connectivity.get();
     const std::string& segment = source.segment;
-    if (table.type_names.empty()) table.type_names.emplace_back("of the engine");
     AtomRange range{static_cast<std::uint32_t>(table.size()), 0};
     std::vector<std::int64_t> at(connectivity ? connectivity->names.size() : 0, -1);
     std::map<std::string, std::size_t> places;
@@ -273,7 +275,8 @@ AtomRange add_engine_atoms(const Source& source, AtomTable& table) {
         }
         const AtomName& name = structure.names[i];
         const std::string element = find_element_of_name(name.atom, name.residue);
-        add_atom(name, structure.positions[i], element, element_of(element).mass, 0, table);
+        add_atom(name, structure.positions[i], element, element_of(element).mass, 0, unknown_type,
+                 table);
     }
     for (std::size_t i = 0; i < at.size(); ++i) {
         const AtomName& name = connectivity->names[i];
@@ -289,7 +292,7 @@ AtomRange add_engine_atoms(const Source& source, AtomTable& table) {
         std::string element = find_element_of_name(name.atom, name.residue);
         if (element.empty()) element = element_of_mass(connectivity->mass[i]);
         add_atom(name, structure.positions[found->second], std::move(element),
-                 connectivity->mass[i], connectivity->charge[i], table);
+                 connectivity->mass[i], connectivity->charge[i], connectivity->type[i], table);
     }
     range.count = static_cast<std::uint32_t>(table.size()) - range.first;
     if (range.count == 0) {

@@ -132,6 +132,25 @@ TEST_CASE("odd values survive being written and read, to the last bit", "[scene]
     CHECK(back.lesson[1].for_s == 0.5);
 }
 
+TEST_CASE("a remote engine is written and read again, without a force field", "[scene][write]") {
+    SceneDescription scene = water();
+    scene.force_field.files.clear();
+    scene.hand.stroke = Stroke::Hold;
+    scene.engine = EngineDescription{.address = "10.0.0.7:3000",
+                                     .program = EngineProgram::Lammps,
+                                     .protocol = EngineProtocol::Two,
+                                     .atoms = {},
+                                     .rate = 7,
+                                     .force_scale = 0.5,
+                                     .most_force_nN = 2,
+                                     .smoothing_ms = 20,
+                                     .late_s = 3};
+    const SceneDescription read = parsed(formatted(scene));
+    CHECK(read.engine == scene.engine);
+    CHECK(read.force_field.files.empty());
+    CHECK(parsed(formatted(water())).engine == std::nullopt);
+}
+
 TEST_CASE("every field is written, under its full key", "[scene][write]") {
     SceneDescription scene = water();
     scene.hand.start_angstrom = 3;
@@ -146,6 +165,7 @@ TEST_CASE("every field is written, under its full key", "[scene][write]") {
     scene.coupling.feel_within_pN = 50;
     scene.view.representation = Representation::Licorice;
     for (MoleculeDescription& molecule : scene.molecules) molecule.topology = folder / "dimer.psf";
+    scene.engine.emplace().atoms = folder / "dimer.psf";
 
     const std::string text = formatted(scene);
 

@@ -18,22 +18,16 @@ import engines  # noqa: E402
 
 PROGRAM = os.environ["PALPA_PROGRAM"]
 PEPTIDE = ROOT / "scenes/engine/peptide"
+ATOMS = 62
 EDGE = 18.631
 SPRING = 5             # kcal/mol/A^2
 NM_OF_KCAL = 6.9477e-2  # nN of 1 kcal/mol/A
-WAY = 4                # A
+NM_OF_KJ_PER_NM = 1.66054e-3  # nN of 1 kJ/mol/nm
 
 
 def free_port():
     with socket.create_server(("127.0.0.1", 0)) as listening:
         return listening.getsockname()[1]
-
-
-def read_gro(path):
-    """Residue name, atom name, A of each atom."""
-    lines = path.read_text().splitlines()
-    return [(line[5:10].strip(), line[10:15].strip(), [10 * float(line[20 + 8 * i:28 + 8 * i]) for i in range(3)])
-            for line in lines[2:2 + int(lines[1])]]
 
 
 class Played(unittest.TestCase):
@@ -72,56 +66,56 @@ class Played(unittest.TestCase):
                 os.killpg(engine.pid, signal.SIGKILL)
                 engine.wait()
 
-    def pull(self, *options):
+    def pull(self, program, way_angstrom, seconds, rate):
         record = self.folder / "record"
         result = self.palpa("connect", f"127.0.0.1:{self.port}", "--topology", self.run_folder / "sent.psf",
-                            "--headless", "--seconds", 20, "--lead", f"{WAY},0,0", "--spring", SPRING, "--wait", 60,
-                            "--record", record, "--json", *options)
+                            "--headless", "--seconds", seconds, "--lead", f"{way_angstrom},0,0", "--spring", SPRING,
+                            "--rate", rate, "--wait", 60, "--set", "engine.late_s=30", "--program", program, "--record", record, "--json")
         output = (self.folder / "output").read_text(errors="replace")[-2000:]
         self.assertEqual(result.returncode, 0, result.stderr + output)
         with open(record / "trace.csv", newline="", encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
         summary = json.loads(result.stdout)["engine"]
         self.assertGreater(summary["frames"], 100)
-        self.assertEqual(summary["interruptions"], 0)
 
         def atoms_at(row):
             """The middle of the peptide: the hand's end, and the stretch of the spring."""
             return [float(row[f"molecule_{axis}_angstrom"]) + float(row[f"force_{axis}_nN"]) / NM_OF_KCAL / SPRING
                     for axis in "xyz"]
 
-        last = [atoms_at(row) for row in rows[-500:]]
+        last = [atoms_at(row) for row in rows[-400:]]
         way = [sum(p[i] for p in last) / len(last) - atoms_at(rows[0])[i] for i in range(3)]
-        # Where the hand led it, within what heat does to it.
-        self.assertAlmostEqual(way[0], WAY, delta=1.2, msg=way)
+        # Where the hand led it, less by what the water drags, within what heat does to it.
+        self.assertGreater(way[0], 0.5 * way_angstrom, way)
+        self.assertLess(way[0], way_angstrom + 1, way)
         self.assertLess(math.hypot(way[1], way[2]), 1.5, way)
         # The water resists on the way.
-        middle = [float(row["force_x_nN"]) for row in rows[2000:19000]]
+        middle = [float(row["force_x_nN"]) for row in rows[len(rows) // 2:]]
         self.assertLess(sum(middle) / len(middle), -0.005)
-        return way
+        return -min(float(row["force_x_nN"]) for row in rows)
 
-    def check_gromacs_went(self, engine, way):
-        """What GROMACS says itself of where the peptide is, in the nearest image of the box."""
-        self.end(engine)
-        names = {"ALA", "GLU", "ARG"}
-        before = [atom for atom in read_gro(self.run_folder / "system.gro") if atom[0] in names]
-        after = [atom for atom in read_gro(self.run_folder / "run.gro") if atom[0] in names]
-        self.assertEqual([a[:2] for a in before], [a[:2] for a in after])
-        moves = []
-        for (_, _, a), (_, _, b) in zip(before, after):
-            move = b[0] - a[0] - way
-            moves.append(move - EDGE * round(move / EDGE))
-        # It has gone on by itself since the hand let go.
-        self.assertLess(abs(sum(moves) / len(moves)), 3)
+    def check_gromacs_had(self, felt_nN):
+        """The strongest pull that GROMACS says it had, all atoms together, kJ/mol/nm."""
+        strongest = 0
+        for line in (self.run_folder / "forces.xvg").read_text().splitlines():
+            if line.startswith(("#", "@")):
+                continue
+            _, count, *atoms = map(float, line.split())
+            if not atoms:  # nobody pulls
+                continue
+            self.assertEqual((count, len(atoms)), (ATOMS, 4 * ATOMS))
+            strongest = max(strongest, sum(atoms[1::4]))
+        self.assertAlmostEqual(NM_OF_KJ_PER_NM * strongest, felt_nN, delta=0.2 * felt_nN)
 
 
 @unittest.skipIf(engines.missing("gmx"), engines.missing("gmx"))
 class Gromacs(Played):
     def test_a_peptide_is_pulled_through_water(self):
         self.write("gromacs")
-        engine = self.start("sh", "run.sh")
-        way = self.pull("--program", "gromacs")
-        self.check_gromacs_went(engine, way[0])
+        engine = self.start("sh", "run.sh", "-if", "forces.xvg")
+        felt = self.pull("gromacs", 3, 12, 10)
+        self.end(engine)
+        self.check_gromacs_had(felt)
 
 
 @unittest.skipIf(engines.missing("gmx_mpi", "mpirun"), engines.missing("gmx_mpi", "mpirun"))
@@ -132,9 +126,10 @@ class GromacsOnTwoRanks(Played):
                     "index.ndx", "-o", "run.tpr")
         engine = self.start("mpirun", "--allow-run-as-root", "--oversubscribe", "-np", 2, "gmx_mpi", "mdrun", "-s",
                             "run.tpr", "-deffnm", "run", "-npme", 1, "-ntomp", 1, "-imdport", self.port, "-imdwait",
-                            "-imdpull")
-        way = self.pull("--program", "gromacs")
-        self.check_gromacs_went(engine, way[0])
+                            "-imdpull", "-if", "forces.xvg")
+        felt = self.pull("gromacs", 3, 12, 10)
+        self.end(engine)
+        self.check_gromacs_had(felt)
 
 
 @unittest.skipIf(engines.missing("lmp"), engines.missing("lmp"))
@@ -142,7 +137,7 @@ class Lammps(Played):
     def test_a_peptide_is_pulled_through_water(self):
         self.write("lammps")
         self.start("sh", "run.sh")
-        self.pull("--program", "lammps")
+        self.pull("lammps", 1.5, 14, 4)
 
 
 if __name__ == "__main__":

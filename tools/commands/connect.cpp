@@ -266,8 +266,9 @@ void add_connect(CLI::App& program, ProgramCommand& chosen) {
         ->check(in_range(1e-3, 1e5));
     connect
         .add_option("--lead", options.lead,
-                    "X,Y,Z in Å: the emulated hand leads what it holds there by the end")
-        ->delimiter(',');
+                    "X,Y,Z, Å: the emulated hand leads what it holds there by the end")
+        ->delimiter(',')
+        ->type_name("");
     connect.add_flag("--json", options.run.json, "print the summary as JSON");
     connect.option_defaults()->group("With and without a window");
     connect
