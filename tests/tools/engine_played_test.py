@@ -20,7 +20,7 @@ PROGRAM = os.environ["PALPA_PROGRAM"]
 PEPTIDE = ROOT / "scenes/engine/peptide"
 ATOMS = 62
 EDGE = 18.631
-SPRING = 5             # kcal/mol/A^2
+SPRING = 10            # kcal/mol/A^2
 NM_OF_KCAL = 6.9477e-2  # nN of 1 kcal/mol/A
 NM_OF_KJ_PER_NM = 1.66054e-3  # nN of 1 kJ/mol/nm
 
@@ -86,12 +86,9 @@ class Played(unittest.TestCase):
         last = [atoms_at(row) for row in rows[-400:]]
         way = [sum(p[i] for p in last) / len(last) - atoms_at(rows[0])[i] for i in range(3)]
         # Where the hand led it, less by what the water drags, within what heat does to it.
-        self.assertGreater(way[0], 0.5 * way_angstrom, way)
+        self.assertGreater(way[0], 0.6 * way_angstrom, way)
         self.assertLess(way[0], way_angstrom + 1, way)
         self.assertLess(math.hypot(way[1], way[2]), 1.5, way)
-        # The water resists on the way.
-        middle = [float(row["force_x_nN"]) for row in rows[len(rows) // 2:]]
-        self.assertLess(sum(middle) / len(middle), -0.005)
         return -min(float(row["force_x_nN"]) for row in rows)
 
     def check_gromacs_had(self, felt_nN):
@@ -137,7 +134,7 @@ class Lammps(Played):
     def test_a_peptide_is_pulled_through_water(self):
         self.write("lammps")
         self.start("sh", "run.sh")
-        self.pull("lammps", 1.5, 14, 4)
+        self.pull("lammps", 3, 20, 4)
 
 
 if __name__ == "__main__":

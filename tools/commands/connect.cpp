@@ -255,6 +255,10 @@ void add_connect(CLI::App& program, ProgramCommand& chosen) {
     connect.add_option("--protocol", options.protocol, "version of IMD that it must speak: 2 or 3")
         ->check(CLI::IsMember({"any", "2", "3"}));
     connect
+        .add_option("--rate", options.engine.rate,
+                    "steps of the engine between two frames; as the engine has it unless given")
+        ->check(in_range(1, 1e6));
+    connect
         .add_option("--wait", options.run.engine_wait_s,
                     "seconds to wait for its first frame, 10 unless given")
         ->check(in_range(0.0, 1e5));
