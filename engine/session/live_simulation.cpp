@@ -10,6 +10,7 @@
 #include "simulation/remote_engine.h"
 #include "simulation/resources.h"
 #include "simulation/step.h"
+#include "simulation/systems/follow_engine.h"
 #include "simulation/systems/follow_hands.h"
 
 #include <algorithm>
@@ -62,6 +63,9 @@ LiveSimulation::LiveSimulation(const SceneDescription& scene, std::vector<HandDe
     PALPA_ASSERT(!devices_.empty() && devices_.size() <= find_hands(world_).size());
     for (const HandDevice& device : devices_) check_period(device.spec, scene.period_ms * 1e-3);
     if (playback) start_playback(world_, playback->file, playback->order);
+    // So that what is first seen is where the engine has it.
+    constexpr double wait_s = 10;
+    if (lacks_coordinates(scene)) begin_with_engine(world_, wait_s);
     play(PublishEvent{});
     post_orders();
 }

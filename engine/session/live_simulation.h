@@ -35,10 +35,11 @@ public:
 class LiveSimulation {
 public:
     // Loads the scene and posts the first contact models and orders. `devices` are for the hands of
-    // the world, in their order; hands beyond these stand still. Throws LoadError, and where a
-    // device must not be run with the scene's period (check_period).
-    // `playback`: a trajectory of the scene's atoms to play (simulation/playback.h); its scene is
-    // one by as_played. Throws LoadError as start_playback does.
+    // the world, in their order; hands beyond these stand still. Throws LoadError, EngineLost where
+    // only a remote engine knows where atoms are and does not answer, and where a device must not
+    // be run with the scene's period (check_period). `playback`: a trajectory of the scene's atoms
+    // to play (simulation/playback.h); its scene is one by as_played. Throws LoadError as
+    // start_playback does.
     LiveSimulation(const SceneDescription& scene, std::vector<HandDevice> devices, ServoLine& line,
                    const std::optional<PlaybackChoice>& playback = {});
     LiveSimulation(const LiveSimulation&) = delete;

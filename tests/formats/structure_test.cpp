@@ -121,9 +121,10 @@ TEST_CASE("a structure file is read as its name says", "[formats][structure]") {
 }
 
 TEST_CASE("a structure file of another name is refused", "[formats][structure]") {
-    CHECK(load_error_of([] { read_structure("a.xyz"); }) ==
-          "a.xyz: '.xyz' is no ending of a structure file; expected .pdb, .ent, .cif, .mmcif, .crd, "
-          ".cor or .gro");
+    CHECK(
+        load_error_of([] { read_structure("a.xyz"); }) ==
+        "a.xyz: '.xyz' is no ending of a structure file; expected .pdb, .ent, .cif, .mmcif, .crd, "
+        ".cor or .gro");
     CHECK_THAT(load_error_of([] { read_structure("a"); }), Catch::StartsWith("a: '' is no ending"));
     CHECK_THAT(load_error_of([] { read_structure("a.pdb.gz"); }), Catch::Contains("unpack it"));
     CHECK(load_error_of([] { read_structure("none.pdb"); }) == "none.pdb: no such file");
