@@ -100,7 +100,7 @@ public:
 
     ServoHealth servo_health() const noexcept;
 
-    // What the server told since the last call.
+    // The server's notes since the last call.
     std::vector<std::string> take_server_notes();
 
     // Records from now on into the folder, with the journal since the session began. Throws

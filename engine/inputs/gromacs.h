@@ -20,7 +20,7 @@ namespace palpa {
 //   run.sh      one line that starts it and waits for a client
 //
 // The Coulomb constant is the system's, by way of epsilon-r: GROMACS's own is 138.935458 kJ nm
-// mol^-1 e^-2. Throws LoadError for what GROMACS has not: cross-terms of other than five atoms in a
+// mol^-1 e^-2. Throws LoadError for what GROMACS lacks: cross-terms of other than five atoms in a
 // row, or of maps of different sizes.
 std::vector<TextFile> format_gromacs(const RunSystem& system, const RunOptions& options);
 

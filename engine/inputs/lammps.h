@@ -19,7 +19,7 @@ namespace palpa {
 //
 // In a box these styles have CHARMM's Coulomb constant, in vacuum LAMMPS's, which "dielectric"
 // makes the system's. Coordinates go out and forces come in at different steps: with a rate of 1
-// LAMMPS would never take a force. Throws LoadError for what LAMMPS has not: dihedrals whose phase
+// LAMMPS would never take a force. Throws LoadError for what LAMMPS lacks: dihedrals whose phase
 // is no whole degree, impropers about another angle than 0 or 180 degrees, more than six maps or
 // maps of other than 24 x 24 points, cross-terms of other than five atoms in a row.
 std::vector<TextFile> format_lammps(const RunSystem& system, const RunOptions& options);

@@ -153,7 +153,7 @@ std::array<std::uint32_t, 5> five_atoms(const RunSystem& system, const CmapTerm&
         throw LoadError(
             {system.connectivity.file, system.connectivity.lines[atom]},
             fmt::format("the cross-term that begins at {} is of two dihedrals that do not follow "
-                        "each other, which other engines have not; expected four atoms and "
+                        "each other, which other engines do not have; expected four atoms and "
                         "the last three of them with one more",
                         to_string(system.connectivity.names[atom])));
     }

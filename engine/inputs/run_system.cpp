@@ -23,7 +23,7 @@ void check(const RunSystem& system) {
     if (system.positions.empty()) throw LoadError(place, "there are no atoms to run");
     if (system.topology.solvation) {
         throw LoadError(place,
-                        "has implicit water (EEF1-SB), which other engines have not; expected a "
+                        "has implicit water (EEF1-SB), which other engines do not have; expected a "
                         "system in vacuum or with waters of its own");
     }
     if (!std::ranges::all_of(system.positions, [](const Vec3& p) { return p.allFinite(); }))
@@ -113,12 +113,12 @@ double find_reach(const std::vector<Vec3>& positions) {
     return std::ceil(find_extent(positions).size().norm() + spare);
 }
 
-std::vector<std::string> find_doubts(const RunSystem& system) {
-    std::vector<std::string> doubts;
+std::vector<std::string> list_warnings(const RunSystem& system) {
+    std::vector<std::string> warnings;
     const double charge =
         std::accumulate(system.topology.charge.begin(), system.topology.charge.end(), 0.0);
     if (system.box && std::abs(charge) > neutral_within) {
-        doubts.push_back(fmt::format(
+        warnings.push_back(fmt::format(
             "the box has a charge of {:.3f} e, which PME spreads evenly over it; expected ions",
             charge));
     }
@@ -127,16 +127,16 @@ std::vector<std::string> find_doubts(const RunSystem& system) {
         for (int axis = 0; axis < 3; ++axis) {
             // Molecules may stick out of the box by half of themselves.
             if (size[axis] < 0.9 * (*system.box)[axis] || size[axis] > 1.5 * (*system.box)[axis]) {
-                doubts.push_back(fmt::format("along {} the box has {:.2f} Å and its atoms {:.2f}",
-                                             "xyz"[axis], (*system.box)[axis], size[axis]));
+                warnings.push_back(fmt::format("along {} the box has {:.2f} Å and its atoms {:.2f}",
+                                               "xyz"[axis], (*system.box)[axis], size[axis]));
             }
         }
     }
     if (const auto closest =
             describe_coincident_atoms(system.connectivity.names, system.positions, closest_atoms)) {
-        doubts.push_back("atoms are on each other: " + *closest);
+        warnings.push_back("atoms are on each other: " + *closest);
     }
-    return doubts;
+    return warnings;
 }
 
 }  // namespace palpa

@@ -54,6 +54,6 @@ Extent find_extent(const std::vector<Vec3>& positions);
 double find_reach(const std::vector<Vec3>& positions);
 
 // What is the matter with a system that runs all the same, in sentences.
-std::vector<std::string> find_doubts(const RunSystem& system);
+std::vector<std::string> list_warnings(const RunSystem& system);
 
 }  // namespace palpa

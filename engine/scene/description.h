@@ -48,6 +48,7 @@ struct EngineDescription {
     double most_force_nN = 1;     // of the spring between hand and atoms
     double smoothing_ms = 50;     // time constant of the low-pass of what is held
     double late_s = 1;            // without a frame for so long, no force
+    double wait_s = 10;           // for the first frame
 
     friend bool operator==(const EngineDescription&, const EngineDescription&) = default;
 };

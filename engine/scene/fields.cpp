@@ -36,8 +36,8 @@ void visit_force_field(FieldVisitor& v, ForceFieldDescription& f, bool is_requir
 void visit_molecule(FieldVisitor& v, MoleculeDescription& m, bool is_remote) {
     v.enter_table({.key = m.name, .meaning = "one molecule"});
     v.file({.key = "structure",
-            .meaning = "structure file: .crd, .pdb, .cif or .gro; with [engine] also .psf, and the "
-                       "engine tells where atoms are",
+            .meaning = "structure file: .crd, .pdb, .cif or .gro; with [engine] also .psf: "
+                       "the engine's first frame has the positions",
             .required = true},
            m.structure);
     v.file({.key = "topology",
@@ -384,6 +384,13 @@ void visit_engine(FieldVisitor& v, std::optional<EngineDescription>& engine) {
             .lowest = 0.05,
             .highest = 60},
            engine->late_s);
+    v.real(
+        {.key = "wait_s",
+         .meaning = "how long to wait for its first frame, without a window, and where only that "
+                    "has the positions",
+         .lowest = 0,
+         .highest = 1e5},
+        engine->wait_s);
     v.leave_table();
 }
 

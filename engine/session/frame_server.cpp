@@ -1,6 +1,7 @@
 #include "session/frame_server.h"
 
 #include "core/load_error.h"
+#include "core/wall_clock.h"
 #include "molecule/atoms.h"
 #include "simulation/held.h"
 #include "simulation/resources.h"
@@ -8,7 +9,6 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -17,11 +17,6 @@ namespace palpa {
 namespace {
 
 constexpr double picoseconds_per_s = 1e12;
-
-double seconds_now() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
-        .count();
-}
 
 int find_rate(const ServeOptions& options, const World& world) {
     constexpr double frames_per_s = 30;
@@ -80,12 +75,12 @@ std::string FrameServer::place() const {
                        server_.port());
 }
 
-void FrameServer::poll(int at_most_ms) { server_.poll(seconds_now(), at_most_ms); }
+void FrameServer::poll(int at_most_ms) { server_.poll(wall_clock_s(), at_most_ms); }
 
 void FrameServer::send(const World& world) {
     atoms_ = world.resource<AtomTable>().size();
     server_.change_atoms(atoms_);
-    note_vain(world);
+    note_without_effect(world);
     if (server_.count_step()) server_.send(build_imd_frame(world));
 }
 
@@ -111,20 +106,21 @@ std::optional<ClientPull> FrameServer::take_pull() {
         pull.forces.emplace_back(share * asked.forces[i]);
     }
     if (pull.atoms == pull_.atoms && pull.forces == pull_.forces) return {};
-    if (pull.atoms.empty()) noted_strong_ = noted_many_ = noted_vain_ = false;
+    if (pull.atoms.empty()) noted_strong_ = noted_many_ = noted_without_effect_ = false;
     pull_ = pull;
     return pull;
 }
 
 // What acted in the last step.
-void FrameServer::note_vain(const World& world) {
+void FrameServer::note_without_effect(const World& world) {
     const ClientPull* const pull = world.find_resource<ClientPull>();
-    if (noted_vain_ || !pull || pull_.atoms.empty() || !(*pull == pull_)) return;
-    const std::size_t in_vain = count_pulled_in_vain(world);
-    if (in_vain == 0) return;
-    note_once(noted_vain_, fmt::format("forces on {} of {} atoms do nothing: fixed, or of a "
-                                       "molecule that a hand holds as a whole",
-                                       in_vain, pull->atoms.size()));
+    if (noted_without_effect_ || !pull || pull_.atoms.empty() || !(*pull == pull_)) return;
+    const std::size_t without_effect = count_pulls_without_effect(world);
+    if (without_effect == 0) return;
+    note_once(noted_without_effect_,
+              fmt::format("forces on {} of {} atoms do nothing: fixed, or of a "
+                          "molecule that a hand holds as a whole",
+                          without_effect, pull->atoms.size()));
 }
 
 void FrameServer::note_once(bool& was_noted, std::string text) {

@@ -48,7 +48,7 @@ public:
     std::vector<std::string> take_notes();
 
 private:
-    void note_vain(const World& world);
+    void note_without_effect(const World& world);
     void note_once(bool& was_noted, std::string text);
 
     ServeOptions options_;
@@ -56,7 +56,7 @@ private:
     ImdServer server_;
     ClientPull pull_;
     std::vector<std::string> notes_;
-    bool noted_strong_ = false, noted_many_ = false, noted_vain_ = false;
+    bool noted_strong_ = false, noted_many_ = false, noted_without_effect_ = false;
 };
 
 }  // namespace palpa

@@ -64,8 +64,7 @@ LiveSimulation::LiveSimulation(const SceneDescription& scene, std::vector<HandDe
     for (const HandDevice& device : devices_) check_period(device.spec, scene.period_ms * 1e-3);
     if (playback) start_playback(world_, playback->file, playback->order);
     // So that what is first seen is where the engine has it.
-    constexpr double wait_s = 10;
-    if (lacks_coordinates(scene)) begin_with_engine(world_, wait_s);
+    if (lacks_coordinates(scene)) begin_with_engine(world_);
     play(PublishEvent{});
     post_orders();
 }

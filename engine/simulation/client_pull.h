@@ -13,7 +13,7 @@ namespace palpa {
 inline constexpr double strongest_client_pull = 1e4 / units::piconewton_per_kcal_per_mol_angstrom;
 inline constexpr std::size_t most_client_pulls = 1000;
 
-// A resource of the world; without it nobody pulls.
+// A resource of the world; without it no client pulls.
 struct ClientPull {
     std::vector<std::uint32_t> atoms;  // of the table, each once
     std::vector<Vec3> forces;          // kcal/mol/Å, one per atom, within the bounds above

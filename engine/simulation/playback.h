@@ -42,7 +42,7 @@ struct PlaybackChoice {
     PlaybackOrder order{};
 };
 
-// What is told of it.
+// How it stands, for those that show it.
 struct PlaybackState {
     std::size_t frame = 0, frames = 1;
     double frames_per_s = usual_frames_per_s;

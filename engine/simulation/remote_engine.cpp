@@ -4,6 +4,7 @@
 #include "core/load_error.h"
 #include "core/text.h"
 #include "core/units.h"
+#include "core/wall_clock.h"
 #include "formats/gro.h"
 #include "formats/index_file.h"
 #include "formats/psf.h"
@@ -14,7 +15,6 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <map>
 #include <tuple>
@@ -22,12 +22,6 @@
 
 namespace palpa {
 namespace {
-
-// Wall time of connections.
-double now_s() {
-    using namespace std::chrono;
-    return duration<double>(steady_clock::now().time_since_epoch()).count();
-}
 
 // ---- atoms -------------------------------------------------------------------------------------
 
@@ -116,7 +110,7 @@ struct EngineFile {
 };
 
 EngineFile read_engine_file(const std::filesystem::path& path) {
-    if (upper_case(path.extension().string()) == ".PSF") {
+    if (is_psf(path)) {
         Connectivity connectivity = read_psf(path);
         return {std::move(connectivity.names), std::move(connectivity.mass), true};
     }
@@ -169,12 +163,13 @@ EngineAtoms match_index(const SceneDescription& scene, const AtomTable& table) {
     for (std::size_t i = 0; i < group.atoms.size(); ++i) {
         const std::uint32_t atom = group.atoms[i];
         if (atom >= table.size() || atoms.in_engine[atom] >= 0) {
-            throw LoadError({path.string(), group.line},
-                            fmt::format("group '{}' has atom {} {}; expected each of the scene's "
-                                        "{} atoms once at most",
-                                        group.name, atom + 1,
-                                        atom >= table.size() ? "that the scene has not" : "twice",
-                                        table.size()));
+            throw LoadError(
+                {path.string(), group.line},
+                fmt::format("group '{}' has atom {} {}; expected each of the scene's "
+                            "{} atoms once at most",
+                            group.name, atom + 1,
+                            atom >= table.size() ? "that the scene does not have" : "twice",
+                            table.size()));
         }
         atoms.in_table[i] = static_cast<std::int32_t>(atom);
         atoms.in_engine[atom] = static_cast<std::int32_t>(i);
@@ -186,13 +181,6 @@ EngineAtoms match_index(const SceneDescription& scene, const AtomTable& table) {
 
 // ---- holds -------------------------------------------------------------------------------------
 
-Vec3 middle_of(const AtomTable& table, const EngineHold& hold) {
-    Vec3 middle = Vec3::Zero();
-    for (std::size_t i = 0; i < hold.atoms.size(); ++i)
-        middle += hold.shares[i] * table.positions[hold.atoms[i]];
-    return middle;
-}
-
 EngineHold build_hold(const AtomTable& table, std::vector<std::uint32_t> atoms) {
     EngineHold hold;
     hold.atoms = std::move(atoms);
@@ -202,7 +190,7 @@ EngineHold build_hold(const AtomTable& table, std::vector<std::uint32_t> atoms) 
         hold.shares.push_back(mass > 0 ? table.mass[atom] / mass
                                        : 1.0 / static_cast<double>(hold.atoms.size()));
     }
-    hold.middle = hold.smoothed = middle_of(table, hold);
+    hold.middle = hold.smoothed = find_middle(table, hold);
     return hold;
 }
 
@@ -228,11 +216,10 @@ ImdClientOptions client_options(const SceneDescription& scene, std::size_t atoms
     return options;
 }
 
-// How long a step waits for a frame.
+// How long a step waits for a frame. Once frames have ceased it looks for them only briefly.
 double patience_s(const RemoteEngine& engine) {
-    if (!engine.wait_s) return 0;
-    if (engine.frames == 0) return *engine.wait_s;
-    // One that does not send any more is looked for now and then.
+    if (!engine.is_awaited) return 0;
+    if (engine.frames == 0) return engine.settings.wait_s;
     constexpr double lost_s = 0.1;
     const bool comes = engine.client->state() == ImdState::Connected;
     return comes ? engine.settings.late_s : std::min(lost_s, engine.settings.late_s);
@@ -257,6 +244,22 @@ EngineSpring find_engine_spring(double k, const Vec3& stretch, double most) noex
     if (k * distance <= most) return {k * stretch, k * Mat3::Identity()};
     const Vec3 along = stretch / distance;
     return {most * along, most / distance * (Mat3::Identity() - along * along.transpose())};
+}
+
+EngineSpring find_engine_spring(const World& world, Entity hand) noexcept {
+    const EngineHold& hold = *world.find<EngineHold>(hand);
+    if (!hold.is_live) return {};
+    const double most = 1e-9 * world.resource<RemoteEngine>().settings.most_force_nN /
+                        units::newton_per_kcal_per_mol_angstrom;
+    return find_engine_spring(grip_of(world, hand).k, hold.smoothed - held_place(world, hand),
+                              most);
+}
+
+Vec3 find_middle(const AtomTable& table, const EngineHold& hold) noexcept {
+    Vec3 middle = Vec3::Zero();
+    for (std::size_t i = 0; i < hold.atoms.size(); ++i)
+        middle += hold.shares[i] * table.positions[hold.atoms[i]];
+    return middle;
 }
 
 AtomRange add_engine_atoms(const Source& source, AtomTable& table) {
@@ -369,7 +372,7 @@ void hold_engine_atoms(World& world) {
 bool take_newest_frame(World& world) {
     RemoteEngine& engine = world.resource<RemoteEngine>();
     ImdClient& client = *engine.client;
-    const double begin = now_s();
+    const double begin = wall_clock_s();
     if (client.state() == ImdState::Closed) client.connect(begin);
     constexpr int slice_ms = 10;
     const std::uint64_t before = client.frames();
@@ -377,8 +380,8 @@ bool take_newest_frame(World& world) {
     double time_s = begin;
     bool is_interrupted = false;
     do {
-        client.poll(time_s, engine.wait_s ? slice_ms : 0);
-        time_s = now_s();
+        client.poll(time_s, engine.is_awaited ? slice_ms : 0);
+        time_s = wall_clock_s();
         is_interrupted = is_interrupted || client.state() != ImdState::Connected;
     } while (client.frames() == before && time_s - begin < patience_s(engine) &&
              noted_interrupt() == 0);
@@ -406,16 +409,16 @@ bool lacks_coordinates(const SceneDescription& scene) {
            });
 }
 
-void await_engine(World& world, double wait_s) {
+void await_engine(World& world) {
     RemoteEngine& engine = world.resource<RemoteEngine>();
-    const std::optional<double> before = std::exchange(engine.wait_s, wait_s);
+    const bool before = std::exchange(engine.is_awaited, true);
     const bool came = take_newest_frame(world);
-    engine.wait_s = before;
+    engine.is_awaited = before;
     if (came) return;
     throw EngineLost({"engine " + engine.settings.address},
                      engine.client->why() +
                          "; expected one that listens there and sends frames: "
-                         "start it first, or wait longer (--wait)");
+                         "start it first, or wait longer (engine.wait_s)");
 }
 
 void leave_engine(World& world) {
@@ -423,10 +426,11 @@ void leave_engine(World& world) {
     if (!engine || engine->client->state() == ImdState::Closed) return;
     constexpr double most_s = 1;
     constexpr int slice_ms = 10;
-    const double begin = now_s();
+    const double begin = wall_clock_s();
     engine->client->disconnect(begin);
     for (double time_s = begin;
-         engine->client->state() != ImdState::Closed && time_s - begin < most_s; time_s = now_s())
+         engine->client->state() != ImdState::Closed && time_s - begin < most_s;
+         time_s = wall_clock_s())
         engine->client->poll(time_s, slice_ms);
 }
 
@@ -434,7 +438,7 @@ void pause_engine(World& world, bool is_paused) {
     RemoteEngine* const engine = world.find_resource<RemoteEngine>();
     if (!engine) return;
     is_paused ? engine->client->pause() : engine->client->resume();
-    engine->client->poll(now_s(), 0);
+    engine->client->poll(wall_clock_s(), 0);
 }
 
 const RemoteEngine* find_remote_engine(const World& world) noexcept {
@@ -444,9 +448,9 @@ const RemoteEngine* find_remote_engine(const World& world) noexcept {
 bool is_engine_gone(const World& world) noexcept {
     constexpr double give_up_s = 5;
     const RemoteEngine* const engine = find_remote_engine(world);
-    if (!engine || !engine->wait_s || !engine->lost_at_s) return false;
+    if (!engine || !engine->is_awaited || !engine->lost_at_s) return false;
     const double most = engine->frames == 0 ? 0 : give_up_s;
-    return now_s() - *engine->lost_at_s > most;
+    return wall_clock_s() - *engine->lost_at_s > most;
 }
 
 double find_engine_delay(const World& world) noexcept {

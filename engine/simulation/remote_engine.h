@@ -29,9 +29,7 @@ struct RemoteEngine {
     EngineDescription settings;
     EngineAtoms atoms;
     std::shared_ptr<ImdClient> client;
-    // Where steps wait for frames (no window): so long for the first, seconds of wall time. Else no
-    // step waits.
-    std::optional<double> wait_s;
+    bool is_awaited = false;  // a step waits for a frame: no window
 
     std::uint64_t frames = 0;         // that came so far
     double frame_interval_s = 0;      // between the last ones, wall time, smoothed; 0: not known
@@ -53,10 +51,15 @@ struct EngineHold {
 // Force on the hand's end of a spring, kcal/mol/Å, and its stiffness -dF/dx, kcal/mol/Å^2.
 // `stretch` (Å): from that end to the atoms. Beyond `most` (kcal/mol/Å) the force keeps its size.
 struct EngineSpring {
-    Vec3 force;
-    Mat3 stiffness;
+    Vec3 force = Vec3::Zero();
+    Mat3 stiffness = Mat3::Zero();
 };
 EngineSpring find_engine_spring(double k, const Vec3& stretch, double most) noexcept;
+// Of a hand that holds atoms of the engine; nothing where its hold is not live.
+EngineSpring find_engine_spring(const World& world, Entity hand) noexcept;
+
+// The middle of what it holds, Å, where the table has it.
+Vec3 find_middle(const AtomTable& table, const EngineHold& hold) noexcept;
 
 // Of the scene's molecule: atoms of its segment with names, masses, charges and bonds, and no
 // parameters. Without a topology masses are those of elements, and bonds are found from distances.
@@ -82,8 +85,8 @@ bool take_newest_frame(World& world);
 // until its first frame they are at the origin.
 bool lacks_coordinates(const SceneDescription& scene);
 
-// Waits so long, s, for the first frame. Throws EngineLost.
-void await_engine(World& world, double wait_s);
+// Waits for the first frame. Throws EngineLost.
+void await_engine(World& world);
 
 class EngineLost : public LoadError {
 public:

@@ -53,7 +53,7 @@ TEST_CASE("bonds to hydrogens and waters are rigid in LAMMPS", "[inputs][lammps]
     CHECK_THAT(lammps_file(waters, "run.in", options), Contains("group sent id 1:3 6:6\n"));
 }
 
-TEST_CASE("what LAMMPS has not is refused", "[inputs][lammps]") {
+TEST_CASE("what LAMMPS lacks is refused", "[inputs][lammps]") {
     RunSystem system = test::four_in_a_row();
     system.topology.dihedrals = {{0, 1, 2, 3, 1, 0.5, 0.3}};
     CHECK_THAT(load_error_of([&] { (void)format_lammps(system, {}); }), Contains("whole ones"));

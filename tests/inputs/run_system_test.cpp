@@ -57,13 +57,13 @@ TEST_CASE("pairs of types with numbers of their own are found", "[inputs]") {
           std::vector<std::array<std::uint32_t, 2>>{{1, 2}});
 }
 
-TEST_CASE("a box that does not fit its atoms is doubted", "[inputs]") {
+TEST_CASE("a box that does not fit its atoms is warned of", "[inputs]") {
     RunSystem system = test::mixed_waters();
-    CHECK(find_doubts(system).empty());
+    CHECK(list_warnings(system).empty());
     system.box = Vec3(40, 40, 40);
-    CHECK(find_doubts(system).size() == 3);
+    CHECK(list_warnings(system).size() == 3);
     system.box.reset();
     system.positions[1] = system.positions[0];
-    REQUIRE(find_doubts(system).size() == 1);
-    CHECK_THAT(find_doubts(system)[0], Contains("on each other"));
+    REQUIRE(list_warnings(system).size() == 1);
+    CHECK_THAT(list_warnings(system)[0], Contains("on each other"));
 }

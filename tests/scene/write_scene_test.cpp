@@ -144,7 +144,8 @@ TEST_CASE("a remote engine is written and read again, without a force field", "[
                                      .force_scale = 0.5,
                                      .most_force_nN = 2,
                                      .smoothing_ms = 20,
-                                     .late_s = 3};
+                                     .late_s = 3,
+                                     .wait_s = 20};
     const SceneDescription read = parsed(formatted(scene));
     CHECK(read.engine == scene.engine);
     CHECK(read.force_field.files.empty());

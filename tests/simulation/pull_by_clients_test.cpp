@@ -69,7 +69,7 @@ TEST_CASE("a client moves a water until its restraint pulls as hard, and lets it
     const std::string method =
         GENERATE(from_range(std::vector<std::string>(methods.begin(), methods.end())));
     CAPTURE(method);
-    // Of a minimiser, which ends where what is left of the force is small: over the restraint's k.
+    // A minimiser ends at a residual force below its tolerance: this over the restraint's k.
     const bool is_minimiser = method == "limited-memory" || method == "inverse-mass";
     const double margin = is_minimiser ? 0.06 : 0.03;  // Å
     World world = water_to_be_pulled(method);
@@ -82,7 +82,7 @@ TEST_CASE("a client moves a water until its restraint pulls as hard, and lets it
     world.set_resource(pull_at(world, "free", {3, 0, -1}));
     step_on(world, 600);
     CHECK(is_pulled_by_clients(world));
-    CHECK(count_pulled_in_vain(world) == 0);
+    CHECK(count_pulls_without_effect(world) == 0);
     const Vec3 moved = centre_of_water(world, "free") - start;
     CHECK(moved.x() == Approx(1.5).margin(margin));
     CHECK(moved.z() == Approx(-0.5).margin(margin));
@@ -147,7 +147,7 @@ TEST_CASE("forces on what cannot move by itself do nothing, and are counted", "[
     step_on(world, 50);
     CHECK(centre_of_water(world, "fixed") == fixed);
     CHECK((centre_of_water(world, "moved") - held).norm() < 1e-9);
-    CHECK(count_pulled_in_vain(world) == 3);
+    CHECK(count_pulls_without_effect(world) == 3);
     CHECK_FALSE(is_pulled_by_clients(world));
 }
 
@@ -158,7 +158,7 @@ TEST_CASE("a world in which nothing moves by itself is not pulled", "[clients]")
     step_on(world, 5);
     step_on(other, 5);
     CHECK(world.resource<AtomTable>().positions == other.resource<AtomTable>().positions);
-    CHECK(count_pulled_in_vain(world) == 3);
+    CHECK(count_pulls_without_effect(world) == 3);
 }
 
 TEST_CASE("where atoms are others than the client knows nothing is pulled", "[clients]") {
@@ -169,7 +169,7 @@ TEST_CASE("where atoms are others than the client knows nothing is pulled", "[cl
     add_molecule(world, {"TIP3", "", "other", {0, 30, 60}});
     step_on(world, 2);
     CHECK_FALSE(is_pulled_by_clients(world));
-    CHECK(count_pulled_in_vain(world) == 3);
+    CHECK(count_pulls_without_effect(world) == 3);
     world.set_resource(pull_at(world, "free", {3, 0, 0}));
     step_on(world, 2);
     CHECK(is_pulled_by_clients(world));

@@ -118,7 +118,7 @@ TEST_CASE("an engine's atoms are found by number", "[simulation][engine]") {
     CHECK(world.find<EngineHold>(first_hand(world))->atoms == std::vector<std::uint32_t>{3});
     std::ofstream(folder.path() / "sent.ndx") << "[ sent ]\n8\n";
     CHECK_THAT(load_error_of([&] { load(folder.path(), scene_text("atoms = \"sent.ndx\"\n")); }),
-               Contains("atom 8 that the scene has not"));
+               Contains("atom 8 that the scene does not have"));
 }
 
 TEST_CASE("a table [engine] that is wrong is refused", "[simulation][engine]") {

@@ -9,8 +9,8 @@ import time
 from pathlib import Path
 
 # Debian's GROMACS refuses to run where the list of the processor's features lacks rdtscp. Virtual
-# machines hide it though the instruction is there. So GROMACS is told that nothing is known of the
-# processor: gmx::CpuInfo::detect() returns what its constructor makes, at support level 0 (none).
+# machines hide it though the instruction is there. So this reports an unknown processor to
+# GROMACS: gmx::CpuInfo::detect() returns what its constructor makes, at support level 0 (none).
 UNKNOWN_PROCESSOR = """
 void _ZN3gmx7CpuInfoC1Ev(void*);
 void* _ZN3gmx7CpuInfo6detectEv(int* result) { _ZN3gmx7CpuInfoC1Ev(result); *result = 0; return result; }

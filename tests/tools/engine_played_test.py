@@ -85,6 +85,7 @@ class Played(unittest.TestCase):
 
         last = [atoms_at(row) for row in rows[-400:]]
         way = [sum(p[i] for p in last) / len(last) - atoms_at(rows[0])[i] for i in range(3)]
+        print(f"{self.id()}: went {way[0]:.2f}, {way[1]:.2f}, {way[2]:.2f} A")
         # Where the hand led it, less by what the water drags, within what heat does to it.
         self.assertGreater(way[0], 0.6 * way_angstrom, way)
         self.assertLess(way[0], way_angstrom + 1, way)
@@ -102,6 +103,7 @@ class Played(unittest.TestCase):
                 continue
             self.assertEqual((count, len(atoms)), (ATOMS, 4 * ATOMS))
             strongest = max(strongest, sum(atoms[1::4]))
+        print(f"{self.id()}: {NM_OF_KJ_PER_NM * strongest:.3f} nN at most, and the hand felt {felt_nN:.3f}")
         self.assertAlmostEqual(NM_OF_KJ_PER_NM * strongest, felt_nN, delta=0.2 * felt_nN)
 
 

@@ -63,6 +63,7 @@ class Case(unittest.TestCase):
         return json.loads(result.stdout)
 
     def assert_same(self, ours, theirs, name):
+        print(f"{self.id()}: {name}: {abs(ours - theirs) / max(abs(ours), 1e-3):.1e} of {ours:.6g}")
         self.assertLessEqual(abs(ours - theirs), 1e-6 * max(abs(ours), 1e-3), f"{name}: {ours} and {theirs}")
 
 

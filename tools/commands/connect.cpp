@@ -8,6 +8,7 @@
 #include "molecule/alternatives.h"
 #include "scene/read_scene.h"
 #include "scene/write_scene.h"
+#include "simulation/sources.h"
 #include "tools/commands/command.h"
 #include "tools/commands/command_line.h"
 #include "tools/commands/run.h"
@@ -40,8 +41,6 @@ struct ConnectOptions {
     double spring = 5, seconds = 60, period_ms = 10;
 };
 
-bool is_psf_file(const fs::path& path) { return upper_case(path.extension().string()) == ".PSF"; }
-
 // A run of atoms of one segment.
 struct Part {
     std::string segment;
@@ -50,7 +49,7 @@ struct Part {
 };
 
 std::vector<AtomName> read_names(const fs::path& path) {
-    if (is_psf_file(path)) return read_psf(path).names;
+    if (is_psf(path)) return read_psf(path).names;
     const Structure structure = read_structure(path);
     refuse_alternatives(structure);
     return structure.names;
@@ -155,7 +154,7 @@ Hold find_hold(const std::string& hold, const std::vector<AtomName>& names,
 }
 
 SceneDescription build_scene(const ConnectOptions& options) {
-    const bool has_psf = is_psf_file(options.topology);
+    const bool has_psf = is_psf(options.topology);
     const std::vector<AtomName> names = read_names(options.topology);
     const std::vector<Part> parts = find_parts(options.topology, names);
     SceneDescription scene;
@@ -239,7 +238,7 @@ void add_connect(CLI::App& program, ProgramCommand& chosen) {
                     "the engine's atoms in its order: .psf, .gro, .pdb, .cif or .crd")
         ->required();
     connect.add_option("--coordinates", options.coordinates,
-                       "where they are before the engine tells, for a .psf");
+                       "where they are before its first frame, for a .psf");
     connect.add_option("--hold", options.hold,
                        "what the hand holds: an atom's number in that file, its name and residue "
                        "number (\"CA 25\"), or a segment; unset: the smallest segment that is "
@@ -259,7 +258,7 @@ void add_connect(CLI::App& program, ProgramCommand& chosen) {
                     "steps of the engine between two frames; as the engine has it unless given")
         ->check(in_range(1, 1e6));
     connect
-        .add_option("--wait", options.run.engine_wait_s,
+        .add_option("--wait", options.engine.wait_s,
                     "seconds to wait for its first frame, 10 unless given")
         ->check(in_range(0.0, 1e5));
     connect.add_option("--write-scene", options.scene, "also write the scene that this makes");

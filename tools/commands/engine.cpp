@@ -166,7 +166,8 @@ int write_input(const EngineOptions& options) {
     add_topology(system, is_gromacs ? gromacs_positions(system) : system.positions, run.sent,
                  files);
     write_folder(options, std::move(files));
-    for (const std::string& doubt : find_doubts(system)) fmt::print(stderr, "warning: {}\n", doubt);
+    for (const std::string& warning : list_warnings(system))
+        fmt::print(stderr, "warning: {}\n", warning);
     if (system.box && is_gromacs) {
         if (const Cutoff cutoff = gromacs_cutoff(system); cutoff.to < 12) {
             fmt::print(stderr,

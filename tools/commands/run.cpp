@@ -233,14 +233,14 @@ int run_without_window(SceneDescription scene, World& world,
 
 // Without a window the run goes by the engine's frames; a window, which connects by itself, only
 // needs to know where atoms are.
-void meet_engine(const SceneDescription& scene, World& world, const RunOptions& options,
-                 ProgressLine& progress) {
+void await_first_frame(const SceneDescription& scene, World& world, const RunOptions& options,
+                       ProgressLine& progress) {
     if (!scene.engine || options.check_only) return;
     if (!options.headless && !lacks_coordinates(scene)) return;
     tell(progress.stages(), "waiting for the engine's first frame");
-    begin_with_engine(world, options.engine_wait_s);
+    begin_with_engine(world);
     if (options.headless) {
-        world.resource<RemoteEngine>().wait_s = options.engine_wait_s;
+        world.resource<RemoteEngine>().is_awaited = true;
     } else {
         leave_engine(world);
     }
@@ -258,7 +258,7 @@ int run_scene(const SceneDescription& read, const RunOptions& options) {
     check_second(options, scene);
     ProgressLine progress(!options.json);
     World world = load_world(scene, progress.stages());
-    meet_engine(scene, world, options, progress);
+    await_first_frame(scene, world, options, progress);
     const std::optional<PlaybackChoice> playback = playback_choice(options);
     if (playback) start_playback(world, playback->file, playback->order);
     tell(progress.stages(), "planning the hand's way");

@@ -37,7 +37,6 @@ struct RunOptions {
     std::filesystem::path screenshots = ".";         // folder for those of the window
     std::optional<std::filesystem::path> last_shot;  // of the window, which then closes
     double last_shot_s = 5;
-    double engine_wait_s = 10;  // headless: for a remote engine's first frame
     std::uint64_t lose_device_at = 0;
     bool validation = false;  // of all that Vulkan is told
     ServeChoice serve;

@@ -13,7 +13,7 @@
 namespace palpa {
 namespace {
 
-// An interrupt is heard within that time.
+// An interrupt takes effect within that time.
 constexpr int between_looks_ms = 50;
 
 bool is_of_this_machine(const std::string& address) {

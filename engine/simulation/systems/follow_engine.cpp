@@ -1,6 +1,5 @@
 #include "simulation/systems/follow_engine.h"
 
-#include "core/units.h"
 #include "simulation/components.h"
 #include "simulation/held.h"
 #include "simulation/remote_engine.h"
@@ -21,14 +20,6 @@ constexpr double farthest_move = 8;  // Å
 // Farther out nothing is held.
 constexpr double farthest_place = 1e5;  // Å
 
-Vec3 find_middle(const World& world, const EngineHold& hold) {
-    const std::vector<Vec3>& positions = world.resource<AtomTable>().positions;
-    Vec3 middle = Vec3::Zero();
-    for (std::size_t i = 0; i < hold.atoms.size(); ++i)
-        middle += hold.shares[i] * positions[hold.atoms[i]];
-    return middle;
-}
-
 // Without a stretch of its spring; the servo puts the hand's end there.
 void hold_anew(World& world, Entity hand, EngineHold& hold) {
     Grip& grip = *world.find<Grip>(hand);
@@ -43,7 +34,7 @@ void hold_anew(World& world, Entity hand, EngineHold& hold) {
 void follow_atoms(World& world, Entity hand, bool is_live) {
     EngineHold& hold = *world.find<EngineHold>(hand);
     const RemoteEngine& engine = world.resource<RemoteEngine>();
-    const Vec3 middle = find_middle(world, hold);
+    const Vec3 middle = find_middle(world.resource<AtomTable>(), hold);
     const bool has_jumped = (middle - hold.middle).norm() > farthest_move;
     hold.middle = middle;
     if (!is_live || middle.cwiseAbs().maxCoeff() > farthest_place) {
@@ -66,15 +57,10 @@ struct AtomForce {
 // Two hands may hold the same atoms.
 std::vector<AtomForce> list_forces(const World& world) {
     const RemoteEngine& engine = world.resource<RemoteEngine>();
-    const double most =
-        1e-9 * engine.settings.most_force_nN / units::newton_per_kcal_per_mol_angstrom;
     std::vector<AtomForce> all, forces;
     world.each<EngineHold>([&](Entity hand, const EngineHold& hold) {
         if (!hold.is_live) return;
-        const Grip& grip = grip_of(world, hand);
-        const Vec3 force =
-            -engine.settings.force_scale *
-            find_engine_spring(grip.k, hold.smoothed - held_place(world, hand), most).force;
+        const Vec3 force = -engine.settings.force_scale * find_engine_spring(world, hand).force;
         for (std::size_t i = 0; i < hold.atoms.size(); ++i) {
             const std::int32_t atom = engine.atoms.in_engine[hold.atoms[i]];
             if (atom >= 0) all.push_back({atom, hold.shares[i] * force});
@@ -121,8 +107,8 @@ void follow_engine(World& world, const StepInput& /*input*/) {
     if (is_live) send_forces(world);
 }
 
-void begin_with_engine(World& world, double wait_s) {
-    await_engine(world, wait_s);
+void begin_with_engine(World& world) {
+    await_engine(world);
     follow_engine(world, {});
     for (const Entity hand : find_hands(world)) {
         if (world.find<EngineHold>(hand)) update_contact(world, hand, {});

@@ -11,8 +11,8 @@ namespace palpa {
 // and the hand then takes hold anew where its atoms are.
 void follow_engine(World& world, const StepInput& input);
 
-// Before the first step: waits so long, s, for the first frame, and puts hands where it has what
-// they hold. Throws EngineLost.
-void begin_with_engine(World& world, double wait_s);
+// Before the first step: waits for the first frame, and puts hands where it has what they hold.
+// Throws EngineLost.
+void begin_with_engine(World& world);
 
 }  // namespace palpa

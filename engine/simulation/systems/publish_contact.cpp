@@ -208,16 +208,10 @@ Pull find_pull_of(const World& world, const Spring& spring) {
 
 // At a remote engine's atoms that of its low-passed middle; nothing while no frames come.
 Pull find_engine_pull(const World& world, Entity hand) {
-    const RemoteEngine& engine = world.resource<RemoteEngine>();
-    const EngineHold& hold = *world.find<EngineHold>(hand);
     Pull pull;
-    if (const ImdFrame* const frame = engine.client->frame(); frame && frame->energies)
-        pull.energy = frame->energies->potential;
-    if (!hold.is_live) return pull;
-    const double most =
-        1e-9 * engine.settings.most_force_nN / units::newton_per_kcal_per_mol_angstrom;
-    const EngineSpring spring =
-        find_engine_spring(grip_of(world, hand).k, hold.smoothed - held_place(world, hand), most);
+    const ImdFrame* const frame = world.resource<RemoteEngine>().client->frame();
+    if (frame && frame->energies) pull.energy = frame->energies->potential;
+    const EngineSpring spring = find_engine_spring(world, hand);
     pull.force = spring.force;
     pull.stiffness = spring.stiffness;
     return pull;

@@ -43,7 +43,7 @@ std::optional<std::uint32_t> find_pulled_atom(const World& world, std::uint32_t 
     return atom;
 }
 
-// The end runs before the atom.
+// The end stays ahead of the atom, so that the force hardly depends on its way.
 Spring build_client_spring(std::uint32_t atom, const Vec3& place, const Vec3& force) {
     Spring spring;
     spring.atoms = {atom};
@@ -94,7 +94,7 @@ double find_client_energy(const World& world) noexcept {
     return energy;
 }
 
-std::size_t count_pulled_in_vain(const World& world) noexcept {
+std::size_t count_pulls_without_effect(const World& world) noexcept {
     const ClientPull* const pull = world.find_resource<ClientPull>();
     if (!pull) return 0;
     if (!find_client_pull(world) || !has_mobile(world)) return pull->atoms.size();

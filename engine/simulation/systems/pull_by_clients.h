@@ -17,6 +17,6 @@ bool is_pulled_by_clients(const World& world) noexcept;
 double find_client_energy(const World& world) noexcept;
 
 // Atoms on which forces of clients do nothing now.
-std::size_t count_pulled_in_vain(const World& world) noexcept;
+std::size_t count_pulls_without_effect(const World& world) noexcept;
 
 }  // namespace palpa
