@@ -4,6 +4,7 @@ import json
 import os
 import re
 import shutil
+import signal
 import socket
 import struct
 import subprocess
@@ -18,6 +19,7 @@ WATER = Path(os.environ["PALPA_ROOT"]) / "scenes" / "water"
 (DISCONNECT, ENERGIES, COORDINATES, GO, HANDSHAKE, KILL, FORCES, PAUSE, RATE, ERROR, SESSION, RESUME, TIME, BOX,
  VELOCITIES, ENGINE_FORCES, WAIT) = range(17)
 PATIENCE_S = 60  # of a test that hangs
+LONG = ("--seconds", 1000)  # a run that the test ends
 
 # A water that moves by itself below two others, of which the hand holds one still.
 FREE_WATER = """
@@ -159,6 +161,9 @@ class Served:
             raise AssertionError(line + self.program.communicate()[1])
         self.port = int(found.group(1))
 
+    def stop(self):
+        self.program.send_signal(signal.SIGINT)
+
     def end(self):
         out, err = self.program.communicate()
         self.watchdog.cancel()
@@ -198,6 +203,12 @@ class Serve(unittest.TestCase):
         self.assertEqual(code, 0, err)
         return out, err
 
+    def stop_well(self, run):
+        run.stop()
+        code, out, err = run.end()
+        self.assertEqual(code, 128 + signal.SIGINT, err)
+        return out, err
+
     def energy_of(self, places):
         write_crd(self.tmp / "now.crd", WATER / "dimer.crd", places)
         result = self.palpa("energy", "now.crd", "--toppar", WATER / "tip3p.str", "--json")
@@ -210,8 +221,8 @@ class Serve(unittest.TestCase):
         crd = read_crd(WATER / "dimer.crd")
         for version in (2, 3):
             with self.subTest(version=version), \
-                    Served(WATER, "--serve-version", version, "--serve-wait", "--serve-rate", 1, "--seconds",
-                           2.5) as run, Client(run.port) as client:
+                    Served(WATER, "--serve-version", version, "--serve-wait", "--serve-rate", 1, *LONG) as run, \
+                    Client(run.port) as client:
                 self.assertEqual(client.version, version)
                 first = client.frame()
                 self.assertEqual(len(first.places), len(crd))
@@ -237,7 +248,8 @@ class Serve(unittest.TestCase):
                 else:
                     self.assertIsNone(first.time)
                 client.command(DISCONNECT)
-                _, err = self.end_well(run)
+                self.assertTrue(client.is_closed())
+                _, err = self.stop_well(run)
                 self.assertIn("serve: client 1 watches\n", err)
                 self.assertIn("serve: client 1 left in order\n", err)
 
@@ -258,7 +270,7 @@ class Serve(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
 
     def test_a_client_of_version_2_pauses_and_resumes(self):
-        with Served(WATER, "--serve-wait", "--serve-rate", 1, "--seconds", 1) as run, Client(run.port) as client:
+        with Served(WATER, "--serve-wait", "--serve-rate", 1, *LONG) as run, Client(run.port) as client:
             before = client.frame().energies[0]
             client.command(PAUSE)
             with self.assertRaises(TimeoutError):
@@ -268,13 +280,13 @@ class Serve(unittest.TestCase):
             client.socket.settimeout(PATIENCE_S)
             client.command(PAUSE)
             self.assertEqual(client.frame().energies[0], before + 1)
-            self.end_well(run)
+            self.stop_well(run)
 
     # ---- forces
 
     def test_one_client_pulls_and_the_other_watches(self):
         crd = read_crd(WATER / "three.crd")
-        with Served(self.scene(), "--serve-rate", 1, "--serve-wait", "--seconds", 4, "--record",
+        with Served(self.scene(), "--serve-rate", 1, "--serve-wait", *LONG, "--record",
                     self.tmp / "pulled") as run, Client(run.port) as puller:
             first = puller.frame().places
             for place, expected in zip(first, crd):
@@ -301,7 +313,7 @@ class Serve(unittest.TestCase):
             for _ in range(10):
                 last = puller.frame().places
             self.assertEqual(last[6:], first[6:])
-            _, err = self.end_well(run)
+            _, err = self.stop_well(run)
         self.assertIn("serve: client 1 pulls\n", err)
         self.assertIn("serve: client 2 may not pull: client 1 pulls\n", err)
         self.assertEqual(err.count("the most on one atom is 10 nN"), 1)
@@ -315,7 +327,7 @@ class Serve(unittest.TestCase):
             self.assertIn("clients pulled in this run", result.stderr)
 
     def test_what_a_client_pulled_is_let_go_when_it_leaves(self):
-        with Served(self.scene(), "--serve-rate", 1, "--serve-wait", "--seconds", 3) as run, \
+        with Served(self.scene(), "--serve-rate", 1, "--serve-wait", *LONG) as run, \
                 Client(run.port) as watcher:
             with Client(run.port) as puller:
                 puller.frame()
@@ -327,7 +339,7 @@ class Serve(unittest.TestCase):
             # Away from the others while it was pulled, then back towards them.
             self.assertLess(min(heights), heights[0] - 1)
             self.assertGreater(heights[-1], heights[-50])
-            self.end_well(run)
+            self.stop_well(run)
 
     # ---- what no client should do
 
@@ -341,7 +353,7 @@ class Serve(unittest.TestCase):
         def header(kind, length):
             return struct.pack(">iI", kind, length)
 
-        with Served(self.scene(), "--seconds", 8, "--serve-wait", "--serve-rate", 1) as run, \
+        with Served(self.scene(), *LONG, "--serve-wait", "--serve-rate", 1) as run, \
                 Client(run.port) as watcher:
             watcher.frame()
             nan, endless = float("nan"), float("inf")
@@ -366,7 +378,7 @@ class Serve(unittest.TestCase):
             for _ in range(100):
                 for place in watcher.frame().places:
                     self.assertTrue(all(abs(x) < 100 for x in place))
-            _, err = self.end_well(run)
+            _, err = self.stop_well(run)
         self.assertIn("was dropped: ", err)
         self.assertIn("came, expected", err)
 
@@ -381,23 +393,23 @@ class Serve(unittest.TestCase):
 
     def test_only_this_machine_is_served_unless_an_address_is_given(self):
         other = "127.0.0.2"  # another address of this machine
-        with Served(WATER, "--seconds", 1) as run:
+        with Served(WATER, *LONG) as run:
             with self.assertRaises(ConnectionRefusedError):
                 socket.create_connection((other, run.port), PATIENCE_S)
             for address in own_addresses():
                 with self.subTest(address=address), self.assertRaises(OSError):
                     socket.create_connection((address, run.port), PATIENCE_S)
-            _, err = self.end_well(run)
+            _, err = self.stop_well(run)
             self.assertNotIn("password", err)
-        with Served(WATER, "--seconds", 1, "--listen", other, "--serve-wait", address=other) as run, \
+        with Served(WATER, *LONG, "--listen", other, "--serve-wait", address=other) as run, \
                 Client(run.port, host=other) as client:
             self.assertEqual(len(client.frame().places), 6)
-            self.end_well(run)
+            self.stop_well(run)
         with Served(WATER, "--seconds", 0.1, "--listen", "0.0.0.0", address="0.0.0.0") as run:
             self.assertIn("there is no password", self.end_well(run)[1])
 
     def test_what_cannot_be_listened_at_is_bad_input(self):
-        with Served(WATER, "--seconds", 2) as run:
+        with Served(WATER, *LONG) as run:
             for arguments, said in ((("--serve", run.port), "cannot be listened at"),
                                     (("--serve", 0, "--listen", "my.host"), "is no address of numbers"),
                                     (("--serve", 70000), "--serve"),
@@ -407,7 +419,7 @@ class Serve(unittest.TestCase):
                     result = self.palpa("run", WATER, "--headless", "--seconds", 1, *arguments)
                     self.assertEqual(result.returncode, 2, result.stderr)
                     self.assertIn(said, result.stderr)
-            self.end_well(run)
+            self.stop_well(run)
 
     # ---- edits
 
@@ -416,18 +428,15 @@ class Serve(unittest.TestCase):
 [[edits]]
 at_s = 0.3
 add = { residue = "TIP3", name = "fourth", at_angstrom = [0.0, 0.0, 40.0] }
-[[edits]]
-at_s = 0.5
-take = "fourth"
 """)
-        with Served(scene, "--serve-rate", 1, "--serve-wait", "--seconds", 1.5) as run:
+        with Served(scene, "--serve-rate", 1, "--serve-wait", *LONG) as run:
             with Client(run.port) as client:
                 with self.assertRaises(EOFError):
                     while True:
                         self.assertEqual(len(client.frame().places), 9)
             with Client(run.port) as client:
                 self.assertEqual(len(client.frame().places), 12)
-            _, err = self.end_well(run)
+            _, err = self.stop_well(run)
         self.assertIn("client 1 was dropped: there are 12 atoms now, no more 9", err)
 
 
