@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <utility>
 
 namespace palpa {
@@ -23,6 +24,17 @@ Vec3 find_longest_way(const std::vector<HandWaypoint>& path) noexcept {
         if (way.squaredNorm() > longest.squaredNorm()) longest = way;
     }
     return longest.stableNormalized();
+}
+
+// Of the stretch of a path that is gone at `time_s`, or of the last one before; 0 before the first.
+Vec3 find_last_way(const std::vector<HandWaypoint>& path, double time_s) noexcept {
+    Vec3 last = Vec3::Zero();
+    for (std::size_t i = 1; i < path.size() && path[i - 1].time_s < time_s; ++i) {
+        const HandWaypoint &from = path[i - 1], &to = path[i];
+        const Vec3 way(to.x_m - from.x_m, to.y_m - from.y_m, to.z_m - from.z_m);
+        if (!way.isZero(0)) last = way;
+    }
+    return last;
 }
 
 }  // namespace
@@ -50,8 +62,12 @@ ScriptedHand::Wish ScriptedHand::step(double tick_s) noexcept {
     const Vec3 before = last_m_;
     if (clutch_time_s_ < 0) {
         const double time_s = script_time_s_;
-        const Vec3 next = script_.leads ? lead(tick_s) : follow_script(tick_s);
+        Vec3 next = script_.leads ? lead(tick_s) : follow_script(tick_s);
         carry_m_ = find_carry(before, next);
+        if (!carry_m_.isZero() && !is_worth_clutching(carry_m_)) {
+            carry_m_.setZero();
+            next = next.cwiseMax(-reach_m_).cwiseMin(reach_m_);
+        }
         if (!carry_m_.isZero()) {
             clutch_time_s_ = 0;
             carry_from_m_ = before;
@@ -89,7 +105,7 @@ Vec3 ScriptedHand::follow_script(double tick_s) noexcept {
 Vec3 ScriptedHand::lead(double tick_s) noexcept {
     if (!sight_ || !first_sight_) return last_m_;
     const Vec3 target = find_target(script_.path, script_time_s_).place_m;
-    const Vec3 lag = target - (sight_->molecule_m - first_sight_->molecule_m);
+    const Vec3 lag = find_lag();
     Vec3 molecule_m_per_s = lag / catch_up_s;
     if (lag.norm() < waits_from_m) {
         script_time_s_ += tick_s;
@@ -101,6 +117,17 @@ Vec3 ScriptedHand::lead(double tick_s) noexcept {
     if (length > longest) step *= longest / length;
     const Vec3 ahead = last_m_ + step - sight_->handle_m;
     return sight_->handle_m + ahead * std::min(1.0, most_ahead_m_ / std::max(ahead.norm(), 1e-12));
+}
+
+Vec3 ScriptedHand::find_lag() const noexcept {
+    return find_target(script_.path, script_time_s_).place_m -
+           (sight_->molecule_m - first_sight_->molecule_m);
+}
+
+// A molecule that heat shakes beyond the edge comes back by itself; clutching would only lose time.
+bool ScriptedHand::is_worth_clutching(const Vec3& carry) const noexcept {
+    if (!script_.leads || find_lag().norm() >= waits_from_m) return true;
+    return find_last_way(script_.path, script_time_s_).dot(carry) < 0;
 }
 
 Vec3 ScriptedHand::find_carry(const Vec3& before, const Vec3& next) const noexcept {

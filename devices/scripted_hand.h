@@ -13,7 +13,8 @@ namespace palpa {
 // it waits for the handle, presses the clutch, carries it to the other side, lets go, and goes on
 // where it stopped. A path that begins outside of the box is begun at its edge. The path must be
 // slower than the width of the box in a tick (a hand's few metres per second are). A hand that
-// leads begins at the end of the box from where it has the longest way.
+// leads begins at the end of the box from where it has the longest way, and clutches only on its
+// way or where it must catch up.
 class ScriptedHand {
 public:
     // `half_workspace_m`: how far the handle can go either way. One that leads is never further
@@ -53,6 +54,9 @@ private:
     // Where the handle is to be next, were there no end of the workspace.
     Vec3 follow_script(double tick_s) noexcept;
     Vec3 lead(double tick_s) noexcept;
+    // Of one that leads: from where the molecule is to where its path says.
+    Vec3 find_lag() const noexcept;
+    bool is_worth_clutching(const Vec3& carry) const noexcept;
     // To the other side where the next place is outside of the box; 0 where it is inside.
     Vec3 find_carry(const Vec3& before, const Vec3& next) const noexcept;
 

@@ -142,3 +142,27 @@ TEST_CASE("a hand that leads waits for a molecule that does not come, and goes o
     CHECK(molecule.x() == Approx(20 * angstrom).epsilon(1e-3));
     CHECK(fastest < 0.081);
 }
+
+TEST_CASE("a hand that leads does not clutch for a molecule that heat shakes", "[devices][hand]") {
+    // 1 Å is 25 mm of handle: 0.1 Å to and fro carries the hand over the edge where it begins.
+    constexpr double angstrom = 1e-10, A_d = 0.25e9;
+    const HandScript script{.path = {{1, 0}, {10, 3 * angstrom}}, .leads = true};
+    ScriptedHand hand(script, omni_half_workspace_m);
+    double place = 0, shaken = 0;
+    Vec3 handle = hand.start_m();
+    int presses = 0;
+    bool was_clutched = false;
+    for (int i = 0; i < 12'000; ++i) {
+        shaken = 0.1 * angstrom * std::sin(0.02 * i);
+        hand.see({{place + shaken, 0, 0}, A_d, handle});
+        const ScriptedHand::Wish wish = hand.step(tick);
+        const bool is_clutched = is_pressed(wish.buttons, Button::Clutch);
+        if (!is_clutched) place += (wish.place_m - handle).x() / A_d;
+        if (is_clutched && !was_clutched) ++presses;
+        was_clutched = is_clutched;
+        handle = wish.place_m;
+    }
+
+    CHECK(presses == 0);  // 75 mm of 150
+    CHECK(place + shaken == Approx(3 * angstrom).margin(0.2 * angstrom));
+}
