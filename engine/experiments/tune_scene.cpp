@@ -9,11 +9,13 @@
 #include "experiments/emulated_hand.h"
 #include "formats/crd.h"
 #include "formats/psf.h"
+#include "prepare/region_choice.h"
 #include "prepare/scene_of.h"
 #include "scene/read_scene.h"
 #include "session/run_headless.h"
 #include "simulation/held.h"
 #include "simulation/load.h"
+#include "statics/renewal.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -212,6 +214,16 @@ void set_period(const Played& played, Tuning& tuning) {
         tuning.measured, 1e-3 * played.p99_us, 1e-3 * played.median_us, machine_name());
 }
 
+void set_region(Tuning& tuning) {
+    const SystemCopy& copy = tuning.copy;
+    const RegionChoice region = choose_region(copy.structure, copy.segments, copy.hand.held);
+    tuning.tuning.region_angstrom = region.angstrom;
+    tuning.tuning.region_note = fmt::format(
+        "{} of {} atoms lie within it, at most {} so that a step takes milliseconds; all others "
+        "stay where they are.",
+        region.atoms, count_mobile_atoms(copy.segments), most_atoms_of_region);
+}
+
 void set_coupling(const Played& first, Tuning& tuning) {
     tuning.tuning.feel_pN = choose_range(first.strong_pN);
     tuning.tuning.coupling_note = fmt::format(
@@ -226,6 +238,10 @@ void report_scene(const Played& played, const Tuning& tuning, Report& report) {
     report.add(heading, fmt::format("in the hand: {} ({}; --grab SEGMENT:RESIDUE or --grab SEGMENT "
                                     "takes another)",
                                     hand.words, hand.reason));
+    if (!tuning.tuning.region_note.empty()) {
+        report.add(heading, fmt::format("joints.region_angstrom = {} around the hand: {}",
+                                        *tuning.tuning.region_angstrom, tuning.tuning.region_note));
+    }
     for (const std::vector<std::string>& names : tuning.copy.joined) {
         report.add(heading, fmt::format("bonded to each other, so one molecule there: {}",
                                         fmt::join(names, ", ")));
@@ -295,6 +311,14 @@ TunedScene tune(PreparedSystem& system, Tuning& tuning, const StageFunction& tel
     const std::filesystem::path& folder = scratch.path();
     write_prepared(system, folder, tuning.title, tuning.files());
     bring_to_rest(folder, on_stage, tuning);
+    constexpr std::size_t base_freedom = 6;  // of what is in the hand
+    if (!tuning.tuning.region_angstrom &&
+        tuning.joints + base_freedom > static_cast<std::size_t>(most_second_order_coordinates)) {
+        set_region(tuning);
+        tuning.tuning.relax_steps = relax_steps_for(tuning.rest.names.size());
+        write_scene(folder, tuning);
+        bring_to_rest(folder, on_stage, tuning);
+    }
     const Played first = try_ways(folder, on_stage, tuning);
     set_coupling(first, tuning);
     set_period(first, tuning);
@@ -324,6 +348,7 @@ TunedScene tune_scene(PreparedSystem& system, const std::string& grab, bool is_a
     tuning.text.made_by = "palpa prepare; report.txt has every decision";
     if (!tuning.copy.joined.empty()) tuning.text.topology = "scene.psf";
     const std::size_t atoms = tuning.rest.names.size();
+    if (count_mobile_atoms(tuning.copy.segments) > most_atoms_all_move) set_region(tuning);
     tuning.tuning.relax_steps = relax_steps_for(atoms);
     tuning.tuning.period_ms = first_period_ms(atoms);
     return tune(system, tuning, on_stage);

@@ -107,20 +107,22 @@ HandChoice hold_most_exposed(const Structure& structure, const SystemSegment& se
 }
 
 HandChoice choose_by_size(const Structure& structure, std::span<const SystemSegment> segments) {
-    constexpr std::size_t most_in_hand = 300;  // atoms
+    constexpr std::size_t most_in_hand = 2000;  // atoms
     const SystemSegment* smallest = nullptr;
     const SystemSegment* largest = nullptr;
     for (const SystemSegment& segment : segments) {
         if (segment.kind != SegmentKind::Molecule) continue;
-        if (!smallest || segment.atoms.size() < smallest->atoms.size()) smallest = &segment;
+        if (!smallest || segment.atoms.size() <= smallest->atoms.size()) smallest = &segment;
         if (!largest || segment.atoms.size() > largest->atoms.size()) largest = &segment;
     }
     if (!largest) {
         throw LoadError({structure.file},
                         "no molecule to hold: only water, ions and pieces that are not bonded");
     }
-    if (smallest->atoms.size() < largest->atoms.size() && smallest->atoms.size() <= most_in_hand) {
-        return hold_all(*smallest, "it is the smallest molecule");
+    if (smallest != largest && smallest->atoms.size() <= most_in_hand) {
+        const bool is_alone = smallest->atoms.size() < largest->atoms.size();
+        return hold_all(*smallest, is_alone ? "it is the smallest molecule"
+                                            : "it is the last of molecules alike");
     }
     return hold_most_exposed(structure, *largest);
 }

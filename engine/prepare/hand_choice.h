@@ -21,8 +21,9 @@ struct HandChoice {
 };
 
 // `grab`: "SEGMENT", the whole molecule, or "SEGMENT:RESIDUE", a residue on a spring. Empty: the
-// smallest molecule, if it is one of at most 300 atoms beside a larger one; else of the largest
-// molecule the residue that has the fewest heavy atoms within 10 Å, since that moves most easily.
+// smallest molecule, a ligand, a peptide or a chain of at most 2,000 atoms beside others, of those
+// alike the last; else of the largest molecule the residue that has the fewest heavy atoms within
+// 10 Å, since that moves most easily.
 // Throws LoadError where there is nothing of that name, or nothing to hold.
 HandChoice choose_hand(const Structure& structure, std::span<const SystemSegment> segments,
                        std::string_view grab);

@@ -67,6 +67,10 @@ std::string format_path(const Vec3& way) {
     return text;
 }
 
+std::string format_note(const std::string& note) {
+    return note.empty() ? "" : fmt::format("# {}\n", note);
+}
+
 std::string format_statics(std::size_t atoms, Solvent solvent, const SceneTuning& tuning) {
     std::string text = "\n[statics]\nrest_kcal_per_mol = 0.5\n";
     if (tuning.relax_steps) text += fmt::format("relax_steps = {}\n", *tuning.relax_steps);
@@ -75,12 +79,21 @@ std::string format_statics(std::size_t atoms, Solvent solvent, const SceneTuning
     } else if (solvent == Solvent::None) {
         text += "cutoff_angstrom = 12.0\n";
     }
-    if (atoms > most_atoms_all_active) text += "active = 100\nweights = \"single\"\n";
     return text;
 }
 
-std::string format_note(const std::string& note) {
-    return note.empty() ? "" : fmt::format("# {}\n", note);
+std::string format_region(const SceneTuning& tuning) {
+    if (!tuning.region_angstrom) return "";
+    return fmt::format("\n[joints]\n{}region_angstrom = {}\n", format_note(tuning.region_note),
+                       *tuning.region_angstrom);
+}
+
+// So that what is in the hand is seen: of some hundred atoms one sees all.
+std::string format_view(std::size_t atoms, const HandChoice& hand) {
+    constexpr std::size_t most_all_seen = 400, most_in_pocket = 300;
+    if (atoms <= most_all_seen) return "";
+    const bool is_in_pocket = hand.atom.empty() && hand.held.size() <= most_in_pocket;
+    return fmt::format("\n[view]\nrepresentation = \"{}\"\n", is_in_pocket ? "pocket" : "in-hand");
 }
 
 std::string format_coupling(const SceneTuning& tuning) {
@@ -122,12 +135,14 @@ std::string format_scene(const Structure& structure, std::span<const SystemSegme
             scene += "motion = \"translate-and-turn\"\n";
         }
     }
+    scene += format_region(tuning);
     scene += format_statics(structure.names.size(), text.solvent, tuning);
     scene += fmt::format("\n[grab]\nmolecule = {}\nmeasured_from = {}\n", in_quotes(hand.segment),
                          in_quotes(find_origin(segments, hand)));
     if (!hand.atom.empty()) scene += fmt::format("atom = {}\n", in_quotes(hand.atom));
     scene += fmt::format("\n[hand]\nstroke = \"lead\"\npath = [{}]\n", format_path(way));
     scene += format_coupling(tuning);
+    scene += format_view(structure.names.size(), hand);
     scene += fmt::format("\n[run]\n{}period_ms = {}\nseconds = 10\n",
                          format_note(tuning.period_note), tuning.period_ms);
     return scene;

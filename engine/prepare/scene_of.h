@@ -22,7 +22,8 @@ struct SceneTuning {
     std::optional<std::array<double, 2>> feel_pN = {};
     double period_ms = 10;
     std::optional<std::int64_t> relax_steps = {};  // on loading
-    std::string coupling_note, period_note;        // comments, a line each
+    std::optional<double> region_angstrom = {};    // around what is held; unset: everything moves
+    std::string coupling_note, period_note, region_note;  // comments, a line each
 };
 
 struct SceneText {
@@ -31,11 +32,12 @@ struct SceneText {
     Solvent solvent = Solvent::None;
 };
 
-// Atoms beyond which forces end at 12 Å, and beyond which few degrees of freedom are active.
-inline constexpr std::size_t most_atoms_all_pairs = 4'000, most_atoms_all_active = 20'000;
+// Atoms beyond which forces end at 12 Å.
+inline constexpr std::size_t most_atoms_all_pairs = 4'000;
 
 // Guarded coupling, every molecule flexible, ions and waters fixed; the hand leads what it holds by
-// 4 Å along `way`, and back. On a spring the molecule's base is away from what is held.
+// 4 Å along `way`, and back. On a spring the molecule's base is away from what is held. A small
+// molecule in a large one is shown with its pocket, and otherwise what is in the hand among sticks.
 std::string format_scene(const Structure& structure, std::span<const SystemSegment> segments,
                          const HandChoice& hand, const Vec3& way, const SceneText& text,
                          const SceneTuning& tuning);

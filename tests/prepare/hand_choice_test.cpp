@@ -47,29 +47,48 @@ TEST_CASE("a small molecule beside a larger one is held whole", "[prepare][hand]
     CHECK(hand.held == std::vector<std::uint32_t>{20, 21, 22, 23});
 }
 
-TEST_CASE("of chains alone the most exposed residue is held", "[prepare][hand]") {
-    // 80 residues in a row of 4 Å: at both ends they have half as many neighbours, and another
-    // chain lies beside the first residue.
+TEST_CASE("of one chain the most exposed residue is held", "[prepare][hand]") {
+    // 80 residues in a row of 4 Å: at both ends they have half as many neighbours, and something
+    // that is no molecule lies beside the first of them.
     StructureWriter writer;
     add_chain(writer, "A", 80);
-    for (int i = 0; i < 76; ++i) writer.backbone("ALA", "B", i + 1, 4.0 * i - 8);
-    Structure structure = writer.structure();
-    for (std::size_t i = 320; i < structure.names.size(); ++i) structure.positions[i].y() += 5;
-
-    HandChoice hand = choose_hand(structure, segments_of(structure), "");
+    for (int i = 0; i < 3; ++i) writer.atom("SOD", "I", i + 1, "SOD", {2.0 * i, 5, 0}, "NA");
+    const HandChoice hand = choose_hand(writer.structure(), segments_of(writer.structure()), "");
     CHECK(hand.segment == "A");
     CHECK(hand.atom == "80");
     CHECK(hand.held == std::vector<std::uint32_t>{316, 317, 318, 319});
     CHECK_THAT(hand.words, Contains("ALA 80 of A"));
+}
+
+TEST_CASE("of several chains the smallest is held whole, of those alike the last",
+          "[prepare][hand]") {
+    StructureWriter writer;
+    add_chain(add_chain(writer, "A", 80), "B", 76);
+    const Structure& structure = writer.structure();
+    HandChoice hand = choose_hand(structure, segments_of(structure), "");
+    CHECK(hand.segment == "B");
+    CHECK(hand.atom.empty());
+    CHECK(hand.held.size() == 304);
 
     hand = choose_hand(structure, segments_of(structure), "B:7");
     CHECK(hand.segment == "B");
     CHECK(hand.atom == "7");
-    hand = choose_hand(structure, segments_of(structure), "B");
+    hand = choose_hand(structure, segments_of(structure), "A");
     CHECK(hand.atom.empty());
-    CHECK(hand.held.size() == 304);
+    CHECK(hand.held.size() == 320);
     CHECK_THAT(load_error_of([&] { choose_hand(structure, segments_of(structure), "B:77"); }),
                Contains("--grab B:77") && Contains("A, B"));
+
+    StructureWriter dimer;
+    add_chain(add_chain(dimer, "A", 10), "B", 10);
+    hand = choose_hand(dimer.structure(), segments_of(dimer.structure()), "");
+    CHECK(hand.segment == "B");
+    CHECK(hand.held.size() == 40);
+    StructureWriter large;
+    add_chain(add_chain(large, "A", 501), "B", 501);  // of 2,004 atoms each
+    hand = choose_hand(large.structure(), segments_of(large.structure()), "");
+    CHECK(hand.segment == "A");
+    CHECK_FALSE(hand.atom.empty());
 }
 
 TEST_CASE("a single residue is held by an atom, and its whole molecule by nothing",

@@ -107,6 +107,33 @@ TEST_CASE("the hand leads along the way, and what was measured is in the file",
     CHECK_THAT(section(tuned, "statics"), Contains("relax_steps = 0"));
 }
 
+TEST_CASE("of a large system the scene shows what is in the hand, and moves what is around it",
+          "[prepare][scene]") {
+    const Complex complex;
+    CHECK_THAT(complex.scene("", {}), !Contains("[joints]") && !Contains("[view]"));
+    SceneTuning tuning;
+    tuning.region_angstrom = 12;
+    tuning.region_note = "Few.";
+    CHECK_THAT(section(complex.scene("", tuning), "joints"),
+               Contains("# Few.\nregion_angstrom = 12"));
+
+    Complex large;
+    StructureWriter writer;
+    for (int i = 0; i < 101; ++i) writer.backbone("ALA", "B", i + 1, 4.0 * i);
+    const auto join = [&](const Structure& other) {
+        large.structure.names.insert(large.structure.names.end(), other.names.begin(),
+                                     other.names.end());
+        large.structure.positions.insert(large.structure.positions.end(), other.positions.begin(),
+                                         other.positions.end());
+        large.structure.records.insert(large.structure.records.end(), other.records.begin(),
+                                       other.records.end());
+        large.structure.lines.resize(large.structure.names.size());
+    };
+    join(writer.structure());
+    CHECK_THAT(section(large.scene("", {}), "view"), Contains("representation = \"pocket\""));
+    CHECK_THAT(section(large.scene("A:3", {}), "view"), Contains("representation = \"in-hand\""));
+}
+
 TEST_CASE("names with odd letters read as they were written", "[prepare][scene]") {
     const test::TemporaryFolder folder;
     for (const char* const name : {"system.prm", "relaxed.crd", "system.psf"}) {

@@ -1,0 +1,32 @@
+// Of a large system, how far around the hand its scene lets atoms move; all else stays.
+#pragma once
+#include "molecule/atoms.h"
+#include "prepare/system_segments.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+namespace palpa {
+
+// About a quarter as many joints turn. A system of more is more than the second-order step takes
+// (statics/renewal.h).
+inline constexpr std::size_t most_atoms_all_move = 12'000;
+// About as many as HIV protease has, whose steps take milliseconds.
+inline constexpr std::size_t most_atoms_of_region = 4'000;
+
+struct RegionChoice {
+    double angstrom = 0;    // joints.region_angstrom
+    std::size_t atoms = 0;  // of molecules, in residues of which an atom is as near as that
+};
+
+// The largest of some distances, from 32 to 8 Å, within which at most `most_atoms_of_region` are;
+// the smallest where that many are too near. `held`: atoms of the structure.
+RegionChoice choose_region(const Structure& structure, std::span<const SystemSegment> segments,
+                           std::span<const std::uint32_t> held);
+
+// Atoms of molecules, which joints may move.
+std::size_t count_mobile_atoms(std::span<const SystemSegment> segments) noexcept;
+
+}  // namespace palpa
