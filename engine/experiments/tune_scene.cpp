@@ -277,6 +277,9 @@ void report_scene(const Played& played, const Tuning& tuning, Report& report) {
     }
 }
 
+// The hand is out from 3 to 4 s (prepare/scene_of.h).
+constexpr const char* way_out_only = "run.seconds=3.5";
+
 // The stroke's way out with constant gains, or across where what is held does not move that way.
 Played try_ways(const std::filesystem::path& folder, const StageFunction& on_stage,
                 Tuning& tuning) {
@@ -290,7 +293,7 @@ Played try_ways(const std::filesystem::path& folder, const StageFunction& on_sta
         tuning.rest = rest;
         take_way(way, tuning);
         const Played played =
-            play_written(folder, "looking for the forces", {"run.seconds=5"}, on_stage, tuning);
+            play_written(folder, "looking for the forces", {way_out_only}, on_stage, tuning);
         if (played.moved_angstrom > best.moved_angstrom) {
             best = played;
             best_way = way;
@@ -322,7 +325,8 @@ TunedScene tune(PreparedSystem& system, Tuning& tuning, const StageFunction& tel
     const Played first = try_ways(folder, on_stage, tuning);
     set_coupling(first, tuning);
     set_period(first, tuning);
-    const Played played = play_written(folder, "playing the scene", {}, on_stage, tuning);
+    const Played played =
+        play_written(folder, "playing the scene", {way_out_only}, on_stage, tuning);
     if (choose_period_ms(played.p99_us) > tuning.tuning.period_ms) set_period(played, tuning);
     report_scene(played, tuning, system.report);
     return {tuning.files(), tuning.copy.hand.words, played.felt_newton, played.moved_angstrom};
