@@ -27,7 +27,7 @@ public:
     void optional_count(std::int64_t value) { count(value + 1); }
     void flag(bool value) { byte(value ? 1 : 0); }
 
-    void name(const std::string& name) {
+    void name(const std::string& name, PackedName = PackedName::Any) {
         const auto [known, is_new] = names_.try_emplace(name, names_.size());
         if (!is_new) return count(known->second + 1);
         count(0);
@@ -100,7 +100,7 @@ std::string pack_force_field(const ForceField& force_field, std::span<const std:
     visit_force_field(writer, force_field);
     const std::string plain = writer.take(), packed = compressed(plain);
     return text +
-           fmt::format("\n{} {} {}\n", packed.size(), plain.size(), content_hash(plain)) + packed;
+           fmt::format("\n{} {}\n", packed.size(), plain.size()) + packed;
 }
 
 }  // namespace palpa

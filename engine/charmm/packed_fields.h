@@ -21,6 +21,9 @@ inline constexpr std::array packed_powers = {1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1
 // What a number may be beside finite.
 enum class PackedNumber { Any, NotNegative };
 
+// Whose name it is: those of a residue's atoms stand once, and those in terms are remembered.
+enum class PackedName { Any, MayBeEmpty, Atom, Term };
+
 template <class Archive, class Names>
 void visit_names(Archive& archive, Names& names) {
     for (auto& name : names) archive.name(name);
@@ -28,7 +31,9 @@ void visit_names(Archive& archive, Names& names) {
 
 template <class Archive, class Tuples>
 void visit_tuples(Archive& archive, Tuples& tuples) {
-    archive.list(tuples, [&](auto& tuple) { visit_names(archive, tuple); });
+    archive.list(tuples, [&](auto& tuple) {
+        for (auto& name : tuple) archive.name(name, PackedName::Term);
+    });
 }
 
 template <class Archive, class Coordinate>
@@ -45,8 +50,8 @@ template <class Archive, class OneResidue>
 void visit_residue(Archive& archive, OneResidue& residue) {
     archive.number(residue.charge);
     archive.list(residue.atoms, [&](auto& atom) {
-        archive.name(atom.name);
-        archive.name(atom.type);
+        archive.name(atom.name, PackedName::Atom);
+        archive.name(atom.type, PackedName::Any);
         archive.number(atom.charge);
         archive.count(atom.group);
     });
@@ -87,7 +92,7 @@ void visit_topology(Archive& archive, Field& field) {
     archive.map(field.types, one_name, [&](auto& type) {
         archive.optional_count(type.number);
         archive.number(type.mass, PackedNumber::NotNegative);
-        archive.name(type.element);
+        archive.name(type.element, PackedName::MayBeEmpty);
         archive.finish(type);
     });
     const auto residue = [&](auto& one) { visit_residue(archive, one); };

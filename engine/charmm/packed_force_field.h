@@ -2,8 +2,8 @@
 // of CHARMM's files, without comments and places.
 //
 // The file begins with lines of text: packed_mark, what the force field is (`about`), and an empty
-// one. Then come three whole numbers on a line, the bytes that follow, those that they expand to
-// and these bytes' content_hash, and zlib's compressed bytes. What those are: packed_fields.h.
+// one. Then come two whole numbers on a line, the bytes that follow and those that they expand to,
+// and zlib's compressed bytes, which end with its checksum. What those are: packed_fields.h.
 #pragma once
 #include "charmm/force_field.h"
 

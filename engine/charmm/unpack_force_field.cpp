@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <limits>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 namespace palpa {
@@ -57,12 +58,20 @@ public:
     }
     void flag(bool& value) { value = byte() != 0; }
 
-    void name(std::string& name) {
+    void name(std::string& name, PackedName kind = PackedName::Any) {
         const std::uint64_t index = whole();
-        if (index == 0) names_.push_back(read_name());
+        if (index == 0) names_.push_back({read_name()});
         const std::size_t at = index == 0 ? names_.size() - 1 : index - 1;
         if (at >= names_.size()) fail("an unknown name");
-        name = names_[at];
+        KnownName& known = names_[at];
+        if (known.text.empty() && kind != PackedName::MayBeEmpty) fail("an empty name");
+        if (kind == PackedName::Atom && std::exchange(known.atom_of, residue_) == residue_) {
+            fail("an atom again");
+        }
+        if (kind == PackedName::Term && std::exchange(known.term_of, residue_) != residue_) {
+            in_terms_.push_back(at);
+        }
+        name = known.text;
     }
 
     void number(double& value, PackedNumber kind = PackedNumber::Any) {
@@ -109,19 +118,15 @@ public:
             std::lround(std::sqrt(static_cast<double>(map.energies.size()))));
         if (side < 2 || side > 360 || side * side != map.energies.size()) fail("a map of no square");
     }
-    void finish(Residue& residue) const {
+    void finish(Residue& residue) {
         residue.place = place_;
         for (ResidueAtom& atom : residue.atoms) atom.place = place_;
-        note_names(residue, residue.bonds);
-        note_names(residue, residue.angles);
-        note_names(residue, residue.dihedrals);
-        note_names(residue, residue.impropers);
-        note_names(residue, residue.cmaps);
-        note_names(residue, residue.deleted_bonds);
-        note_names(residue, residue.deleted_angles);
-        note_names(residue, residue.deleted_dihedrals);
-        note_names(residue, residue.deleted_impropers);
-        note_names(residue, residue.deleted_cmaps);
+        std::ranges::sort(in_terms_, {}, [&](std::size_t at) { return std::string_view(names_[at].text); });
+        for (const std::size_t at : in_terms_) {
+            residue.named_on.emplace_hint(residue.named_on.end(), names_[at].text, 0);
+        }
+        in_terms_.clear();
+        ++residue_;
     }
 
 private:
@@ -148,37 +153,33 @@ private:
         return name;
     }
 
-    template <class Key>
-    void check_key(const Key& key) const {
-        if constexpr (requires { key.first; }) {
-            check_name(key.first);
-            check_name(key.second);
-            if (key.second < key.first) fail("types in another order");
-        } else if constexpr (requires { key.size(); key[0].size(); }) {
-            for (const std::string& name : key) check_name(name);
-            if constexpr (requires { in_order(key); }) {
-                if (in_order(key) != key) fail("types in another order");
-            }
-        } else {
-            check_name(key);
-        }
+    // Of two ways to read types the lower stands for both, but for CMAP.
+    void check_key(const std::string&) const noexcept {}
+    void check_key(const std::array<std::string, 8>&) const noexcept {}
+    void check_key(const std::pair<std::string, std::string>& types) const {
+        if (types.second < types.first) fail("types in another order");
     }
-    void check_name(const std::string& name) const {
-        if (name.empty()) fail("an empty name");
+    void check_key(const std::array<std::string, 3>& types) const {
+        if (types[2] < types[0]) fail("types in another order");
+    }
+    void check_key(const std::array<std::string, 4>& types) const {
+        if (std::tie(types[3], types[2]) < std::tie(types[0], types[1])) {
+            fail("types in another order");
+        }
     }
 
-    template <class Tuples>
-    static void note_names(Residue& residue, const Tuples& tuples) {
-        for (const auto& tuple : tuples) {
-            for (const std::string& name : tuple) residue.named_on.try_emplace(name, 0);
-        }
-    }
+    struct KnownName {
+        std::string text;
+        std::size_t atom_of = 0, term_of = 0;  // the last residue that has it so, from 1
+    };
 
     std::string_view bytes_;
     std::size_t at_ = 0;
     const std::string& file_;
     TextPlace place_;
-    std::vector<std::string> names_;
+    std::vector<KnownName> names_;
+    std::size_t residue_ = 1;             // that is read now
+    std::vector<std::size_t> in_terms_;  // places in names_ of what its terms name
 };
 
 // What the text reader would have refused, as far as other code relies on it.
@@ -197,23 +198,6 @@ void check_dihedrals(const PackReader& reader,
     }
 }
 
-void check_residue(const PackReader& reader, const Residue& residue) {
-    std::vector<std::string_view> names;
-    names.reserve(residue.atoms.size());
-    for (const ResidueAtom& atom : residue.atoms) {
-        if (atom.name.empty() || atom.type.empty()) reader.fail("an empty name");
-        names.push_back(atom.name);
-    }
-    std::ranges::sort(names);
-    if (std::ranges::adjacent_find(names) != names.end()) reader.fail("an atom again");
-    if (residue.named_on.contains("")) reader.fail("an empty name");
-    for (const InternalCoordinate& ic : residue.internal_coordinates) {
-        for (const std::string& name : ic.atoms) {
-            if (name.empty()) reader.fail("an empty name");
-        }
-    }
-}
-
 // The first line from `at` on, which moves behind its end; nothing if it does not end.
 std::optional<std::string_view> take_line(std::string_view bytes, std::size_t& at) {
     const std::size_t end = bytes.substr(0, most_about_bytes).find('\n', at);
@@ -226,7 +210,6 @@ std::optional<std::string_view> take_line(std::string_view bytes, std::size_t& a
 struct PackedHead {
     std::vector<std::string> about;
     std::size_t packed_bytes = 0, plain_bytes = 0, begin = 0;
-    std::string_view hash;
 };
 
 PackedHead read_head(std::string_view bytes, const std::string& file) {
@@ -247,8 +230,8 @@ PackedHead read_head(std::string_view bytes, const std::string& file) {
     const auto sizes = take_line(bytes, at);
     if (!sizes) throw cut();
     const std::vector<std::string_view> words = split_words(*sizes);
-    const auto packed = words.size() == 3 ? find_integer(words[0]) : std::nullopt;
-    const auto plain = words.size() == 3 ? find_integer(words[1]) : std::nullopt;
+    const auto packed = words.size() == 2 ? find_integer(words[0]) : std::nullopt;
+    const auto plain = words.size() == 2 ? find_integer(words[1]) : std::nullopt;
     if (!packed || !plain || *packed < 0 || *plain < 0 || head.about.empty() ||
         *plain > std::int64_t{most_plain_bytes}) {
         throw LoadError({file}, fmt::format("'{}' is no size of a packed force field",
@@ -256,7 +239,6 @@ PackedHead read_head(std::string_view bytes, const std::string& file) {
     }
     head.packed_bytes = static_cast<std::size_t>(*packed);
     head.plain_bytes = static_cast<std::size_t>(*plain);
-    head.hash = words[2];
     head.begin = at;
     if (bytes.size() - at < head.packed_bytes) throw cut();
     return head;
@@ -273,10 +255,7 @@ std::string expand(std::string_view bytes, const PackedHead& head, const std::st
         uncompress(reinterpret_cast<Bytef*>(plain.data()), &size,
                    reinterpret_cast<const Bytef*>(bytes.data() + head.begin),
                    static_cast<uLong>(head.packed_bytes));
-    if (code != Z_OK || size != plain.size() ||
-        fmt::format("{}", content_hash(plain)) != head.hash) {
-        throw damaged();
-    }
+    if (code != Z_OK || size != plain.size()) throw damaged();
     return plain;
 }
 
@@ -298,9 +277,6 @@ ForceField unpack_fields(std::string_view plain, const std::string& file) {
     if (!reader.is_at_end()) reader.fail("more than its content");
     check_dihedrals(reader, force_field.dihedrals);
     check_dihedrals(reader, force_field.impropers);
-    for (const auto* const residues : {&force_field.residues, &force_field.patches}) {
-        for (const auto& [name, residue] : *residues) check_residue(reader, residue);
-    }
     return force_field;
 }
 
