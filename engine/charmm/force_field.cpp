@@ -1,7 +1,9 @@
 #include "charmm/force_field.h"
 
+#include "charmm/packed_force_field.h"
 #include "charmm/parameter_reader.h"
 #include "charmm/residue_reader.h"
+#include "charmm/script.h"
 #include "charmm/statements.h"
 #include "core/files.h"
 #include "core/text.h"
@@ -17,9 +19,6 @@
 namespace palpa {
 namespace {
 
-constexpr std::array script_passed_over =
-    std::to_array<std::string_view>({"SET", "IF", "RETU", "BOML", "WRNL"});
-
 enum class Part { None, Topology, Parameters };
 
 // READ RTF or READ PARA, whatever options follow.
@@ -32,9 +31,11 @@ Part part_to_read(const Statements& statements) {
         fmt::format("'{}' cannot be read; expected 'read rtf' or 'read para'", statements.text()));
 }
 
-bool is_script(std::string_view keyword) {
-    return std::find(script_passed_over.begin(), script_passed_over.end(), keyword) !=
-           script_passed_over.end();
+// READ ... NAME file, READ ... UNIT 10
+bool reads_other_file(const Statements& statements) {
+    return std::ranges::any_of(statements.words(), [](std::string_view word) {
+        return word == "NAME" || word == "UNIT";
+    });
 }
 
 // What a file without a READ line is about to say.
@@ -92,13 +93,15 @@ void parse_force_field(std::string_view text, const std::string& file, ForceFiel
     Statements statements(text, file);
     ResidueReader residues(statements, into);
     ParameterReader parameters(statements, into);
+    Script script(statements, into);
     Part part = Part::None;
     const auto end_part = [&] {
         residues.end_part();
         parameters.end_part();
         part = Part::None;
     };
-    while (statements.next()) {
+    bool has_returned = false;
+    while (!has_returned && statements.next()) {
         const std::string_view keyword = statements.keyword();
         if (keyword == "END") {
             end_part();
@@ -107,10 +110,16 @@ void parse_force_field(std::string_view text, const std::string& file, ForceFiel
         if (keyword == "READ") {
             end_part();
             part = part_to_read(statements);
+            if (!reads_other_file(statements)) continue;
+            script.note_other_file();
+            part = Part::None;
             continue;
         }
         if (part == Part::None) {
-            if (is_script(keyword)) continue;
+            if (Script::is_script(keyword)) {
+                has_returned = !script.follow();
+                continue;
+            }
             part = part_of(statements);
         }
         if (part == Part::Parameters) {
@@ -131,14 +140,23 @@ void parse_force_field(std::string_view text, const std::string& file, ForceFiel
             fmt::format("the file ends inside {}, as if it were cut; expected END behind it",
                         open));
     }
+    if (!has_returned) script.check_closed();
     into.files.push_back(file);
 }
 
 ForceField read_force_field(std::span<const std::filesystem::path> files) {
     ForceField force_field;
     check_different(files);
-    for (const std::filesystem::path& file : files) {
-        parse_force_field(read_text_file(file), file.string(), force_field);
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        const std::string text = read_text_file(files[i]), file = files[i].string();
+        if (!is_packed_force_field(text)) {
+            parse_force_field(text, file, force_field);
+        } else if (i == 0) {
+            force_field = unpack_force_field(text, file);
+        } else {
+            throw LoadError({file}, "is a packed force field, which adds to none; expected it to "
+                                    "be the first file");
+        }
     }
     return force_field;
 }

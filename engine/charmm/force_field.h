@@ -54,8 +54,13 @@ struct Residue {
     std::vector<std::array<std::string, 4>> impropers;
     std::vector<std::array<std::string, 8>> cmaps;  // two dihedrals each
     std::vector<InternalCoordinate> internal_coordinates;
-    std::vector<std::string> deleted_atoms;                     // of a patch
-    std::vector<std::array<std::string, 4>> deleted_impropers;  // of a patch
+    // Of a patch: what it takes away from what residues and patches before it have.
+    std::vector<std::string> deleted_atoms;
+    std::vector<std::array<std::string, 2>> deleted_bonds;
+    std::vector<std::array<std::string, 3>> deleted_angles;     // also of those generated
+    std::vector<std::array<std::string, 4>> deleted_dihedrals;  // likewise
+    std::vector<std::array<std::string, 4>> deleted_impropers;
+    std::vector<std::array<std::string, 8>> deleted_cmaps;
     std::string first_patch, last_patch;  // at the ends of a chain; "NONE": none
     bool has_generated_angles = true;     // false: NOANG
     bool has_generated_dihedrals = true;  // false: NODIH
@@ -111,6 +116,20 @@ struct NbfixPair {
     TextPlace place;
 };
 
+// What was read and a person should know of.
+struct ForceFieldNote {
+    enum class Kind : std::uint8_t {
+        Replaced,   // `earlier` is where the name stood before, with other values
+        Negative,   // a force constant
+        ExtraWord,  // behind what a line says, as if a '!' were missing
+        OtherFile   // that a stream file names
+    };
+    Kind kind{};
+    TextPlace place;
+    std::string what;  // "bond CT1 NH1", "residue HIC"
+    TextPlace earlier;
+};
+
 // Of the two ways to read types, the lower in the alphabet.
 std::pair<std::string, std::string> in_order(std::string a, std::string b);
 std::array<std::string, 3> in_order(std::array<std::string, 3> types);
@@ -135,15 +154,44 @@ struct ForceField {
     std::map<std::array<std::string, 4>, std::vector<DihedralTerm>> impropers;
     std::map<std::array<std::string, 8>, CmapParameter> cmaps;
     std::map<std::pair<std::string, std::string>, NbfixPair> nbfix;
+
+    std::vector<ForceFieldNote> notes;  // in the order of reading
+    // Of a packed force field: what it is, its date, where it is from, and what to cite; lines.
+    std::vector<std::string> about;
 };
 
-// Reads the files in order, later ones adding to earlier ones. In a stream file the script lines
-// that toppar files carry (set, if, read) are understood; donors, acceptors and hydrogen bonds are
-// passed over knowingly. Anything else is a LoadError with its line, as is a value that does not
-// parse, a name given twice with different values, and a file given twice. Residues with lone pairs
-// are read; using one is refused. A residue or section that the file ends in without END is refused
-// too: who knows what has been cut off.
+// Reads the files in order, later ones adding to earlier ones. What is given again replaces what
+// was there, as in CHARMM, and is noted where it differs; residues and patches always. A dihedral
+// or improper given again in a later part (from READ, or from its first line, to END) loses all its
+// earlier multiplicities; within a part further ones join. Of two masses of a type that differ by
+// less than 0.01 amu the first stays. A force constant below 0 is taken and noted, also that of a
+// Urey-Bradley term, and so are words behind an ATOM line's charge.
+//
+// In stream files, outside of parts: SET is followed; of IF, ELSE and ENDIF the way that its
+// condition says. A condition on what CHARMM alone knows (?NATC) takes a one-line IF as not true,
+// and makes a block a LoadError. GOTO goes on behind the LABEL, which must come later; RETURN ends
+// the file. STREAM, and READ with NAME or UNIT, are noted and not followed: other files are given
+// by themselves. READ RTF and READ PARA start a part and always append. BOMLEV, WRNLEV, PRNLEV,
+// IOFORMAT and ECHO are passed over, as are donors, acceptors and hydrogen bonds.
+//
+// Anything else is a LoadError with its line, as is a value that does not parse, an atom twice in a
+// residue, a multiplicity of 0 beside others, and a file given twice. Residues with lone pairs are
+// read; using one is refused. A residue, section or block that the file ends in without END is
+// refused too: who knows what has been cut off. The first file may be a packed one
+// (packed_force_field.h).
 ForceField read_force_field(std::span<const std::filesystem::path> files);
+
+// A line for each kind of note with its number and the first few of them; no line where there are
+// none.
+std::vector<std::string> describe_notes(std::span<const ForceFieldNote> notes);
+
+// All of one note: "a.str:7: bond CT1 NH1 replaces that of b.prm:3".
+std::string describe_note(const ForceFieldNote& note);
+
+// The force field files of a folder in the order in which they are read: .rtf before .prm before
+// .str, each by name, then those of the folders directly in it in the same order. Throws LoadError
+// where there are none. A file is itself.
+std::vector<std::filesystem::path> list_force_field_files(const std::filesystem::path& path);
 
 // Adds the content of one file. Whether a line is topology or parameters follows from its keyword
 // and, for section headers that both kinds know (BONDS, ANGLES), from what came before it in the

@@ -72,24 +72,51 @@ private:
         return atoms;
     }
 
+    // Takes `deleted` in either direction from `terms`.
+    template <std::size_t Size>
+    static void erase_term(std::vector<std::array<std::uint32_t, Size>>& terms,
+                           const std::array<std::uint32_t, Size>& deleted) {
+        std::erase_if(terms,
+                      [&](const auto& term) { return lower_way(term) == lower_way(deleted); });
+    }
+
+    // Before the patch's own terms, which may put others in place of them.
+    void delete_terms(const TemplateUse& use, std::set<std::array<std::uint32_t, 2>>& bonded) {
+        for (const auto& bond : find_tuples(use, use.residue->deleted_bonds)) {
+            if (bonded.erase(lower_way(bond)) > 0) erase_term(result_.bonds, bond);
+        }
+        for (const auto& angle : find_tuples(use, use.residue->deleted_angles)) {
+            deleted_angles_.insert(lower_way(angle));
+            if (angles_.erase(lower_way(angle)) > 0) erase_term(result_.angles, angle);
+        }
+        for (const auto& dihedral : find_tuples(use, use.residue->deleted_dihedrals)) {
+            deleted_dihedrals_.insert(lower_way(dihedral));
+            if (dihedrals_.erase(lower_way(dihedral)) > 0) erase_term(result_.dihedrals, dihedral);
+        }
+        for (const auto& improper : find_tuples(use, use.residue->deleted_impropers)) {
+            erase_term(result_.impropers, improper);
+        }
+        for (const auto& cmap : find_tuples(use, use.residue->deleted_cmaps)) {
+            std::erase(result_.cmaps, cmap);
+        }
+    }
+
     void add_terms() {
         std::set<std::array<std::uint32_t, 2>> bonded;
         for (const TemplateUse& use : residues_.uses) {
+            delete_terms(use, bonded);
             for (const auto& bond : find_tuples(use, use.residue->bonds)) {
                 if (bonded.insert(lower_way(bond)).second) result_.bonds.push_back(bond);
             }
             for (const auto& angle : find_tuples(use, use.residue->angles)) {
+                deleted_angles_.erase(lower_way(angle));
                 if (angles_.insert(lower_way(angle)).second) result_.angles.push_back(angle);
             }
             for (const auto& dihedral : find_tuples(use, use.residue->dihedrals)) {
+                deleted_dihedrals_.erase(lower_way(dihedral));
                 if (dihedrals_.insert(lower_way(dihedral)).second) {
                     result_.dihedrals.push_back(dihedral);
                 }
-            }
-            for (const auto& deleted : find_tuples(use, use.residue->deleted_impropers)) {
-                std::erase_if(result_.impropers, [&](const auto& improper) {
-                    return lower_way(improper) == lower_way(deleted);
-                });
             }
             for (const auto& improper : find_tuples(use, use.residue->impropers)) {
                 result_.impropers.push_back(improper);
@@ -124,7 +151,8 @@ private:
             for (std::size_t i = 0; i < bonded_[b].size(); ++i) {
                 for (std::size_t j = i + 1; j < bonded_[b].size(); ++j) {
                     const std::array angle{bonded_[b][i], b, bonded_[b][j]};
-                    if (!angles_.contains(angle)) result_.angles.push_back(angle);
+                    if (angles_.contains(angle) || deleted_angles_.contains(angle)) continue;
+                    result_.angles.push_back(angle);
                 }
             }
         }
@@ -141,9 +169,9 @@ private:
                     for (const std::uint32_t d : bonded_[c]) {
                         if (a == c || d == b || a == d) continue;
                         const std::array dihedral{a, b, c, d};
-                        if (!dihedrals_.contains(lower_way(dihedral))) {
-                            result_.dihedrals.push_back(dihedral);
-                        }
+                        const auto key = lower_way(dihedral);
+                        if (dihedrals_.contains(key) || deleted_dihedrals_.contains(key)) continue;
+                        result_.dihedrals.push_back(dihedral);
                     }
                 }
             }
@@ -158,6 +186,9 @@ private:
     std::vector<std::vector<std::uint32_t>> bonded_;    // to each atom
     std::set<std::array<std::uint32_t, 3>> angles_;     // given by residues
     std::set<std::array<std::uint32_t, 4>> dihedrals_;  // likewise
+    // Those that patches take away from what is generated.
+    std::set<std::array<std::uint32_t, 3>> deleted_angles_;
+    std::set<std::array<std::uint32_t, 4>> deleted_dihedrals_;
     Connectivity result_;
 };
 

@@ -12,14 +12,15 @@
 namespace palpa {
 namespace {
 
-// Adds what was not there; the same again is no mistake, something else under its name is.
+// Adds what was not there, or replaces it; something else under the name is noted.
 template <class Map, class Value, class Same>
-void add_once(const Statements& statements, Map& map, const typename Map::key_type& key,
-              const Value& value, std::string_view what, const Same& same) {
+void add_or_replace(const Statements& statements, ForceField& into, Map& map,
+                    const typename Map::key_type& key, const Value& value, std::string what,
+                    const Same& same) {
     const auto [old, is_new] = map.try_emplace(key, value);
     if (is_new || same(old->second, value)) return;
-    statements.fail(
-        fmt::format("{} again with other values, first in {}", what, to_string(old->second.place)));
+    note_replaced(into, statements, std::move(what), old->second.place);
+    old->second = value;
 }
 
 constexpr std::array section_names =
@@ -28,11 +29,16 @@ constexpr std::array section_names =
 
 bool is_wildcard(const std::string& type) { return type == "X"; }
 
-// Of bonds and angles; impropers and Urey-Bradley terms of CHARMM's own files have some below 0.
-void check_stiffness(const Statements& statements, double k) {
-    if (k < 0) {
-        statements.fail(fmt::format("a force constant of {}; expected 0 or more", k));
-    }
+// CHARMM takes any force constant; its own files have Urey-Bradley terms and impropers below 0.
+void note_negative(const Statements& statements, ForceField& into, double k, std::string_view of) {
+    if (k >= 0) return;
+    into.notes.push_back({ForceFieldNote::Kind::Negative, statements.place(),
+                          fmt::format("{} of {}", k, of),
+                          {}});
+}
+
+bool is_same_term(const DihedralTerm& a, const DihedralTerm& b) {
+    return a.multiplicity == b.multiplicity && a.k == b.k && a.phase_deg == b.phase_deg;
 }
 
 // Which of the forms that CHARMM looks for four types have.
@@ -111,7 +117,10 @@ void ParameterReader::start_section(Section section) {
     if (section == Section::Nonbonded) check_nonbonded_options();
 }
 
-void ParameterReader::end_part() { start_section(Section::None); }
+void ParameterReader::end_part() {
+    start_section(Section::None);
+    note_replaced_dihedrals();
+}
 
 void ParameterReader::read_bond() {
     statements_.expect_form("type1 type2 k r0");
@@ -119,8 +128,9 @@ void ParameterReader::read_bond() {
         in_order(statements_.name(0, "atom type"), statements_.name(1, "second atom type"));
     const HarmonicParameter bond{statements_.real(2, "force constant"),
                                  statements_.real(3, "bond length"), statements_.place()};
-    check_stiffness(statements_, bond.k);
-    add_once(statements_, into_.bonds, types, bond, "bond",
+    const std::string what = fmt::format("bond {} {}", types.first, types.second);
+    note_negative(statements_, into_, bond.k, what);
+    add_or_replace(statements_, into_, into_.bonds, types, bond, what,
              [](const HarmonicParameter& a, const HarmonicParameter& b) {
                  return a.k == b.k && a.value == b.value;
              });
@@ -138,8 +148,10 @@ void ParameterReader::read_angle() {
         angle.urey_bradley_k = statements_.real(5, "force constant of Urey-Bradley");
         angle.urey_bradley_s0 = statements_.real(6, "distance of Urey-Bradley");
     }
-    check_stiffness(statements_, angle.k);
-    add_once(statements_, into_.angles, types, angle, "angle",
+    const std::string what = fmt::format("angle {}", fmt::join(types, " "));
+    note_negative(statements_, into_, angle.k, what);
+    note_negative(statements_, into_, angle.urey_bradley_k, "Urey-Bradley " + what);
+    add_or_replace(statements_, into_, into_.angles, types, angle, what,
              [](const AngleParameter& a, const AngleParameter& b) {
                  return a.k == b.k && a.value == b.value && a.urey_bradley_k == b.urey_bradley_k &&
                         a.urey_bradley_s0 == b.urey_bradley_s0;
@@ -154,31 +166,53 @@ void ParameterReader::read_dihedral(bool is_improper) {
                             static_cast<int>(std::clamp<std::int64_t>(
                                 statements_.whole_number(5, "multiplicity"), -1, 100)),
                             statements_.real(6, "phase"), statements_.place()};
-    if (term.multiplicity < 0 || term.multiplicity > 6) {  // CHARMM knows no others
+    if (term.multiplicity < 0 || term.multiplicity > 12) {
         statements_.fail(
-            fmt::format("a multiplicity of {}; expected 0 to 6", statements_.words()[5]));
+            fmt::format("a multiplicity of {}; expected 0 to 12", statements_.words()[5]));
     }
     if (!has_valid_wildcards(types, is_improper)) {
         statements_.fail(fmt::format(
             "wildcards as in '{}' are never looked for; expected {}", fmt::join(types, " "),
             is_improper ? "A X X D, X B C D, X B C X or X X C D" : "X B C X"));
     }
-    std::vector<DihedralTerm>& terms =
-        (is_improper ? into_.impropers : into_.dihedrals)[in_order(std::move(types))];
+    types = in_order(std::move(types));
+    const std::string what =
+        fmt::format("{} {}", is_improper ? "improper" : "dihedral", fmt::join(types, " "));
+    add_dihedral((is_improper ? into_.impropers : into_.dihedrals)[types], term, what);
+}
+
+// A further multiplicity joins those of its own part; one with n = 0 stands alone.
+void ParameterReader::add_dihedral(std::vector<DihedralTerm>& terms, const DihedralTerm& term,
+                                   const std::string& what) {
+    const bool is_first = of_this_part_.insert(&terms).second;
+    if (is_first && !terms.empty()) replaced_.push_back({&terms, std::exchange(terms, {}), what});
     const auto old = std::find_if(terms.begin(), terms.end(), [&](const DihedralTerm& other) {
         return other.multiplicity == term.multiplicity;
     });
-    if (old != terms.end() && old->k == term.k && old->phase_deg == term.phase_deg) return;
-    // A further multiplicity joins those of its own file; one with n = 0 stands alone.
-    const bool joins =
-        terms.empty() || (old == terms.end() && terms[0].place.file == term.place.file &&
-                          terms[0].multiplicity > 0 && term.multiplicity > 0);
-    if (!joins) {
-        statements_.fail(fmt::format("{} again with other values, first in {}",
-                                     is_improper ? "improper" : "dihedral",
-                                     to_string((old == terms.end() ? terms[0] : *old).place)));
+    if (old != terms.end()) {
+        if (is_same_term(*old, term)) return;
+        note_replaced(into_, statements_, fmt::format("{} {}", what, term.multiplicity),
+                      old->place);
+        *old = term;
+        return;
+    }
+    if (!terms.empty() && (terms[0].multiplicity == 0 || term.multiplicity == 0)) {
+        statements_.fail(fmt::format(
+            "{} with multiplicities {} and {}, first in {}; 0, which is harmonic, stands alone",
+            what, terms[0].multiplicity, term.multiplicity, to_string(terms[0].place)));
     }
     terms.push_back(term);
+}
+
+// Once all multiplicities of the part are known.
+void ParameterReader::note_replaced_dihedrals() {
+    for (const ReplacedDihedral& earlier : replaced_) {
+        if (std::ranges::is_permutation(earlier.terms, *earlier.now, is_same_term)) continue;
+        into_.notes.push_back({ForceFieldNote::Kind::Replaced, earlier.now->front().place,
+                               earlier.what, earlier.terms.front().place});
+    }
+    replaced_.clear();
+    of_this_part_.clear();
 }
 
 bool ParameterReader::is_inside_map() const {
@@ -234,10 +268,10 @@ void ParameterReader::end_cmap() {
                                                          map.parameter.energies.size(), map.count));
     }
     const auto [old, is_new] = into_.cmaps.try_emplace(map.types, map.parameter);
-    if (!is_new && old->second.energies != map.parameter.energies) {
-        throw LoadError(map.parameter.place, fmt::format("map again with other values, first in {}",
-                                                         to_string(old->second.place)));
-    }
+    if (is_new || old->second.energies == map.parameter.energies) return;
+    into_.notes.push_back({ForceFieldNote::Kind::Replaced, map.parameter.place,
+                           fmt::format("CMAP {}", fmt::join(map.types, " ")), old->second.place});
+    old->second = map.parameter;
 }
 
 std::array<double, 2> ParameterReader::read_well(std::size_t at, const char* distance) const {
@@ -278,7 +312,7 @@ void ParameterReader::read_nonbonded() {
         special = read_well(5, "Rmin/2");
     }
     const NonbondedType entry{plain[0], plain[1], special[0], special[1], statements_.place()};
-    add_once(statements_, into_.nonbonded, type, entry, "non-bonded parameters",
+    add_or_replace(statements_, into_, into_.nonbonded, type, entry, "non-bonded type " + type,
              [](const NonbondedType& a, const NonbondedType& b) {
                  return a.epsilon == b.epsilon && a.half_rmin == b.half_rmin &&
                         a.epsilon14 == b.epsilon14 && a.half_rmin14 == b.half_rmin14;
@@ -293,7 +327,8 @@ void ParameterReader::read_nbfix() {
     const std::array<double, 2> special =
         statements_.words().size() > 4 ? read_well(4, "Rmin") : plain;
     const NbfixPair entry{plain[0], plain[1], special[0], special[1], statements_.place()};
-    add_once(statements_, into_.nbfix, in_order(a, b), entry, "NBFIX pair",
+    add_or_replace(statements_, into_, into_.nbfix, in_order(a, b), entry,
+                   fmt::format("NBFIX {} {}", a, b),
              [](const NbfixPair& x, const NbfixPair& y) {
                  return x.epsilon == y.epsilon && x.rmin == y.rmin && x.epsilon14 == y.epsilon14 &&
                         x.rmin14 == y.rmin14;

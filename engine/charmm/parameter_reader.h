@@ -6,8 +6,10 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace palpa {
 
@@ -50,11 +52,21 @@ private:
         CmapParameter parameter;
     };
 
+    // Terms of earlier parts, and what this part has in their place.
+    struct ReplacedDihedral {
+        const std::vector<DihedralTerm>* now;
+        std::vector<DihedralTerm> terms;
+        std::string what;
+    };
+
     void start_section(Section section);
     [[noreturn]] void fail_section() const;
     void read_bond();
     void read_angle();
     void read_dihedral(bool is_improper);
+    void add_dihedral(std::vector<DihedralTerm>& terms, const DihedralTerm& term,
+                      const std::string& what);
+    void note_replaced_dihedrals();
     void read_cmap();
     void read_cmap_energies(OpenMap& map) const;
     bool is_inside_map() const;  // numbers of it are still to come
@@ -69,6 +81,8 @@ private:
     ForceField& into_;
     Section section_ = Section::None;
     std::optional<OpenMap> open_map_;  // the one that is not yet in the force field, if any
+    std::set<const std::vector<DihedralTerm>*> of_this_part_;  // those that it gave first terms
+    std::vector<ReplacedDihedral> replaced_;
 };
 
 }  // namespace palpa

@@ -45,6 +45,12 @@ bool contains(const Names& names, std::string_view name) {
 
 }  // namespace
 
+void note_replaced(ForceField& into, const Statements& statements, std::string what,
+                   const TextPlace& earlier) {
+    into.notes.push_back(
+        {ForceFieldNote::Kind::Replaced, statements.place(), std::move(what), earlier});
+}
+
 void read_mass(const Statements& statements, ForceField& into) {
     statements.expect_form("MASS number type mass [element]");
     const double number = statements.real(1, "atom type's number");
@@ -62,10 +68,9 @@ void read_mass(const Statements& statements, ForceField& into) {
     }
     // CHARMM's own files round one mass differently in topology and parameters; the first counts.
     const auto [old, is_new] = into.types.emplace(type, entry);
-    if (!is_new && std::abs(old->second.mass - entry.mass) >= 0.01) {
-        statements.fail(fmt::format("mass of type '{}' again with other values, first in {}", type,
-                                    to_string(old->second.place)));
-    }
+    if (is_new || std::abs(old->second.mass - entry.mass) < 0.01) return;
+    note_replaced(into, statements, "mass of " + type, old->second.place);
+    old->second = entry;
 }
 
 void ResidueReader::end_part() {
@@ -132,19 +137,35 @@ void ResidueReader::start_residue(bool is_patch) {
                                          statements_.words()[i], kind));
         }
     }
-    const auto [added, is_new] =
-        (is_patch ? into_.patches : into_.residues).emplace(name, std::move(residue));
+    Residue& there = (is_patch ? into_.patches : into_.residues)[name];
+    const bool is_new = there.place.file.empty();
     if (!is_new) {
-        statements_.fail(
-            fmt::format("{} '{}' again, first in {}", kind, name, to_string(added->second.place)));
+        note_replaced(into_, statements_, fmt::format("{} {}", kind, name), there.place);
     }
-    residue_ = &added->second;
+    there = std::move(residue);
+    residue_ = &there;
     at_line_.clear();
     group_ = 0;
 }
 
+// What stands behind the charge of an ATOM line: numbers and Drude's polarizabilities would change
+// what it says, others are drawings or remarks, of which CHARMM's own files have some without '!'.
+void ResidueReader::check_extra_words() const {
+    const std::vector<std::string_view>& words = statements_.words();
+    for (std::size_t i = 4; i < words.size(); ++i) {
+        const std::string_view keyword = words[i].substr(0, 4);
+        if (find_real(words[i]) || keyword == "ALPH" || keyword == "THOL") {
+            return statements_.expect_form("ATOM name type charge");
+        }
+    }
+    if (words.size() <= 4) return statements_.expect_form("ATOM name type charge");
+    into_.notes.push_back({ForceFieldNote::Kind::ExtraWord, statements_.place(),
+                           fmt::format("'{}' behind an ATOM line", words[4]),
+                           {}});
+}
+
 void ResidueReader::read_atom() {
-    statements_.expect_form("ATOM name type charge");
+    check_extra_words();
     ResidueAtom atom{statements_.name(1, "atom name"), statements_.name(2, "atom type"),
                      statements_.real(3, "charge"), group_, statements_.place()};
     const auto [first, is_new] = at_line_.emplace(atom.name, atom.place.line);
@@ -172,7 +193,7 @@ void ResidueReader::read_tuples(Tuples& tuples, std::size_t from) const {
     }
 }
 
-// DELETE ATOM name ..., DELETE IMPR a b c d ...
+// DELETE ATOM name ..., DELETE ANGLE a b c ... and the like.
 void ResidueReader::read_delete() {
     const std::string what = statements_.name(1, "kind of what is deleted").substr(0, 4);
     if (what == "ACCE" || what == "DONO") return;
@@ -180,10 +201,19 @@ void ResidueReader::read_delete() {
         for (std::size_t i = 2; i < statements_.words().size(); ++i) {
             residue_->deleted_atoms.emplace_back(statements_.words()[i]);
         }
+    } else if (what == "BOND" || what == "DOUB") {
+        read_tuples<2>(residue_->deleted_bonds, 2);
+    } else if (what == "ANGL" || what == "THET") {
+        read_tuples<3>(residue_->deleted_angles, 2);
+    } else if (what == "DIHE" || what == "PHI") {
+        read_tuples<4>(residue_->deleted_dihedrals, 2);
     } else if (what == "IMPR" || what == "IMPH") {
         read_tuples<4>(residue_->deleted_impropers, 2);
+    } else if (what == "CMAP") {
+        read_tuples<8>(residue_->deleted_cmaps, 2);
     } else {
-        statements_.fail(fmt::format("'{}' cannot be deleted; expected DELETE ATOM or DELETE IMPR",
+        statements_.fail(fmt::format("'{}' cannot be deleted; expected DELETE ATOM, BOND, ANGLE, "
+                                     "DIHE, IMPR or CMAP",
                                      statements_.words()[1]));
     }
 }

@@ -25,6 +25,7 @@ public:
 
 private:
     void start_residue(bool is_patch);
+    void check_extra_words() const;
     void read_atom();
     void read_delete();
     void read_internal_coordinate();
@@ -43,5 +44,9 @@ private:
 
 // MASS number type mass [element]; the number is -1, or what old structure files call the type.
 void read_mass(const Statements& statements, ForceField& into);
+
+// Notes that the present statement gives something again.
+void note_replaced(ForceField& into, const Statements& statements, std::string what,
+                   const TextPlace& earlier);
 
 }  // namespace palpa

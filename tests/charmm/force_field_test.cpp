@@ -341,8 +341,11 @@ TEST_CASE("several files are read in order, and errors name theirs", "[charmm][f
     CHECK(force_field.types.size() == 2);
     CHECK(force_field.types.at("OT").element == "O");
     CHECK(force_field.files == std::vector<std::string>{first.string(), second.string()});
-    CHECK_THAT(load_error_of([&] { read_force_field(std::array{first, second, third}); }),
-               StartsWith(third.string() + ":2: ") && Contains(first.string() + ":1"));
+    const ForceField replaced = read_force_field(std::array{first, second, third});
+    CHECK(replaced.types.at("OT").mass == 17);
+    REQUIRE(replaced.notes.size() == 1);
+    CHECK(describe_note(replaced.notes[0]) == third.string() + ":2: mass of OT replaces that of " +
+                                                  first.string() + ":1");
     CHECK(load_error_of([&] { read_force_field(std::array{folder.path() / "none.prm"}); }) ==
           (folder.path() / "none.prm").string() + ": no such file");
     CHECK(load_error_of([&] {
@@ -372,8 +375,6 @@ TEST_CASE("a value that does not parse is told with its line", "[charmm][force_f
         {"RESI TIP3 0.0\n\nATOM OH2 OT inf\n", "3", "'INF' is not a number; expected the charge"},
         {"BONDS\nHT OT 450.0\n", "2", "no r0 here; expected: type1 type2 k r0"},
         {"BONDS\nHT\n", "2", "no type2 here"},
-        {"BONDS\nHT OT -450.0 1.0\n", "2", "a force constant of -450; expected 0 or more"},
-        {"ANGLES\nHT OT HT -2.0 90.0 1.0 1.0\n", "2", "a force constant of -2"},
         {"BONDS\nHT OT 450.0 long\n", "2", "'LONG' is not a number"},
         {"ANGLES\nHT OT HT 55.0\n", "2", "no angle here"},
         {"ANGLES\nHT OT\n", "2", "no type3 here; expected: type1 type2 type3 k angle [k_UB S0]"},
@@ -384,17 +385,20 @@ TEST_CASE("a value that does not parse is told with its line", "[charmm][force_f
         {"NBFIX\nHT\n", "2", "no type2 here"},
         {"MASS -1 OT 15.9994 OX\n", "1", "unknown element 'OX'"},
         {"RESI A 0.0 NOBOND\n", "1", "'NOBOND' is no option of a residue"},
-        {"RESI A 0.0\nATOM O OT 0.1 B\n", "2", "'B' is more than stands on such a line"},
+        {"RESI A 0.0\nATOM O OT 0.1 0.2\n", "2", "'0.2' is more than stands on such a line"},
+        {"RESI A 0.0\nATOM O OT 0.1 ALPHA -0.2 THOLE 1.3\n", "2",
+         "'ALPHA' is more than stands on such a line"},
         {"RESI A 0.0\nIMPR A B C\n", "2", "3 names on a IMPR line; expected 4 for each"},
         {"RESI A 0.0\nIC A B C D 1.0 2.0\n", "2", "no dihedral here; expected: IC a b c d"},
         {"RESI A 0.0\nPATCH MIDDLE X\n", "2", "'MIDDLE' is no end of a chain"},
-        {"RESI A 0.0\nDELETE BOND A B\n", "2", "'BOND' cannot be deleted"},
+        {"RESI A 0.0\nDELETE GROUP A B\n", "2", "'GROUP' cannot be deleted"},
+        {"RESI A 0.0\nDELETE ANGLE A B\n", "2", "2 names on a DELETE line; expected 3 for each"},
         {"AUTO BONDS\n", "1", "'BONDS' cannot be generated"},
         {"ANGLES\nA B C 1.0 90.0 2.0\n", "2", "no S0 here"},
         {"BONDS\nA B 1.0 1.5 2.0\n", "2", "'2.0' is more than stands on such a line"},
         {"DIHEDRALS\nA B C D 1.0 1.5 0.0\n", "2", "'1.5' is not a whole number"},
-        {"DIHEDRALS\nA B C D 1.0 -1 0.0\n", "2", "a multiplicity of -1; expected 0 to 6"},
-        {"IMPROPER\nA B C D 1.0 7 0.0\n", "2", "a multiplicity of 7; expected 0 to 6"},
+        {"DIHEDRALS\nA B C D 1.0 -1 0.0\n", "2", "a multiplicity of -1; expected 0 to 12"},
+        {"IMPROPER\nA B C D 1.0 13 0.0\n", "2", "a multiplicity of 13; expected 0 to 12"},
         {"DIHEDRALS\nA X C D 1.0 1 0.0\n", "2", "expected X B C X"},
         {"IMPROPER\nA X C D 1.0 1 0.0\n", "2", "A X X D, X B C D"},
         {"DIHEDRALS\nA B C D 1.0 1 0.0\nA B C D 1.0 0 0.0\n", "3", "first in a.str:2"},
@@ -410,8 +414,6 @@ TEST_CASE("a value that does not parse is told with its line", "[charmm][force_f
         {"NONBONDED geometric\n", "1", "'GEOMETRIC' is not supported"},
         {"NBFIX\nHT OT 0.1 2.0\n", "2", "CHARMM writes the depth as -epsilon"},
         {"NBFIX\nHT OT -0.1 -2.0\n", "2", "Rmin as 0 or more"},
-        {"NBFIX\nHT OT -0.1 2.0\nOT HT -0.2 2.0\n", "3",
-         "again with other values, first in a.str:2"},
     }));
     INFO(row.text);
 
@@ -426,7 +428,6 @@ TEST_CASE("a line that nobody knows is told, in topology, parameters and script"
     CHECK_THAT(error_of("read para\n\nCHARGES\n"),
                StartsWith("a.str:3: 'CHARGES' is not a section of a parameter file"));
     CHECK_THAT(error_of("read para\nATOMS\nOT HT 450.0 1.0\n"), StartsWith("a.str:3: "));
-    CHECK_THAT(error_of("stream other.str\n"), StartsWith("a.str:1: 'STREAM'"));
     CHECK_THAT(error_of("\nread psf card\n"),
                StartsWith("a.str:2: 'READ PSF CARD' cannot be read"));
     CHECK_THAT(error_of("read\n"), StartsWith("a.str:1: 'READ' cannot be read"));
@@ -491,42 +492,150 @@ TEST_CASE("an atom line needs a residue before it", "[charmm][force_field]") {
     CHECK_THAT(error_of("ATOM OH2 OT 0.0\n"), StartsWith("a.str:1: an ATOM line outside"));
 }
 
-TEST_CASE("one name with two values is told with both places", "[charmm][force_field]") {
-    struct Row {
-        const char* text;
-        const char* line;
-    };
-    const auto row = GENERATE(values<Row>({
-        {"MASS 1 OT 15.9994\nMASS 2 OT 16.5\n", "2"},
-        {"RESI A 0.0\nRESI A 0.0\n", "2"},
-        {"RESI A 0.0\nATOM O OT 0.1\nATOM O OT 0.1\n", "3"},
-        {"BONDS\nHT OT 450.0 1.0\nOT HT 450.0 1.1\n", "3"},
-        {"PRES A 0.0\nPRES A 0.0\n", "2"},
-        {"DIHEDRALS\nA B C D 1.0 1 0.0\nD C B A 2.0 1 0.0\n", "3"},
-        {"IMPROPER\nA X X D 1.0 0 0.0\nD X X A 2.0 0 0.0\n", "3"},
-        {"NONBONDED\nOT 0.0 -0.1 1.7\nOT 0.0 -0.1 1.7 0.0 -0.1 1.6\n", "3"},
-        {"BONDS\nHT OT 450.0 1.0\nOT HT 451.0 1.0\n", "3"},
-        {"ANGLES\nHT OT CT 55.0 100.0\nCT OT HT 55.0 101.0\n", "3"},
-        {"NONBONDED\nOT 0.0 -0.1 1.7\nOT 0.0 -0.2 1.7\n", "3"},
-        {"NONBONDED\nOT 0.0 -0.1 1.7\nOT 0.0 -0.1 1.8\n", "3"},
-    }));
-    INFO(row.text);
-    const int first = std::stoi(row.line) - 1;
-
-    CHECK_THAT(error_of(row.text), StartsWith(std::string("a.str:") + row.line + ": ") &&
-                                       Contains("first in a.str:" + std::to_string(first)));
+TEST_CASE("an atom stands once in a residue", "[charmm][force_field]") {
+    CHECK(error_of("RESI A 0.0\nATOM O OT 0.1\nATOM O OT 0.1\n") ==
+          "a.str:3: atom 'O' again, first in a.str:2");
 }
 
-TEST_CASE("a further multiplicity in another file is told, the same terms are not",
+TEST_CASE("what is given again replaces the earlier and is noted with both places",
+          "[charmm][force_field]") {
+    struct Row {
+        const char* text;
+        const char* note;
+    };
+    const auto row = GENERATE(values<Row>({
+        {"MASS 1 OT 15.9994\nMASS 2 OT 16.5\n", "mass of OT replaces that of a.str:1"},
+        {"RESI A 0.0\nRESI A 1.0\n", "residue A replaces that of a.str:1"},
+        {"PRES A 0.0\nPRES A 0.0\n", "patch A replaces that of a.str:1"},
+        {"BONDS\nHT OT 450.0 1.0\nOT HT 450.0 1.1\n", "bond HT OT replaces that of a.str:2"},
+        {"BONDS\nHT OT 450.0 1.0\nOT HT 451.0 1.0\n", "bond HT OT replaces"},
+        {"ANGLES\nHT OT CT 55.0 100.0\nCT OT HT 55.0 101.0\n", "angle CT OT HT replaces"},
+        {"DIHEDRALS\nA B C D 1.0 1 0.0\nD C B A 2.0 1 0.0\n", "dihedral A B C D 1 replaces"},
+        {"IMPROPER\nA X X D 1.0 0 0.0\nD X X A 2.0 0 0.0\n", "improper A X X D 0 replaces"},
+        {"CMAP\nA B C D A B C D 2\n1 2 3 4\nA B C D A B C D 2\n1 2 3 5\n",
+         "CMAP A B C D A B C D replaces"},
+        {"NONBONDED\nOT 0.0 -0.1 1.7\nOT 0.0 -0.1 1.7 0.0 -0.1 1.6\n",
+         "non-bonded type OT replaces"},
+        {"NONBONDED\nOT 0.0 -0.1 1.7\nOT 0.0 -0.1 1.8\n", "non-bonded type OT replaces"},
+        {"NBFIX\nHT OT -0.1 2.0\nOT HT -0.2 2.0\n", "NBFIX OT HT replaces that of a.str:2"},
+    }));
+    INFO(row.text);
+
+    const ForceField force_field = parsed(row.text);
+
+    REQUIRE(force_field.notes.size() == 1);
+    CHECK(force_field.notes[0].kind == ForceFieldNote::Kind::Replaced);
+    CHECK_THAT(describe_note(force_field.notes[0]), StartsWith("a.str:") && Contains(row.note));
+}
+
+TEST_CASE("of what is given again the later counts, whole", "[charmm][force_field]") {
+    const ForceField force_field = parsed(
+        "MASS 1 OT 15.9994\nMASS 2 OT 16.5\nRESI A 0.0\nATOM O OT 0.1\nBOND O O2\nRESI A 1.0\n"
+        "ATOM P OT 1.0\nEND\nBONDS\nHT OT 450.0 1.0\nOT HT 451.0 1.1\nNBFIX\nHT OT -0.1 2.0\n"
+        "OT HT -0.2 2.1\nCMAP\nA B C D A B C D 2\n1 2 3 4\nA B C D A B C D 2\n1 2 3 5\n");
+
+    CHECK(force_field.types.at("OT").mass == 16.5);
+    CHECK(force_field.residues.at("A").charge == 1);
+    REQUIRE(force_field.residues.at("A").atoms.size() == 1);
+    CHECK(force_field.residues.at("A").atoms[0].name == "P");
+    CHECK(force_field.residues.at("A").bonds.empty());
+    CHECK(force_field.bonds.at({"HT", "OT"}).k == 451);
+    CHECK(force_field.bonds.at({"HT", "OT"}).value == 1.1);
+    CHECK(force_field.nbfix.at({"HT", "OT"}).rmin == 2.1);
+    CHECK(force_field.cmaps.begin()->second.energies[3] == 5);
+}
+
+TEST_CASE("a dihedral given again in a later part loses its earlier multiplicities",
           "[charmm][force_field]") {
     ForceField force_field = parsed("DIHEDRALS\nA B C D 1.0 1 0.0\nA B C D 1.0 2 0.0\n");
+    const std::vector<DihedralTerm>& terms = force_field.dihedrals.begin()->second;
 
-    parse_force_field("DIHEDRALS\nA B C D 1.0 2 0.0\nEND\n", "b.prm", force_field);
-    CHECK(force_field.dihedrals.begin()->second.size() == 2);
-    CHECK_THAT(load_error_of([&] {
-                   parse_force_field("DIHEDRALS\nA B C D 1.0 3 0.0\n", "b.prm", force_field);
-               }),
-               StartsWith("b.prm:2: dihedral again with other values, first in a.str:2"));
+    SECTION("by the same terms in another order, which is not noted") {
+        parse_force_field("DIHEDRALS\nD C B A 1.0 2 0.0\nD C B A 1.0 1 0.0\nEND\n", "b.prm",
+                          force_field);
+        CHECK(terms.size() == 2);
+        CHECK(force_field.notes.empty());
+    }
+    SECTION("by some of them") {
+        parse_force_field("DIHEDRALS\nA B C D 1.0 2 0.0\nEND\n", "b.prm", force_field);
+        REQUIRE(terms.size() == 1);
+        CHECK(terms[0].multiplicity == 2);
+        REQUIRE(force_field.notes.size() == 1);
+        CHECK(describe_note(force_field.notes[0]) ==
+              "b.prm:2: dihedral A B C D replaces that of a.str:2");
+    }
+    SECTION("by others, also where its own file has them in a second part") {
+        parse_force_field(
+            "read para\nDIHEDRALS\nA B C D 3.0 6 0.0\nEND\nread para\nDIHEDRALS\n"
+            "A B C D 1.0 3 180.0\nA B C D 2.0 8 0.0\nEND\n",
+            "b.prm", force_field);
+        REQUIRE(terms.size() == 2);
+        CHECK(terms[0].multiplicity == 3);
+        CHECK(terms[1].multiplicity == 8);
+        CHECK(force_field.notes.size() == 2);
+    }
+    SECTION("by a harmonic one") {
+        parse_force_field("DIHEDRALS\nA B C D 3.0 0 0.0\nEND\n", "b.prm", force_field);
+        REQUIRE(terms.size() == 1);
+        CHECK(terms[0].multiplicity == 0);
+    }
+}
+
+TEST_CASE("force constants below 0 are taken and noted", "[charmm][force_field]") {
+    const ForceField force_field = parsed(
+        "BONDS\nHT OT -450.0 1.0\nANGLES\nP ON2 P 15.0 140.0 -40.0 2.80\nA B C -2.0 90.0\n");
+
+    CHECK(force_field.bonds.at({"HT", "OT"}).k == -450);
+    CHECK(force_field.angles.at({"P", "ON2", "P"}).urey_bradley_k == -40);
+    REQUIRE(force_field.notes.size() == 3);
+    CHECK(describe_note(force_field.notes[0]) == "a.str:2: a force constant of -450 of bond HT OT");
+    CHECK(describe_note(force_field.notes[1]) ==
+          "a.str:4: a force constant of -40 of Urey-Bradley angle P ON2 P");
+    CHECK(describe_notes(force_field.notes).size() == 1);
+    CHECK_THAT(describe_notes(force_field.notes)[0],
+               StartsWith("3 force constants below 0, taken as they are: a.str:2: "));
+}
+
+TEST_CASE("words behind an ATOM line's charge are passed over and noted",
+          "[charmm][force_field]") {
+    const ForceField force_field = parsed("RESI A 0.0\nATOM H53 HB2 0.06   C\n");
+
+    CHECK(force_field.residues.at("A").atoms[0].charge == 0.06);
+    REQUIRE(force_field.notes.size() == 1);
+    CHECK(describe_note(force_field.notes[0]) == "a.str:2: 'C' behind an ATOM line is passed over");
+}
+
+TEST_CASE("of many notes the first few are told and the others counted", "[charmm][force_field]") {
+    std::string text = "BONDS\n";
+    for (const char* const k : {"1.0", "2.0", "3.0", "4.0", "5.0"}) {
+        text += fmt::format("A B {} 1.5\n", k);
+    }
+
+    const std::vector<std::string> told = describe_notes(parsed(text).notes);
+
+    REQUIRE(told.size() == 1);
+    CHECK_THAT(told[0], StartsWith("4 entries of the force field given again, the later counts: "
+                                   "a.str:3: bond A B replaces that of a.str:2; a.str:4: ") &&
+                            Contains("a.str:5: ") && Catch::EndsWith("; ...") &&
+                            !Contains("a.str:6: bond"));
+    CHECK(describe_notes({}).empty());
+}
+
+TEST_CASE("patches take bonds, angles and dihedrals away", "[charmm][force_field]") {
+    const ForceField force_field = parsed(
+        "PRES P 0.0\nDELETE ATOM H1 H2\nDELETE BOND O2' H2'\nDELE ANGL 1A 1B 1C 1D 1E 1F\n"
+        "DELETE DIHE A B C D\nDELETE IMPR A B C D\nDELETE CMAP A B C D E F G H\n"
+        "DELETE ACCEPTOR O\n");
+    const Residue& patch = force_field.patches.at("P");
+
+    CHECK(patch.deleted_atoms == std::vector<std::string>{"H1", "H2"});
+    REQUIRE(patch.deleted_bonds.size() == 1);
+    CHECK(patch.deleted_bonds[0] == std::array<std::string, 2>{"O2'", "H2'"});
+    REQUIRE(patch.deleted_angles.size() == 2);
+    CHECK(patch.deleted_angles[1] == std::array<std::string, 3>{"1D", "1E", "1F"});
+    CHECK(patch.deleted_dihedrals.size() == 1);
+    CHECK(patch.deleted_impropers.size() == 1);
+    CHECK(patch.deleted_cmaps.size() == 1);
 }
 
 TEST_CASE("the same once more is no mistake, in either order of its types",

@@ -8,13 +8,13 @@
 #include "core/load_error.h"
 #include "core/text.h"
 #include "tests/fuzz/expect.h"
+#include "tests/fuzz/expect_force_field.h"
 #include "tests/fuzz/or_refused.h"
 
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,94 +29,6 @@ std::optional<ForceField> read_or_refuse(std::string_view text) {
         parse_force_field(text, "fuzz.str", force_field);
         return force_field;
     });
-}
-
-void expect_name(const std::string& name) {
-    PALPA_EXPECT(!name.empty());
-    PALPA_EXPECT(upper_case(name) == name);
-    PALPA_EXPECT(name.find_first_of(" \t\r\n!") == std::string::npos);
-}
-
-void expect_place(const TextPlace& place, std::size_t line_count) {
-    PALPA_EXPECT(place.file == "fuzz.str" && place.line >= 1 && place.line <= line_count);
-}
-
-void expect_residue(const Residue& residue, std::size_t line_count) {
-    expect_place(residue.place, line_count);
-    PALPA_EXPECT(std::isfinite(residue.charge));
-    std::set<std::string> atoms;
-    for (const ResidueAtom& atom : residue.atoms) {
-        expect_name(atom.name);
-        expect_name(atom.type);
-        expect_place(atom.place, line_count);
-        PALPA_EXPECT(std::isfinite(atom.charge));
-        PALPA_EXPECT(atoms.insert(atom.name).second);
-    }
-    for (const auto& bond : residue.bonds) {
-        for (const std::string& name : bond) expect_name(name);
-    }
-    for (const auto& cmap : residue.cmaps) {
-        for (const std::string& name : cmap) expect_name(name);
-    }
-    for (const InternalCoordinate& ic : residue.internal_coordinates) {
-        for (const std::string& name : ic.atoms) expect_name(name);
-        PALPA_EXPECT(std::isfinite(ic.first_bond) && std::isfinite(ic.dihedral_deg));
-    }
-}
-
-void expect_terms(const std::vector<DihedralTerm>& terms, std::size_t line_count) {
-    PALPA_EXPECT(!terms.empty());
-    std::set<int> multiplicities;
-    for (const DihedralTerm& term : terms) {
-        expect_place(term.place, line_count);
-        PALPA_EXPECT(std::isfinite(term.k) && std::isfinite(term.phase_deg));
-        PALPA_EXPECT(term.multiplicity >= 0 && multiplicities.insert(term.multiplicity).second);
-        PALPA_EXPECT(term.multiplicity > 0 || terms.size() == 1);
-    }
-}
-
-void expect_consistent(const ForceField& force_field, std::size_t line_count) {
-    for (const auto& [name, type] : force_field.types) {
-        expect_name(name);
-        expect_place(type.place, line_count);
-        PALPA_EXPECT(std::isfinite(type.mass) && type.mass >= 0);
-    }
-    for (const auto* residues : {&force_field.residues, &force_field.patches}) {
-        for (const auto& [name, residue] : *residues) {
-            expect_name(name);
-            expect_residue(residue, line_count);
-        }
-    }
-    for (const auto& [name, type] : force_field.nonbonded) {
-        expect_name(name);
-        expect_place(type.place, line_count);
-        PALPA_EXPECT(std::isfinite(type.epsilon) && type.epsilon >= 0);
-        PALPA_EXPECT(std::isfinite(type.half_rmin) && type.half_rmin >= 0);
-    }
-    for (const auto& [types, bond] : force_field.bonds) {
-        PALPA_EXPECT(types.first <= types.second);
-        PALPA_EXPECT(std::isfinite(bond.k) && std::isfinite(bond.value));
-    }
-    for (const auto& [types, angle] : force_field.angles) {
-        PALPA_EXPECT(types[0] <= types[2]);
-        PALPA_EXPECT(std::isfinite(angle.k) && std::isfinite(angle.value));
-    }
-    for (const auto* dihedrals : {&force_field.dihedrals, &force_field.impropers}) {
-        for (const auto& [types, terms] : *dihedrals) {
-            PALPA_EXPECT(in_order(types) == types);
-            expect_terms(terms, line_count);
-        }
-    }
-    for (const auto& [types, map] : force_field.cmaps) {
-        expect_place(map.place, line_count);
-        PALPA_EXPECT(map.energies.size() >= 4 && map.energies.size() <= 129600);
-    }
-    for (const auto& [types, pair] : force_field.nbfix) {
-        PALPA_EXPECT(types.first <= types.second);
-        expect_place(pair.place, line_count);
-        PALPA_EXPECT(std::isfinite(pair.epsilon) && pair.epsilon >= 0);
-        PALPA_EXPECT(std::isfinite(pair.rmin) && pair.rmin >= 0);
-    }
 }
 
 // One whole residue of each kind, all in one segment.
@@ -193,7 +105,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::string_view text(reinterpret_cast<const char*>(data), size);
     const std::optional<ForceField> force_field = read_or_refuse(text);
     if (!force_field) return 0;
-    expect_consistent(*force_field, split_lines(text).size());
+    const test::ExpectedPlace place{"fuzz.str", 1, split_lines(text).size()};
+    test::expect_force_field(*force_field, place);
+    test::expect_packed(*force_field);
     expect_generated(*force_field);
 
     const Structure structure = one_of_each(*force_field);

@@ -89,7 +89,9 @@ void add_overwrite_flag(CLI::App& command, bool& overwrites) {
 }
 
 void add_toppar_option(CLI::App& command, std::vector<std::filesystem::path>& toppar) {
-    command.add_option("--toppar", toppar, "CHARMM topology, parameter and stream files, in order")
+    command
+        .add_option("--toppar", toppar,
+                    "CHARMM topology, parameter and stream files, in order, or a folder of them")
         ->type_name("FILE")
         ->required();
 }

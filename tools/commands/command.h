@@ -22,6 +22,7 @@ void add_run(CLI::App& program, ProgramCommand& chosen);
 void add_connect(CLI::App& program, ProgramCommand& chosen);
 void add_devices(CLI::App& program, ProgramCommand& chosen);
 void add_prepare(CLI::App& program, ProgramCommand& chosen);
+void add_force_field(CLI::App& program, ProgramCommand& chosen);
 void add_relax(CLI::App& program, ProgramCommand& chosen);
 void add_render(CLI::App& program, ProgramCommand& chosen);
 void add_export(CLI::App& program, ProgramCommand& chosen);
@@ -68,6 +69,7 @@ void add_size_option(CLI::App& command, const std::string& option, std::uint32_t
 // Of every command that writes files.
 void add_overwrite_flag(CLI::App& command, bool& overwrites);
 
+// Of commands that know no force field without it.
 void add_toppar_option(CLI::App& command, std::vector<std::filesystem::path>& toppar);
 
 }  // namespace palpa

@@ -18,6 +18,7 @@
 #include "scene/choices.h"
 #include "tools/commands/choice.h"
 #include "tools/commands/command.h"
+#include "tools/commands/force_field.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -238,7 +239,9 @@ int energy_command(const EnergyOptions& options) {
     }
     const Existing forces = check_written(options.forces, force_columns, options.overwrites);
     const Existing atoms = check_written(options.per_atom, atom_columns, options.overwrites);
-    ForceField force_field = read_force_field(options.toppar);
+    ForceField force_field = read_force_field(expand_folders(options.toppar));
+    const std::vector<ForceFieldNote> notes = force_field.notes;
+    if (!options.json) warn_of_notes(force_field);
     // As scenes have it: Asp's type changes with its charges, and an NBFIX goes.
     if (settings.solvation != SolvationEnd::None)
         force_field = neutralise_ionic_groups(std::move(force_field));
@@ -271,6 +274,7 @@ int energy_command(const EnergyOptions& options) {
     if (options.json) {
         nlohmann::ordered_json json;
         for (const auto& [name, value] : list_terms(energy)) json[name] = value;
+        for (const ForceFieldNote& note : notes) json["warnings"].push_back(describe_note(note));
         fmt::print("{}\n", json.dump(2));
         return 0;
     }

@@ -17,6 +17,7 @@
 #include "scene/read_scene.h"
 #include "simulation/load.h"
 #include "tools/commands/command.h"
+#include "tools/commands/force_field.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -42,7 +43,7 @@ struct GivenSystem {
 
 // --psf, --coordinates, --toppar.
 GivenSystem read_given(const EngineOptions& options) {
-    GivenSystem given{read_psf(*options.psf), {}, read_force_field(options.toppar)};
+    GivenSystem given{read_psf(*options.psf), {}, read_force_field(expand_folders(options.toppar))};
     given.positions = match_positions(given.connectivity, read_structure(*options.coordinates));
     return given;
 }
@@ -207,7 +208,7 @@ int write_box(const EngineOptions& options) {
     if (options.psf) {
         given = read_given(options);
     } else {
-        given.force_field = read_force_field(options.toppar);
+        given.force_field = read_force_field(expand_folders(options.toppar));
         given.connectivity.file = options.toppar.back().string();
     }
     WaterBoxSettings settings;

@@ -1,5 +1,6 @@
 #include "tools/commands/prepare.h"
 
+#include "charmm/built_in_force_field.h"
 #include "charmm/force_field.h"
 #include "core/files.h"
 #include "core/load_error.h"
@@ -8,6 +9,7 @@
 #include "formats/structure.h"
 #include "prepare/prepare.h"
 #include "tools/commands/command.h"
+#include "tools/commands/force_field.h"
 #include "tools/commands/progress.h"
 
 #include <fmt/format.h>
@@ -123,6 +125,24 @@ void check_outputs(const PrepareOptions& options) {
     }
 }
 
+// The built-in one with what --toppar adds to it, or --toppar's alone.
+ForceField read_wanted_force_field(const PrepareOptions& options) {
+    const std::vector<std::filesystem::path> files = expand_folders(options.toppar);
+    if (!options.only_toppar) return read_built_in_force_field(files);
+    if (files.empty()) throw LoadError({"--only-toppar"}, "expected --toppar FILE with it");
+    return read_force_field(files);
+}
+
+void report_force_field(const ForceField& force_field, Report& report) {
+    constexpr std::string_view heading = "Force field";
+    for (const std::string& line : force_field.about) report.add(heading, line);
+    const auto& files = force_field.files;
+    for (std::size_t i = force_field.about.empty() ? 0 : 1; i < files.size(); ++i) {
+        report.add(heading, std::filesystem::path(files[i]).filename().string());
+    }
+    for (std::string& line : describe_notes(force_field.notes)) report.warn(std::move(line));
+}
+
 // A structure of which no scene can be made is prepared all the same.
 TunedScene find_scene(const PrepareOptions& options, const std::string& title,
                       const StageFunction& on_stage, PreparedSystem& system) {
@@ -162,10 +182,11 @@ int prepare_command(const PrepareOptions& options) {
     ProgressLine progress(!options.json);
     const StageFunction on_stage = progress.stages();
     tell(on_stage, "reading the force field");
-    const ForceField force_field = read_force_field(options.toppar);
+    const ForceField force_field = read_wanted_force_field(options);
     tell(on_stage, "reading the structure");
     const Structure structure = read_structure(options.structure);
     PreparedSystem system = prepare_system(force_field, structure, settings, on_stage);
+    report_force_field(force_field, system.report);
     const std::string origin = fmt::format("Prepared from {} by palpa prepare; see report.txt.",
                                            options.structure.filename().string());
     const std::string title =
@@ -266,10 +287,16 @@ void add_prepare(CLI::App& program, ProgramCommand& chosen) {
         "prepare", "Complete and type a structure: hydrogens, patches, topology, a report");
     PrepareOptions& options = own_options<PrepareOptions>(prepare, chosen, prepare_command);
     describe(prepare, "Make scenes",
-             {"palpa prepare 1hsg.pdb --without MK1 -o my-protease --toppar top_all36_prot.rtf "
-              "par_all36m_prot.prm toppar_water_ions.str"});
+             {"palpa prepare 1hsg.pdb --without MK1 -o my-protease",
+              "palpa prepare complex.pdb -o complex --toppar ligand.str"});
     prepare.add_option("structure", options.structure, ".pdb, .ent, .cif or .crd")->required();
-    add_toppar_option(prepare, options.toppar);
+    prepare
+        .add_option("--toppar", options.toppar,
+                    "CHARMM topology, parameter and stream files, in order, or a folder of them: "
+                    "added to CHARMM36, which comes with the program")
+        ->type_name("FILE");
+    prepare.add_flag("--only-toppar", options.only_toppar,
+                     "the files of --toppar alone, without what comes with the program");
     prepare
         .add_option("-o,--output", options.folder,
                     "folder for system.psf, .pdb, .crd, .prm, report.txt and scene.toml")
