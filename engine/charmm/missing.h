@@ -21,6 +21,7 @@ public:
     void advise(std::string what);     // what stands once at the end of the message
     void add(const LoadError& error);  // another stage's problems, behind ours
     bool empty() const noexcept { return problems_.empty(); }
+    std::size_t size() const noexcept { return problems_.size(); }
     void throw_if_any() const;
 
 private:

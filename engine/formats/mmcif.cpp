@@ -1,10 +1,11 @@
 #include "formats/mmcif.h"
 
-#include "core/files.h"
 #include "core/load_error.h"
 #include "core/text.h"
 #include "formats/cif.h"
+#include "formats/gzip.h"
 #include "formats/lines.h"
+#include "formats/links.h"
 #include "formats/mmcif_assemblies.h"
 #include "formats/structure_builder.h"
 #include "molecule/element.h"
@@ -250,39 +251,32 @@ private:
     std::string_view last_label_chain_;
 };
 
-// Tells two listeners.
-class Both final : public CifListener {
+// Tells several listeners.
+class All final : public CifListener {
 public:
-    Both(AtomSites& sites, MmcifAssemblies& assemblies) : sites_(sites), assemblies_(assemblies) {}
+    explicit All(std::array<CifListener*, 3> listeners) : listeners_(listeners) {}
 
     void begin_loop() override {
-        sites_.begin_loop();
-        assemblies_.begin_loop();
+        for (CifListener* const one : listeners_) one->begin_loop();
     }
     void add_loop_tag(const CifToken& tag) override {
-        sites_.add_loop_tag(tag);
-        assemblies_.add_loop_tag(tag);
+        for (CifListener* const one : listeners_) one->add_loop_tag(tag);
     }
     void add_loop_value(const CifToken& value) override {
-        sites_.add_loop_value(value);
-        assemblies_.add_loop_value(value);
+        for (CifListener* const one : listeners_) one->add_loop_value(value);
     }
     void end_loop() override {
-        sites_.end_loop();
-        assemblies_.end_loop();
+        for (CifListener* const one : listeners_) one->end_loop();
     }
     void add_tag(const CifToken& tag) override {
-        sites_.add_tag(tag);
-        assemblies_.add_tag(tag);
+        for (CifListener* const one : listeners_) one->add_tag(tag);
     }
     void add_value(const CifToken& value) override {
-        sites_.add_value(value);
-        assemblies_.add_value(value);
+        for (CifListener* const one : listeners_) one->add_value(value);
     }
 
 private:
-    AtomSites& sites_;
-    MmcifAssemblies& assemblies_;
+    std::array<CifListener*, 3> listeners_;
 };
 
 // A value as CIF writes it: as it is, or in the quotes that it does not hold.
@@ -351,16 +345,18 @@ std::string element_of(const Structure& structure, std::size_t atom) {
 Structure parse_mmcif(std::string_view text, const std::string& file) {
     AtomSites sites(file, count_lines(text, "ATOM") + count_lines(text, "HETATM"));
     MmcifAssemblies assemblies(file);
-    Both both(sites, assemblies);
-    parse_cif(text, file, both);
+    MmcifLinks links;
+    All all({&sites, &assemblies, &links});
+    parse_cif(text, file, all);
     const std::size_t length = text.find_last_not_of(" \t\r\n") + 1;  // 0 without any
     Structure structure = sites.build(text.data() + length, count_lines(text, ""));
     assemblies.move_into(structure);
+    structure.links = links.take();
     return structure;
 }
 
 Structure read_mmcif(const std::filesystem::path& path) {
-    return parse_mmcif(read_text_file(path), path.string());
+    return parse_mmcif(read_packed_text_file(path), path.string());
 }
 
 std::string format_mmcif(const Structure& structure, std::string_view name) {

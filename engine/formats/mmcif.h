@@ -13,10 +13,12 @@ namespace palpa {
 // file gives none the archive's (label_*); the segment is the chain. A chain ends where
 // label_asym_id changes. '?' and '.' count as not given: occupancy is then 1, B-factor 0, the
 // element guessed from the name; a position must be given.
-// Biological assemblies are those of _pdbx_struct_assembly_gen and _pdbx_struct_oper_list.
-// Throws LoadError with the line of what is wrong: text that is no CIF, a value that does not
-// parse, a missing or repeated column, a row that is not complete, an unknown element, an atom that
-// comes twice, a file without atoms.
+// Biological assemblies are those of _pdbx_struct_assembly_gen and _pdbx_struct_oper_list, bonds
+// between residues those of _struct_conn. Compressed files are unpacked. Throws LoadError with the
+// line of what is wrong: text that is no CIF, a value that does not parse, a missing or repeated
+// column, a row that is not complete, an unknown element, an atom that comes again in another
+// residue or in more than 50 cases (else the first is taken and the others noted), a file without
+// atoms.
 Structure read_mmcif(const std::filesystem::path& path);
 Structure parse_mmcif(std::string_view text, const std::string& file);
 

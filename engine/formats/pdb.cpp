@@ -1,9 +1,10 @@
 #include "formats/pdb.h"
 
-#include "core/files.h"
 #include "core/load_error.h"
 #include "core/text.h"
+#include "formats/gzip.h"
 #include "formats/lines.h"
+#include "formats/links.h"
 #include "formats/remark_350.h"
 #include "formats/structure_builder.h"
 
@@ -167,6 +168,12 @@ private:
             end_line_ = lines_.number();
         } else if (line.starts_with("REMARK 350")) {
             remark_350_.add_line(line, lines_.number());
+        } else if (record == "HETNAM") {
+            builder_.add_component_name(field({11, 3}), field({15, 55}));
+        } else if (record == "LINK" || record == "SSBOND") {
+            if (auto link = find_pdb_link(line, lines_.number())) {
+                builder_.add_link(std::move(*link));
+            }
         } else if (!trimmed(line).empty()) {
             check_other(record);
         }
@@ -389,7 +396,7 @@ Structure parse_pdb(std::string_view text, const std::string& file) {
 }
 
 Structure read_pdb(const std::filesystem::path& path) {
-    return parse_pdb(read_text_file(path), path.string());
+    return parse_pdb(read_packed_text_file(path), path.string());
 }
 
 Structure with_short_chains(Structure structure) {

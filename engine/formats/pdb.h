@@ -8,10 +8,11 @@
 
 namespace palpa {
 
-// Reads ATOM, HETATM, TER, MODEL, ENDMDL, END and the assemblies of REMARK 350; leaves out the
-// other records of the format. An atom's segment is columns 73 to 76, or the chain where they are
-// blank. Residue names may have four letters (CHARMM's). An element that is missing is guessed from
-// the name. Blank occupancy is 1, blank B-factor 0.
+// Reads ATOM, HETATM, TER, MODEL, ENDMDL, END, LINK, SSBOND and the assemblies of REMARK 350;
+// leaves out the other records of the format. Compressed files are unpacked. An atom's segment is
+// columns 73 to 76, or the chain where they are blank. Residue names may have four letters
+// (CHARMM's). An element that is missing is guessed from the name. Blank occupancy is 1, blank
+// B-factor 0.
 //
 // Numbers that outgrow their columns are taken as other programs write them: serials and residue
 // numbers in hybrid-36 ("A0000") or hexadecimal ("186a0"), serials as stars, with a sixth digit on
@@ -19,7 +20,8 @@ namespace palpa {
 // code, or starting over with 0 behind 9999, which are counted on.
 //
 // Throws LoadError with line and columns of what is wrong: a value that does not parse or a blank
-// within it, a line that ends before its coordinates, an unknown element, an atom that comes twice,
+// within it, a line that ends before its coordinates, an unknown element, an atom that comes again
+// in another residue or in more than 50 cases (else the first is taken and the others noted),
 // a model that is not closed, a record that looks like a misspelt ATOM, a file without atoms.
 Structure read_pdb(const std::filesystem::path& path);
 Structure parse_pdb(std::string_view text, const std::string& file);

@@ -4,6 +4,7 @@
 #include "core/text.h"
 #include "formats/crd.h"
 #include "formats/gro.h"
+#include "formats/gzip.h"
 #include "formats/mmcif.h"
 #include "formats/pdb.h"
 
@@ -13,16 +14,18 @@
 namespace palpa {
 
 Structure read_structure(const std::filesystem::path& path) {
-    const std::string ending = upper_case(path.extension().string());
+    std::string ending = upper_case(path.extension().string());
+    if (ending == ".GZ") ending = upper_case(path.stem().extension().string());
     if (ending == ".PDB" || ending == ".ENT") return read_pdb(path);
     if (ending == ".CIF" || ending == ".MMCIF") return read_mmcif(path);
-    if (ending == ".CRD" || ending == ".COR") return read_crd(path);
-    if (ending == ".GRO") return read_gro(path);
-    const char* const hint = ending == ".GZ" ? " (unpack it first)" : "";
+    if (ending == ".CRD" || ending == ".COR") {
+        return parse_crd(read_packed_text_file(path), path.string());
+    }
+    if (ending == ".GRO") return parse_gro(read_packed_text_file(path), path.string());
     throw LoadError({path.string()},
-                    fmt::format("'{}' is no ending of a structure file{}; expected .pdb, .ent, "
-                                ".cif, .mmcif, .crd, .cor or .gro",
-                                path.extension().string(), hint));
+                    fmt::format("'{}' is no ending of a structure file; expected .pdb, .ent, .cif, "
+                                ".mmcif, .crd, .cor or .gro, or one of these with .gz behind it",
+                                path.extension().string()));
 }
 
 }  // namespace palpa

@@ -7,7 +7,8 @@
 namespace palpa {
 
 // .pdb and .ent (read_pdb), .cif and .mmcif (read_mmcif), .crd and .cor (read_crd), .gro
-// (read_gro), in letters of either case. Throws LoadError for any other name, and as these do.
+// (read_gro), in letters of either case, compressed too (".pdb.gz"). Throws LoadError for any other
+// name, and as these do.
 Structure read_structure(const std::filesystem::path& path);
 
 }  // namespace palpa

@@ -74,21 +74,17 @@ StructureBuilder::StructureBuilder(std::string file, std::size_t atoms) {
     structure_.positions.reserve(atoms);
     structure_.lines.reserve(atoms);
     structure_.records.reserve(atoms);
-    lines_of_atoms_.reserve(atoms);
+    atoms_.reserve(atoms);
 }
 
 void StructureBuilder::add_atom(AtomName name, const Vec3& position, AtomRecord record,
                                 std::size_t line) {
     const TextPlace place{structure_.file, line};
-    const auto [first, is_new] = lines_of_atoms_.try_emplace(
-        fmt::format("{} {} {} {} {}{}", record.model, record.chain, name.segment, name.number,
-                    name.atom, record.alternate),
-        line);
-    if (!is_new) {
-        throw LoadError(place, fmt::format("atom {} again, first on line {}; expected another "
-                                           "name, alternate location, chain or model",
-                                           describe(name, record), first->second));
-    }
+    const auto [first, is_new] =
+        atoms_.try_emplace(fmt::format("{} {} {} {} {}{}", record.model, record.chain, name.segment,
+                                       name.number, name.atom, record.alternate),
+                           atom_count());
+    if (!is_new) return leave_out(name, record, line, first->second);
     if (record.element.empty()) {
         record.element = find_element_of_name(name.atom, name.residue);
         record.element_guessed = true;
@@ -107,6 +103,35 @@ void StructureBuilder::add_atom(AtomName name, const Vec3& position, AtomRecord 
     structure_.records.push_back(std::move(record));
 }
 
+void StructureBuilder::leave_out(const AtomName& name, const AtomRecord& record, std::size_t line,
+                                 std::size_t first) {
+    const std::size_t first_line = structure_.lines[first];
+    if (structure_.names[first].residue != name.residue || repeated_ == most_repeated) {
+        throw LoadError({structure_.file, line},
+                        fmt::format("atom {} again, first on line {}; expected another name, "
+                                    "alternate location, chain or model",
+                                    describe(name, record), first_line));
+    }
+    if (++repeated_ == 1) {
+        structure_.repeated = fmt::format("atom {} of line {} again on line {}",
+                                          describe(name, record), first_line, line);
+    }
+}
+
+void StructureBuilder::add_link(StructureLink link) {
+    constexpr std::size_t most = 100'000;
+    if (structure_.links.size() < most) structure_.links.push_back(std::move(link));
+}
+
+void StructureBuilder::add_component_name(std::string_view residue, std::string_view name) {
+    constexpr std::size_t most_names = 1000, longest = 200;
+    auto& names = structure_.component_names;
+    if (residue.empty() || name.empty()) return;
+    if (names.size() == most_names && !names.contains(std::string(residue))) return;
+    std::string& all = names[std::string(residue)];
+    if (all.size() < longest) all += name.substr(0, longest - all.size());
+}
+
 void StructureBuilder::end_chain() {
     std::vector<std::size_t>& ends = structure_.chain_ends;
     if (atom_count() > 0 && (ends.empty() || ends.back() < atom_count())) {
@@ -118,6 +143,13 @@ void StructureBuilder::add_note(std::string note) { structure_.notes.push_back(s
 
 Structure StructureBuilder::build(std::size_t line) {
     if (atom_count() == 0) throw LoadError({structure_.file, line}, "ends without any atom");
+    if (repeated_ > 0) {
+        structure_.repeated +=
+            repeated_ == 1
+                ? "; the first is taken"
+                : fmt::format(", and {} more such; the first of each is taken", repeated_ - 1);
+        structure_.notes.push_back(structure_.repeated);
+    }
     add_notes(structure_);
     return std::move(structure_);
 }

@@ -15,10 +15,19 @@ public:
     // `atoms`: how many to have room for.
     StructureBuilder(std::string file, std::size_t atoms);
 
-    // Guesses the element where the record has none. Refuses an atom that comes twice (the same
-    // model, chain, segment, residue number and insertion code, name, alternate location), and an
-    // element that is none.
+    // Guesses the element where the record has none. An atom that comes again (the same model,
+    // chain, segment, residue, number and insertion code, name, alternate location) is left out,
+    // which `Structure::repeated` tells. Refused are more than `most_repeated` of these, for which
+    // MODEL, TER or chains may have been lost; one of another residue; an element that is none.
     void add_atom(AtomName name, const Vec3& position, AtomRecord record, std::size_t line);
+
+    static constexpr std::size_t most_repeated = 50;
+
+    // Left out beyond 100,000.
+    void add_link(StructureLink link);
+
+    // What the file calls a residue, by and by: long names come on several lines.
+    void add_component_name(std::string_view residue, std::string_view name);
 
     // A chain ends behind the atoms so far.
     void end_chain();
@@ -32,8 +41,12 @@ public:
     Structure build(std::size_t line);
 
 private:
+    void leave_out(const AtomName& name, const AtomRecord& record, std::size_t line,
+                   std::size_t first);
+
     Structure structure_;
-    std::unordered_map<std::string, std::size_t> lines_of_atoms_;
+    std::unordered_map<std::string, std::size_t> atoms_;  // their indices
+    std::size_t repeated_ = 0;
 };
 
 }  // namespace palpa

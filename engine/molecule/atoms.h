@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -65,6 +66,18 @@ struct Assembly {
     std::vector<AssemblyPart> parts;
 };
 
+// An atom as a record of bonds names it.
+struct LinkedAtom {
+    std::string chain, residue, number, atom;  // number: with its insertion code
+    char alternate = ' ';
+};
+
+// A bond between residues that a file states by itself: LINK, SSBOND, struct_conn.
+struct StructureLink {
+    LinkedAtom a, b;
+    std::size_t line = 0;
+};
+
 // Where the atoms of a structure file are, in the order of the file. All of them: models, alternate
 // locations and ions as well, between which someone has yet to choose.
 struct Structure {
@@ -77,6 +90,11 @@ struct Structure {
     std::vector<AtomRecord> records{};      // one an atom
     std::vector<std::size_t> chain_ends{};  // each as the number of atoms before it
     std::vector<std::string> notes{};       // what a user should know or decide, a sentence each
+    // What the file calls its residues: "TES" is "TESTOSTERONE".
+    std::map<std::string, std::string> component_names{};
+    // Repeated atoms that were left out, a sentence; empty where there were none.
+    std::string repeated{};
+    std::vector<StructureLink> links{};         // but for those to copies by symmetry
     std::vector<SymmetryOperator> operators{};  // of the assemblies
     std::vector<Assembly> assemblies{};
 };

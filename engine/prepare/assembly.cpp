@@ -145,6 +145,9 @@ public:
           copies_(residues_.size()) {
         result_.file = structure.file;
         result_.notes = structure.notes;
+        result_.repeated = structure.repeated;
+        result_.component_names = structure.component_names;
+        result_.links = structure.links;
     }
 
     void add_part(const AssemblyPart& part) {

@@ -4,6 +4,7 @@
 #include "core/text.h"
 #include "forces/torsion.h"
 #include "molecule/element.h"
+#include "prepare/match_by_bonds.h"
 #include "prepare/residues.h"
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -71,12 +73,6 @@ public:
     }
 
 private:
-    std::string element(const ResidueAtom& atom, std::string_view name) const {
-        const auto type = find_type(force_field_, atom.type);
-        const bool is_told = type != force_field_.types.end() && !type->second.element.empty();
-        return is_told ? type->second.element : find_element_of_name(name, "");
-    }
-
     void apply(const std::string& patch, std::size_t place, Wanted& wanted) const {
         const auto found = force_field_.patches.find(patch);
         if (found == force_field_.patches.end()) return;  // completing the atoms tells
@@ -98,7 +94,7 @@ private:
     void add(const Residue& residue, std::optional<std::size_t> place, Wanted& wanted) const {
         for (const ResidueAtom& atom : residue.atoms) {
             if (const auto name = own_name(atom.name, place)) {
-                wanted.elements[*name] = element(atom, *name);
+                wanted.elements[*name] = element_of(force_field_, atom, *name);
             }
         }
         for (const auto& [a, b] : residue.bonds) {
@@ -168,6 +164,8 @@ public:
     }
 
 private:
+    static constexpr std::size_t most_matched = 1000;  // atoms of a residue
+
     const std::string& segment(std::size_t index) const {
         return structure_.names[residues_[index].first].segment;
     }
@@ -197,6 +195,7 @@ private:
     }
 
     void name_heavy_atoms(const ResidueRange& residue, const Wanted& wanted) {
+        if (needs_bonds(residue, wanted)) name_by_bonds(residue, wanted);
         std::set<std::string> seen;
         for (std::size_t i = residue.first; i < residue.end(); ++i) {
             if (element_of(structure_, i) == "H") continue;
@@ -209,7 +208,95 @@ private:
         }
     }
 
+    static BondedAtoms bonded_atoms(const Wanted& wanted) {
+        BondedAtoms atoms;
+        std::map<std::string_view, std::uint32_t> indices;
+        for (const auto& [name, element] : wanted.elements) {
+            if (element == "H") continue;
+            indices.emplace(name, static_cast<std::uint32_t>(atoms.names.size()));
+            atoms.names.push_back(name);
+            atoms.elements.push_back(element);
+        }
+        atoms.neighbours.resize(atoms.names.size());
+        for (const auto& [a, b] : wanted.bonds) {
+            const auto first = indices.find(a), second = indices.find(b);
+            if (first != indices.end() && second != indices.end()) {
+                atoms.add_bond(first->second, second->second);
+            }
+        }
+        return atoms;
+    }
+
+    // A residue with a name that neither the template has nor the table of others; of molecules
+    // that are no chain also one whose names say other bonds.
+    bool needs_bonds(const ResidueRange& residue, const Wanted& wanted) const {
+        std::size_t heavy = 0, foreign = 0;
+        for (std::size_t i = residue.first; i < residue.end(); ++i) {
+            if (element_of(structure_, i) == "H") continue;
+            ++heavy;
+            const std::string& name = structure_.names[i].atom;
+            const auto found = wanted.elements.find(name);
+            const bool is_other =
+                found != wanted.elements.end() && found->second != element_of(structure_, i);
+            if (is_other || (found == wanted.elements.end() && name != "OXT" &&
+                             !find_alias(residue, name, wanted))) {
+                ++foreign;
+            }
+        }
+        if (heavy < 2) return false;
+        return foreign > 0 || (!wanted.has("CA") && has_other_bonds(residue, wanted));
+    }
+
+    // Whether atoms are bonded whose names in the template are not.
+    bool has_other_bonds(const ResidueRange& residue, const Wanted& wanted) const {
+        if (residue.count > most_matched) return false;
+        const BondedAtoms given = find_bonded_atoms(structure_, residue);
+        const BondedAtoms all = bonded_atoms(wanted);
+        const auto index = [&](const std::string& name) {
+            return std::find(all.names.begin(), all.names.end(), name) - all.names.begin();
+        };
+        for (std::uint32_t a = 0; a < given.names.size(); ++a) {
+            const auto at = static_cast<std::size_t>(index(given.names[a]));
+            if (at == all.names.size()) continue;
+            for (const std::uint32_t b : given.neighbours[a]) {
+                const auto to = static_cast<std::uint32_t>(index(given.names[b]));
+                if (to == all.names.size()) continue;
+                const auto& others = all.neighbours[at];
+                if (std::find(others.begin(), others.end(), to) == others.end()) return true;
+            }
+        }
+        return false;
+    }
+
+    void name_by_bonds(const ResidueRange& residue, const Wanted& wanted) {
+        if (residue.count > most_matched) return;
+        const BondedAtoms given = find_bonded_atoms(structure_, residue);
+        const BondedAtoms all = bonded_atoms(wanted);
+        if (given.names.size() > all.names.size()) return;
+        const auto match = match_by_bonds(given, all);
+        if (!match) return;
+        std::size_t atom = 0, renamed = 0;
+        for (std::size_t i = residue.first; i < residue.end(); ++i) {
+            if (element_of(structure_, i) == "H") continue;
+            std::string& name = structure_.names[i].atom;
+            const std::string& charmm = all.names[(*match)[atom++]];
+            if (name == charmm) continue;
+            name = charmm;
+            ++renamed;
+        }
+        by_bonds_[structure_.names[residue.first].residue] += renamed;
+    }
+
     TextPlace place(std::size_t atom) const { return {structure_.file, structure_.lines[atom], 0}; }
+
+    std::optional<std::string_view> find_alias(const ResidueRange& residue, std::string_view name,
+                                               const Wanted& wanted) const {
+        for (const auto& [from, to] : aliases) {
+            const bool fits = from == name && wanted.has(to) && !find_atom(structure_, residue, to);
+            if (fits) return to;
+        }
+        return std::nullopt;
+    }
 
     void rename_heavy_atom(const ResidueRange& residue, std::size_t atom, const Wanted& wanted) {
         std::string& name = structure_.names[atom].atom;
@@ -217,11 +304,10 @@ private:
             name = wanted.elements.begin()->first;
             return;
         }
-        for (const auto& [from, to] : aliases) {
-            if (from != name || !wanted.has(to) || find_atom(structure_, residue, to)) continue;
-            ++renamed_[fmt::format("{} {} is CHARMM's {}", structure_.names[atom].residue, from,
-                                   to)];
-            name = to;
+        if (const auto to = find_alias(residue, name, wanted)) {
+            ++renamed_[fmt::format("{} {} is CHARMM's {}", structure_.names[atom].residue, name,
+                                   *to)];
+            name = *to;
             return;
         }
         // The end of a chain that is closed in another way.
@@ -253,6 +339,15 @@ private:
         if (is_amino_acid) ++backbones_;
         if (lacking.empty()) return;
         const std::string label = residue_label(structure_, residue);
+        const bool is_nucleotide = wanted.has("C1'") && wanted.has("C3'") && wanted.has("C4'") &&
+                                   find_atom(structure_, residue, "C1'") &&
+                                   find_atom(structure_, residue, "C4'");
+        // Ends of a molecule can be built: tails of lipids, the oxygen at a sugar's C1.
+        const bool is_mostly_there = 3 * lacking.size() <= heavy;
+        if (!is_amino_acid && (is_nucleotide || is_mostly_there)) {
+            report_.add("Heavy atoms built", fmt::format("{}: {}", label, fmt::join(lacking, " ")));
+            return;
+        }
         if (!is_amino_acid) {
             const AtomName& name = structure_.names[residue.first];
             Fragment& fragment =
@@ -400,6 +495,11 @@ private:
             report_.add(names_heading,
                         fmt::format("{} ({} atom{})", what, count, count == 1 ? "" : "s"));
         }
+        for (const auto& [residue, count] : by_bonds_) {
+            if (count == 0) continue;
+            report_.add(names_heading, fmt::format("{}: {} atom{} named by elements and bonds",
+                                                   residue, count, count == 1 ? "" : "s"));
+        }
         if (renamed_hydrogens_ > 0) {
             report_.add(
                 names_heading,
@@ -430,7 +530,7 @@ private:
         std::vector<std::string> where;
     };
     std::map<std::string, Fragment> fragments_;
-    std::map<std::string, std::size_t> renamed_;
+    std::map<std::string, std::size_t> renamed_, by_bonds_;
     std::vector<std::string> dropped_;
     std::size_t renamed_hydrogens_ = 0, corrected_elements_ = 0;
     std::size_t backbones_ = 0, alpha_carbons_ = 0;

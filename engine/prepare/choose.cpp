@@ -3,6 +3,7 @@
 #include "core/load_error.h"
 #include "core/text.h"
 #include "prepare/assembly.h"
+#include "prepare/components.h"
 #include "prepare/residues.h"
 
 #include <fmt/format.h>
@@ -12,6 +13,8 @@
 #include <map>
 #include <set>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace palpa {
@@ -20,7 +23,8 @@ namespace {
 constexpr std::string_view choice_heading = "Chosen atoms";
 
 constexpr auto waters = std::to_array<std::string_view>(
-    {"HOH", "WAT", "H2O", "DOD", "SOL", "TIP", "TIP3", "TIP4", "TP3M", "SPC", "OH2"});
+    {"HOH", "WAT", "H2O", "DOD", "SOL", "TIP", "TIP2", "TIP3", "TIP4", "TP3M", "SPC", "SPCE", "OH2",
+     "TP3", "T3P", "WTR", "HHO", "OHH"});
 
 Structure choose_model(const Structure& structure, const PrepareSettings& settings,
                        Report& report) {
@@ -46,43 +50,59 @@ bool is_ion(const Structure& structure, const ResidueRange& residue) {
     return element != "O" && element != "C" && element != "N" && element != "H";
 }
 
-// Which residues a user leaves out, by what they wrote. Each must mean something.
-class LeftOut {
+// Which residues a user means, by what they wrote. Each word must mean something.
+class MeantResidues {
 public:
-    LeftOut(const Structure& structure, const PrepareSettings& settings)
-        : structure_(structure), settings_(settings), used_(settings.without.size()) {}
+    MeantResidues(const Structure& structure, const std::vector<std::string>& words)
+        : structure_(structure), words_(words), used_(words.size()) {}
 
     bool contains(const ResidueRange& residue) {
         const AtomName& name = structure_.names[residue.first];
         const std::string& chain = chain_of(structure_, residue.first);
-        bool is_out = false;
-        for (std::size_t i = 0; i < settings_.without.size(); ++i) {
-            const std::string& word = settings_.without[i];
-            const bool is_meant = word == name.residue || word == "chain:" + chain ||
-                                  word == fmt::format("{}:{}", chain, name.number);
-            if (is_meant) used_[i] = true;
-            is_out = is_out || is_meant;
+        bool is_meant = false;
+        for (std::size_t i = 0; i < words_.size(); ++i) {
+            const std::string& word = words_[i];
+            if (word != name.residue && word != "chain:" + chain &&
+                word != fmt::format("{}:{}", chain, name.number)) {
+                continue;
+            }
+            used_[i] = is_meant = true;
         }
-        return is_out;
+        return is_meant;
     }
 
     void check_all_used(const std::set<std::string>& names) const {
         for (std::size_t i = 0; i < used_.size(); ++i) {
             if (used_[i]) continue;
             const std::vector<std::string_view> known(names.begin(), names.end());
-            throw LoadError(
-                {structure_.file},
-                fmt::format("nothing here is '{}'{}; expected a residue name, "
-                            "chain:NAME or CHAIN:NUMBER",
-                            settings_.without[i], near_name_hint(settings_.without[i], known)));
+            throw LoadError({structure_.file},
+                            fmt::format("nothing here is '{}'{}; expected a residue name, "
+                                        "chain:NAME or CHAIN:NUMBER",
+                                        words_[i], near_name_hint(words_[i], known)));
         }
     }
 
 private:
     const Structure& structure_;
-    const PrepareSettings& settings_;
+    const std::vector<std::string>& words_;
     std::vector<bool> used_;
 };
+
+// Residues that a stated bond holds to another one that is no ion: a phosphate on a serine.
+std::set<std::pair<std::string, std::string>> find_bonded(const Structure& structure) {
+    std::set<std::pair<std::string, std::string>> ions, bonded;
+    for (const ResidueRange& residue : find_residues(structure)) {
+        if (!is_ion(structure, residue)) continue;
+        ions.emplace(chain_of(structure, residue.first), structure.names[residue.first].number);
+    }
+    for (const StructureLink& link : structure.links) {
+        const std::pair a(link.a.chain, link.a.number), b(link.b.chain, link.b.number);
+        if (ions.contains(a) || ions.contains(b)) continue;
+        bonded.insert(a);
+        bonded.insert(b);
+    }
+    return bonded;
+}
 
 bool stands_at(const Structure& structure, const ResidueRange& residue,
                const ResidueChoice& choice) {
@@ -114,42 +134,79 @@ void check_structural_waters(const Structure& structure, const PrepareSettings& 
     }
 }
 
+// Why a residue is left out.
+enum class Reason { None, Asked, Water, Ion, Crystal };
+
+// Counts what is left out, and reports it.
+class LeftOut {
+public:
+    void add(Reason reason, const std::string& name) {
+        if (reason == Reason::Water) {
+            ++waters_;
+        } else if (reason == Reason::Ion) {
+            ++ions_;
+        } else {
+            ++(reason == Reason::Asked ? asked_ : crystal_)[name];
+        }
+    }
+
+    void report(Report& report) const {
+        const auto count_of = [](std::size_t count) {
+            return fmt::format("{} residue{}", count, count == 1 ? "" : "s");
+        };
+        for (const auto& [name, count] : asked_) {
+            report.add(choice_heading,
+                       fmt::format("left out as asked: {} ({})", name, count_of(count)));
+        }
+        for (const auto& [name, count] : crystal_) {
+            report.add(choice_heading,
+                       fmt::format("left out, not of the molecule: {}, {} ({}; --keep {} keeps it)",
+                                   name, crystal_only(name), count_of(count), name));
+        }
+        if (waters_ > 0) {
+            report.add(choice_heading,
+                       fmt::format("left out {} waters (--keep-waters keeps them)", waters_));
+        }
+        if (ions_ > 0) report.add(choice_heading, fmt::format("left out {} ions as asked", ions_));
+    }
+
+private:
+    std::map<std::string, std::size_t> asked_, crystal_;
+    std::size_t waters_ = 0, ions_ = 0;
+};
+
 Structure leave_out(const Structure& structure, const PrepareSettings& settings, Report& report) {
     check_structural_waters(structure, settings);
     std::vector<bool> kept(structure.names.size(), true);
-    LeftOut left_out(structure, settings);
+    MeantResidues unwanted(structure, settings.without), wanted(structure, settings.kept);
+    const std::set<std::pair<std::string, std::string>> bonded = find_bonded(structure);
     std::set<std::string> names;
-    std::map<std::string, std::size_t> dropped;
-    std::size_t water_count = 0, ion_count = 0;
+    LeftOut left_out;
     for (const ResidueRange& residue : find_residues(structure)) {
         const std::string& name = structure.names[residue.first].residue;
         names.insert(name);
-        const bool drops_water = is_water(name) && !settings.keeps_waters &&
-                                 !is_structural_water(structure, residue, settings);
-        const bool drops_ion = is_ion(structure, residue) && !settings.keeps_ions;
-        const bool is_named = left_out.contains(residue);
-        if (!drops_water && !drops_ion && !is_named) continue;
+        const bool is_unwanted = unwanted.contains(residue), is_wanted = wanted.contains(residue);
+        const auto reason = [&] {
+            if (is_unwanted) return Reason::Asked;
+            if (is_wanted) return Reason::None;
+            if (is_water(name)) {
+                const bool stays =
+                    settings.keeps_waters || is_structural_water(structure, residue, settings);
+                return stays ? Reason::None : Reason::Water;
+            }
+            const bool is_bonded = bonded.contains(
+                {chain_of(structure, residue.first), structure.names[residue.first].number});
+            if (!crystal_only(name).empty() && !is_bonded) return Reason::Crystal;
+            return is_ion(structure, residue) && !settings.keeps_ions ? Reason::Ion : Reason::None;
+        }();
+        if (reason == Reason::None) continue;
         std::fill_n(kept.begin() + static_cast<std::ptrdiff_t>(residue.first), residue.count,
                     false);
-        if (is_named) {
-            ++dropped[name];
-        } else if (drops_water) {
-            ++water_count;
-        } else {
-            ++ion_count;
-        }
+        left_out.add(reason, name);
     }
-    left_out.check_all_used(names);
-    for (const auto& [name, count] : dropped) {
-        report.add(choice_heading, fmt::format("left out as asked: {} ({} residue{})", name, count,
-                                               count == 1 ? "" : "s"));
-    }
-    if (water_count > 0) {
-        report.add(choice_heading,
-                   fmt::format("left out {} waters (--keep-waters keeps them)", water_count));
-    }
-    if (ion_count > 0)
-        report.add(choice_heading, fmt::format("left out {} ions as asked", ion_count));
+    unwanted.check_all_used(names);
+    wanted.check_all_used(names);
+    left_out.report(report);
     return keep_atoms(structure, kept);
 }
 
@@ -262,8 +319,8 @@ Structure choose_atoms(const Structure& structure, const PrepareSettings& settin
     const Structure wanted = leave_out(whole, settings, report);
     if (wanted.names.empty()) {
         throw LoadError({structure.file},
-                        "no atom is left once waters, ions and what was asked "
-                        "for are left out");
+                        "no atom is left once waters, ions, what only a crystal needs (--keep) and "
+                        "what was asked for are left out");
     }
     return choose_locations(wanted, settings, report);
 }

@@ -11,10 +11,11 @@ namespace palpa {
 
 bool is_water(std::string_view residue_name) noexcept;
 
-// Takes one model, builds the assembly asked for, leaves out what the settings say, and takes of
-// each residue with alternate locations the one with the highest mean occupancy, the first in the
-// alphabet where they are equal. Throws LoadError for choices that mean nothing here, and where no
-// atom is left.
+// Takes one model, builds the assembly asked for, leaves out what the settings say and what only
+// the crystal needed (crystal_only in prepare/components.h) where it is bonded to nothing, and
+// takes of each residue with alternate locations the one with the highest mean occupancy, the first
+// in the alphabet where they are equal. Throws LoadError for choices that mean nothing here, and
+// where no atom is left.
 Structure choose_atoms(const Structure& structure, const PrepareSettings& settings, Report& report);
 
 }  // namespace palpa

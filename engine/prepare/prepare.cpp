@@ -29,6 +29,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -52,7 +53,8 @@ TypedSystem type_system(const ForceField& force_field, const NamedResidues& name
                         const PrepareSettings& settings, Report& report) {
     TypedSystem system;
     Structure structure = named.structure;
-    system.settings = split_segments(force_field, structure, named.patches, settings, report);
+    system.settings =
+        split_segments(force_field, structure, named.patches, settings, report, named.links);
     structure = name_atoms(force_field, structure, system.settings, report);
     system.completed = add_missing_atoms(force_field, structure, system.settings);
     system.connectivity =
@@ -73,19 +75,29 @@ void name_elements(PreparedSystem& system) {
 }
 
 void check_size(const Structure& structure) {
-    constexpr std::size_t most_atoms = 400'000;
+    constexpr std::size_t most_atoms = 200'000;
     const std::size_t atoms = structure.names.size();
     if (atoms <= most_atoms) return;
-    throw LoadError({structure.file}, fmt::format("{} atoms; expected at most {}: leave out "
-                                                  "what is not needed with --without, waters first",
-                                                  atoms, most_atoms));
+    throw LoadError({structure.file},
+                    fmt::format("{} atoms; expected at most {}: leave out chains that are not "
+                                "needed (--without chain:B), waters first, or build no assembly",
+                                atoms, most_atoms));
+}
+
+// As CHARMM writes PDB files: four letters of a residue's name, of which sugars have six.
+Structure with_short_names(Structure structure) {
+    constexpr std::size_t most = 4;
+    for (AtomName& name : structure.names) {
+        if (name.residue.size() > most) name.residue.resize(most);
+    }
+    return with_short_chains(std::move(structure));
 }
 
 // Names and numbers must fit the columns of the files that will be written, which is known before
 // the long work.
 void check_formats(Structure structure) {
     structure.positions.assign(structure.names.size(), Vec3::Zero());
-    (void)format_pdb(with_short_chains(std::move(structure)), {});
+    (void)format_pdb(with_short_names(std::move(structure)), {});
 }
 
 void report_charge(PreparedSystem& system) {
@@ -137,7 +149,7 @@ void build_missing(PreparedSystem& system, const std::vector<AtomCoordinate>& co
 void orient(PreparedSystem& system, std::span<const std::uint32_t> added,
             const PrepareSettings& settings) {
     OrientSettings orient_settings;
-    orient_settings.may_flip = settings.flips;
+    orient_settings.may_flip = false;  // chosen before, by prepare/choose_states.h
     // Thousands of waters settle slowly, and need not: each has been turned twice.
     constexpr std::size_t many = 3000;
     if (settings.keeps_waters && added.size() > many) orient_settings.sweep_limit = 2;
@@ -148,17 +160,6 @@ void orient(PreparedSystem& system, std::span<const std::uint32_t> added,
                                            "kcal/mol gained in {} sweeps",
                                            oriented.groups.size(), std::abs(oriented.energy_change),
                                            oriented.sweeps));
-    for (const OrientedGroup& group : oriented.groups) {
-        const bool is_amide = group.kind == OrientedGroup::Kind::Amide;
-        if (group.kind != OrientedGroup::Kind::Imidazole && !is_amide) continue;
-        const AtomName& name = system.structure.names[group.atom];
-        if (!group.is_flipped && group.flip_gain < 0.5) continue;
-        system.report.add(
-            heading, fmt::format("{} {} {}: {} {}, {:.1f} kcal/mol", name.residue, name.segment,
-                                 name.number, is_amide ? "amide" : "imidazole",
-                                 group.is_flipped ? "turned over" : "left, turning it over gains",
-                                 group.flip_gain));
-    }
     if (!oriented.is_settled) {
         system.report.warn("the search for hydrogen bonds stopped before it had settled");
     }
@@ -222,6 +223,21 @@ void take_solvated(SolvatedSystem solvated, PreparedSystem& system) {
     report_charge(system);
 }
 
+// The oxygens of waters of the file that are no part of the system.
+std::vector<Vec3> find_left_out_waters(const Structure& structure, const Structure& chosen,
+                                       PrepareSettings settings) {
+    settings.keeps_waters = true;
+    Report unused;
+    const Structure all = choose_atoms(structure, settings, unused);
+    std::set<std::size_t> lines(chosen.lines.begin(), chosen.lines.end());
+    std::vector<Vec3> waters;
+    for (std::size_t i = 0; i < all.names.size(); ++i) {
+        const bool is_oxygen = is_water(all.names[i].residue) && element_of(all, i) == "O";
+        if (is_oxygen && !lines.contains(all.lines[i])) waters.push_back(all.positions[i]);
+    }
+    return waters;
+}
+
 void create_folder(const std::filesystem::path& folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
@@ -235,9 +251,11 @@ PreparedSystem prepare_system(const ForceField& force_field, const Structure& st
     PreparedSystem result;
     Report& report = result.report;
     tell(progress, "choosing and naming atoms");
+    if (!structure.repeated.empty()) report.warn(structure.repeated);
     const Structure chosen = choose_atoms(structure, settings, report);
     check_size(chosen);
-    const NamedResidues named = name_residues(force_field, chosen, settings, report);
+    const NamedResidues named = name_residues(force_field, chosen, settings, report,
+                                              find_left_out_waters(structure, chosen, settings));
     Missing problems = named.problems;
     TypedSystem system;
     try {
@@ -248,7 +266,12 @@ PreparedSystem prepare_system(const ForceField& force_field, const Structure& st
         if (problems.empty()) throw;
         problems.add(error);
     }
-    problems.throw_if_any();
+    try {
+        problems.throw_if_any();
+    } catch (const LoadError& error) {
+        if (named.unknown.empty()) throw;
+        throw UnknownResidues(error, named.unknown, problems.size() == named.unknown.size());
+    }
     result.structure = std::move(system.completed.structure);
     result.connectivity = std::move(system.connectivity);
     result.topology = std::move(system.topology);
@@ -286,7 +309,7 @@ void write_prepared(const PreparedSystem& system, const std::filesystem::path& f
                     std::string_view title, std::span<const TextFile> scene, Existing existing) {
     std::vector<TextFile> files{
         {folder / "system.psf", format_psf(system.connectivity, topology_title(system, title))},
-        {folder / "system.pdb", format_pdb(with_short_chains(system.structure), title)},
+        {folder / "system.pdb", format_pdb(with_short_names(system.structure), title)},
         {folder / "system.crd", format_crd(system.structure, title)},
         {folder / "system.prm", format_parameters(system.parameters, title)},
         {folder / "report.txt", fmt::format("{}\n\n{}", title, system.report.to_text())}};

@@ -3,16 +3,21 @@
 #include "charmm/force_field.h"
 #include "charmm/topology.h"
 #include "core/files.h"
+#include "core/load_error.h"
 #include "core/stage.h"
 #include "molecule/atoms.h"
 #include "molecule/connectivity.h"
 #include "prepare/report.h"
+#include "prepare/residue_names.h"
 #include "prepare/settings.h"
 
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace palpa {
 
@@ -25,12 +30,29 @@ struct PreparedSystem {
     Solvent solvent = Solvent::None;  // that charges and parameters are for
 };
 
+// What the force field lacks, beside whatever else is wrong.
+class UnknownResidues : public LoadError {
+public:
+    // `is_all`: nothing else is wrong.
+    UnknownResidues(const LoadError& error, std::vector<UnknownResidue> residues, bool is_all)
+        : LoadError(error),
+          is_all_(is_all),
+          residues_(std::make_shared<const std::vector<UnknownResidue>>(std::move(residues))) {}
+
+    const std::vector<UnknownResidue>& residues() const noexcept { return *residues_; }
+    bool is_all() const noexcept { return is_all_; }
+
+private:
+    bool is_all_;
+    std::shared_ptr<const std::vector<UnknownResidue>> residues_;  // copies must not throw
+};
+
 // What a topology file of the system says of itself: `title`, and before it the origin of charges
 // that are not the force field's own.
 std::string topology_title(const PreparedSystem& system, std::string_view title);
 
 // The stages are listed in engine/design.md. Throws LoadError with everything that is missing:
-// residues, atoms, patches and parameters.
+// residues (UnknownResidues), atoms, patches and parameters.
 PreparedSystem prepare_system(const ForceField& force_field, const Structure& structure,
                               const PrepareSettings& settings, const StageFunction& progress);
 

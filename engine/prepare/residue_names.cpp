@@ -3,7 +3,9 @@
 #include "charmm/missing.h"
 #include "core/text.h"
 #include "prepare/choose.h"
-#include "prepare/histidine.h"
+#include "prepare/choose_states.h"
+#include "prepare/components.h"
+#include "prepare/match_by_bonds.h"
 #include "prepare/patch_fit.h"
 #include "prepare/residues.h"
 
@@ -13,7 +15,9 @@
 #include <cstddef>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -24,14 +28,24 @@ using Pair = std::pair<std::string_view, std::string_view>;
 
 constexpr std::string_view heading = "Residue names";
 constexpr std::string_view protonation_heading = "Protonation";
+constexpr std::string_view turned_heading = "Amides and histidines turned over";
 
 // What other programs and the PDB call residues that CHARMM has.
-constexpr auto residue_aliases = std::to_array<Pair>(
-    {{"HID", "HSD"},  {"HIE", "HSE"},  {"HIP", "HSP"},  {"HISD", "HSD"}, {"HISE", "HSE"},
-     {"HISH", "HSP"}, {"CYX", "CYS"},  {"CYS2", "CYS"}, {"ASH", "ASP"},  {"ASPH", "ASP"},
-     {"GLH", "GLU"},  {"GLUH", "GLU"}, {"LYN", "LYS"},  {"LYSN", "LYS"}, {"LSN", "LYS"},
-     {"NA", "SOD"},   {"K", "POT"},    {"CL", "CLA"},   {"CA", "CAL"},   {"LI", "LIT"},
-     {"RB", "RUB"},   {"CS", "CES"},   {"BA", "BAR"},   {"ZN", "ZN2"},   {"CD", "CD2"}});
+constexpr auto residue_aliases = std::to_array<Pair>({{"HID", "HSD"},
+                                                      {"HIE", "HSE"},
+                                                      {"HIP", "HSP"},
+                                                      {"HISD", "HSD"},
+                                                      {"HISE", "HSE"},
+                                                      {"HISH", "HSP"},
+                                                      {"CYX", "CYS"},
+                                                      {"CYS2", "CYS"},
+                                                      {"ASH", "ASP"},
+                                                      {"ASPH", "ASP"},
+                                                      {"GLH", "GLU"},
+                                                      {"GLUH", "GLU"},
+                                                      {"LYN", "LYS"},
+                                                      {"LYSN", "LYS"},
+                                                      {"LSN", "LYS"}});
 
 // Names that say a protonation as well; the patch that CHARMM has for it.
 constexpr auto protonated = std::to_array<Pair>({{"ASH", "ASPP"},
@@ -42,14 +56,15 @@ constexpr auto protonated = std::to_array<Pair>({{"ASH", "ASPP"},
                                                  {"LYSN", "LSN"},
                                                  {"LSN", "LSN"}});
 
-// Modified amino acids, and what they come from.
+// Modified amino acids that CHARMM36 lacks, and what they come from.
 constexpr auto parents = std::to_array<Pair>({{"CSO", "CYS"},
                                               {"CSD", "CYS"},
+                                              {"CAS", "CYS"},
                                               {"OCS", "CYS"},
                                               {"CME", "CYS"},
                                               {"SMC", "CYS"},
+                                              {"SEC", "CYS"},
                                               {"ABA", "ALA"},
-                                              {"MSE", "MET"},
                                               {"SEP", "SER"},
                                               {"TPO", "THR"},
                                               {"PTR", "TYR"},
@@ -61,6 +76,10 @@ constexpr auto parents = std::to_array<Pair>({{"CSO", "CYS"},
                                               {"NLE", "LEU"},
                                               {"DAL", "ALA"},
                                               {"UNK", "ALA"}});
+
+// A nucleotide's atoms in old files and in new ones; CHARMM's.
+constexpr auto nucleotide_atoms = std::to_array<Pair>(
+    {{"OP1", "O1P"}, {"OP2", "O2P"}, {"OP3", "O5T"}, {"O3P", "O5T"}, {"C7", "C5M"}});
 
 std::optional<std::string_view> look_up(std::span<const Pair> pairs, std::string_view name) {
     const auto found = std::find_if(pairs.begin(), pairs.end(),
@@ -124,21 +143,28 @@ void join_caps(Structure& structure, Report& report) {
 class ResidueNamer {
 public:
     ResidueNamer(const ForceField& force_field, Structure structure,
-                 const PrepareSettings& settings, Report& report)
+                 const PrepareSettings& settings, Report& report, std::span<const Vec3> waters)
         : force_field_(force_field),
           structure_(std::move(structure)),
           settings_(settings),
-          report_(report) {}
+          report_(report),
+          waters_(waters) {}
 
     NamedResidues name() {
+        const StatedLinks stated = find_stated_links(structure_);
         join_caps(structure_, report_);
+        join_components(stated);
         leave_out_unknown();
+        const std::vector<ResidueLink> bonds = find_residue_links(force_field_, structure_, stated);
+        find_states(bonds);
         choose_states();
+        std::vector<LinkPatch> links = patch_links(force_field_, structure_, bonds, report_);
         for (const auto& [what, count] : renamed_) {
             report_.add(heading,
                         fmt::format("{} ({} residue{})", what, count, count == 1 ? "" : "s"));
         }
-        return {std::move(structure_), std::move(patches_), std::move(missing_)};
+        return {std::move(structure_), std::move(patches_), std::move(links), std::move(unknown_),
+                std::move(missing_)};
     }
 
 private:
@@ -156,11 +182,12 @@ private:
         std::map<std::string, std::vector<ResidueRange>> unknown;
         std::vector<bool> kept(structure_.names.size(), true);
         for (const ResidueRange& residue : find_residues(structure_)) {
+            const std::string before = name_of(residue);
             rename(residue);
             const std::string& name = name_of(residue);
             const bool is_histidine =
                 name == "HIS" && is_known("HSD") && is_known("HSE") && is_known("HSP");
-            if (is_known(name) || is_histidine) {
+            if (is_histidine || (is_known(name) && fits(residue, before))) {
                 if (is_taken_as_another(residue)) leave_out_surplus(residue, kept);
                 continue;
             }
@@ -179,6 +206,19 @@ private:
                              fmt::format("--as {}={}: no residue '{}' here", from, to, from));
             }
         }
+        keep(kept);
+    }
+
+    // Patches and choices go with their residues, or away with them.
+    void keep(const std::vector<bool>& kept) {
+        std::vector<std::size_t> now(kept.size());
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < kept.size(); ++i) {
+            now[i] = count;
+            if (kept[i]) ++count;
+        }
+        std::erase_if(patches_, [&](const ResiduePatch& patch) { return !kept[patch.atom]; });
+        for (ResiduePatch& patch : patches_) patch.atom = now[patch.atom];
         structure_ = keep_atoms(structure_, kept);
     }
 
@@ -200,6 +240,29 @@ private:
             report_.add(heading,
                         fmt::format("{}: left out {}, which {} does not have",
                                     residue_label(structure_, residue), name, name_of(residue)));
+        }
+    }
+
+    // Amides and histidines, but for those that a user has chosen and glycans hold.
+    void find_states(const std::vector<ResidueLink>& bonds) {
+        std::vector<std::size_t> given;
+        for (const ResidueRange& residue : find_residues(structure_)) {
+            const auto [chain, number] = identity(residue);
+            const bool is_chosen = std::ranges::any_of(settings_.protonation, [&](const auto& one) {
+                return one.first.chain == chain && one.first.number == number;
+            });
+            const bool is_bonded = std::ranges::any_of(bonds, [&](const ResidueLink& bond) {
+                return std::ranges::any_of(bond.atoms, [&](std::size_t atom) {
+                    return name_of(residue) == "ASN" && atom >= residue.first &&
+                           atom < residue.end();
+                });
+            });
+            if (is_chosen || is_bonded) given.push_back(residue.first);
+        }
+        for (ChosenState& state :
+             palpa::choose_states(structure_, {settings_.flips, waters_, given})) {
+            const std::size_t residue = state.residue;
+            states_.emplace(residue, std::move(state));
         }
     }
 
@@ -251,18 +314,190 @@ private:
             return;
         }
         if (before == "HIS") return;
-        if (is_known(before) && !is_named_like_an_ion(residue, before)) return;
-        // "NA+", "CL-", "MG2"
-        const std::string plain =
-            residue.count == 1 ? before.substr(0, before.find_first_of("+-0123456789")) : before;
-        auto alias = is_water(before) ? std::optional<std::string_view>("TIP3")
-                                      : look_up(residue_aliases, plain);
-        if (!alias && is_known(plain)) alias = plain;
-        if (alias == before) return;
-        if (!alias || !is_known(*alias)) return;
-        rename_residue(structure_, residue, *alias);
+        if (is_water(before)) return rename_as(residue, "TIP3", "water");
+        if (residue.count == 1) return rename_ion(residue);
+        if (rename_component(residue)) return;
+        const auto alias = look_up(residue_aliases, before);
+        if (!alias || !is_known(*alias) || (is_known(before) && has_elements_of(residue, before))) {
+            return;
+        }
+        rename_as(residue, *alias, {});
         if (const auto patch = look_up(protonated, before)) add_patch(residue, *patch);
-        ++renamed_[fmt::format("{} is CHARMM's {}", before, *alias)];
+    }
+
+    void rename_as(const ResidueRange& residue, std::string_view name, std::string_view meaning) {
+        const std::string before = name_of(residue);
+        if (before == name || !is_known(name)) return;
+        rename_residue(structure_, residue, name);
+        ++renamed_[meaning.empty() ? fmt::format("{} is CHARMM's {}", before, name)
+                                   : fmt::format("{}, {}, is CHARMM's {}", before, meaning, name)];
+    }
+
+    // "NA", "NA+", "CL-", "MG2"; or one atom of a larger residue, which is named as such.
+    void rename_ion(const ResidueRange& residue) {
+        const std::string before = name_of(residue);
+        const std::string plain = before.substr(0, before.find_first_of("+-"));
+        const std::string letters = plain.substr(0, plain.find_last_not_of("0123456789") + 1);
+        for (const std::string& name : {before, plain, letters}) {
+            const auto found = find_component(name);
+            if (found && found->table->kind == "an ion" && is_known(found->component->charmm)) {
+                return rename_as(residue, found->component->charmm, found->component->meaning);
+            }
+        }
+        if (!is_known(before) && is_known(letters) && !is_named_like_an_ion(residue, letters)) {
+            rename_as(residue, letters, {});
+        }
+    }
+
+    // As the tables have it; false where they or the force field do not.
+    bool rename_component(const ResidueRange& residue) {
+        const auto found = find_component(name_of(residue));
+        if (!found || found->table->kind == "an ion") return false;
+        const bool is_nucleotide = found->table->kind == "a nucleotide";
+        if (is_nucleotide && !has_ribose(residue)) return false;
+        const Component& component = *found->component;
+        const bool has_patch =
+            component.patch.empty() || force_field_.patches.contains(std::string(component.patch));
+        if (component.charmm.empty() || !is_known(component.charmm) || !has_patch) return false;
+        if (is_nucleotide) name_nucleotide(residue);
+        if (component.name == "MSE") rename_selenium(residue);
+        std::string meaning(component.meaning);
+        if (!component.patch.empty()) meaning += fmt::format(" (patch {})", component.patch);
+        rename_as(residue, component.charmm, meaning);
+        if (!component.patch.empty()) add_patch(residue, component.patch);
+        return true;
+    }
+
+    bool has_ribose(const ResidueRange& residue) const {
+        const auto has = [&](std::string_view name, std::string_view old_name) {
+            return find_atom(structure_, residue, name) || find_atom(structure_, residue, old_name);
+        };
+        return has("C1'", "C1*") && has("C3'", "C3*") && has("C4'", "C4*");
+    }
+
+    // Before chains are looked for, which the names of O3' and P tell.
+    void name_nucleotide(const ResidueRange& residue) {
+        for (std::size_t i = residue.first; i < residue.end(); ++i) {
+            std::string& name = structure_.names[i].atom;
+            if (element_of(structure_, i) == "H") continue;
+            std::replace(name.begin(), name.end(), '*', '\'');
+            const auto charmm = look_up(nucleotide_atoms, name);
+            if (charmm && !find_atom(structure_, residue, *charmm)) name = *charmm;
+        }
+    }
+
+    // Whether all elements of the force field's residue are there: HIP of AMBER is a histidine,
+    // that of CHARMM a phosphohistidine.
+    bool has_elements_of(const ResidueRange& residue, const std::string& name) const {
+        const auto& atoms = force_field_.residues.at(name).atoms;
+        return std::all_of(atoms.begin(), atoms.end(), [&](const ResidueAtom& atom) {
+            const std::string element = element_of(force_field_, atom, atom.name);
+            if (element == "H") return true;
+            for (std::size_t i = residue.first; i < residue.end(); ++i) {
+                if (element_of(structure_, i) == element) return true;
+            }
+            return false;
+        });
+    }
+
+    // Whether the force field's residue of that name is this one; chains have names for that.
+    bool fits(const ResidueRange& residue, const std::string& before) {
+        const Residue& wanted = force_field_.residues.at(name_of(residue));
+        const bool is_chain =
+            std::any_of(wanted.bonds.begin(), wanted.bonds.end(),
+                        [](const auto& bond) { return bond[0][0] == '+' || bond[1][0] == '+'; });
+        const bool is_patched =
+            std::any_of(patches_.begin(), patches_.end(),
+                        [&](const ResiduePatch& patch) { return patch.atom == residue.first; });
+        if (is_chain || is_patched || wanted.atoms.size() <= 3 || is_taken_as_another(residue)) {
+            return true;
+        }
+        if (residue.count == 1) return false;
+        std::size_t heavy = 0, named = 0;
+        for (std::size_t i = residue.first; i < residue.end(); ++i) {
+            if (element_of(structure_, i) == "H") continue;
+            ++heavy;
+            const std::string& atom = structure_.names[i].atom;
+            const auto found =
+                std::find_if(wanted.atoms.begin(), wanted.atoms.end(),
+                             [&](const ResidueAtom& one) { return one.name == atom; });
+            const bool is_same =
+                found != wanted.atoms.end() &&
+                element_of(force_field_, *found, atom) == element_of(structure_, i);
+            if (is_same) ++named;
+        }
+        const BondedAtoms all = find_bonded_atoms(force_field_, wanted);
+        if (heavy > all.names.size()) return false;
+        if (heavy == named && heavy == all.names.size()) return true;
+        // By bonds, but for names that tables vouch for, of which there may be half.
+        const bool is_vouched = before != name_of(residue) || find_component(before).has_value();
+        if (heavy == named && is_vouched) return true;
+        return match_by_bonds(find_bonded_atoms(structure_, residue), all).has_value();
+    }
+
+    // Retinal and palmitic acid on an amino acid that CHARMM has together with them.
+    void join_components(const StatedLinks& stated) {
+        bool has_any = false;
+        for (const AtomName& name : structure_.names) {
+            has_any = has_any || std::any_of(joined_components().begin(), joined_components().end(),
+                                             [&](const JoinedComponent& one) {
+                                                 return one.ligand == name.residue;
+                                             });
+        }
+        if (!has_any || structure_.records.empty()) return;
+        std::map<std::size_t, std::size_t> host_of;  // by the ligand's atoms: an atom of the host
+        for (const ResidueLink& link : find_residue_links(force_field_, structure_, stated)) {
+            for (const auto& [a, b] : {std::pair(link.atoms[0], link.atoms[1]),
+                                       std::pair(link.atoms[1], link.atoms[0])}) {
+                join_component(a, b, host_of);
+            }
+        }
+        move_behind(host_of);
+    }
+
+    void join_component(std::size_t ligand, std::size_t host,
+                        std::map<std::size_t, std::size_t>& host_of) {
+        const AtomName& atom = structure_.names[ligand];
+        const AtomName& other = structure_.names[host];
+        for (const JoinedComponent& one : joined_components()) {
+            const bool is_it = one.ligand == atom.residue && one.host == other.residue &&
+                               one.host_atom == other.atom && is_known(one.charmm);
+            if (!is_it) continue;
+            const ResidueRange part = residue_with(ligand), whole = residue_with(host);
+            report_.add(heading, fmt::format("{}: bonded to {}, together CHARMM's {}",
+                                             residue_label(structure_, part),
+                                             residue_label(structure_, whole), one.charmm));
+            rename_residue(structure_, whole, one.charmm);
+            join_residue(structure_, part, host);
+            for (std::size_t i = part.first; i < part.end(); ++i) {
+                structure_.records[i].label_chain = structure_.records[host].label_chain;
+                host_of[i] = whole.end() - 1;
+            }
+            return;
+        }
+    }
+
+    ResidueRange residue_with(std::size_t atom) const {
+        for (const ResidueRange& residue : find_residues(structure_)) {
+            if (atom >= residue.first && atom < residue.end()) return residue;
+        }
+        return {atom, 1};
+    }
+
+    // A residue's atoms stand together.
+    void move_behind(const std::map<std::size_t, std::size_t>& host_of) {
+        if (host_of.empty()) return;
+        std::map<std::size_t, std::vector<std::size_t>> behind;
+        for (const auto& [atom, host] : host_of) behind[host].push_back(atom);
+        std::vector<std::size_t> order, end_of(structure_.names.size());
+        for (std::size_t i = 0; i < structure_.names.size(); ++i) {
+            if (!host_of.contains(i)) order.push_back(i);
+            if (const auto found = behind.find(i); found != behind.end()) {
+                order.insert(order.end(), found->second.begin(), found->second.end());
+            }
+            end_of[i] = order.size();
+        }
+        structure_ = with_order(structure_, order, end_of);
     }
 
     void rename_selenium(const ResidueRange& residue) {
@@ -329,18 +564,8 @@ private:
 
     void find_state(const ResidueRange& residue) {
         const std::string name = name_of(residue);
-        if (name == "HIS" && !is_known("HIS")) {
-            const std::string label = residue_label(structure_, residue);
-            const HistidineChoice choice = choose_histidine(structure_, residue);
-            rename_residue(structure_, residue, choice.residue);
-            report_.add(protonation_heading,
-                        fmt::format("{}: {} ({})", label, choice.residue, choice.reason));
-            if (choice.might_be_charged) {
-                report_.warn(
-                    fmt::format("{} has an acceptor at both nitrogens and may be charged: "
-                                "--protonation {}:{}=HSP",
-                                label, identity(residue).first, identity(residue).second));
-            }
+        if (const auto chosen = states_.find(residue.first); chosen != states_.end()) {
+            take_state(residue, chosen->second);
             return;
         }
         if (!has_hydrogens(residue)) return;
@@ -351,6 +576,26 @@ private:
             report_.add(protonation_heading,
                         fmt::format("{}: neutral, the file has two hydrogens on NZ",
                                     residue_label(structure_, residue)));
+        }
+    }
+
+    void take_state(const ResidueRange& residue, const ChosenState& state) {
+        const std::string label = residue_label(structure_, residue);
+        if (state.is_flipped) {
+            flip(structure_, residue);
+            report_.add(turned_heading, fmt::format("{}: turned over, {:.1f} hydrogen bonds gained "
+                                                    "({})",
+                                                    label, state.gain, state.reason));
+        }
+        if (state.histidine.empty() || is_known("HIS")) return;
+        rename_residue(structure_, residue, state.histidine);
+        report_.add(protonation_heading,
+                    fmt::format("{}: {} ({})", label, state.histidine, state.reason));
+        if (state.might_be_charged) {
+            report_.warn(
+                fmt::format("{} has an acceptor at both nitrogens and may be charged: "
+                            "--protonation {}:{}=HSP",
+                            label, identity(residue).first, identity(residue).second));
         }
     }
 
@@ -373,29 +618,55 @@ private:
     }
 
     void report_unknown(const std::string& name, const std::vector<ResidueRange>& residues) {
-        std::string where;
-        for (std::size_t i = 0; i < std::min<std::size_t>(residues.size(), 4); ++i) {
-            const auto [chain, number] = identity(residues[i]);
-            where += fmt::format("{}{}:{}", i == 0 ? "" : ", ", chain, number);
+        UnknownResidue unknown{name, meaning_of(name), {}, residues[0].count, {}};
+        for (const ResidueRange& residue : residues) {
+            const auto [chain, number] = identity(residue);
+            unknown.where.push_back(fmt::format("{}:{}", chain, number));
         }
+        unknown.advice = advice_for(name);
+        std::string where = fmt::format(
+            "{}",
+            fmt::join(unknown.where.begin(),
+                      unknown.where.begin() + static_cast<std::ptrdiff_t>(
+                                                  std::min<std::size_t>(unknown.where.size(), 4)),
+                      ", "));
         if (residues.size() > 4) where += fmt::format(" and {} more", residues.size() - 4);
+        missing_.add({structure_.file, structure_.lines[residues[0].first], 0},
+                     fmt::format("no topology for residue '{}'{}{} ({}; {} atoms): {}", name,
+                                 unknown.meaning.empty() ? "" : ", ", unknown.meaning, where,
+                                 unknown.atoms, unknown.advice));
+        unknown_.push_back(std::move(unknown));
+    }
+
+    std::string meaning_of(const std::string& name) const {
+        if (const auto found = find_component(name)) return std::string(found->component->meaning);
+        if (const auto only = crystal_only(name); !only.empty()) return std::string(only);
+        const auto told = structure_.component_names.find(name);
+        return told == structure_.component_names.end() ? std::string() : printable(told->second);
+    }
+
+    std::string advice_for(const std::string& name) const {
+        const auto found = find_component(name);
         const auto parent = look_up(parents, name);
         const std::string as =
             parent ? fmt::format("take it as {} with --as {}={}, ", *parent, name, *parent)
                    : std::string();
-        missing_.add({structure_.file, structure_.lines[residues[0].first], 0},
-                     fmt::format("no topology for residue '{}' ({}; {} atoms){}: {}give the file "
-                                 "that has it with --toppar, or leave it out with --without {}",
-                                 name, where, residues[0].count,
-                                 near_name_hint(name, keys(force_field_.residues)), as, name));
+        const bool is_covered = found && !found->component->charmm.empty();
+        const std::string files = is_covered
+                                      ? fmt::format("add {} with --toppar", found->table->files)
+                                      : std::string("give the file that has it with --toppar");
+        return fmt::format("{}{}, or leave it out with --without {}", as, files, name);
     }
 
     const ForceField& force_field_;
     Structure structure_;
     const PrepareSettings& settings_;
     Report& report_;
+    std::span<const Vec3> waters_;
+    std::map<std::size_t, ChosenState> states_;  // by first atom of the residue
     Missing missing_;
     std::vector<ResiduePatch> patches_;
+    std::vector<UnknownResidue> unknown_;
     std::map<std::string, std::size_t> renamed_;
     std::vector<std::size_t> taken_as_another_;  // first atoms of residues, rising
 };
@@ -403,8 +674,9 @@ private:
 }  // namespace
 
 NamedResidues name_residues(const ForceField& force_field, const Structure& structure,
-                            const PrepareSettings& settings, Report& report) {
-    return ResidueNamer(force_field, structure, settings, report).name();
+                            const PrepareSettings& settings, Report& report,
+                            std::span<const Vec3> waters) {
+    return ResidueNamer(force_field, structure, settings, report, waters).name();
 }
 
 }  // namespace palpa

@@ -4,9 +4,11 @@
 #include "charmm/missing.h"
 #include "molecule/atoms.h"
 #include "prepare/report.h"
+#include "prepare/residue_links.h"
 #include "prepare/settings.h"
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,19 +20,34 @@ struct ResiduePatch {
     std::string patch;
 };
 
+// A kind of residue that the force field lacks.
+struct UnknownResidue {
+    std::string name;                // "TES"
+    std::string meaning;             // in words, by the file or by our tables; may be empty
+    std::vector<std::string> where;  // "A:325"
+    std::size_t atoms = 0;           // of the first
+    std::string advice;              // what to do
+};
+
 struct NamedResidues {
     Structure structure;
     std::vector<ResiduePatch> patches;
+    std::vector<LinkPatch> links;
+    std::vector<UnknownResidue> unknown;
     // What is wrong with residues: those without a topology (left out of the structure, so that
     // what else is missing can be found too) and choices that fit nothing. To be thrown.
     Missing problems;
 };
 
 // Residues are named as the settings say; caps (ACE, NME, NH2) become part of the residue beside
-// them, as CHARMM has them; other programs' names (HIS, HIE, ASH, CYX, HOH, NA ...) become CHARMM's
-// where the force field does not know them. Histidine without a state gets one
-// (prepare/histidine.h); hydrogens that the file has decide about Asp, Glu and Lys.
+// them, as CHARMM has them, and so do lipids and retinal on their amino acid; names of the PDB and
+// of other programs (HIS, HIE, ASH, CYX, HOH, NA, DA, NAG, HEM ...) become CHARMM's
+// (prepare/components.h). A molecule of the force field that is only called alike is not taken:
+// elements and bonds must be the same. Histidine without a state gets one
+// (prepare/choose_states.h); hydrogens that the file has decide about Asp, Glu and Lys.
+// `waters`: oxygens of waters that are not in the structure, Å.
 NamedResidues name_residues(const ForceField& force_field, const Structure& structure,
-                            const PrepareSettings& settings, Report& report);
+                            const PrepareSettings& settings, Report& report,
+                            std::span<const Vec3> waters = {});
 
 }  // namespace palpa

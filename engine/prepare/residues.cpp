@@ -60,6 +60,9 @@ Structure keep_atoms(const Structure& structure, const std::vector<bool>& kept) 
     Structure result;
     result.file = structure.file;
     result.notes = structure.notes;
+    result.repeated = structure.repeated;
+    result.component_names = structure.component_names;
+    result.links = structure.links;
     result.operators = structure.operators;
     result.assemblies = structure.assemblies;
     std::size_t end = 0;
@@ -79,6 +82,25 @@ Structure keep_atoms(const Structure& structure, const std::vector<bool>& kept) 
         if (!structure.records.empty()) result.records.push_back(structure.records[i]);
     }
     close_chains(structure.names.size());
+    return result;
+}
+
+Structure with_order(const Structure& structure, std::span<const std::size_t> order,
+                     std::span<const std::size_t> end_of) {
+    Structure result = structure;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const std::size_t from = order[i];
+        result.names[i] = structure.names[from];
+        result.positions[i] = structure.positions[from];
+        result.lines[i] = structure.lines[from];
+        if (!structure.records.empty()) result.records[i] = structure.records[from];
+    }
+    result.chain_ends.clear();
+    for (const std::size_t end : structure.chain_ends) {
+        const std::size_t now = end_of[end - 1];
+        const bool is_new = result.chain_ends.empty() || result.chain_ends.back() < now;
+        if (is_new && now > 0) result.chain_ends.push_back(now);
+    }
     return result;
 }
 

@@ -33,6 +33,11 @@ std::optional<std::size_t> find_atom(const Structure& structure, const ResidueRa
 // The atoms with `kept` set, everything that goes with them, and where chains end.
 Structure keep_atoms(const Structure& structure, const std::vector<bool>& kept);
 
+// The atoms in another order. `end_of`: where a chain that ended behind an atom ends now, as a
+// number of atoms.
+Structure with_order(const Structure& structure, std::span<const std::size_t> order,
+                     std::span<const std::size_t> end_of);
+
 // The hydrogens of a residue that are nearer to this atom of it than to its other heavy atoms, and
 // within 1.5 Å.
 std::vector<std::size_t> hydrogens_on(const Structure& structure, const ResidueRange& residue,

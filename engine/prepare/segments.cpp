@@ -45,11 +45,13 @@ public:
           report_(report),
           residues_(find_residues(structure)) {}
 
-    GenerateSettings split(const std::vector<ResiduePatch>& protonation) {
+    GenerateSettings split(const std::vector<ResiduePatch>& protonation,
+                           std::span<const LinkPatch> links) {
         result_.disulphide_distance = 0;  // found here, to be reported
+        for (const ResiduePatch& patch : protonation) residue_patches_.insert(patch.atom);
         for (std::size_t i = 0; i < residues_.size();) {
             const std::size_t end = find_end(i);
-            if (end > i) {
+            if (end > i && !is_other_nucleoside(i, end)) {
                 add_chain(i, end);
             } else {
                 add_single(i);
@@ -60,6 +62,17 @@ public:
         check_numbers();
         for (const ResiduePatch& patch : protonation) {
             result_.patches.push_back({patch.patch, {identity(patch.atom)}});
+        }
+        for (const LinkPatch& link : links) {
+            PatchUse use{link.patch, {}};
+            for (const std::size_t atom : link.atoms) use.residues.push_back(identity(atom));
+            result_.patches.push_back(std::move(use));
+        }
+        for (const auto& [patch, residues] : chain_patches_) {
+            PatchUse use{patch, {}};
+            for (const std::size_t i : residues)
+                use.residues.push_back(identity(residues_[i].first));
+            result_.patches.push_back(std::move(use));
         }
         add_disulphides();
         missing_.throw_if_any();
@@ -95,7 +108,7 @@ private:
     bool is_linked(std::size_t index) const {
         const auto link = find_link(residue_of(index));
         const auto next_link = find_link(residue_of(index + 1));
-        if (!link || !next_link || chain(index) != chain(index + 1)) return false;
+        if (!link || link != next_link || chain(index) != chain(index + 1)) return false;
         if (ends_by_record(index)) return false;
         const auto a = find_atom(structure_, residues_[index], link->first);
         const auto b = find_atom(structure_, residues_[index + 1], link->second);
@@ -134,22 +147,32 @@ private:
     void add_chain(std::size_t first, std::size_t end) {
         const std::size_t last = end - 1;
         const std::string chain_name = chain(first).empty() ? "P" : chain(first);
-        const auto before = last_of_chain_.find(chain_name);
+        const bool is_nucleic = is_nucleotide(first);
+        const auto chain_key = std::pair(chain_name, is_nucleic);
+        const auto before = last_of_chain_.find(chain_key);
         const bool is_behind_gap =
             before != last_of_chain_.end() && !ends_by_record(before->second);
         const std::string segment = unique_segment(chain_name);
         SegmentSettings settings;
         settings.segment = segment;
         const bool is_before_gap = goes_on_behind(last);
-        choose_ends(first, last, is_behind_gap, is_before_gap, settings);
-        if (is_behind_gap) {
-            report_.warn(
-                fmt::format("chain {} has a gap between {} and {}: neutral caps close it "
-                            "(--last, --first take other patches)",
-                            chain_name, residue_label(structure_, residues_[before->second]),
-                            residue_label(structure_, residues_[first])));
+        if (is_nucleic) {
+            choose_nucleic_ends(first, settings);
+            patch_deoxyriboses(first, end);
+        } else if (is_closed(first, last)) {
+            close_chain(first, last, settings);
+        } else {
+            choose_ends(first, last, is_behind_gap, is_before_gap, settings);
         }
-        last_of_chain_[chain_name] = last;
+        if (is_behind_gap) {
+            report_.warn(fmt::format(
+                "chain {} has a gap between {} and {}: {} close it (--last, --first take other "
+                "patches)",
+                chain_name, residue_label(structure_, residues_[before->second]),
+                residue_label(structure_, residues_[first]),
+                is_nucleic ? "a hydroxyl and a phosphate" : "neutral caps"));
+        }
+        last_of_chain_[chain_key] = last;
         // A chain's name means its real ends, not those at gaps.
         const std::string end_name = is_before_gap && segment == chain_name ? "" : segment;
         choose_as_asked(settings_.first, {segment, is_behind_gap ? segment : chain_name}, first,
@@ -175,7 +198,7 @@ private:
         if (ends_by_record(last)) return false;
         for (std::size_t i = last + 1; i < residues_.size(); ++i) {
             if (chain(i) != chain(last)) return false;
-            if (find_link(residue_of(i))) return true;
+            if (find_link(residue_of(i)) == find_link(residue_of(last))) return true;
         }
         return false;
     }
@@ -200,6 +223,56 @@ private:
                             residue_label(structure_, residues_[last]), chain(last),
                             structure_.names[residues_[last].first].number));
         }
+    }
+
+    bool is_nucleotide(std::size_t index) const {
+        const auto link = find_link(residue_of(index));
+        return link && link->first == "O3'" && link->second == "P";
+    }
+
+    // A nucleoside alone, with a patch that makes another molecule of it: S-adenosylhomocysteine.
+    bool is_other_nucleoside(std::size_t first, std::size_t end) const {
+        return end == first + 1 && is_nucleotide(first) &&
+               residue_patches_.contains(residues_[first].first);
+    }
+
+    void choose_nucleic_ends(std::size_t first, SegmentSettings& settings) {
+        settings.first = has_atom(first, "P") ? "5PHO" : "5TER";
+        settings.last = "3TER";
+    }
+
+    // CHARMM's nucleotides are RNA. The one at the 5' end keeps its phosphorus as that end has it.
+    void patch_deoxyriboses(std::size_t first, std::size_t end) {
+        std::size_t count = 0;
+        for (std::size_t i = first; i < end; ++i) {
+            if (has_atom(i, "O2'")) continue;
+            chain_patches_.emplace_back(i == first ? "DEO5" : "DEOX", std::vector{i});
+            ++count;
+        }
+        if (count == 0) return;
+        report_.add(segments_heading,
+                    fmt::format("{} to {}: {} of {} sugars have no O2', so they are deoxyribose",
+                                residue_label(structure_, residues_[first]),
+                                residue_label(structure_, residues_[end - 1]), count, end - first));
+    }
+
+    // A peptide whose last C is bonded to its first N.
+    bool is_closed(std::size_t first, std::size_t last) const {
+        constexpr double longest_peptide_bond = 1.8;  // Å
+        if (last < first + 3 || !force_field_.patches.contains("LIG1")) return false;
+        const auto n = find_atom(structure_, residues_[first], "N");
+        const auto c = find_atom(structure_, residues_[last], "C");
+        return n && c &&
+               (structure_.positions[*n] - structure_.positions[*c]).norm() < longest_peptide_bond;
+    }
+
+    void close_chain(std::size_t first, std::size_t last, SegmentSettings& settings) {
+        settings.first = settings.last = "NONE";
+        chain_patches_.emplace_back("LIG1", std::vector{last - 1, last, first, first + 1});
+        report_.add(segments_heading,
+                    fmt::format("{} and {}: the chain is closed, C is bonded to N",
+                                residue_label(structure_, residues_[last]),
+                                residue_label(structure_, residues_[first])));
     }
 
     void choose_as_asked(const std::vector<std::pair<std::string, std::string>>& choices,
@@ -369,8 +442,12 @@ private:
     Missing missing_;
     GenerateSettings result_;
     std::set<std::string> segments_;
-    std::map<std::string, std::size_t> last_of_chain_;  // residue that its last segment ends with
+    // By chain, proteins and nucleic acids apart: the residue that its last segment ends with.
+    std::map<std::pair<std::string, bool>, std::size_t> last_of_chain_;
     std::set<std::string> used_first_, used_last_;
+    std::set<std::size_t> residue_patches_;  // first atoms of residues with a patch of their own
+    // Patches that follow from a chain, and its residues.
+    std::vector<std::pair<std::string, std::vector<std::size_t>>> chain_patches_;
     std::map<std::string, std::string> gathered_;  // waters and ions of a chain: their segment
 };
 
@@ -378,8 +455,9 @@ private:
 
 GenerateSettings split_segments(const ForceField& force_field, Structure& structure,
                                 const std::vector<ResiduePatch>& protonation,
-                                const PrepareSettings& settings, Report& report) {
-    return Segmenter(force_field, structure, settings, report).split(protonation);
+                                const PrepareSettings& settings, Report& report,
+                                std::span<const LinkPatch> links) {
+    return Segmenter(force_field, structure, settings, report).split(protonation, links);
 }
 
 }  // namespace palpa

@@ -8,6 +8,7 @@
 #include "prepare/residue_names.h"
 #include "prepare/settings.h"
 
+#include <span>
 #include <vector>
 
 namespace palpa {
@@ -27,6 +28,7 @@ namespace palpa {
 // residues that share a number.
 GenerateSettings split_segments(const ForceField& force_field, Structure& structure,
                                 const std::vector<ResiduePatch>& protonation,
-                                const PrepareSettings& settings, Report& report);
+                                const PrepareSettings& settings, Report& report,
+                                std::span<const LinkPatch> links = {});
 
 }  // namespace palpa

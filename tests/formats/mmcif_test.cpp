@@ -161,8 +161,6 @@ TEST_CASE("what is wrong in an mmCIF file is told with its line and column", "[f
         {"? 27 ALA", "? 99999999999 ALA", "w.cif:33:65: '99999999999' in _atom_site.auth_seq_id"},
         {"CA 1\nATOM   3", "CA x\nATOM   3",
          "w.cif:34:77: 'x' in _atom_site.pdbx_PDB_model_num is not a whole number"},
-        {"CA   B ALA", "CA   A ALA",
-         "w.cif:35: atom chain H ALA 27 CA (location A) again, first on line 34"},
         {"CA   B ALA", "CA  BC ALA", "w.cif:35:17: 'BC' in _atom_site.label_alt_id is not one"},
         {"ATOM   1 N", "ATOM   1 Q", "w.cif:33: 'Q' is no element"},
         {"ATOM   1", "ATQM   1", "w.cif:33:1: 'ATQM' in _atom_site.group_PDB is not ATOM or"},
@@ -361,4 +359,50 @@ TEST_CASE("what cannot be written to an mmCIF file is told", "[formats][mmcif]")
                Contains("'1AB'") && Contains("no residue number"));
     CHECK_THAT(error_with({"A", "ALA", "", "CA"}), Contains("no residue number"));
     CHECK_THAT(error_with({"A", "ALA", "1", "1"}), Contains("tells no element"));
+}
+
+// By the PDBx/mmCIF dictionary: a loop, and the same as single values.
+TEST_CASE("bonds between residues of an mmCIF file are read", "[formats][mmcif]") {
+    const std::string loop = R"(loop_
+_struct_conn.id
+_struct_conn.conn_type_id
+_struct_conn.ptnr1_auth_asym_id
+_struct_conn.ptnr1_auth_comp_id
+_struct_conn.ptnr1_auth_seq_id
+_struct_conn.pdbx_ptnr1_PDB_ins_code
+_struct_conn.ptnr1_label_atom_id
+_struct_conn.ptnr1_symmetry
+_struct_conn.ptnr2_auth_asym_id
+_struct_conn.ptnr2_auth_comp_id
+_struct_conn.ptnr2_auth_seq_id
+_struct_conn.ptnr2_label_atom_id
+_struct_conn.pdbx_ptnr2_label_alt_id
+_struct_conn.ptnr2_symmetry
+covale1 covale A ASN 15 B ND2 1_555 A NAG 605 C1 C 1_555
+metalc1 metalc A HIS 3 ? NE2 1_555 B ZN 101 ZN ? 2_655
+hydrog1 hydrog A DA 1 ? N1 1_555 B DT 2 N3 ? 1_555
+)";
+
+    const Structure structure = parse_mmcif(text + loop, "w.cif");
+
+    REQUIRE(structure.links.size() == 1);
+    CHECK((structure.links[0].a.number == "15B" && structure.links[0].a.atom == "ND2"));
+    CHECK((structure.links[0].b.residue == "NAG" && structure.links[0].b.alternate == 'C'));
+
+    const std::string single =
+        "_struct_conn.conn_type_id disulf\n_struct_conn.ptnr1_auth_asym_id A\n"
+        "_struct_conn.ptnr1_auth_comp_id CYS\n_struct_conn.ptnr1_auth_seq_id 3\n"
+        "_struct_conn.ptnr1_label_atom_id SG\n_struct_conn.ptnr2_auth_asym_id A\n"
+        "_struct_conn.ptnr2_auth_comp_id CYS\n_struct_conn.ptnr2_auth_seq_id 40\n"
+        "_struct_conn.ptnr2_label_atom_id SG\n";
+    const Structure again = parse_mmcif(text + single, "w.cif");
+    REQUIRE(again.links.size() == 1);
+    CHECK(again.links[0].b.number == "40");
+}
+
+TEST_CASE("of atoms that an mmCIF file repeats the first are taken", "[formats][mmcif]") {
+    const Structure structure = parse_mmcif(replaced(text, "CA   B ALA", "CA   A ALA"), "w.cif");
+
+    CHECK_THAT(structure.repeated,
+               StartsWith("atom chain H ALA 27 CA (location A) of line 34 again on line 35"));
 }

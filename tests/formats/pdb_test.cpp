@@ -205,8 +205,8 @@ TEST_CASE("what is wrong in a PDB file is told with line, columns and what would
         {"A  27      11", "A  2x      11", "w.pdb:3:23: '2x' in columns 23 to 26 is no residue"},
         {"A  27      11", "A          11", "w.pdb:3:23: '' in columns 23 to 26 is no residue"},
         {"A  27      11", "A  27?     11", "w.pdb:3:27: '?' in column 27 is no insertion code"},
-        {"  CA BALA", "  CA AALA",
-         "w.pdb:5: atom chain A ALA 27 CA (location A) again, first on line 4"},
+        {"  CA BALA", "  CA AGLY",
+         "w.pdb:5: atom chain A GLY 27 CA (location A) again, first on line 4"},
         {"ATOM      1", "ATQM      1",
          "w.pdb:3: 'ATQM' in columns 1 to 6 is no record; did you "
          "mean 'ATOM'?"},
@@ -218,6 +218,41 @@ TEST_CASE("what is wrong in a PDB file is told with line, columns and what would
     INFO(row.old << " -> " << row.by);
 
     CHECK_THAT(pdb_error_of(replaced(pdb_text, row.old, row.by)), StartsWith(row.error));
+}
+
+TEST_CASE("of atoms that a PDB file repeats the first are taken", "[formats][pdb]") {
+    const Structure structure = parse_pdb(replaced(pdb_text, "  CA BALA", "  CA AALA"), "w.pdb");
+
+    CHECK(structure.names.size() == parse_pdb(pdb_text, "w.pdb").names.size() - 1);
+    CHECK(structure.positions[1].x() == 11.639);
+    CHECK_THAT(structure.repeated, StartsWith("atom chain A ALA 27 CA (location A) of line 4 again "
+                                              "on line 5"));
+
+    std::string many;
+    for (int i = 0; i < 60; ++i) many += atom_line("1", "7", "1.000");
+    CHECK_THAT(pdb_error_of(many), StartsWith("w.pdb:52: atom chain A ALA 7 N again"));
+}
+
+// Columns by the format's description 3.3; the third is to a copy by symmetry.
+TEST_CASE("LINK and SSBOND of a PDB file are read", "[formats][pdb]") {
+    const std::string links =
+        "HETNAM     NAG 2-ACETAMIDO-2-DEOXY-BETA-D-\nHETNAM   2 NAG  GLUCOPYRANOSE\n"
+        "LINK         ND2 ASN A  15A                C1 BNAG A 605     1555   1555  1.44\n"
+        "SSBOND   1 CYS A   -2    CYS B   12                          1555   1555  2.02\n"
+        "LINK         S   22Q A   1                CU   CU1 B 101     1555   6345  2.26\n"
+        "LINK     nonsense\nSSBOND\nLINK\n";
+
+    const Structure structure = parse_pdb(links + pdb_text, "w.pdb");
+
+    REQUIRE(structure.links.size() == 2);
+    const LinkedAtom& one = structure.links[0].a;
+    CHECK((one.chain == "A" && one.residue == "ASN" && one.number == "15A" && one.atom == "ND2"));
+    const LinkedAtom& other = structure.links[0].b;
+    CHECK((other.number == "605" && other.atom == "C1" && other.alternate == 'B'));
+    CHECK(structure.links[0].line == 3);
+    CHECK((structure.links[1].a.atom == "SG" && structure.links[1].a.number == "-2"));
+    CHECK((structure.links[1].b.chain == "B" && structure.links[1].b.number == "12"));
+    CHECK(structure.component_names.at("NAG") == "2-ACETAMIDO-2-DEOXY-BETA-D-GLUCOPYRANOSE");
 }
 
 TEST_CASE("a PDB file without atoms is refused", "[formats][pdb]") {

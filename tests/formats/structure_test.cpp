@@ -124,9 +124,9 @@ TEST_CASE("a structure file of another name is refused", "[formats][structure]")
     CHECK(
         load_error_of([] { read_structure("a.xyz"); }) ==
         "a.xyz: '.xyz' is no ending of a structure file; expected .pdb, .ent, .cif, .mmcif, .crd, "
-        ".cor or .gro");
+        ".cor or .gro, or one of these with .gz behind it");
     CHECK_THAT(load_error_of([] { read_structure("a"); }), Catch::StartsWith("a: '' is no ending"));
-    CHECK_THAT(load_error_of([] { read_structure("a.pdb.gz"); }), Catch::Contains("unpack it"));
+    CHECK_THAT(load_error_of([] { read_structure("a.gz"); }), Catch::Contains("'.gz' is no"));
     CHECK(load_error_of([] { read_structure("none.pdb"); }) == "none.pdb: no such file");
 }
 

@@ -39,6 +39,12 @@ inline void expect_whole(const Structure& structure) {
             PALPA_EXPECT(!part.operators.empty() && copies >= 1 && copies <= 1000);
         }
     }
+    PALPA_EXPECT(structure.links.size() <= 100'000);
+    for (const StructureLink& link : structure.links) {
+        for (const LinkedAtom* const atom : {&link.a, &link.b}) {
+            PALPA_EXPECT(is_name(atom->atom) && is_name(atom->residue) && !atom->number.empty());
+        }
+    }
     std::size_t last = 0;
     for (const std::size_t end : structure.chain_ends) {
         PALPA_EXPECT(end > last && end <= count);

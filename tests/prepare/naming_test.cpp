@@ -1,6 +1,5 @@
 // Residues, chains and atoms get the names that the force field knows.
 #include "prepare/atom_names.h"
-#include "prepare/histidine.h"
 #include "prepare/residue_names.h"
 #include "prepare/segments.h"
 #include "tests/prepare/small_system.h"
@@ -36,21 +35,6 @@ Named name_all(const Structure& structure, const PrepareSettings& settings = {})
     return result;
 }
 
-// A ring with its two nitrogens 2.2 Å apart, ND1 at the origin, pointing to -y, NE2 to +y.
-StructureWriter histidine() {
-    StructureWriter writer;
-    writer.atom("HIS", "A", 1, "N", {-5, 0, 0}, "N");
-    writer.atom("HIS", "A", 1, "CA", {-4, 0, 0}, "C");
-    writer.atom("HIS", "A", 1, "C", {-4, 1.5, 0}, "C");
-    writer.atom("HIS", "A", 1, "O", {-5, 2, 0}, "O");
-    writer.atom("HIS", "A", 1, "CG", {-1.2, 0.6, 0}, "C");
-    writer.atom("HIS", "A", 1, "ND1", {0, 0, 0}, "N");
-    writer.atom("HIS", "A", 1, "CE1", {1, 1.1, 0}, "C");
-    writer.atom("HIS", "A", 1, "NE2", {0.2, 2.2, 0}, "N");
-    writer.atom("HIS", "A", 1, "CD2", {-1.1, 2.0, 0}, "C");
-    return writer;
-}
-
 // Without hydrogens, its side chain in the plane z = 0.
 StructureWriter aspartate() {
     StructureWriter writer;
@@ -62,39 +46,7 @@ StructureWriter aspartate() {
     return writer;
 }
 
-std::string_view state_of(const StructureWriter& writer) {
-    return choose_histidine(writer.structure(), find_residues(writer.structure())[0]).residue;
-}
-
 }  // namespace
-
-TEST_CASE("a histidine's neighbours decide where its hydrogen is", "[prepare]") {
-    CHECK(state_of(histidine()) == "HSE");
-    StructureWriter acceptor = histidine();
-    acceptor.atom("ALA", "A", 9, "O", {0.3, -2.8, 0}, "O");
-    CHECK(state_of(acceptor) == "HSD");
-    StructureWriter behind = histidine();  // near, but ND1 does not point there
-    behind.atom("ALA", "A", 9, "O", {0.1, 0, 3}, "O");
-    CHECK(state_of(behind) == "HSE");
-    StructureWriter giver = histidine();
-    giver.atom("LYS", "A", 9, "NZ", {0.6, 5.0, 0}, "N");
-    CHECK(state_of(giver) == "HSD");
-    StructureWriter metal = histidine();
-    metal.atom("ZN", "A", 9, "ZN", {0.5, 4.2, 0}, "ZN");
-    CHECK(state_of(metal) == "HSD");
-    StructureWriter both = histidine();
-    both.atom("ALA", "A", 9, "O", {0.3, -2.8, 0}, "O").atom("ALA", "A", 8, "O", {0.6, 5, 0}, "O");
-    const HistidineChoice choice =
-        choose_histidine(both.structure(), find_residues(both.structure())[0]);
-    CHECK(choice.might_be_charged);
-    StructureWriter given = acceptor;  // a hydrogen in the file outweighs all
-    given.atom("ALA", "B", 1, "CA", {30, 0, 0}, "C");
-    CHECK(state_of(given) == "HSD");
-    StructureWriter with_hydrogen = histidine();
-    with_hydrogen.atom("HIS", "A", 1, "HE2", {0.5, 3.1, 0}, "H");
-    with_hydrogen.atom("ALA", "A", 9, "O", {0.3, -2.8, 0}, "O");
-    CHECK(state_of(with_hydrogen) == "HSE");
-}
 
 TEST_CASE("ends, oxygens and hydrogens get CHARMM's names", "[prepare]") {
     StructureWriter writer;
@@ -259,10 +211,10 @@ TEST_CASE("segments of many equal ligands have names that fit a PDB file", "[pre
 TEST_CASE("all that keeps a structure from becoming a system is in one message", "[prepare]") {
     StructureWriter writer;
     writer.backbone("ALA", "A", 1, 0);
-    writer.atom("UNL", "B", 1, "X1", {9, 9, 9}, "C");
+    writer.atom("QQQ", "B", 1, "X1", {9, 9, 9}, "C");
     writer.atom("CSO", "B", 2, "SG", {9, 9, 19}, "S");
     const std::string unknown = load_error_of([&] { name_all(writer.structure()); });
-    CHECK_THAT(unknown, Contains("'UNL' (B:1; 1 atoms)") && Contains("--without UNL"));
+    CHECK_THAT(unknown, Contains("'QQQ' (B:1; 1 atoms)") && Contains("--without QQQ"));
     CHECK_THAT(unknown, Contains("--as CSO=CYS"));
 
     StructureWriter alphas;

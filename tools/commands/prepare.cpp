@@ -13,6 +13,8 @@
 #include "tools/commands/progress.h"
 
 #include <fmt/format.h>
+#include <algorithm>
+#include <cstddef>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <system_error>
@@ -157,6 +159,33 @@ TunedScene find_scene(const PrepareOptions& options, const std::string& title,
     }
 }
 
+// What the force field lacks, a line for each kind of residue.
+void print_unknown(const std::vector<UnknownResidue>& residues) {
+    fmt::print(stderr, "Not in the force field:\n");
+    for (const UnknownResidue& one : residues) {
+        constexpr std::size_t most_shown = 4;
+        const std::size_t shown = std::min(one.where.size(), most_shown);
+        std::string where = fmt::format(
+            "{}", fmt::join(one.where.begin(),
+                            one.where.begin() + static_cast<std::ptrdiff_t>(shown), " "));
+        if (shown < one.where.size()) where += fmt::format(" +{}", one.where.size() - shown);
+        fmt::print(stderr, "  {:<6} {:>3} atoms  {}{}\n{:9}{}\n", one.name, one.atoms, where,
+                   one.meaning.empty() ? "" : "  (" + one.meaning + ")", "", one.advice);
+    }
+}
+
+nlohmann::ordered_json json_of(const std::vector<UnknownResidue>& residues) {
+    auto json = nlohmann::ordered_json::array();
+    for (const UnknownResidue& one : residues) {
+        json.push_back({{"name", one.name},
+                        {"meaning", one.meaning},
+                        {"residues", one.where},
+                        {"atoms", one.atoms},
+                        {"advice", one.advice}});
+    }
+    return json;
+}
+
 void print_json(const PreparedSystem& system, const TunedScene& scene) {
     nlohmann::ordered_json json;
     json["atoms"] = system.structure.names.size();
@@ -165,6 +194,7 @@ void print_json(const PreparedSystem& system, const TunedScene& scene) {
     json["dihedrals"] = system.connectivity.dihedrals.size();
     json["impropers"] = system.connectivity.impropers.size();
     json["cmaps"] = system.connectivity.cmaps.size();
+    json["residues_unknown"] = nlohmann::ordered_json::array();
     json["warnings"] = system.report.warnings();
     if (!scene.files.empty()) {
         json["scene"] = {{"in_hand", scene.in_hand},
@@ -172,6 +202,33 @@ void print_json(const PreparedSystem& system, const TunedScene& scene) {
                          {"moved_angstrom", scene.moved_angstrom}};
     }
     fmt::print("{}\n", json.dump(2));
+}
+
+// Residues that the force field does not have are listed before the error.
+PreparedSystem prepare_or_list_unknown(const ForceField& force_field, const Structure& structure,
+                                       const PrepareSettings& settings,
+                                       const PrepareOptions& options, ProgressLine& progress) {
+    try {
+        return prepare_system(force_field, structure, settings, progress.stages());
+    } catch (const UnknownResidues& error) {
+        progress.wipe();
+        if (options.json) {
+            nlohmann::ordered_json json;
+            json["residues_unknown"] = json_of(error.residues());
+            json["warnings"] = {error.what()};
+            fmt::print("{}\n",
+                       json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+        } else {
+            print_unknown(error.residues());
+        }
+        if (options.json || !error.is_all()) throw;
+        const std::size_t kinds = error.residues().size();
+        throw LoadError({options.structure.string()},
+                        kinds == 1 ? "a residue is not in the force field, see above"
+                                   : fmt::format("{} kinds of residues are not in the force "
+                                                 "field, see above",
+                                                 kinds));
+    }
 }
 
 }  // namespace
@@ -185,7 +242,8 @@ int prepare_command(const PrepareOptions& options) {
     const ForceField force_field = read_wanted_force_field(options);
     tell(on_stage, "reading the structure");
     const Structure structure = read_structure(options.structure);
-    PreparedSystem system = prepare_system(force_field, structure, settings, on_stage);
+    PreparedSystem system =
+        prepare_or_list_unknown(force_field, structure, settings, options, progress);
     report_force_field(force_field, system.report);
     const std::string origin = fmt::format("Prepared from {} by palpa prepare; see report.txt.",
                                            options.structure.filename().string());
@@ -219,6 +277,10 @@ void add_prepare_choices(CLI::App& prepare, PrepareOptions& options) {
     prepare
         .add_option("--without", settings.without,
                     "residue names (MK1), chains (chain:B) or residues (A:101) to leave out")
+        ->type_name("WHAT");
+    prepare
+        .add_option("--keep", settings.kept,
+                    "likewise, kept though only the crystal needed it (SO4, GOL, DUM ...)")
         ->type_name("WHAT");
     prepare.add_option("--as", options.as, "take a residue as another, CSO=CYS");
     prepare.add_option("--protonation", options.protonation, "a residue (HSE) or a patch (ASPP)")
@@ -289,7 +351,8 @@ void add_prepare(CLI::App& program, ProgramCommand& chosen) {
     describe(prepare, "Make scenes",
              {"palpa prepare 1hsg.pdb --without MK1 -o my-protease",
               "palpa prepare complex.pdb -o complex --toppar ligand.str"});
-    prepare.add_option("structure", options.structure, ".pdb, .ent, .cif or .crd")->required();
+    prepare.add_option("structure", options.structure, ".pdb, .ent, .cif or .crd, .gz too")
+        ->required();
     prepare
         .add_option("--toppar", options.toppar,
                     "CHARMM topology, parameter and stream files, in order, or a folder of them: "

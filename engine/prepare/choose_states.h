@@ -1,0 +1,45 @@
+// Which way round amides and histidines stand, and where a histidine has its hydrogens: chosen
+// together, by the hydrogen bonds that heavy atoms allow.
+#pragma once
+#include "math/vec.h"
+#include "molecule/atoms.h"
+#include "prepare/residues.h"
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace palpa {
+
+struct StateSettings {
+    bool may_flip = true;
+    std::span<const Vec3> waters;  // Å, oxygens of waters that are not in the structure
+    // First atoms of residues that stay as they are, rising; a histidine among them has a state.
+    std::span<const std::size_t> given;
+};
+
+struct ChosenState {
+    std::size_t residue = 0;     // its first atom
+    std::string_view histidine;  // "HSD", "HSE" or "HSP"; empty of an amide
+    bool is_flipped = false;
+    double gain = 0;  // of the flip, in hydrogen bonds, over the best without
+    std::string reason;
+    bool might_be_charged = false;  // both nitrogens have an acceptor, but no acid is near
+};
+
+// Of every HIS, ASN and GLN that is whole and has no hydrogens on the atoms in question; histidines
+// with hydrogens, or not whole, get the state that these tell, HSE without.
+//
+// A score counts hydrogen bonds (score_contact in prepare/hydrogen_bonds.h): nothing beyond 4 Å
+// counts, so no charge far away turns an amide. A flip must gain 0.8 hydrogen bonds, and find
+// a partner that the other way round lacks. HSP costs nine tenths, and needs an acid. Where
+// histidines are equal, HSE: the more frequent tautomer in water. Groups within reach of each other
+// are tried in all combinations up to 20,000, others in turn until nothing changes.
+std::vector<ChosenState> choose_states(const Structure& structure, const StateSettings& settings);
+
+// Turns the end of an amide, or the ring of a histidine, by half a turn about its bond.
+void flip(Structure& structure, const ResidueRange& residue);
+
+}  // namespace palpa

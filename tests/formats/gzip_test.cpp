@@ -1,0 +1,72 @@
+// Compressed files are unpacked, and none can fill the memory.
+#include "formats/gzip.h"
+
+#include "formats/structure.h"
+#include "tests/support/load_error_of.h"
+#include "tests/support/temporary_folder.h"
+
+#include <zlib.h>
+#include <catch2/catch.hpp>
+#include <cstddef>
+#include <string>
+
+using namespace palpa;
+using Catch::Contains;
+using test::load_error_of;
+
+namespace {
+
+// By zlib's own writer, into one member.
+std::string packed(const std::string& text) {
+    z_stream stream{};
+    REQUIRE(deflateInit2(&stream, 9, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY) == Z_OK);
+    std::string data(deflateBound(&stream, text.size()) + 64, '\0');
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
+    stream.avail_in = static_cast<uInt>(text.size());
+    stream.next_out = reinterpret_cast<Bytef*>(data.data());
+    stream.avail_out = static_cast<uInt>(data.size());
+    REQUIRE(deflate(&stream, Z_FINISH) == Z_STREAM_END);
+    data.resize(data.size() - stream.avail_out);
+    deflateEnd(&stream);
+    return data;
+}
+
+const std::string one_atom_line =
+    "ATOM      1  C   ALA A   1       1.000   2.000   3.000  1.00  0.00           C\nEND\n";
+
+}  // namespace
+
+TEST_CASE("what gzip packs is unpacked, also in several members", "[formats][gzip]") {
+    const std::string text(3'000'000, 'x');
+    CHECK(is_gzip(packed(text)));
+    CHECK(unpack_gzip(packed(text), "w.gz") == text);
+    CHECK(unpack_gzip(packed("one") + packed("") + packed("two"), "w.gz") == "onetwo");
+    CHECK(unpack_gzip(packed("one") + std::string(512, '\0'), "w.gz") == "one");
+    CHECK(unpack_gzip(packed(text), "w.gz", text.size()) == text);
+}
+
+TEST_CASE("damaged, cut off and endless compressed files are refused", "[formats][gzip]") {
+    const std::string data = packed("some text that is packed, some text that is packed");
+    const auto error_of = [](const std::string& bytes, std::size_t most = 1000) {
+        return load_error_of([&] { unpack_gzip(bytes, "w.gz", most); });
+    };
+    for (std::size_t length = 3; length < data.size(); ++length) {
+        INFO(length);
+        CHECK_THAT(error_of(data.substr(0, length)), Contains("cut off"));
+    }
+    std::string damaged = data;
+    damaged[data.size() - 6] ^= 1;  // of the checksum
+    CHECK_THAT(error_of(damaged), Contains("is damaged"));
+    CHECK_THAT(error_of(packed(std::string(1001, 'x'))), Contains("holds more than"));
+    CHECK_THAT(error_of(packed(std::string(600, 'x')) + packed(std::string(600, 'x'))),
+               Contains("holds more than"));
+}
+
+TEST_CASE("a compressed structure is read whatever it is called", "[formats][gzip]") {
+    const test::TemporaryFolder folder;
+    for (const char* const name : {"a.pdb.gz", "b.ENT.GZ", "c.pdb"}) {
+        INFO(name);
+        CHECK(read_structure(folder.add_file(name, packed(one_atom_line))).names.size() == 1);
+    }
+    CHECK(read_structure(folder.add_file("d.pdb.gz", one_atom_line)).names.size() == 1);
+}
