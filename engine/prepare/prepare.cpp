@@ -9,6 +9,7 @@
 #include "charmm/write_parameters.h"
 #include "core/files.h"
 #include "core/load_error.h"
+#include "core/text.h"
 #include "formats/crd.h"
 #include "formats/pdb.h"
 #include "formats/psf.h"
@@ -222,6 +223,13 @@ void take_solvated(SolvatedSystem solvated, PreparedSystem& system) {
     report_charge(system);
 }
 
+std::string format_approximate(const PreparedSystem& system, std::string_view title) {
+    std::string text;
+    for (const std::string_view line : split_lines(title)) text += fmt::format("* {}\n", line);
+    for (const ApproximatePart& part : system.approximate) text += part.stream;
+    return text;
+}
+
 void create_folder(const std::filesystem::path& folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
@@ -230,15 +238,25 @@ void create_folder(const std::filesystem::path& folder) {
 
 }  // namespace
 
-PreparedSystem prepare_system(const ForceField& force_field, const Structure& structure,
+PreparedSystem prepare_system(const ForceField& given_force_field, const Structure& structure,
                               const PrepareSettings& settings, const StageFunction& progress) {
     PreparedSystem result;
     Report& report = result.report;
     tell(progress, "choosing and naming atoms");
-    const Structure chosen = choose_atoms(structure, settings, report);
+    Structure chosen = choose_atoms(structure, settings, report);
     check_size(chosen);
+    ApproximatedUnknown approximated;
+    if (settings.approximates_ligands) {
+        tell(progress, "approximating ligands");
+        approximated = approximate_unknown(given_force_field, chosen, settings, report);
+        chosen = std::move(approximated.structure);
+        result.approximate = std::move(approximated.parts);
+    }
+    const ForceField& force_field =
+        settings.approximates_ligands ? approximated.force_field : given_force_field;
     const NamedResidues named = name_residues(force_field, chosen, settings, report);
     Missing problems = named.problems;
+    for (const LoadError& error : approximated.refused) problems.add(error);
     TypedSystem system;
     try {
         if (!named.structure.names.empty()) {
@@ -290,6 +308,9 @@ void write_prepared(const PreparedSystem& system, const std::filesystem::path& f
         {folder / "system.crd", format_crd(system.structure, title)},
         {folder / "system.prm", format_parameters(system.parameters, title)},
         {folder / "report.txt", fmt::format("{}\n\n{}", title, system.report.to_text())}};
+    if (!system.approximate.empty()) {
+        files.push_back({folder / "approximate.str", format_approximate(system, title)});
+    }
     for (const TextFile& file : scene) files.push_back({folder / file.path, file.text});
     for (TextFile& file : files) file.existing = existing;
     create_folder(folder);

@@ -6,6 +6,7 @@
 #include "core/stage.h"
 #include "molecule/atoms.h"
 #include "molecule/connectivity.h"
+#include "prepare/approximate_unknown.h"
 #include "prepare/report.h"
 #include "prepare/settings.h"
 
@@ -13,6 +14,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace palpa {
 
@@ -23,6 +25,7 @@ struct PreparedSystem {
     ForceField parameters;      // what of the force field is used
     Report report;
     Solvent solvent = Solvent::None;  // that charges and parameters are for
+    std::vector<ApproximatePart> approximate;
 };
 
 // What a topology file of the system says of itself: `title`, and before it the origin of charges
@@ -34,9 +37,9 @@ std::string topology_title(const PreparedSystem& system, std::string_view title)
 PreparedSystem prepare_system(const ForceField& force_field, const Structure& structure,
                               const PrepareSettings& settings, const StageFunction& progress);
 
-// system.psf, system.pdb, system.crd, system.prm, report.txt and those of `scene`, named without
-// folder: all of them or none. `title`: what the files say of themselves; it ends with
-// prepared_mark, by which they are known again.
+// system.psf, system.pdb, system.crd, system.prm, report.txt, approximate.str where something is,
+// and those of `scene`, named without folder: all of them or none. `title`: what the files say of
+// themselves; it ends with prepared_mark, by which they are known again.
 void write_prepared(const PreparedSystem& system, const std::filesystem::path& folder,
                     std::string_view title, std::span<const TextFile> scene,
                     Existing existing = Existing::Refuse);

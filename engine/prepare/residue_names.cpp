@@ -385,7 +385,8 @@ private:
                    : std::string();
         missing_.add({structure_.file, structure_.lines[residues[0].first], 0},
                      fmt::format("no topology for residue '{}' ({}; {} atoms){}: {}give the file "
-                                 "that has it with --toppar, or leave it out with --without {}",
+                                 "that has it with --toppar, leave it out with --without {}, or "
+                                 "take a ligand approximately with --approximate-ligands",
                                  name, where, residues[0].count,
                                  near_name_hint(name, keys(force_field_.residues)), as, name));
     }

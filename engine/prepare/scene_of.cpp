@@ -79,6 +79,25 @@ std::string format_statics(std::size_t atoms, Solvent solvent, const SceneTuning
     return text;
 }
 
+std::string format_texts(const std::vector<std::string>& texts) {
+    std::vector<std::string> quoted;
+    for (const std::string& text : texts) quoted.push_back(in_quotes(text));
+    return fmt::format("[{}]", fmt::join(quoted, ", "));
+}
+
+// The key `approximate` where the segment has such residues.
+std::string format_approximate(const Structure& structure, const SystemSegment& segment,
+                               const std::vector<std::string>& approximate) {
+    std::vector<std::string> here;
+    for (const std::string& residue : approximate) {
+        const bool has = std::any_of(
+            segment.atoms.begin(), segment.atoms.end(),
+            [&](std::uint32_t atom) { return structure.names[atom].residue == residue; });
+        if (has) here.push_back(residue);
+    }
+    return here.empty() ? "" : fmt::format("approximate = {}\n", format_texts(here));
+}
+
 std::string format_note(const std::string& note) {
     return note.empty() ? "" : fmt::format("# {}\n", note);
 }
@@ -116,12 +135,15 @@ std::string format_scene(const Structure& structure, std::span<const SystemSegme
                        "reference_atom = {}\n",
                        name, in_quotes(text.structure), in_quotes(text.topology), name,
                        in_quotes(atom_text(structure, reference)));
+        scene += format_approximate(structure, segment, text.approximate);
         if (segment.kind == SegmentKind::Molecule) scene += "shape = \"flexible\"\n";
         if (segment.kind == SegmentKind::Water && has_solvent) scene += "structural_water = true\n";
         if (segment.name == hand.segment && hand.atom.empty()) {
             scene += "motion = \"translate-and-turn\"\n";
         }
     }
+    if (!text.rigid.empty())
+        scene += fmt::format("\n[joints]\nrigid = {}\n", format_texts(text.rigid));
     scene += format_statics(structure.names.size(), text.solvent, tuning);
     scene += fmt::format("\n[grab]\nmolecule = {}\nmeasured_from = {}\n", in_quotes(hand.segment),
                          in_quotes(find_origin(segments, hand)));

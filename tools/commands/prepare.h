@@ -10,7 +10,7 @@ namespace palpa {
 
 struct PrepareOptions {
     std::filesystem::path structure;
-    std::vector<std::filesystem::path> toppar;
+    std::vector<std::filesystem::path> toppar, parameters;
     std::filesystem::path folder;
     PrepareSettings settings;
     // As written: "CSO=CYS", "A:25=ASPP", "A:53=B", "A=NTER", "A:3-A:40".
