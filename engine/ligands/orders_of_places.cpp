@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -103,7 +104,7 @@ private:
     // A flat ring of five carbons and a nitrogen with three neighbours, nothing double on it.
     void charge_pyridinium() {
         for (const auto& ring : find_rings(graph_)) {
-            std::uint32_t nitrogen = ring[0];
+            std::optional<std::uint32_t> nitrogen;
             bool is_one = ring.size() == 6;
             std::size_t carbons = 0;
             for (const std::uint32_t atom : ring) {
@@ -114,9 +115,9 @@ private:
                     is_one = is_one && graph_.bonds[i].order == 1;
                 }
             }
-            if (!is_one || carbons != 5 || element(nitrogen) != "N") continue;
-            valence_[nitrogen] = 1;
-            graph_.atoms[nitrogen].charge = 1;
+            if (!is_one || carbons != 5 || !nitrogen) continue;
+            valence_[*nitrogen] = 1;
+            graph_.atoms[*nitrogen].charge = 1;
         }
     }
 

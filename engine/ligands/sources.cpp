@@ -64,11 +64,11 @@ MoleculeGraph complete(LigandFile file, bool at_its_word, std::vector<std::strin
     const bool has_hydrogens = has_hydrogen_on_carbon(graph);
     if (has_hydrogens) {
         if (has_open && !assign_bond_orders(graph)) {
-            notes.push_back("its aromatic bonds and hydrogens leave a carbon open");
+            notes.emplace_back("its aromatic bonds and hydrogens leave a carbon open");
         }
         charge_by_valence(graph);
     } else if (has_open && !pair_marked_bonds(graph, file.open_bonds, open_ends(file))) {
-        notes.push_back("its aromatic bonds leave a carbon open");
+        notes.emplace_back("its aromatic bonds leave a carbon open");
     }
     if (at_its_word && (has_hydrogens || file.states_charges)) {
         return has_hydrogens ? std::move(graph) : with_hydrogens(graph);
@@ -214,8 +214,8 @@ private:
     }
 
     FoundLigand from_places() {
-        std::vector<std::string> notes{
-            "its bond orders are guessed from distances and angles: look at them"};
+        std::vector<std::string> notes;
+        notes.emplace_back("its bond orders are guessed from distances and angles: look at them");
         std::vector<bool> is_hydrogen(found_.size());
         for (std::size_t i = 0; i < found_.size(); ++i) is_hydrogen[i] = found_.is_hydrogen(i);
         MoleculeGraph heavy = without_atoms(found_, is_hydrogen);
