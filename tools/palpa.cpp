@@ -44,6 +44,7 @@ void add_commands(CLI::App& program, palpa::ProgramCommand& chosen) {
     palpa::add_closed_paths(program, chosen);
     palpa::add_accuracy(program, chosen);
     palpa::add_unbind(program, chosen);
+    palpa::add_compare_ligands(program, chosen);
 }
 
 // The exit code where there is nothing left to run.

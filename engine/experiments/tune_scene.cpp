@@ -10,6 +10,7 @@
 #include "formats/crd.h"
 #include "formats/psf.h"
 #include "prepare/region_choice.h"
+#include "prepare/residues.h"
 #include "prepare/scene_of.h"
 #include "scene/read_scene.h"
 #include "session/run_headless.h"
@@ -332,6 +333,24 @@ TunedScene tune(PreparedSystem& system, Tuning& tuning, const StageFunction& tel
     return {tuning.files(), tuning.copy.hand.words, played.felt_newton, played.moved_angstrom};
 }
 
+// Bonds whose barriers are guesses, of each copy of an approximate residue.
+std::vector<std::string> find_rigid(const Structure& structure,
+                                    const std::vector<ApproximatePart>& parts) {
+    std::vector<std::string> rigid;
+    for (const ApproximatePart& part : parts) {
+        if (part.rigid_bonds.empty()) continue;
+        for (const ResidueRange& residue : find_residues(structure)) {
+            const AtomName& name = structure.names[residue.first];
+            if (name.residue != part.residue) continue;
+            for (const std::vector<std::string>& bond : part.rigid_bonds) {
+                rigid.push_back(
+                    fmt::format("{} {} {}", name.segment, name.number, fmt::join(bond, " ")));
+            }
+        }
+    }
+    return rigid;
+}
+
 }  // namespace
 
 TunedScene tune_scene(PreparedSystem& system, const std::string& grab, bool is_aligned,
@@ -349,6 +368,10 @@ TunedScene tune_scene(PreparedSystem& system, const std::string& grab, bool is_a
     tuning.text.about =
         fmt::format("In the hand: {}. The emulated hand pulls it by 4 Å and brings it back.",
                     tuning.copy.hand.words);
+    for (const ApproximatePart& part : system.approximate) {
+        tuning.text.approximate.push_back(part.residue);
+    }
+    tuning.text.rigid = find_rigid(tuning.copy.structure, system.approximate);
     tuning.text.made_by = "palpa prepare; report.txt has every decision";
     if (!tuning.copy.joined.empty()) tuning.text.topology = "scene.psf";
     const std::size_t atoms = tuning.rest.names.size();

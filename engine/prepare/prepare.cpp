@@ -9,6 +9,7 @@
 #include "charmm/write_parameters.h"
 #include "core/files.h"
 #include "core/load_error.h"
+#include "core/text.h"
 #include "formats/crd.h"
 #include "formats/pdb.h"
 #include "formats/psf.h"
@@ -238,6 +239,13 @@ std::vector<Vec3> find_left_out_waters(const Structure& structure, const Structu
     return waters;
 }
 
+std::string format_approximate(const PreparedSystem& system, std::string_view title) {
+    std::string text;
+    for (const std::string_view line : split_lines(title)) text += fmt::format("* {}\n", line);
+    for (const ApproximatePart& part : system.approximate) text += part.stream;
+    return text;
+}
+
 void create_folder(const std::filesystem::path& folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
@@ -246,17 +254,27 @@ void create_folder(const std::filesystem::path& folder) {
 
 }  // namespace
 
-PreparedSystem prepare_system(const ForceField& force_field, const Structure& structure,
+PreparedSystem prepare_system(const ForceField& given_force_field, const Structure& structure,
                               const PrepareSettings& settings, const StageFunction& progress) {
     PreparedSystem result;
     Report& report = result.report;
     tell(progress, "choosing and naming atoms");
     if (!structure.repeated.empty()) report.warn(structure.repeated);
-    const Structure chosen = choose_atoms(structure, settings, report);
+    Structure chosen = choose_atoms(structure, settings, report);
     check_size(chosen);
+    ApproximatedUnknown approximated;
+    if (settings.approximates_ligands) {
+        tell(progress, "approximating ligands");
+        approximated = approximate_unknown(given_force_field, chosen, settings, report);
+        chosen = std::move(approximated.structure);
+        result.approximate = std::move(approximated.parts);
+    }
+    const ForceField& force_field =
+        settings.approximates_ligands ? approximated.force_field : given_force_field;
     const NamedResidues named = name_residues(force_field, chosen, settings, report,
                                               find_left_out_waters(structure, chosen, settings));
     Missing problems = named.problems;
+    for (const LoadError& error : approximated.refused) problems.add(error);
     TypedSystem system;
     try {
         if (!named.structure.names.empty()) {
@@ -313,6 +331,9 @@ void write_prepared(const PreparedSystem& system, const std::filesystem::path& f
         {folder / "system.crd", format_crd(system.structure, title)},
         {folder / "system.prm", format_parameters(system.parameters, title)},
         {folder / "report.txt", fmt::format("{}\n\n{}", title, system.report.to_text())}};
+    if (!system.approximate.empty()) {
+        files.push_back({folder / "approximate.str", format_approximate(system, title)});
+    }
     for (const TextFile& file : scene) files.push_back({folder / file.path, file.text});
     for (TextFile& file : files) file.existing = existing;
     create_folder(folder);

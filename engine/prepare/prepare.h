@@ -7,6 +7,7 @@
 #include "core/stage.h"
 #include "molecule/atoms.h"
 #include "molecule/connectivity.h"
+#include "prepare/approximate_unknown.h"
 #include "prepare/report.h"
 #include "prepare/residue_names.h"
 #include "prepare/settings.h"
@@ -28,6 +29,7 @@ struct PreparedSystem {
     ForceField parameters;      // what of the force field is used
     Report report;
     Solvent solvent = Solvent::None;  // that charges and parameters are for
+    std::vector<ApproximatePart> approximate;
 };
 
 // What the force field lacks, beside whatever else is wrong.
@@ -56,9 +58,9 @@ std::string topology_title(const PreparedSystem& system, std::string_view title)
 PreparedSystem prepare_system(const ForceField& force_field, const Structure& structure,
                               const PrepareSettings& settings, const StageFunction& progress);
 
-// system.psf, system.pdb, system.crd, system.prm, report.txt and those of `scene`, named without
-// folder: all of them or none. `title`: what the files say of themselves; it ends with
-// prepared_mark, by which they are known again.
+// system.psf, system.pdb, system.crd, system.prm, report.txt, approximate.str where something is,
+// and those of `scene`, named without folder: all of them or none. `title`: what the files say of
+// themselves; it ends with prepared_mark, by which they are known again.
 void write_prepared(const PreparedSystem& system, const std::filesystem::path& folder,
                     std::string_view title, std::span<const TextFile> scene,
                     Existing existing = Existing::Refuse);

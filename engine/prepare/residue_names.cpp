@@ -655,7 +655,10 @@ private:
         const std::string files = is_covered
                                       ? fmt::format("add {} with --toppar", found->table->files)
                                       : std::string("give the file that has it with --toppar");
-        return fmt::format("{}{}, or leave it out with --without {}", as, files, name);
+        return fmt::format(
+            "{}{}, leave it out with --without {}, or take a ligand approximately "
+            "with --approximate-ligands",
+            as, files, name);
     }
 
     const ForceField& force_field_;

@@ -82,10 +82,34 @@ std::string format_statics(std::size_t atoms, Solvent solvent, const SceneTuning
     return text;
 }
 
-std::string format_region(const SceneTuning& tuning) {
-    if (!tuning.region_angstrom) return "";
-    return fmt::format("\n[joints]\n{}region_angstrom = {}\n", format_note(tuning.region_note),
-                       *tuning.region_angstrom);
+std::string format_texts(const std::vector<std::string>& texts) {
+    std::vector<std::string> quoted;
+    for (const std::string& text : texts) quoted.push_back(in_quotes(text));
+    return fmt::format("[{}]", fmt::join(quoted, ", "));
+}
+
+// The key `approximate` where the segment has such residues.
+std::string format_approximate(const Structure& structure, const SystemSegment& segment,
+                               const std::vector<std::string>& approximate) {
+    std::vector<std::string> here;
+    for (const std::string& residue : approximate) {
+        const bool has = std::any_of(
+            segment.atoms.begin(), segment.atoms.end(),
+            [&](std::uint32_t atom) { return structure.names[atom].residue == residue; });
+        if (has) here.push_back(residue);
+    }
+    return here.empty() ? "" : fmt::format("approximate = {}\n", format_texts(here));
+}
+
+// Bonds that do not turn, and the region in which others do.
+std::string format_joints(const std::vector<std::string>& rigid, const SceneTuning& tuning) {
+    std::string text;
+    if (!rigid.empty()) text += fmt::format("rigid = {}\n", format_texts(rigid));
+    if (tuning.region_angstrom) {
+        text += fmt::format("{}region_angstrom = {}\n", format_note(tuning.region_note),
+                            *tuning.region_angstrom);
+    }
+    return text.empty() ? text : "\n[joints]\n" + text;
 }
 
 // So that what is in the hand is seen: of some hundred atoms one sees all.
@@ -129,13 +153,14 @@ std::string format_scene(const Structure& structure, std::span<const SystemSegme
                        "reference_atom = {}\n",
                        name, in_quotes(text.structure), in_quotes(text.topology), name,
                        in_quotes(atom_text(structure, reference)));
+        scene += format_approximate(structure, segment, text.approximate);
         if (segment.kind == SegmentKind::Molecule) scene += "shape = \"flexible\"\n";
         if (segment.kind == SegmentKind::Water && has_solvent) scene += "structural_water = true\n";
         if (segment.name == hand.segment && hand.atom.empty()) {
             scene += "motion = \"translate-and-turn\"\n";
         }
     }
-    scene += format_region(tuning);
+    scene += format_joints(text.rigid, tuning);
     scene += format_statics(structure.names.size(), text.solvent, tuning);
     scene += fmt::format("\n[grab]\nmolecule = {}\nmeasured_from = {}\n", in_quotes(hand.segment),
                          in_quotes(find_origin(segments, hand)));

@@ -30,6 +30,8 @@ struct SceneText {
     std::string title, about, made_by;
     std::string structure = "relaxed.crd", topology = "system.psf";  // file names
     Solvent solvent = Solvent::None;
+    std::vector<std::string> approximate = {};  // residues whose parameters are
+    std::vector<std::string> rigid = {};        // bonds that do not turn, as [joints] names them
 };
 
 // Atoms beyond which forces end at 12 Å.

@@ -2,6 +2,7 @@
 #pragma once
 #include "scene/choices.h"
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
@@ -39,6 +40,12 @@ struct PrepareSettings {
     std::vector<std::pair<std::string, std::string>> first, last;      // patches at chains' ends
     std::vector<std::pair<ResidueChoice, ResidueChoice>> disulphides;  // beside those found
     bool finds_disulphides = true;
+
+    // Unknown ligands get approximate residues: bonds from these files, the entry, and what else
+    // there is (ligands/sources.h).
+    bool approximates_ligands = false;
+    std::vector<std::filesystem::path> ligand_files;
+    std::filesystem::path entry;
 
     bool flips = true;  // amides and imidazoles may be turned over
     bool relaxes = true;

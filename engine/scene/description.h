@@ -35,6 +35,7 @@ struct MoleculeDescription {
     // Atoms ("25 CA") or residues ("25") that springs hold where the structure has them.
     std::vector<std::string> anchors;
     double anchor_kcal_per_mol_angstrom2 = 5;
+    std::vector<std::string> approximate;  // residues whose types, charges and parameters are
 };
 
 // A remote engine that moves all atoms, over IMD, in place of our own mechanics.

@@ -82,6 +82,10 @@ void visit_molecule(FieldVisitor& v, MoleculeDescription& m, bool is_remote) {
             .lowest = 1e-3,
             .highest = 1e4},
            m.anchor_kcal_per_mol_angstrom2);
+    v.texts({.key = "approximate",
+             .meaning = "residues whose types, charges and parameters are approximate (`palpa "
+                        "prepare --approximate-ligands`); the window says so"},
+            m.approximate);
     v.leave_table();
 }
 

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <vector>
 
 namespace palpa {
 namespace {
@@ -69,6 +70,22 @@ void show_solvent(Solvent solvent, bool is_remote) {
             "1.5 r. It leaves out salt, surface tension, polarisation and viscosity, and knows no "
             "inside and outside: a salt bridge is nearly nothing; catalytic pairs of acids and "
             "metal sites are poor. Energies are no free energies of binding.");
+}
+
+// Residues whose parameters nobody has fitted.
+void show_approximate(const std::vector<MoleculeDescription>& molecules) {
+    std::vector<std::string> names;
+    for (const MoleculeDescription& molecule : molecules) {
+        for (const std::string& name : molecule.approximate) {
+            if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+        }
+    }
+    if (names.empty()) return;
+    reading("approximate", fmt::format("{}", fmt::join(names, ", ")),
+            "Types, charges and parameters of these residues are guesses by likeness to CGenFF's "
+            "model compounds (palpa prepare --approximate-ligands): forces on and by them are "
+            "rough. For real ones send the molecule to the CGenFF server (cgenff.com) and give "
+            "its stream file to palpa prepare with --parameters.");
 }
 
 void switch_sound(const OverlayStatus& status, std::vector<Action>& actions) {
@@ -189,6 +206,7 @@ void Overlay::draw_readings(const Readout& readout, const OverlayStatus& status,
                           : "Of the molecule in hand with all others: Lennard-Jones and Coulomb, "
                             "kcal/mol");
     show_solvent(scene_.force_field.solvent, scene_.engine.has_value());
+    show_approximate(scene_.molecules);
     if (status.devices.empty()) {
         reading("device", status.device_name, "what the force is sent to, 1000 times a second");
     } else {

@@ -35,6 +35,7 @@ void add_replay(CLI::App& program, ProgramCommand& chosen);
 void add_scenarios(CLI::App& program, ProgramCommand& chosen);
 void add_closed_paths(CLI::App& program, ProgramCommand& chosen);
 void add_accuracy(CLI::App& program, ProgramCommand& chosen);
+void add_compare_ligands(CLI::App& program, ProgramCommand& chosen);
 void add_unbind(CLI::App& program, ProgramCommand& chosen);
 
 // What the options of a command are read into; `function` gets it once the command was asked for.

@@ -44,6 +44,11 @@ ResidueChoice read_choice(const std::string& text, const char* option, std::stri
 
 PrepareSettings build_settings(const PrepareOptions& options) {
     PrepareSettings settings = options.settings;
+    settings.entry = options.structure;
+    if (!settings.ligand_files.empty() && !settings.approximates_ligands) {
+        throw LoadError({"--ligand " + settings.ligand_files.front().string()},
+                        "expected --approximate-ligands with it");
+    }
     for (const std::string& text : options.as) {
         const auto [from, to] = split(text, "--as", "NAME=NAME, as in CSO=CYS");
         settings.residue_names.emplace_back(upper_case(from), upper_case(to));
@@ -121,15 +126,17 @@ void check_outputs(const PrepareOptions& options) {
         check_missing_folder(options.folder);
         return;
     }
-    for (const char* const name : {"system.psf", "system.pdb", "system.crd", "system.prm",
-                                   "report.txt", "scene.toml", "relaxed.crd", "scene.psf"}) {
+    for (const char* const name :
+         {"system.psf", "system.pdb", "system.crd", "system.prm", "report.txt", "approximate.str",
+          "scene.toml", "relaxed.crd", "scene.psf"}) {
         (void)check_output(options.folder / name, prepared_mark, options.overwrites);
     }
 }
 
 // The built-in one with what --toppar adds to it, or --toppar's alone.
 ForceField read_wanted_force_field(const PrepareOptions& options) {
-    const std::vector<std::filesystem::path> files = expand_folders(options.toppar);
+    std::vector<std::filesystem::path> files = expand_folders(options.toppar);
+    files.insert(files.end(), options.parameters.begin(), options.parameters.end());
     if (!options.only_toppar) return read_built_in_force_field(files);
     if (files.empty()) throw LoadError({"--only-toppar"}, "expected --toppar FILE with it");
     return read_force_field(files);
@@ -196,6 +203,16 @@ void print_json(const PreparedSystem& system, const TunedScene& scene) {
     json["cmaps"] = system.connectivity.cmaps.size();
     json["residues_unknown"] = nlohmann::ordered_json::array();
     json["warnings"] = system.report.warnings();
+    json["approximate"] = nlohmann::ordered_json::array();
+    for (const ApproximatePart& part : system.approximate) {
+        json["approximate"].push_back({{"residue", part.residue},
+                                       {"bonds_from", part.source},
+                                       {"charge", part.charge},
+                                       {"type_penalty", part.type_penalty},
+                                       {"parameters_by_analogy", part.analogies},
+                                       {"highest_penalty", part.highest_penalty},
+                                       {"rigid_bonds", part.rigid_bonds}});
+    }
     if (!scene.files.empty()) {
         json["scene"] = {{"in_hand", scene.in_hand},
                          {"felt_N", scene.felt_newton},
@@ -216,8 +233,7 @@ PreparedSystem prepare_or_list_unknown(const ForceField& force_field, const Stru
             nlohmann::ordered_json json;
             json["residues_unknown"] = json_of(error.residues());
             json["warnings"] = {error.what()};
-            fmt::print("{}\n",
-                       json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+            fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
         } else {
             print_unknown(error.residues());
         }
@@ -294,6 +310,19 @@ void add_prepare_choices(CLI::App& prepare, PrepareOptions& options) {
                     "CHAIN:NUMBER-CHAIN:NUMBER: a bond beside those found")
         ->type_name("PAIR");
     add_negation(prepare, "--no-disulphides", settings.finds_disulphides, "look for none");
+    prepare.add_flag("--approximate-ligands", settings.approximates_ligands,
+                     "types, charges and parameters by likeness to CGenFF's residues for ligands "
+                     "without any; approximate.str has them");
+    prepare
+        .add_option("--ligand", settings.ligand_files,
+                    "bonds and hydrogens of such a ligand: .sdf, .mol or .mol2; else they come "
+                    "from the entry, a monomer library (Debian's refmac-dictionary), or distances")
+        ->type_name("FILE");
+    prepare
+        .add_option(
+            "--parameters", options.parameters,
+            "stream files of ligands, as the CGenFF server writes them; read after --toppar")
+        ->type_name("FILE");
     prepare.add_flag("--keep-waters", settings.keeps_waters, "waters are left out otherwise");
     prepare
         .add_option("--solvent", options.solvent,

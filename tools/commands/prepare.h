@@ -10,7 +10,7 @@ namespace palpa {
 
 struct PrepareOptions {
     std::filesystem::path structure;
-    std::vector<std::filesystem::path> toppar;  // beside the built-in force field
+    std::vector<std::filesystem::path> toppar, parameters;  // beside the built-in force field
     bool only_toppar = false;                   // or in place of it
     std::filesystem::path folder;
     PrepareSettings settings;

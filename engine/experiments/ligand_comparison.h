@@ -1,0 +1,46 @@
+// How good approximate ligands are: residues of the force field against what is made for them when
+// their own entry is withheld.
+#pragma once
+#include "charmm/force_field.h"
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace palpa {
+
+struct WaterPose {
+    std::string atom;        // of the residue, that the water is at
+    double own = 0;          // interaction energy, kcal/mol, with the residue's own numbers
+    double approximate = 0;  // and with the approximate ones
+};
+
+struct LigandComparison {
+    std::string residue;
+    std::size_t atoms = 0, right_types = 0;
+    std::size_t heavy = 0, right_heavy = 0;
+    double charge_rms = 0;  // error of partial charges over all atoms, e
+    std::size_t analogies = 0;
+    double highest_penalty = 0;
+    // Atom, own type and approximate one, where they differ.
+    std::vector<std::array<std::string, 3>> wrong;
+    std::vector<WaterPose> poses;
+
+    double pose_rms() const noexcept;  // error, kcal/mol; 0 without poses
+};
+
+// `count` of the force field's model compounds (ligands/model_compounds.h) without lone pairs, of 6
+// heavy atoms at least, evenly over their names. Fewer if there are not as many.
+std::vector<std::string> choose_compounds(const ForceField& force_field, std::size_t count);
+
+// All of them are withheld at once: neither their types nor their charges are learnt from. The
+// water, TIP3 of the force field, gives a hydrogen bond of 1.9 Å to each hydrogen on N, O or S, and
+// takes one from each N, O, S and halogen of at most two neighbours (O to O and N 2.8, others 3.3
+// Å), along the bond or away from the neighbours; places with a contact below 1.6 Å are left out.
+// The molecule is as its own bonded terms and charges relax it. Throws LoadError for a residue that
+// is no model compound, and where the force field has no TIP3.
+std::vector<LigandComparison> compare_ligands(const ForceField& force_field,
+                                              const std::vector<std::string>& residues);
+
+}  // namespace palpa

@@ -1,0 +1,31 @@
+// What an atom of a molecule sees around it, as keys that are equal for atoms of equal
+// surroundings.
+#pragma once
+#include "ligands/graph.h"
+#include "ligands/perception.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace palpa {
+
+// From coarse to specific.
+enum class Surroundings : std::uint8_t {
+    Element,
+    Bonds,        // and the kinds of its bonds
+    Atom,         // and its hydrogens, ring sizes and charge
+    Neighbours,   // and its neighbours' elements and bonds
+    OneBondAway,  // and all of that of its neighbours
+    TwoBondsAway,
+    ThreeBondsAway
+};
+inline constexpr std::size_t surroundings_levels = 7;
+
+// One of each level. Equal in any order of the atoms, and in each Kekulé form.
+
+using EnvironmentKeys = std::array<std::uint64_t, surroundings_levels>;
+std::vector<EnvironmentKeys> find_environments(const MoleculeGraph& graph, const Perceived& seen);
+
+}  // namespace palpa
