@@ -89,8 +89,10 @@ class ForceField(unittest.TestCase):
         report = (self.folder / "three" / "report.txt").read_text()
         self.assertNotIn("CHARMM36, July 2024", report)
         psf = [(self.folder / name / "system.psf").read_text() for name in ("one", "two", "three")]
-        self.assertEqual(psf[0], psf[1])
-        self.assertEqual(psf[0], psf[2])
+        # That file's water has no bond between its hydrogens, CHARMM36's has one.
+        self.assertIn("6 !NBOND", psf[0])
+        self.assertIn("4 !NBOND", psf[1])
+        self.assertEqual(psf[1], psf[2])
         self.assertIn("expected --toppar FILE", self.palpa(*water, "-o", "four", "--only-toppar", code=2).stderr)
 
 
