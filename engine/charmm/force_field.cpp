@@ -33,9 +33,8 @@ Part part_to_read(const Statements& statements) {
 
 // READ ... NAME file, READ ... UNIT 10
 bool reads_other_file(const Statements& statements) {
-    return std::ranges::any_of(statements.words(), [](std::string_view word) {
-        return word == "NAME" || word == "UNIT";
-    });
+    return std::ranges::any_of(
+        statements.words(), [](std::string_view word) { return word == "NAME" || word == "UNIT"; });
 }
 
 // What a file without a READ line is about to say.
@@ -154,8 +153,9 @@ ForceField read_force_field(std::span<const std::filesystem::path> files) {
         } else if (i == 0) {
             force_field = unpack_force_field(text, file);
         } else {
-            throw LoadError({file}, "is a packed force field, which adds to none; expected it to "
-                                    "be the first file");
+            throw LoadError({file},
+                            "is a packed force field, which adds to none; expected it to "
+                            "be the first file");
         }
     }
     return force_field;

@@ -21,14 +21,15 @@ std::string describe_kind(ForceFieldNote::Kind kind, std::size_t count) {
             return fmt::format("{} force constant{} below 0, taken as {}", count, s,
                                count == 1 ? "it is" : "they are");
         case ForceFieldNote::Kind::ExtraWord:
-            return fmt::format("{} line{} with words that are passed over, as if a '!' were missing",
-                               count, s);
+            return fmt::format(
+                "{} line{} with words that are passed over, as if a '!' were missing", count, s);
         case ForceFieldNote::Kind::OtherFile:
             break;
     }
-    return fmt::format("{} statement{} that name{} another file, which is not read; give it by "
-                       "itself",
-                       count, s, count == 1 ? "s" : "");
+    return fmt::format(
+        "{} statement{} that name{} another file, which is not read; give it by "
+        "itself",
+        count, s, count == 1 ? "s" : "");
 }
 
 }  // namespace

@@ -105,7 +105,10 @@ private:
         std::set<std::array<std::uint32_t, 2>> bonded;
         for (const TemplateUse& use : residues_.uses) {
             delete_terms(use, bonded);
+            const bool has_own_terms =
+                !use.residue->deleted_angles.empty() || !use.residue->deleted_dihedrals.empty();
             for (const auto& bond : find_tuples(use, use.residue->bonds)) {
+                if (has_own_terms) ungenerated_.insert(lower_way(bond));
                 if (bonded.insert(lower_way(bond)).second) result_.bonds.push_back(bond);
             }
             for (const auto& angle : find_tuples(use, use.residue->angles)) {
@@ -143,6 +146,16 @@ private:
         return instance.has_generated_terms && instance.residue->has_generated_dihedrals;
     }
 
+    // Whether one of the bonds along these atoms has its own terms.
+    template <std::size_t Size>
+    bool is_ungenerated(const std::array<std::uint32_t, Size>& atoms) const {
+        if (ungenerated_.empty()) return false;
+        for (std::size_t i = 1; i < Size; ++i) {
+            if (ungenerated_.contains(lower_way(std::array{atoms[i - 1], atoms[i]}))) return true;
+        }
+        return false;
+    }
+
     // All pairs of bonds of an atom.
     void generate_angles() {
         if (!force_field_.generates_angles) return;
@@ -152,6 +165,7 @@ private:
                 for (std::size_t j = i + 1; j < bonded_[b].size(); ++j) {
                     const std::array angle{bonded_[b][i], b, bonded_[b][j]};
                     if (angles_.contains(angle) || deleted_angles_.contains(angle)) continue;
+                    if (is_ungenerated(angle)) continue;
                     result_.angles.push_back(angle);
                 }
             }
@@ -171,6 +185,7 @@ private:
                         const std::array dihedral{a, b, c, d};
                         const auto key = lower_way(dihedral);
                         if (dihedrals_.contains(key) || deleted_dihedrals_.contains(key)) continue;
+                        if (is_ungenerated(dihedral)) continue;
                         result_.dihedrals.push_back(dihedral);
                     }
                 }
@@ -189,6 +204,7 @@ private:
     // Those that patches take away from what is generated.
     std::set<std::array<std::uint32_t, 3>> deleted_angles_;
     std::set<std::array<std::uint32_t, 4>> deleted_dihedrals_;
+    std::set<std::array<std::uint32_t, 2>> ungenerated_;  // bonds of such patches
     Connectivity result_;
 };
 

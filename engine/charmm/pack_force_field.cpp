@@ -36,7 +36,9 @@ public:
     }
 
     void number(double value, PackedNumber = PackedNumber::Any) {
-        for (std::size_t decimals = 0; decimals < packed_powers.size(); ++decimals) {
+        const bool is_minus_zero = value == 0 && std::signbit(value);  // which no whole number is
+        for (std::size_t decimals = is_minus_zero ? packed_powers.size() : 0;
+             decimals < packed_powers.size(); ++decimals) {
             const double digits = std::round(value * packed_powers[decimals]);
             if (std::abs(digits) > 9e15) break;
             const double read = digits / packed_powers[decimals];
@@ -90,8 +92,9 @@ std::string pack_force_field(const ForceField& force_field, std::span<const std:
     std::string text = fmt::format("{}\n", packed_mark);
     for (const std::string& line : about) {
         if (line.empty() || printable(line) != line) {
-            throw LoadError({"about"}, fmt::format("a line '{}'; expected words that can be printed",
-                                                   printable(line)));
+            throw LoadError(
+                {"about"},
+                fmt::format("a line '{}'; expected words that can be printed", printable(line)));
         }
         text += line + '\n';
     }
@@ -99,8 +102,7 @@ std::string pack_force_field(const ForceField& force_field, std::span<const std:
     PackWriter writer;
     visit_force_field(writer, force_field);
     const std::string plain = writer.take(), packed = compressed(plain);
-    return text +
-           fmt::format("\n{} {}\n", packed.size(), plain.size()) + packed;
+    return text + fmt::format("\n{} {}\n", packed.size(), plain.size()) + packed;
 }
 
 }  // namespace palpa

@@ -3,8 +3,9 @@
 //
 // A count is a whole number in groups of seven bits, the lowest first. A name is 0, its length and
 // its letters where it is new, else 1 + its place among the names so far. A number is the count of
-// its decimals (0 to 17) and its digits as a whole number (even: 2 n; odd: -n of 2 n - 1), or 255 and
-// the eight bytes of the double where that would change it. Maps are in the order of their keys.
+// its decimals (0 to 17) and its digits as a whole number (even: 2 n; odd: -n of 2 n - 1), or 255
+// and the eight bytes of the double where that would change it. Maps are in the order of their
+// keys.
 #pragma once
 #include "charmm/force_field.h"
 
@@ -15,7 +16,7 @@
 namespace palpa {
 
 // By which digits are divided, which rounds as reading the decimal does: they are exact.
-inline constexpr std::array packed_powers = {1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,
+inline constexpr std::array packed_powers = {1e0, 1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,
                                              1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17};
 
 // What a number may be beside finite.
@@ -40,8 +41,8 @@ template <class Archive, class Coordinate>
 void visit_internal_coordinate(Archive& archive, Coordinate& ic) {
     visit_names(archive, ic.atoms);
     archive.flag(ic.is_improper);
-    for (auto* value :
-         {&ic.first_bond, &ic.first_angle_deg, &ic.dihedral_deg, &ic.last_angle_deg, &ic.last_bond}) {
+    for (auto* value : {&ic.first_bond, &ic.first_angle_deg, &ic.dihedral_deg, &ic.last_angle_deg,
+                        &ic.last_bond}) {
         archive.number(*value);
     }
 }
@@ -123,7 +124,8 @@ void visit_parameters(Archive& archive, Field& field) {
         archive.finish(bond);
     });
     archive.map(field.angles, names, [&](auto& angle) {
-        for (auto* value : {&angle.k, &angle.value, &angle.urey_bradley_k, &angle.urey_bradley_s0}) {
+        for (auto* value :
+             {&angle.k, &angle.value, &angle.urey_bradley_k, &angle.urey_bradley_s0}) {
             archive.number(*value);
         }
         archive.finish(angle);

@@ -32,9 +32,8 @@ bool is_wildcard(const std::string& type) { return type == "X"; }
 // CHARMM takes any force constant; its own files have Urey-Bradley terms and impropers below 0.
 void note_negative(const Statements& statements, ForceField& into, double k, std::string_view of) {
     if (k >= 0) return;
-    into.notes.push_back({ForceFieldNote::Kind::Negative, statements.place(),
-                          fmt::format("{} of {}", k, of),
-                          {}});
+    into.notes.push_back(
+        {ForceFieldNote::Kind::Negative, statements.place(), fmt::format("{} of {}", k, of), {}});
 }
 
 bool is_same_term(const DihedralTerm& a, const DihedralTerm& b) {
@@ -131,9 +130,9 @@ void ParameterReader::read_bond() {
     const std::string what = fmt::format("bond {} {}", types.first, types.second);
     note_negative(statements_, into_, bond.k, what);
     add_or_replace(statements_, into_, into_.bonds, types, bond, what,
-             [](const HarmonicParameter& a, const HarmonicParameter& b) {
-                 return a.k == b.k && a.value == b.value;
-             });
+                   [](const HarmonicParameter& a, const HarmonicParameter& b) {
+                       return a.k == b.k && a.value == b.value;
+                   });
 }
 
 void ParameterReader::read_angle() {
@@ -152,10 +151,11 @@ void ParameterReader::read_angle() {
     note_negative(statements_, into_, angle.k, what);
     note_negative(statements_, into_, angle.urey_bradley_k, "Urey-Bradley " + what);
     add_or_replace(statements_, into_, into_.angles, types, angle, what,
-             [](const AngleParameter& a, const AngleParameter& b) {
-                 return a.k == b.k && a.value == b.value && a.urey_bradley_k == b.urey_bradley_k &&
-                        a.urey_bradley_s0 == b.urey_bradley_s0;
-             });
+                   [](const AngleParameter& a, const AngleParameter& b) {
+                       return a.k == b.k && a.value == b.value &&
+                              a.urey_bradley_k == b.urey_bradley_k &&
+                              a.urey_bradley_s0 == b.urey_bradley_s0;
+                   });
 }
 
 void ParameterReader::read_dihedral(bool is_improper) {
@@ -313,10 +313,10 @@ void ParameterReader::read_nonbonded() {
     }
     const NonbondedType entry{plain[0], plain[1], special[0], special[1], statements_.place()};
     add_or_replace(statements_, into_, into_.nonbonded, type, entry, "non-bonded type " + type,
-             [](const NonbondedType& a, const NonbondedType& b) {
-                 return a.epsilon == b.epsilon && a.half_rmin == b.half_rmin &&
-                        a.epsilon14 == b.epsilon14 && a.half_rmin14 == b.half_rmin14;
-             });
+                   [](const NonbondedType& a, const NonbondedType& b) {
+                       return a.epsilon == b.epsilon && a.half_rmin == b.half_rmin &&
+                              a.epsilon14 == b.epsilon14 && a.half_rmin14 == b.half_rmin14;
+                   });
 }
 
 void ParameterReader::read_nbfix() {
@@ -328,11 +328,10 @@ void ParameterReader::read_nbfix() {
         statements_.words().size() > 4 ? read_well(4, "Rmin") : plain;
     const NbfixPair entry{plain[0], plain[1], special[0], special[1], statements_.place()};
     add_or_replace(statements_, into_, into_.nbfix, in_order(a, b), entry,
-                   fmt::format("NBFIX {} {}", a, b),
-             [](const NbfixPair& x, const NbfixPair& y) {
-                 return x.epsilon == y.epsilon && x.rmin == y.rmin && x.epsilon14 == y.epsilon14 &&
-                        x.rmin14 == y.rmin14;
-             });
+                   fmt::format("NBFIX {} {}", a, b), [](const NbfixPair& x, const NbfixPair& y) {
+                       return x.epsilon == y.epsilon && x.rmin == y.rmin &&
+                              x.epsilon14 == y.epsilon14 && x.rmin14 == y.rmin14;
+                   });
 }
 
 }  // namespace palpa

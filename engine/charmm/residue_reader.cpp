@@ -159,7 +159,8 @@ void ResidueReader::check_extra_words() const {
         }
     }
     if (words.size() <= 4) return statements_.expect_form("ATOM name type charge");
-    into_.notes.push_back({ForceFieldNote::Kind::ExtraWord, statements_.place(),
+    into_.notes.push_back({ForceFieldNote::Kind::ExtraWord,
+                           statements_.place(),
                            fmt::format("'{}' behind an ATOM line", words[4]),
                            {}});
 }
@@ -212,9 +213,10 @@ void ResidueReader::read_delete() {
     } else if (what == "CMAP") {
         read_tuples<8>(residue_->deleted_cmaps, 2);
     } else {
-        statements_.fail(fmt::format("'{}' cannot be deleted; expected DELETE ATOM, BOND, ANGLE, "
-                                     "DIHE, IMPR or CMAP",
-                                     statements_.words()[1]));
+        statements_.fail(
+            fmt::format("'{}' cannot be deleted; expected DELETE ATOM, BOND, ANGLE, "
+                        "DIHE, IMPR or CMAP",
+                        statements_.words()[1]));
     }
 }
 

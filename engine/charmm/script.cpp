@@ -11,8 +11,8 @@ namespace palpa {
 namespace {
 
 // How much CHARMM prints, and at which faults it stops.
-constexpr std::array script_passed_over = std::to_array<std::string_view>(
-    {"BOML", "WRNL", "PRNL", "IOFO", "ECHO", "LABE"});
+constexpr std::array script_passed_over =
+    std::to_array<std::string_view>({"BOML", "WRNL", "PRNL", "IOFO", "ECHO", "LABE"});
 constexpr std::array script_followed =
     std::to_array<std::string_view>({"SET", "IF", "ELSE", "ENDI", "GOTO", "RETU", "STRE"});
 
@@ -97,9 +97,10 @@ bool Script::follow_if(Words words) {
     if (!truth || !*truth) return true;
     const Words rest = words.subspan(4);
     if (!is_script(rest[0].substr(0, 4))) {
-        statements_.fail(fmt::format("'{}' is no statement that may depend on IF; expected SET, "
-                                     "GOTO, RETURN or the like",
-                                     rest[0]));
+        statements_.fail(
+            fmt::format("'{}' is no statement that may depend on IF; expected SET, "
+                        "GOTO, RETURN or the like",
+                        rest[0]));
     }
     return follow(rest);
 }
@@ -108,9 +109,9 @@ bool Script::follow_if(Words words) {
 void Script::set(Words words) {
     if (words.size() < 2) statements_.fail("no variable here; expected: SET variable value");
     const std::size_t at = words.size() > 2 && words[2] == "=" ? 3 : 2;
-    variables_.insert_or_assign(
-        std::string(words[1]),
-        words.size() > at ? find_value(words[at]) : std::optional<std::string>(""));
+    variables_.insert_or_assign(std::string(words[1]), words.size() > at
+                                                           ? find_value(words[at])
+                                                           : std::optional<std::string>(""));
 }
 
 // To behind the ENDIF, or the ELSE if that is the other way, of the block that begins here.
@@ -140,12 +141,13 @@ void Script::go_to(std::string label) {
             open_blocks_.pop_back();
         }
     }
-    throw LoadError(place, fmt::format("no label '{}' behind this line; jumps back are not followed",
-                                       label));
+    throw LoadError(
+        place, fmt::format("no label '{}' behind this line; jumps back are not followed", label));
 }
 
 void Script::note_other_file() {
-    into_.notes.push_back({ForceFieldNote::Kind::OtherFile, statements_.place(),
+    into_.notes.push_back({ForceFieldNote::Kind::OtherFile,
+                           statements_.place(),
                            fmt::format("'{}'", statements_.text()),
                            {}});
 }
@@ -163,8 +165,8 @@ std::optional<std::string> Script::find_value(std::string_view word) const {
     if (word.find('?') != std::string_view::npos) return std::nullopt;
     if (!word.starts_with('@')) return std::string(word);
     const bool is_braced = word.size() > 3 && word[1] == '{' && word.back() == '}';
-    const auto found = variables_.find(is_braced ? word.substr(2, word.size() - 3)
-                                                 : word.substr(1));
+    const auto found =
+        variables_.find(is_braced ? word.substr(2, word.size() - 3) : word.substr(1));
     return found == variables_.end() ? std::nullopt : found->second;
 }
 

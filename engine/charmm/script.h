@@ -21,8 +21,8 @@ public:
 
     static bool is_script(std::string_view keyword);
 
-    // Follows the present statement, which is_script; jumps and blocks that are not taken move on to
-    // their end. False at RETURN: nothing behind it is read.
+    // Follows the present statement, which is_script; jumps and blocks that are not taken move on
+    // to their end. False at RETURN: nothing behind it is read.
     bool follow();
 
     // Notes that a file which is named here must be given by itself.

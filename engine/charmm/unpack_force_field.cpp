@@ -116,12 +116,14 @@ public:
         map.place = place_;
         const auto side = static_cast<std::size_t>(
             std::lround(std::sqrt(static_cast<double>(map.energies.size()))));
-        if (side < 2 || side > 360 || side * side != map.energies.size()) fail("a map of no square");
+        if (side < 2 || side > 360 || side * side != map.energies.size())
+            fail("a map of no square");
     }
     void finish(Residue& residue) {
         residue.place = place_;
         for (ResidueAtom& atom : residue.atoms) atom.place = place_;
-        std::ranges::sort(in_terms_, {}, [&](std::size_t at) { return std::string_view(names_[at].text); });
+        std::ranges::sort(in_terms_, {},
+                          [&](std::size_t at) { return std::string_view(names_[at].text); });
         for (const std::size_t at : in_terms_) {
             residue.named_on.emplace_hint(residue.named_on.end(), names_[at].text, 0);
         }
@@ -178,7 +180,7 @@ private:
     const std::string& file_;
     TextPlace place_;
     std::vector<KnownName> names_;
-    std::size_t residue_ = 1;             // that is read now
+    std::size_t residue_ = 1;            // that is read now
     std::vector<std::size_t> in_terms_;  // places in names_ of what its terms name
 };
 
@@ -234,8 +236,8 @@ PackedHead read_head(std::string_view bytes, const std::string& file) {
     const auto plain = words.size() == 2 ? find_integer(words[1]) : std::nullopt;
     if (!packed || !plain || *packed < 0 || *plain < 0 || head.about.empty() ||
         *plain > std::int64_t{most_plain_bytes}) {
-        throw LoadError({file}, fmt::format("'{}' is no size of a packed force field",
-                                            printable(*sizes)));
+        throw LoadError({file},
+                        fmt::format("'{}' is no size of a packed force field", printable(*sizes)));
     }
     head.packed_bytes = static_cast<std::size_t>(*packed);
     head.plain_bytes = static_cast<std::size_t>(*plain);
@@ -247,14 +249,14 @@ PackedHead read_head(std::string_view bytes, const std::string& file) {
 // zlib makes at most 1032 bytes of one.
 std::string expand(std::string_view bytes, const PackedHead& head, const std::string& file) {
     const auto damaged = [&] { return LoadError({file}, "the packed force field is damaged"); };
-    if (head.plain_bytes / 1100 > head.packed_bytes || bytes.size() != head.begin + head.packed_bytes)
+    if (head.plain_bytes / 1100 > head.packed_bytes ||
+        bytes.size() != head.begin + head.packed_bytes)
         throw damaged();
     std::string plain(head.plain_bytes, '\0');
     auto size = static_cast<uLongf>(plain.size());
-    const int code =
-        uncompress(reinterpret_cast<Bytef*>(plain.data()), &size,
-                   reinterpret_cast<const Bytef*>(bytes.data() + head.begin),
-                   static_cast<uLong>(head.packed_bytes));
+    const int code = uncompress(reinterpret_cast<Bytef*>(plain.data()), &size,
+                                reinterpret_cast<const Bytef*>(bytes.data() + head.begin),
+                                static_cast<uLong>(head.packed_bytes));
     if (code != Z_OK || size != plain.size()) throw damaged();
     return plain;
 }

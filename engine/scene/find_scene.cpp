@@ -55,7 +55,7 @@ std::string shell_word(const std::string& word) {
 }
 
 std::string prepare_hint(const fs::path& structure) {
-    return fmt::format("'palpa prepare {} -o {} --toppar ...' makes a scene of it",
+    return fmt::format("'palpa prepare {} -o {}' makes a scene of it",
                        shell_word(structure.string()), shell_word(structure.stem().string()));
 }
 

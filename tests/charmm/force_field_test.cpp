@@ -344,8 +344,8 @@ TEST_CASE("several files are read in order, and errors name theirs", "[charmm][f
     const ForceField replaced = read_force_field(std::array{first, second, third});
     CHECK(replaced.types.at("OT").mass == 17);
     REQUIRE(replaced.notes.size() == 1);
-    CHECK(describe_note(replaced.notes[0]) == third.string() + ":2: mass of OT replaces that of " +
-                                                  first.string() + ":1");
+    CHECK(describe_note(replaced.notes[0]) ==
+          third.string() + ":2: mass of OT replaces that of " + first.string() + ":1");
     CHECK(load_error_of([&] { read_force_field(std::array{folder.path() / "none.prm"}); }) ==
           (folder.path() / "none.prm").string() + ": no such file");
     CHECK(load_error_of([&] {
@@ -582,8 +582,8 @@ TEST_CASE("a dihedral given again in a later part loses its earlier multipliciti
 }
 
 TEST_CASE("force constants below 0 are taken and noted", "[charmm][force_field]") {
-    const ForceField force_field = parsed(
-        "BONDS\nHT OT -450.0 1.0\nANGLES\nP ON2 P 15.0 140.0 -40.0 2.80\nA B C -2.0 90.0\n");
+    const ForceField force_field =
+        parsed("BONDS\nHT OT -450.0 1.0\nANGLES\nP ON2 P 15.0 140.0 -40.0 2.80\nA B C -2.0 90.0\n");
 
     CHECK(force_field.bonds.at({"HT", "OT"}).k == -450);
     CHECK(force_field.angles.at({"P", "ON2", "P"}).urey_bradley_k == -40);
@@ -596,8 +596,7 @@ TEST_CASE("force constants below 0 are taken and noted", "[charmm][force_field]"
                StartsWith("3 force constants below 0, taken as they are: a.str:2: "));
 }
 
-TEST_CASE("words behind an ATOM line's charge are passed over and noted",
-          "[charmm][force_field]") {
+TEST_CASE("words behind an ATOM line's charge are passed over and noted", "[charmm][force_field]") {
     const ForceField force_field = parsed("RESI A 0.0\nATOM H53 HB2 0.06   C\n");
 
     CHECK(force_field.residues.at("A").atoms[0].charge == 0.06);

@@ -96,11 +96,10 @@ TEST_CASE("a packed force field is what it was, every name and every bit",
     CHECK(to_string(after.residues.at("ALA").place) == "small.ff");
     CHECK(after.notes.empty());
     // That the comparison sees what it should.
-    for (const auto& [old, other] : {std::pair{"0.1e-20", "0.2e-20"},
-                                     std::pair{"*N HN", "N HN"},
-                                     std::pair{"3.23\n", "3.230000001\n"},
-                                     std::pair{"DELETE BOND A B", "DELETE BOND A C"},
-                                     std::pair{"LAST NONE", "LAST CTER"}}) {
+    for (const auto& [old, other] :
+         {std::pair{"0.1e-20", "0.2e-20"}, std::pair{"*N HN", "N HN"},
+          std::pair{"3.23\n", "3.230000001\n"}, std::pair{"DELETE BOND A B", "DELETE BOND A C"},
+          std::pair{"LAST NONE", "LAST CTER"}}) {
         std::string text(all_kinds);
         text.replace(text.find(old), std::string_view(old).size(), other);
         INFO(other);
@@ -110,10 +109,9 @@ TEST_CASE("a packed force field is what it was, every name and every bit",
 
 TEST_CASE("the parts of CHARMM36m and the waters that come with scenes are packed exactly",
           "[charmm][packed_force_field]") {
-    const ForceField before = read_force_field(
-        std::array<std::filesystem::path, 3>{test::test_data("two_peptides/aera_c36m.rtf"),
-                   test::test_data("two_peptides/aera_c36m.prm"),
-                   test::in_project("scenes/water/tip3p.str")});
+    const ForceField before = read_force_field(std::array<std::filesystem::path, 3>{
+        test::test_data("two_peptides/aera_c36m.rtf"),
+        test::test_data("two_peptides/aera_c36m.prm"), test::in_project("scenes/water/tip3p.str")});
 
     CHECK(test::is_same_force_field(
         before, unpack_force_field(pack_force_field(before, about), "aera.ff")));
@@ -131,7 +129,8 @@ TEST_CASE("a packed force field is read like any file, first, and others add to 
     CHECK(field.bonds.at({"A", "D"}).k == 1);
     CHECK(field.bonds.at({"B", "B"}).k == 1e300);
     REQUIRE(field.notes.size() == 1);
-    CHECK_THAT(describe_note(field.notes[0]), Contains("more.prm:2: bond A B replaces that of base.ff"));
+    CHECK_THAT(describe_note(field.notes[0]),
+               Contains("more.prm:2: bond A B replaces that of base.ff"));
     CHECK(field.files == std::vector<std::string>{"Small", more.string()});
     CHECK_THAT(load_error_of([&] { read_force_field(std::array{more, base}); }),
                Contains("base.ff: is a packed force field") && Contains("the first file"));
@@ -150,12 +149,20 @@ TEST_CASE("a packed force field that is cut, changed or of another version is re
         REQUIRE_THAT(error(whole.substr(0, size)), StartsWith("a.ff: "));
     }
     const std::size_t content = whole.find("\n\n") + 2;
+    int unchanged = 0;
     for (std::size_t at = content; at < whole.size(); ++at) {
         std::string changed = whole;
         changed[at] = static_cast<char>(changed[at] ^ 4);
         INFO(at);
-        REQUIRE_THAT(error(changed), StartsWith("a.ff: "));
+        if (error(changed) == "no error") {  // zlib fills its last byte with bits that say nothing
+            REQUIRE(test::is_same_force_field(unpack_force_field(changed, "a.ff"),
+                                              unpack_force_field(whole, "a.ff")));
+            ++unchanged;
+        } else {
+            REQUIRE_THAT(error(changed), StartsWith("a.ff: "));
+        }
     }
+    CHECK(unchanged <= 1);
     CHECK_THAT(error("Palpa packed force field 2\n"), Contains("of this version"));
     CHECK_THAT(error(whole + "x"), StartsWith("a.ff: "));
 }
@@ -173,7 +180,8 @@ TEST_CASE("what a packed force field is can be read without the rest",
 TEST_CASE("a folder of CHARMM's files is read in its order", "[charmm][force_field]") {
     const test::TemporaryFolder folder;
     std::filesystem::create_directory(folder.path() / "stream");
-    for (const char* const name : {"stream/a.str", "b.str", "a.prm", "z.rtf", "b.rtf", "README.md"}) {
+    for (const char* const name :
+         {"stream/a.str", "b.str", "a.prm", "z.rtf", "b.rtf", "README.md"}) {
         folder.add_file(name, "");
     }
 
@@ -194,8 +202,8 @@ TEST_CASE("the force field of the program is CHARMM's release", "[charmm][packed
     if (!release) return;
     const std::string bytes = read_text_file(test::in_project("engine/charmm/charmm36.ff"));
     std::vector<std::string> lines;
-    for (const std::string_view line :
-         split_lines(read_text_file(test::in_project("engine/charmm/charmm36.txt")))) {
+    const std::string about_text = read_text_file(test::in_project("engine/charmm/charmm36.txt"));
+    for (const std::string_view line : split_lines(about_text)) {
         lines.emplace_back(line);
     }
 

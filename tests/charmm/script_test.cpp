@@ -41,17 +41,28 @@ TEST_CASE("a block is read where its condition holds", "[charmm][script]") {
         bool holds;
     };
     const auto row = GENERATE(values<Row>({
-        {"model eq 1", true},      {"@model eq 1", true},      {"@{model} eq 1", true},
-        {"model eq 1.0", true},    {"model ne 1", false},      {"model eq 2", false},
-        {"model gt 0", true},      {"model gt 1", false},      {"model ge 1", true},
-        {"model lt 1", false},     {"model le 1", true},       {"\"@MODEL\" eq \"1\"", true},
-        {"word eq Some", true},    {"word ne some", false},    {"word eq other", false},
-        {"1 eq @model", true},     {"copy eq 1", true},
+        {"model eq 1", true},
+        {"@model eq 1", true},
+        {"@{model} eq 1", true},
+        {"model eq 1.0", true},
+        {"model ne 1", false},
+        {"model eq 2", false},
+        {"model gt 0", true},
+        {"model gt 1", false},
+        {"model ge 1", true},
+        {"model lt 1", false},
+        {"model le 1", true},
+        {"\"@MODEL\" eq \"1\"", true},
+        {"word eq Some", true},
+        {"word ne some", false},
+        {"word eq other", false},
+        {"1 eq @model", true},
+        {"copy eq 1", true},
     }));
     INFO(row.condition);
-    const std::string text = fmt::format(
-        "set model 1\nset word some\nset copy = @model\nif {} then\n{}endif\n{}", row.condition,
-        part("A"), part("B"));
+    const std::string text =
+        fmt::format("set model 1\nset word some\nset copy = @model\nif {} then\n{}endif\n{}",
+                    row.condition, part("A"), part("B"));
 
     CHECK(types_of(text) == (row.holds ? "A B" : "B"));
 }
@@ -100,8 +111,8 @@ TEST_CASE("GOTO goes on behind its label, which comes later", "[charmm][script]"
 }
 
 TEST_CASE("other files are noted and not read", "[charmm][script]") {
-    const ForceField field = test::force_field_of(
-        "stream other.str\nread rtf card name top.rtf\n" + part("A"), "a.str");
+    const ForceField field =
+        test::force_field_of("stream other.str\nread rtf card name top.rtf\n" + part("A"), "a.str");
 
     CHECK(field.types.size() == 1);
     REQUIRE(field.notes.size() == 2);
@@ -111,10 +122,12 @@ TEST_CASE("other files are noted and not read", "[charmm][script]") {
 
 TEST_CASE("a block without its end is told as cut, an end without its block as wrong",
           "[charmm][script]") {
-    CHECK(error_of("set m 1\nif m eq 1 then\n" + part("A")) ==
-          "a.str:5: the file ends inside the IF of line 2, as if it were cut; expected ENDIF behind "
-          "it");
-    CHECK_THAT(error_of("set m 1\nif m eq 2 then\n" + part("A")), Contains("inside the IF of line 2"));
+    CHECK(
+        error_of("set m 1\nif m eq 1 then\n" + part("A")) ==
+        "a.str:5: the file ends inside the IF of line 2, as if it were cut; expected ENDIF behind "
+        "it");
+    CHECK_THAT(error_of("set m 1\nif m eq 2 then\n" + part("A")),
+               Contains("inside the IF of line 2"));
     CHECK_THAT(error_of("endif\n"), StartsWith("a.str:1: 'ENDIF' without an IF"));
     CHECK_THAT(error_of("else\n"), StartsWith("a.str:1: 'ELSE' without an IF"));
     CHECK_THAT(error_of("set m 1\nif m is 1 then\nendif\n"),

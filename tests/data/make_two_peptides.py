@@ -27,7 +27,7 @@ def main():
     folder = DATA / "two_peptides"
     write_peptides(folder / "both.crd")
     with tempfile.TemporaryDirectory() as prepared:
-        subprocess.run([sys.argv[1], "prepare", folder / "both.crd", "--toppar",
+        subprocess.run([sys.argv[1], "prepare", folder / "both.crd", "--only-toppar", "--toppar",
                         folder / "aera_c36m.rtf", folder / "aera_c36m.prm", "--no-relax",
                         "--solvent", "none", "-o", prepared], check=True)
         (folder / "both.psf").write_bytes((Path(prepared) / "system.psf").read_bytes())

@@ -22,9 +22,7 @@ public:
 
 private:
     void put(const std::string& name) { text_ += name + ' '; }
-    void put(double value) {
-        text_ += fmt::format("{:x} ", std::bit_cast<std::uint64_t>(value));
-    }
+    void put(double value) { text_ += fmt::format("{:x} ", std::bit_cast<std::uint64_t>(value)); }
     void put_count(std::int64_t value) { text_ += fmt::format("{} ", value); }
     template <class Names>
     void put_names(const Names& names) {

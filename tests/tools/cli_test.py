@@ -134,7 +134,7 @@ class Cli(unittest.TestCase):
     def test_what_is_no_scene_leads_to_one(self):
         (self.tmp / "1abc.pdb").write_text("END\n")
         self.assert_bad_input(self.palpa("run", "1abc.pdb"), "is a structure, not a scene",
-                              "palpa prepare 1abc.pdb -o 1abc --toppar")
+                              "palpa prepare 1abc.pdb -o 1abc'")
         self.assert_bad_input(self.palpa("run", "."), "no scene.toml", "palpa prepare ./1abc.pdb")
         shutil.copytree(WATER, self.tmp / "mine")
         self.assert_bad_input(self.palpa("run", "."), "scenes below it: ./mine/scene.toml")

@@ -48,7 +48,9 @@ class Install(unittest.TestCase):
         listed = run(self.prefix / "bin" / "palpa", cwd=self.tmp,
                      env={**os.environ, "DISPLAY": "", "WAYLAND_DISPLAY": "", "HOME": str(self.tmp)})
         self.assertIn("hiv/flexible", listed.stdout)
-        # Its own scenes, not those of the build.
+        # Its own force field and scenes, not those of the build.
+        shown = run(self.prefix / "bin" / "palpa", "force-field", "show", cwd=self.tmp)
+        self.assertIn(str(self.prefix / "share" / "palpa" / "force-field" / "charmm36.ff"), shown.stdout)
         asked = run(self.prefix / "bin" / "palpa", "run", "wter", "--check", cwd=self.tmp)
         self.assertIn("did you mean 'water'", asked.stderr)
         (self.prefix / "share" / "palpa" / "scenes" / "water").rename(
@@ -76,7 +78,8 @@ class Install(unittest.TestCase):
         for name in ("bin/palpa", "share/palpa/scenes/hiv/system.psf",
                      "share/palpa/scenes/hairpin/scene.toml", "share/palpa/scenes/peptide/system.psf", "share/man/man1/palpa.1",
                      "share/bash-completion/completions/palpa", "lib/udev/rules.d/70-palpa.rules",
-                     "share/doc/palpa/LICENSE"):
+                     "share/doc/palpa/LICENSE", "share/palpa/force-field/charmm36.ff",
+                     "share/palpa/force-field/charmm36.txt"):
             with self.subTest(name=name):
                 self.assertTrue((self.prefix / name).is_file())
         self.assertEqual((self.prefix / "lib/udev/rules.d/70-palpa.rules").read_bytes(),

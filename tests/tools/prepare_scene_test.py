@@ -26,7 +26,7 @@ class PrepareScene(PrepareCase):
                                         "toppar_water_ions.str")
 
     def prepare(self, structure, *options):
-        result = palpa("prepare", self.data / structure, "-o", self.folder / "mine", "--toppar",
+        result = palpa("prepare", "--only-toppar", self.data / structure, "-o", self.folder / "mine", "--toppar",
                        *self.toppar, *options)
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(result.stderr, "")  # progress is for a terminal
@@ -142,7 +142,7 @@ class PrepareScene(PrepareCase):
                          ["report.txt", "system.crd", "system.pdb", "system.prm", "system.psf"])
 
     def test_what_is_to_be_grabbed_must_be_there(self):
-        result = palpa("prepare", self.data / "structures" / "alanine_dipeptide.pdb", "-o",
+        result = palpa("prepare", "--only-toppar", self.data / "structures" / "alanine_dipeptide.pdb", "-o",
                        self.folder / "mine", "--toppar", *self.toppar, "--grab", "P:99")
         self.assertEqual(result.returncode, 2)
         self.assertIn("--grab P:99", result.stderr)
@@ -153,7 +153,7 @@ class PrepareScene(PrepareCase):
         # The structure is not there either: it was not looked for.
         for folder, expected in ((self.folder / "file" / "mine", "file is no folder"),
                                  (self.folder / "file", "file")):
-            result = palpa("prepare", self.folder / "absent.pdb", "-o", folder, "--toppar",
+            result = palpa("prepare", "--only-toppar", self.folder / "absent.pdb", "-o", folder, "--toppar",
                            *self.toppar)
             self.assertEqual(result.returncode, 2)
             self.assertIn(expected, result.stderr)

@@ -66,6 +66,9 @@ class Prepare(PrepareCase):
         return [derived / "3tl_draft.rtf", derived / "3tl_draft.prm"]
 
     def palpa(self, command, *arguments):
+        """Prepares with the files of --toppar alone: these are what the references were made with."""
+        if command == "prepare":
+            arguments = ("--only-toppar", *arguments)
         return subprocess.run([PROGRAM, command, *map(str, arguments)], capture_output=True,
                               text=True)
 
@@ -180,7 +183,7 @@ class Prepare(PrepareCase):
         """The scene is tried out in a temporary folder; Ctrl+C while it is there removes it."""
         for number in (signal.SIGINT, signal.SIGTERM):
             with self.subTest(signal=number), tempfile.TemporaryDirectory() as temporary:
-                command = [PROGRAM, "prepare", self.data / "structures" / "1crn.pdb", "--toppar",
+                command = [PROGRAM, "prepare", "--only-toppar", self.data / "structures" / "1crn.pdb", "--toppar",
                            *self.toppar()[:2], "-o", self.folder / "out"]
                 # A background shell has SIGINT ignored, and what it starts inherits that.
                 program = subprocess.Popen(

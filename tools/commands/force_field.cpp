@@ -17,11 +17,11 @@ namespace {
 
 // In the order of a file: topology, then parameters.
 std::vector<std::pair<const char*, std::size_t>> count_contents(const ForceField& field) {
-    return {{"atom_types", field.types.size()},   {"residues", field.residues.size()},
-            {"patches", field.patches.size()},    {"nonbonded", field.nonbonded.size()},
-            {"bonds", field.bonds.size()},        {"angles", field.angles.size()},
+    return {{"atom_types", field.types.size()},    {"residues", field.residues.size()},
+            {"patches", field.patches.size()},     {"nonbonded", field.nonbonded.size()},
+            {"bonds", field.bonds.size()},         {"angles", field.angles.size()},
             {"dihedrals", field.dihedrals.size()}, {"impropers", field.impropers.size()},
-            {"cmaps", field.cmaps.size()},        {"nbfix", field.nbfix.size()}};
+            {"cmaps", field.cmaps.size()},         {"nbfix", field.nbfix.size()}};
 }
 
 void print_contents(const ForceFieldOptions& options, const ForceField& field,
@@ -53,7 +53,8 @@ int pack(const ForceFieldOptions& options) {
     }
     const Existing existing = check_output(*options.output, packed_mark, options.overwrites);
     std::vector<std::string> about;
-    for (const std::string_view line : split_lines(read_text_file(*options.about))) {
+    const std::string about_text = read_text_file(*options.about);
+    for (const std::string_view line : split_lines(about_text)) {
         about.emplace_back(line);
     }
     ForceField field = read_force_field(expand_folders(options.files));
@@ -78,8 +79,7 @@ int show(const ForceFieldOptions& options) {
 
 }  // namespace
 
-std::vector<std::filesystem::path> expand_folders(
-    const std::vector<std::filesystem::path>& paths) {
+std::vector<std::filesystem::path> expand_folders(const std::vector<std::filesystem::path>& paths) {
     std::vector<std::filesystem::path> files;
     for (const std::filesystem::path& path : paths) {
         for (std::filesystem::path& file : list_force_field_files(path)) {
@@ -104,9 +104,9 @@ void add_force_field(CLI::App& program, ProgramCommand& chosen) {
         "force-field", "What the built-in force field is and whom to cite; packs another");
     ForceFieldOptions& options =
         own_options<ForceFieldOptions>(command, chosen, force_field_command);
-    describe(command, "Make scenes",
-             {"palpa force-field show",
-              "palpa force-field pack toppar --about about.txt -o mine.ff"});
+    describe(
+        command, "Make scenes",
+        {"palpa force-field show", "palpa force-field pack toppar --about about.txt -o mine.ff"});
     command
         .add_option("what", options.what,
                     "show: a packed force field, the built-in one unless named; pack: write one")
