@@ -39,7 +39,4 @@ struct ChosenState {
 // are tried in all combinations up to 20,000, others in turn until nothing changes.
 std::vector<ChosenState> choose_states(const Structure& structure, const StateSettings& settings);
 
-// Turns the end of an amide, or the ring of a histidine, by half a turn about its bond.
-void flip(Structure& structure, const ResidueRange& residue);
-
 }  // namespace palpa

@@ -2,6 +2,7 @@
 #include "prepare/choose_states.h"
 
 #include "formats/pdb.h"
+#include "prepare/turned_sites.h"
 #include "tests/prepare/small_system.h"
 #include "tests/support/shared_data.h"
 
