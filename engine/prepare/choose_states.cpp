@@ -11,7 +11,7 @@
 namespace palpa {
 namespace {
 
-constexpr double flip_price = 0.8;      // hydrogen bonds
+constexpr double flip_price = 0.6;      // hydrogen bonds
 constexpr double charge_price = 0.9;    // likewise
 constexpr double frequent_gain = 0.02;  // of HSE, so that it wins among equals
 constexpr double least_partner = 0.3;   // what counts as a hydrogen bond
