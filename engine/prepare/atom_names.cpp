@@ -6,6 +6,7 @@
 #include "molecule/element.h"
 #include "prepare/match_by_bonds.h"
 #include "prepare/residues.h"
+#include "prepare/wanted_atoms.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -28,99 +29,6 @@ namespace {
 
 constexpr std::string_view names_heading = "Atom names";
 using std::numbers::pi;
-
-// What a residue is to consist of, once its patches are in.
-struct Wanted {
-    std::map<std::string, std::string, std::less<>> elements;  // of each atom
-    std::vector<std::array<std::string, 2>> bonds;             // within the residue
-    std::vector<std::array<std::string, 4>> dihedral_atoms;    // of the IC table
-    std::vector<double> dihedrals;                             // rad
-
-    bool has(std::string_view name) const { return elements.contains(name); }
-};
-
-class Templates {
-public:
-    Templates(const ForceField& force_field, const GenerateSettings& settings)
-        : force_field_(force_field) {
-        for (const SegmentSettings& segment : settings.segments) {
-            segments_[segment.segment] = &segment;
-        }
-        for (const PatchUse& use : settings.patches) {
-            for (std::size_t i = 0; i < use.residues.size(); ++i) {
-                const ResidueId& id = use.residues[i];
-                uses_[{id.segment, id.number}].emplace_back(use.patch, i);
-            }
-        }
-    }
-
-    Wanted find(const AtomName& name, bool is_first, bool is_last) const {
-        const Residue& residue = force_field_.residues.at(name.residue);
-        Wanted wanted;
-        add(residue, std::nullopt, wanted);
-        const auto segment = segments_.find(name.segment);
-        const auto end_patch = [&](const std::string& asked, const std::string& by_template) {
-            apply(asked.empty() ? by_template : asked, 0, wanted);
-        };
-        static const SegmentSettings by_template;
-        const SegmentSettings& ends = segment == segments_.end() ? by_template : *segment->second;
-        if (is_first) end_patch(ends.first, residue.first_patch);
-        if (is_last) end_patch(ends.last, residue.last_patch);
-        if (const auto found = uses_.find({name.segment, name.number}); found != uses_.end()) {
-            for (const auto& [patch, place] : found->second) apply(patch, place, wanted);
-        }
-        return wanted;
-    }
-
-private:
-    void apply(const std::string& patch, std::size_t place, Wanted& wanted) const {
-        const auto found = force_field_.patches.find(patch);
-        if (found == force_field_.patches.end()) return;  // completing the atoms tells
-        for (const std::string& deleted : found->second.deleted_atoms) {
-            if (const auto name = own_name(deleted, place)) wanted.elements.erase(*name);
-        }
-        add(found->second, place, wanted);
-    }
-
-    // An atom's name without the digit that means this residue; none for one of another residue.
-    static std::optional<std::string> own_name(const std::string& name,
-                                               std::optional<std::size_t> place) {
-        if (name.empty() || name[0] == '+' || name[0] == '-') return std::nullopt;
-        if (!place || name.size() < 2 || name[0] < '1' || name[0] > '9') return name;
-        if (static_cast<std::size_t>(name[0] - '1') != *place) return std::nullopt;
-        return name.substr(1);
-    }
-
-    void add(const Residue& residue, std::optional<std::size_t> place, Wanted& wanted) const {
-        for (const ResidueAtom& atom : residue.atoms) {
-            if (const auto name = own_name(atom.name, place)) {
-                wanted.elements[*name] = element_of(force_field_, atom, *name);
-            }
-        }
-        for (const auto& [a, b] : residue.bonds) {
-            const auto first = own_name(a, place);
-            const auto second = own_name(b, place);
-            if (first && second) wanted.bonds.push_back({*first, *second});
-        }
-        for (const InternalCoordinate& line : residue.internal_coordinates) {
-            std::array<std::string, 4> names;
-            bool is_whole = true;
-            for (std::size_t i = 0; i < 4; ++i) {
-                const auto name = own_name(line.atoms[i], place);
-                is_whole = is_whole && name.has_value();
-                names[i] = name.value_or("");
-            }
-            if (!is_whole) continue;
-            wanted.dihedral_atoms.push_back(names);
-            wanted.dihedrals.push_back(line.dihedral_deg * pi / 180);
-        }
-    }
-
-    const ForceField& force_field_;
-    std::map<std::string, const SegmentSettings*> segments_;
-    std::map<std::pair<std::string, std::string>, std::vector<std::pair<std::string, std::size_t>>>
-        uses_;
-};
 
 // Heavy atoms that the PDB and other programs call otherwise; taken where the template has the
 // second name and not the first.
@@ -175,14 +83,14 @@ private:
         const AtomName& name = structure_.names[residue.first];
         const bool is_first = index == 0 || segment(index - 1) != segment(index);
         const bool is_last = index + 1 == residues_.size() || segment(index + 1) != segment(index);
-        const Wanted wanted = templates_.find(name, is_first, is_last);
+        const WantedAtoms wanted = templates_.find(name, is_first, is_last);
         correct_elements(residue, wanted);
         name_heavy_atoms(residue, wanted);
         check_heavy_atoms(residue, wanted);
         name_hydrogens(residue, wanted);
     }
 
-    void correct_elements(const ResidueRange& residue, const Wanted& wanted) {
+    void correct_elements(const ResidueRange& residue, const WantedAtoms& wanted) {
         if (structure_.records.empty()) return;
         for (std::size_t i = residue.first; i < residue.end(); ++i) {
             const auto found = wanted.elements.find(structure_.names[i].atom);
@@ -194,7 +102,7 @@ private:
         }
     }
 
-    void name_heavy_atoms(const ResidueRange& residue, const Wanted& wanted) {
+    void name_heavy_atoms(const ResidueRange& residue, const WantedAtoms& wanted) {
         if (needs_bonds(residue, wanted)) name_by_bonds(residue, wanted);
         std::set<std::string> seen;
         for (std::size_t i = residue.first; i < residue.end(); ++i) {
@@ -208,28 +116,9 @@ private:
         }
     }
 
-    static BondedAtoms bonded_atoms(const Wanted& wanted) {
-        BondedAtoms atoms;
-        std::map<std::string_view, std::uint32_t> indices;
-        for (const auto& [name, element] : wanted.elements) {
-            if (element == "H") continue;
-            indices.emplace(name, static_cast<std::uint32_t>(atoms.names.size()));
-            atoms.names.push_back(name);
-            atoms.elements.push_back(element);
-        }
-        atoms.neighbours.resize(atoms.names.size());
-        for (const auto& [a, b] : wanted.bonds) {
-            const auto first = indices.find(a), second = indices.find(b);
-            if (first != indices.end() && second != indices.end()) {
-                atoms.add_bond(first->second, second->second);
-            }
-        }
-        return atoms;
-    }
-
     // A residue with a name that neither the template has nor the table of others; of molecules
     // that are no chain also one whose names say other bonds.
-    bool needs_bonds(const ResidueRange& residue, const Wanted& wanted) const {
+    bool needs_bonds(const ResidueRange& residue, const WantedAtoms& wanted) const {
         std::size_t heavy = 0, foreign = 0;
         for (std::size_t i = residue.first; i < residue.end(); ++i) {
             if (element_of(structure_, i) == "H") continue;
@@ -248,10 +137,10 @@ private:
     }
 
     // Whether atoms are bonded whose names in the template are not.
-    bool has_other_bonds(const ResidueRange& residue, const Wanted& wanted) const {
+    bool has_other_bonds(const ResidueRange& residue, const WantedAtoms& wanted) const {
         if (residue.count > most_matched) return false;
         const BondedAtoms given = find_bonded_atoms(structure_, residue);
-        const BondedAtoms all = bonded_atoms(wanted);
+        const BondedAtoms all = find_bonded_atoms(wanted);
         const auto index = [&](const std::string& name) {
             return std::find(all.names.begin(), all.names.end(), name) - all.names.begin();
         };
@@ -268,10 +157,10 @@ private:
         return false;
     }
 
-    void name_by_bonds(const ResidueRange& residue, const Wanted& wanted) {
+    void name_by_bonds(const ResidueRange& residue, const WantedAtoms& wanted) {
         if (residue.count > most_matched) return;
         const BondedAtoms given = find_bonded_atoms(structure_, residue);
-        const BondedAtoms all = bonded_atoms(wanted);
+        const BondedAtoms all = find_bonded_atoms(wanted);
         if (given.names.size() > all.names.size()) return;
         const auto match = match_by_bonds(given, all);
         if (!match) return;
@@ -290,7 +179,7 @@ private:
     TextPlace place(std::size_t atom) const { return {structure_.file, structure_.lines[atom], 0}; }
 
     std::optional<std::string_view> find_alias(const ResidueRange& residue, std::string_view name,
-                                               const Wanted& wanted) const {
+                                               const WantedAtoms& wanted) const {
         for (const auto& [from, to] : aliases) {
             const bool fits = from == name && wanted.has(to) && !find_atom(structure_, residue, to);
             if (fits) return to;
@@ -298,7 +187,8 @@ private:
         return std::nullopt;
     }
 
-    void rename_heavy_atom(const ResidueRange& residue, std::size_t atom, const Wanted& wanted) {
+    void rename_heavy_atom(const ResidueRange& residue, std::size_t atom,
+                           const WantedAtoms& wanted) {
         std::string& name = structure_.names[atom].atom;
         if (residue.count == 1 && wanted.elements.size() == 1) {
             name = wanted.elements.begin()->first;
@@ -327,7 +217,7 @@ private:
     }
 
     // Side chains can be built; the backbone, and molecules that are no chain, cannot.
-    void check_heavy_atoms(const ResidueRange& residue, const Wanted& wanted) {
+    void check_heavy_atoms(const ResidueRange& residue, const WantedAtoms& wanted) {
         std::vector<std::string> lacking;
         std::size_t heavy = 0;
         for (const auto& [name, element] : wanted.elements) {
@@ -398,7 +288,7 @@ private:
         return text;
     }
 
-    void name_hydrogens(const ResidueRange& residue, const Wanted& wanted) {
+    void name_hydrogens(const ResidueRange& residue, const WantedAtoms& wanted) {
         std::set<std::size_t> placed;
         for (std::size_t heavy = residue.first; heavy < residue.end(); ++heavy) {
             if (element_of(structure_, heavy) == "H") continue;
@@ -418,7 +308,7 @@ private:
 
     // The hydrogens on one atom.
     void name_group(const ResidueRange& residue, std::size_t heavy,
-                    const std::vector<std::size_t>& given, const Wanted& wanted) {
+                    const std::vector<std::size_t>& given, const WantedAtoms& wanted) {
         std::vector<std::string> names;
         const std::string& parent = structure_.names[heavy].atom;
         for (const auto& [a, b] : wanted.bonds) {
@@ -445,7 +335,7 @@ private:
     }
 
     // Of all orders of the hydrogens, the one whose dihedral angles are the template's.
-    void find_best_order(const ResidueRange& residue, const Wanted& wanted,
+    void find_best_order(const ResidueRange& residue, const WantedAtoms& wanted,
                          const std::vector<std::string>& names, std::vector<std::size_t> order) {
         std::sort(order.begin(), order.end());
         std::vector<std::size_t> best = order;
@@ -465,7 +355,7 @@ private:
 
     // From the IC lines that name one of these hydrogens and are wholly there: the sum of the
     // squared differences, rad^2.
-    double find_deviation(const ResidueRange& residue, const Wanted& wanted,
+    double find_deviation(const ResidueRange& residue, const WantedAtoms& wanted,
                           const std::vector<std::string>& names) const {
         double sum = 0;
         for (std::size_t i = 0; i < wanted.dihedrals.size(); ++i) {
@@ -519,7 +409,7 @@ private:
 
     Structure structure_;
     Report& report_;
-    const Templates templates_;
+    const WantedAtomsFinder templates_;
     const std::vector<ResidueRange> residues_;
     std::vector<bool> kept_;
     Missing missing_;

@@ -2,44 +2,20 @@
 
 #include "prepare/anchor_grid.h"
 #include "prepare/hydrogen_bonds.h"
+#include "prepare/turned_sites.h"
 
 #include <fmt/format.h>
-#include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <numbers>
-#include <numeric>
-#include <optional>
 #include <utility>
 
 namespace palpa {
 namespace {
 
-using std::numbers::pi;
-
-constexpr double flip_price = 0.8;      // hydrogen bonds
+constexpr double flip_price = 0.6;      // hydrogen bonds
 constexpr double charge_price = 0.9;    // likewise
 constexpr double frequent_gain = 0.02;  // of HSE, so that it wins among equals
 constexpr double least_partner = 0.3;   // what counts as a hydrogen bond
 constexpr std::size_t most_combinations = 20'000;
-
-// The atoms of an amide or a ring: the axis, then what turns.
-struct Turned {
-    std::array<std::string_view, 2> axis;
-    std::vector<std::string_view> atoms;
-};
-
-Turned turned_of(std::string_view residue) {
-    if (residue == "ASN") return {{"CB", "CG"}, {"OD1", "ND2"}};
-    if (residue == "GLN") return {{"CG", "CD"}, {"OE1", "NE2"}};
-    return {{"CB", "CG"}, {"ND1", "CD2", "CE1", "NE2"}};
-}
-
-Vec3 half_turn(const Vec3& place, const Vec3& on_axis, const Vec3& axis) {
-    const Vec3 from = place - on_axis;
-    return on_axis + 2 * axis * axis.dot(from) - from;
-}
 
 // One way in which a group may be.
 struct State {
@@ -106,7 +82,7 @@ private:
         const bool is_histidine = name == "HIS";
         if (!is_histidine && name != "ASN" && name != "GLN") return add_given_ring(residue);
         if (is_given(residue)) return;
-        const Turned turned = turned_of(name);
+        const TurnedAtoms turned = turned_atoms_of(name);
         const auto is_there = [&](std::string_view atom) {
             return find_atom(structure_, residue, atom).has_value();
         };
@@ -150,9 +126,9 @@ private:
         const auto is_there = [&](std::string_view atom) {
             return find_atom(structure_, residue, atom).has_value();
         };
-        const Turned turned = turned_of("HIS");
+        const TurnedAtoms turned = turned_atoms_of("HIS");
         if (!std::ranges::all_of(turned.atoms, is_there) || !is_there("CG")) return;
-        for (HydrogenSite& site : sites_of(residue, false, state)) {
+        for (HydrogenSite& site : find_turned_sites(structure_, residue, false, state)) {
             fixed_.push_back(std::move(site));
         }
     }
@@ -160,96 +136,31 @@ private:
     void add_states(Group& group, bool is_flipped) {
         const double price = is_flipped ? flip_price : 0;
         if (name_of(group.residue) != "HIS") {
-            group.states.push_back(
-                {is_flipped, {}, price, sites_of(group.residue, is_flipped, {}), 0});
+            group.states.push_back({is_flipped,
+                                    {},
+                                    price,
+                                    find_turned_sites(structure_, group.residue, is_flipped, {}),
+                                    0});
             return;
         }
         for (const std::string_view state : {"HSE", "HSD", "HSP"}) {
             const double more = state == "HSP" ? charge_price : state == "HSE" ? -frequent_gain : 0;
             if (state == "HSP" && !has_acid_near(group.residue)) continue;
-            group.states.push_back(
-                {is_flipped, state, price + more, sites_of(group.residue, is_flipped, state), 0});
+            group.states.push_back({is_flipped, state, price + more,
+                                    find_turned_sites(structure_, group.residue, is_flipped, state),
+                                    0});
         }
     }
 
     bool has_acid_near(const ResidueRange& residue) const {
         return std::ranges::any_of(fixed_, [&](const HydrogenSite& site) {
             if (site.role != HydrogenRole::Taker || !site.is_charged) return false;
-            return std::ranges::any_of(turned_of("HIS").atoms, [&](std::string_view name) {
+            return std::ranges::any_of(turned_atoms_of("HIS").atoms, [&](std::string_view name) {
                 const auto atom = find_atom(structure_, residue, name);
                 return atom &&
                        (structure_.positions[*atom] - site.place).norm() < hydrogen_bond_reach;
             });
         });
-    }
-
-    Vec3 place_of(const ResidueRange& residue, std::string_view atom, bool is_flipped) const {
-        const std::size_t index = find_atom(structure_, residue, atom).value_or(residue.first);
-        const Vec3& place = structure_.positions[index];
-        if (!is_flipped) return place;
-        const Turned turned = turned_of(name_of(residue));
-        const auto on = [&](std::string_view name) -> const Vec3& {
-            return structure_
-                .positions[find_atom(structure_, residue, name).value_or(residue.first)];
-        };
-        const Vec3 axis = on(turned.axis[1]) - on(turned.axis[0]);
-        return axis.norm() > 0 ? half_turn(place, on(turned.axis[1]), axis.normalized()) : place;
-    }
-
-    std::vector<HydrogenSite> sites_of(const ResidueRange& residue, bool is_flipped,
-                                       std::string_view histidine) const {
-        return histidine.empty() ? amide_sites(residue, is_flipped)
-                                 : ring_sites(residue, is_flipped, histidine);
-    }
-
-    std::vector<HydrogenSite> amide_sites(const ResidueRange& residue, bool is_flipped) const {
-        const Turned turned = turned_of(name_of(residue));
-        const auto place = [&](std::string_view atom) {
-            return place_of(residue, atom, is_flipped);
-        };
-        const Vec3 c = place(turned.axis[1]), o = place(turned.atoms[0]),
-                   n = place(turned.atoms[1]);
-        const auto atom = [&](std::string_view name) {
-            return find_atom(structure_, residue, name).value_or(residue.first);
-        };
-        HydrogenSite taker{o, HydrogenRole::Taker, false, {}, 65 * pi / 180, atom(turned.atoms[0])};
-        HydrogenSite giver{n, HydrogenRole::Giver, false, {}, 30 * pi / 180, atom(turned.atoms[1])};
-        const Vec3 to_o = o - c, to_n = n - c;
-        const Vec3 normal = to_o.cross(to_n);
-        if (to_o.norm() > 0) taker.outward = {to_o.normalized()};
-        if (normal.norm() > 0) {
-            // Both hydrogens are in the plane, 60 degrees to either side of the bond.
-            for (const double angle : {pi / 3, -pi / 3}) {
-                giver.outward.push_back(Eigen::AngleAxisd(angle, normal.normalized()) *
-                                        to_n.normalized());
-            }
-        }
-        return {taker, giver};
-    }
-
-    std::vector<HydrogenSite> ring_sites(const ResidueRange& residue, bool is_flipped,
-                                         std::string_view state) const {
-        constexpr std::array<std::array<std::string_view, 3>, 4> corners{{{"ND1", "CG", "CE1"},
-                                                                          {"CE1", "ND1", "NE2"},
-                                                                          {"NE2", "CE1", "CD2"},
-                                                                          {"CD2", "NE2", "CG"}}};
-        std::vector<HydrogenSite> sites;
-        for (const auto& [name, one, other] : corners) {
-            HydrogenSite site;
-            site.place = place_of(residue, name, is_flipped);
-            site.atom = find_atom(structure_, residue, name).value_or(residue.first);
-            site.half_angle = 30 * pi / 180;
-            const Vec3 outward = 2 * site.place - place_of(residue, one, is_flipped) -
-                                 place_of(residue, other, is_flipped);
-            if (outward.norm() > 0) site.outward = {outward.normalized()};
-            const bool has_hydrogen =
-                state == "HSP" || (name == "ND1" ? state == "HSD" : state == "HSE");
-            site.role = name[0] == 'C' ? HydrogenRole::Carbon
-                        : has_hydrogen ? HydrogenRole::Giver
-                                       : HydrogenRole::Taker;
-            sites.push_back(std::move(site));
-        }
-        return sites;
     }
 
     bool is_own(const Group& group, const HydrogenSite& site) const {
@@ -515,21 +426,6 @@ private:
 
 std::vector<ChosenState> choose_states(const Structure& structure, const StateSettings& settings) {
     return StateChooser(structure, settings).choose();
-}
-
-void flip(Structure& structure, const ResidueRange& residue) {
-    const Turned turned = turned_of(structure.names[residue.first].residue);
-    const auto one = find_atom(structure, residue, turned.axis[0]);
-    const auto other = find_atom(structure, residue, turned.axis[1]);
-    if (!one || !other) return;
-    const Vec3 axis = structure.positions[*other] - structure.positions[*one];
-    if (!(axis.norm() > 0)) return;
-    for (const std::string_view name : turned.atoms) {
-        const auto atom = find_atom(structure, residue, name);
-        if (!atom) continue;
-        structure.positions[*atom] =
-            half_turn(structure.positions[*atom], structure.positions[*other], axis.normalized());
-    }
 }
 
 }  // namespace palpa

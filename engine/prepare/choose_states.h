@@ -33,13 +33,10 @@ struct ChosenState {
 // with hydrogens, or not whole, get the state that these tell, HSE without.
 //
 // A score counts hydrogen bonds (score_contact in prepare/hydrogen_bonds.h): nothing beyond 4 Å
-// counts, so no charge far away turns an amide. A flip must gain 0.8 hydrogen bonds, and find
+// counts, so no charge far away turns an amide. A flip must gain 0.6 hydrogen bonds, and find
 // a partner that the other way round lacks. HSP costs nine tenths, and needs an acid. Where
 // histidines are equal, HSE: the more frequent tautomer in water. Groups within reach of each other
 // are tried in all combinations up to 20,000, others in turn until nothing changes.
 std::vector<ChosenState> choose_states(const Structure& structure, const StateSettings& settings);
-
-// Turns the end of an amide, or the ring of a histidine, by half a turn about its bond.
-void flip(Structure& structure, const ResidueRange& residue);
 
 }  // namespace palpa

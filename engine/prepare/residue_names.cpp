@@ -5,9 +5,11 @@
 #include "prepare/choose.h"
 #include "prepare/choose_states.h"
 #include "prepare/components.h"
-#include "prepare/match_by_bonds.h"
+#include "prepare/joined_residues.h"
 #include "prepare/patch_fit.h"
 #include "prepare/residues.h"
+#include "prepare/template_fit.h"
+#include "prepare/turned_sites.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -88,58 +90,6 @@ std::optional<std::string_view> look_up(std::span<const Pair> pairs, std::string
     return found->second;
 }
 
-void rename_residue(Structure& structure, const ResidueRange& residue, std::string_view name) {
-    for (std::size_t i = residue.first; i < residue.end(); ++i) structure.names[i].residue = name;
-}
-
-// Makes the atoms part of the residue that `of` is in.
-void join_residue(Structure& structure, const ResidueRange& cap, std::size_t of) {
-    for (std::size_t i = cap.first; i < cap.end(); ++i) {
-        structure.names[i].segment = structure.names[of].segment;
-        structure.names[i].residue = structure.names[of].residue;
-        structure.names[i].number = structure.names[of].number;
-        if (structure.records.empty()) continue;
-        structure.records[i].residue_number = structure.records[of].residue_number;
-        structure.records[i].insertion_code = structure.records[of].insertion_code;
-        structure.records[i].chain = structure.records[of].chain;
-    }
-}
-
-struct Cap {
-    std::string_view residue;
-    bool is_first;
-    std::span<const Pair> atoms;  // heavy ones: as files name them, as CHARMM's patches do
-};
-
-constexpr auto acetyl = std::to_array<Pair>({{"CH3", "CAY"}, {"C", "CY"}, {"O", "OY"}});
-constexpr auto methylamide = std::to_array<Pair>({{"N", "NT"}, {"CH3", "CAT"}, {"C", "CAT"}});
-constexpr auto amide = std::to_array<Pair>({{"N", "NT"}});
-
-constexpr std::array caps{Cap{"ACE", true, acetyl}, Cap{"NME", false, methylamide},
-                          Cap{"NMA", false, methylamide}, Cap{"NH2", false, amide}};
-
-void join_caps(Structure& structure, Report& report) {
-    const std::vector<ResidueRange> residues = find_residues(structure);
-    for (std::size_t i = 0; i < residues.size(); ++i) {
-        const std::string& name = structure.names[residues[i].first].residue;
-        const auto cap =
-            std::find_if(caps.begin(), caps.end(), [&](const Cap& c) { return c.residue == name; });
-        if (cap == caps.end()) continue;
-        if (cap->is_first ? i + 1 == residues.size() : i == 0) continue;
-        const ResidueRange& host = residues[cap->is_first ? i + 1 : i - 1];
-        if (!find_atom(structure, host, "CA")) continue;
-        const std::string label = residue_label(structure, residues[i]);
-        for (std::size_t atom = residues[i].first; atom < residues[i].end(); ++atom) {
-            if (const auto charmm = look_up(cap->atoms, structure.names[atom].atom)) {
-                structure.names[atom].atom = *charmm;
-            }
-        }
-        join_residue(structure, residues[i], host.first);
-        report.add(heading,
-                   fmt::format("{}: a cap, now part of {}", label, residue_label(structure, host)));
-    }
-}
-
 class ResidueNamer {
 public:
     ResidueNamer(const ForceField& force_field, Structure structure,
@@ -153,7 +103,7 @@ public:
     NamedResidues name() {
         const StatedLinks stated = find_stated_links(structure_);
         join_caps(structure_, report_);
-        join_components(stated);
+        join_components(force_field_, stated, structure_, report_);
         leave_out_unknown();
         const std::vector<ResidueLink> bonds = find_residue_links(force_field_, structure_, stated);
         find_states(bonds);
@@ -318,7 +268,8 @@ private:
         if (residue.count == 1) return rename_ion(residue);
         if (rename_component(residue)) return;
         const auto alias = look_up(residue_aliases, before);
-        if (!alias || !is_known(*alias) || (is_known(before) && has_elements_of(residue, before))) {
+        if (!alias || !is_known(*alias) ||
+            (is_known(before) && has_elements_of(force_field_, before, structure_, residue))) {
             return;
         }
         rename_as(residue, *alias, {});
@@ -386,118 +337,14 @@ private:
         }
     }
 
-    // Whether all elements of the force field's residue are there: HIP of AMBER is a histidine,
-    // that of CHARMM a phosphohistidine.
-    bool has_elements_of(const ResidueRange& residue, const std::string& name) const {
-        const auto& atoms = force_field_.residues.at(name).atoms;
-        return std::all_of(atoms.begin(), atoms.end(), [&](const ResidueAtom& atom) {
-            const std::string element = element_of(force_field_, atom, atom.name);
-            if (element == "H") return true;
-            for (std::size_t i = residue.first; i < residue.end(); ++i) {
-                if (element_of(structure_, i) == element) return true;
-            }
-            return false;
-        });
-    }
-
-    // Whether the force field's residue of that name is this one; chains have names for that.
-    bool fits(const ResidueRange& residue, const std::string& before) {
-        const Residue& wanted = force_field_.residues.at(name_of(residue));
-        const bool is_chain =
-            std::any_of(wanted.bonds.begin(), wanted.bonds.end(),
-                        [](const auto& bond) { return bond[0][0] == '+' || bond[1][0] == '+'; });
-        const bool is_patched =
-            std::any_of(patches_.begin(), patches_.end(),
-                        [&](const ResiduePatch& patch) { return patch.atom == residue.first; });
-        if (is_chain || is_patched || wanted.atoms.size() <= 3 || is_taken_as_another(residue)) {
-            return true;
-        }
-        if (residue.count == 1) return false;
-        std::size_t heavy = 0, named = 0;
-        for (std::size_t i = residue.first; i < residue.end(); ++i) {
-            if (element_of(structure_, i) == "H") continue;
-            ++heavy;
-            const std::string& atom = structure_.names[i].atom;
-            const auto found =
-                std::find_if(wanted.atoms.begin(), wanted.atoms.end(),
-                             [&](const ResidueAtom& one) { return one.name == atom; });
-            const bool is_same =
-                found != wanted.atoms.end() &&
-                element_of(force_field_, *found, atom) == element_of(structure_, i);
-            if (is_same) ++named;
-        }
-        const BondedAtoms all = find_bonded_atoms(force_field_, wanted);
-        if (heavy > all.names.size()) return false;
-        if (heavy == named && heavy == all.names.size()) return true;
-        // By bonds, but for names that tables vouch for, of which there may be half.
-        const bool is_vouched = before != name_of(residue) || find_component(before).has_value();
-        if (heavy == named && is_vouched) return true;
-        return match_by_bonds(find_bonded_atoms(structure_, residue), all).has_value();
-    }
-
-    // Retinal and palmitic acid on an amino acid that CHARMM has together with them.
-    void join_components(const StatedLinks& stated) {
-        bool has_any = false;
-        for (const AtomName& name : structure_.names) {
-            has_any = has_any || std::any_of(joined_components().begin(), joined_components().end(),
-                                             [&](const JoinedComponent& one) {
-                                                 return one.ligand == name.residue;
-                                             });
-        }
-        if (!has_any || structure_.records.empty()) return;
-        std::map<std::size_t, std::size_t> host_of;  // by the ligand's atoms: an atom of the host
-        for (const ResidueLink& link : find_residue_links(force_field_, structure_, stated)) {
-            for (const auto& [a, b] : {std::pair(link.atoms[0], link.atoms[1]),
-                                       std::pair(link.atoms[1], link.atoms[0])}) {
-                join_component(a, b, host_of);
-            }
-        }
-        move_behind(host_of);
-    }
-
-    void join_component(std::size_t ligand, std::size_t host,
-                        std::map<std::size_t, std::size_t>& host_of) {
-        const AtomName& atom = structure_.names[ligand];
-        const AtomName& other = structure_.names[host];
-        for (const JoinedComponent& one : joined_components()) {
-            const bool is_it = one.ligand == atom.residue && one.host == other.residue &&
-                               one.host_atom == other.atom && is_known(one.charmm);
-            if (!is_it) continue;
-            const ResidueRange part = residue_with(ligand), whole = residue_with(host);
-            report_.add(heading, fmt::format("{}: bonded to {}, together CHARMM's {}",
-                                             residue_label(structure_, part),
-                                             residue_label(structure_, whole), one.charmm));
-            rename_residue(structure_, whole, one.charmm);
-            join_residue(structure_, part, host);
-            for (std::size_t i = part.first; i < part.end(); ++i) {
-                structure_.records[i].label_chain = structure_.records[host].label_chain;
-                host_of[i] = whole.end() - 1;
-            }
-            return;
-        }
-    }
-
-    ResidueRange residue_with(std::size_t atom) const {
-        for (const ResidueRange& residue : find_residues(structure_)) {
-            if (atom >= residue.first && atom < residue.end()) return residue;
-        }
-        return {atom, 1};
-    }
-
-    // A residue's atoms stand together.
-    void move_behind(const std::map<std::size_t, std::size_t>& host_of) {
-        if (host_of.empty()) return;
-        std::map<std::size_t, std::vector<std::size_t>> behind;
-        for (const auto& [atom, host] : host_of) behind[host].push_back(atom);
-        std::vector<std::size_t> order, end_of(structure_.names.size());
-        for (std::size_t i = 0; i < structure_.names.size(); ++i) {
-            if (!host_of.contains(i)) order.push_back(i);
-            if (const auto found = behind.find(i); found != behind.end()) {
-                order.insert(order.end(), found->second.begin(), found->second.end());
-            }
-            end_of[i] = order.size();
-        }
-        structure_ = with_order(structure_, order, end_of);
+    // Whether the force field's residue of that name is this one.
+    bool fits(const ResidueRange& residue, const std::string& before) const {
+        const std::string& name = structure_.names[residue.first].residue;
+        const bool is_patched = std::ranges::any_of(
+            patches_, [&](const ResiduePatch& patch) { return patch.atom == residue.first; });
+        if (is_patched || is_taken_as_another(residue)) return true;
+        const bool is_vouched = before != name || find_component(before).has_value();
+        return is_template_of(force_field_, name, structure_, residue, is_vouched);
     }
 
     void rename_selenium(const ResidueRange& residue) {

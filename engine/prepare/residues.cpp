@@ -85,6 +85,10 @@ Structure keep_atoms(const Structure& structure, const std::vector<bool>& kept) 
     return result;
 }
 
+void rename_residue(Structure& structure, const ResidueRange& residue, std::string_view name) {
+    for (std::size_t i = residue.first; i < residue.end(); ++i) structure.names[i].residue = name;
+}
+
 Structure with_order(const Structure& structure, std::span<const std::size_t> order,
                      std::span<const std::size_t> end_of) {
     Structure result = structure;

@@ -33,6 +33,8 @@ std::optional<std::size_t> find_atom(const Structure& structure, const ResidueRa
 // The atoms with `kept` set, everything that goes with them, and where chains end.
 Structure keep_atoms(const Structure& structure, const std::vector<bool>& kept);
 
+void rename_residue(Structure& structure, const ResidueRange& residue, std::string_view name);
+
 // The atoms in another order. `end_of`: where a chain that ended behind an atom ends now, as a
 // number of atoms.
 Structure with_order(const Structure& structure, std::span<const std::size_t> order,

@@ -55,8 +55,10 @@ std::string shell_word(const std::string& word) {
 }
 
 std::string prepare_hint(const fs::path& structure) {
+    const bool is_packed = upper_case(structure.extension().string()) == ".GZ";
+    const fs::path name = is_packed ? structure.stem().stem() : structure.stem();
     return fmt::format("'palpa prepare {} -o {}' makes a scene of it",
-                       shell_word(structure.string()), shell_word(structure.stem().string()));
+                       shell_word(structure.string()), shell_word(name.string()));
 }
 
 // Throws where that is known to be something else than a scene.
@@ -71,7 +73,10 @@ void refuse_other_files(const fs::path& file) {
                         "(.pdb, .cif, .crd)");
     }
     if (ending == ".GZ") {
-        throw LoadError({file.string()}, "is compressed, unpack it first (gunzip)");
+        throw LoadError({file.string()},
+                        is_structure(file.stem())
+                            ? "is a structure, not a scene; " + prepare_hint(file)
+                            : std::string("is compressed, unpack it first (gunzip)"));
     }
 }
 

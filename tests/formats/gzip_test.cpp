@@ -26,7 +26,7 @@ std::string packed(const std::string& text) {
     stream.next_out = reinterpret_cast<Bytef*>(data.data());
     stream.avail_out = static_cast<uInt>(data.size());
     REQUIRE(deflate(&stream, Z_FINISH) == Z_STREAM_END);
-    data.resize(data.size() - stream.avail_out);
+    data.erase(stream.total_out);
     deflateEnd(&stream);
     return data;
 }

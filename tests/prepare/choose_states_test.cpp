@@ -2,6 +2,7 @@
 #include "prepare/choose_states.h"
 
 #include "formats/pdb.h"
+#include "prepare/turned_sites.h"
 #include "tests/prepare/small_system.h"
 #include "tests/support/shared_data.h"
 
@@ -111,9 +112,9 @@ TEST_CASE("between a carbonyl and an acid a histidine is charged and stays", "[p
 }
 
 TEST_CASE("a ring turns where a carbon stands between its nitrogen's partners", "[prepare]") {
-    // CD2, at (-1.1, 2.0), points to (-1.6, 4.9): there an oxygen that only takes.
+    // By hand: turned about the bond CB-CG, ND1 is at (-0.81, 1.88) and points along (-0.64, 0.77).
     StructureWriter writer = histidine();
-    add_carbonyl(writer, 9, {-1.75, 4.75, 0}, {-2.0, 5.9, 0});
+    add_carbonyl(writer, 9, {-2.66, 4.11, 0}, {-3.45, 5.06, 0});
     const ChosenState state = state_of(writer);
     CHECK(state.is_flipped);
     CHECK(state.histidine == "HSD");

@@ -202,8 +202,8 @@ TEST_CASE("a link that a file states is a bond, and one without a patch is told"
     CHECK_THAT(stated.report.to_text(), Contains("as the file says, patch 14AB"));
 
     structure.links.back() = {{"A", "NAG", "3", "C4"}, {"A", "MAN", "4", "C1"}, 1};
-    structure.positions[structure.names.size() - 2] = structure.positions[19] + Vec3(0, 1.5, 0);
-    structure.positions.back() = structure.positions[19] + Vec3(0, 2.9, 0);
+    structure.positions[structure.names.size() - 2] = structure.positions[16] + Vec3(0, 1.5, 0);
+    structure.positions.back() = structure.positions[16] + Vec3(0, 2.9, 0);
     const Linked without = link_all(structure);
     REQUIRE(without.report.warnings().size() >= 1);
     CHECK_THAT(without.report.warnings()[0], Contains("there is no patch"));
@@ -238,7 +238,7 @@ TEST_CASE("a molecule that is only called alike is not taken", "[prepare][links]
     CHECK(joined_names(link_all(same.structure()).structure) == "C1 C2 C3 C4 ");
 
     StructureWriter other;  // a carbon with three others: no chain
-    other.atom("CA", "A", 1, "C1", {0, 0, 0}, "C").atom("CA", "A", 1, "C2", {1.5, 0, 0}, "C");
+    other.atom("CA", "A", 1, "X1", {0, 0, 0}, "C").atom("CA", "A", 1, "C2", {1.5, 0, 0}, "C");
     other.atom("CA", "A", 1, "C3", {0, 1.5, 0}, "C").atom("CA", "A", 1, "C4", {0, 0, 1.5}, "C");
     CHECK_THAT(load_error_of([&] { link_all(other.structure()); }),
                Contains("no topology for residue 'CA'"));

@@ -235,7 +235,7 @@ TEST_CASE("all that keeps a structure from becoming a system is in one message",
                Contains("ASP A 1 has the number of ALA (line 1)"));
 
     StructureWriter stranger;
-    stranger.backbone("ALA", "A", 1, 0).atom("ALA", "A", 1, "XG", {1.2, 2.3, 0}, "C");
+    stranger.backbone("ALA", "A", 1, 0).atom("ALA", "A", 1, "XG", {1.2, 2.3, 0}, "S");
     CHECK_THAT(load_error_of([&] { name_all(stranger.structure()); }),
                Contains("ALA A 1 has an atom 'XG' that its topology does not know"));
 }

@@ -147,7 +147,8 @@ class Cli(unittest.TestCase):
         self.assert_bad_input(self.palpa("run", "other/empty"), "Palpa's own scenes: ", "water")
         for name, said in (("my protein.PDB", 'palpa prepare "my protein.PDB" -o "my protein"'),
                            ("a.psf", "is a topology, not a scene"),
-                           ("1abc.pdb.gz", "is compressed")):
+                           ("1abc.pdb.gz", "palpa prepare 1abc.pdb.gz -o 1abc"),
+                           ("1abc.tar.gz", "is compressed")):
             (self.tmp / name).write_text("END\n")
             self.assert_bad_input(self.palpa("run", name), said)
             self.assert_bad_input(self.palpa(name), "no command", said)
