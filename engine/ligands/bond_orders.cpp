@@ -1,10 +1,13 @@
 #include "ligands/bond_orders.h"
 
+#include "ligands/perception.h"
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <span>
 #include <string>
+#include <utility>
 
 namespace palpa {
 namespace {
@@ -120,6 +123,37 @@ bool is_middle_of_azide(const MoleculeGraph& graph, const BondLists& bonds, std:
     return is_end(at(0)) || is_end(at(1));
 }
 
+// A carbon that is left open looks for a nitrogen that can be a cation: beside it in a ring, where
+// that keeps the ring aromatic, then elsewhere. Returns whether all found one.
+bool find_cations(const MoleculeGraph& graph, const BondLists& bonds, const std::vector<int>& open,
+                  Pairing& pairing) {
+    std::vector<bool> in_ring(graph.size());
+    for (const auto& ring : find_rings(graph)) {
+        for (const std::uint32_t atom : ring) in_ring[atom] = true;
+    }
+    bool all = true;
+    for (std::uint32_t i = 0; i < graph.size(); ++i) {
+        if (graph.atoms[i].element != "C" || pairing.open(i) == 0) continue;
+        std::vector<std::pair<int, std::uint32_t>> candidates;
+        for (std::uint32_t n = 0; n < graph.size(); ++n) {
+            if (graph.atoms[n].element != "N" || bonds[n].size() != 3 || open[n] != 0) continue;
+            const bool is_beside = std::any_of(
+                bonds[i].begin(), bonds[i].end(),
+                [&](std::uint32_t bond) { return other_end(graph.bonds[bond], i) == n; });
+            candidates.emplace_back((is_beside ? 0 : 1) + (in_ring[n] ? 0 : 2), n);
+        }
+        std::sort(candidates.begin(), candidates.end());
+        for (const auto& [rank, n] : candidates) {
+            if (pairing.open(i) == 0) break;
+            pairing.set_open(n, 1);
+            pairing.satisfy(i);
+            pairing.set_open(n, 0);
+        }
+        all = all && pairing.open(i) == 0;
+    }
+    return all;
+}
+
 }  // namespace
 
 int usual_valence(std::string_view element, int bonds) noexcept {
@@ -164,18 +198,7 @@ bool assign_bond_orders(MoleculeGraph& graph) {
             if (graph.atoms[i].element == element) pairing.satisfy(i);
         }
     }
-    // A carbon that is left open looks for a nitrogen that can be a cation.
-    bool all = true;
-    for (std::uint32_t i = 0; i < graph.size(); ++i) {
-        if (graph.atoms[i].element != "C" || pairing.open(i) == 0) continue;
-        for (std::uint32_t n = 0; n < graph.size() && pairing.open(i) > 0; ++n) {
-            if (graph.atoms[n].element != "N" || bonds[n].size() != 3 || open[n] != 0) continue;
-            pairing.set_open(n, 1);
-            pairing.satisfy(i);
-            pairing.set_open(n, 0);
-        }
-        all = all && pairing.open(i) == 0;
-    }
+    const bool all = find_cations(graph, bonds, open, pairing);
     charge_by_valence(graph);
     return all;
 }
