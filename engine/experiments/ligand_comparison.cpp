@@ -23,8 +23,25 @@
 namespace palpa {
 namespace {
 
+// Three heavy atoms in a row, about where they belong; the others follow from IC tables.
+void place_first(const ModelCompound& compound, std::vector<Vec3>& places) {
+    for (std::uint32_t middle = 0; middle < compound.graph.size(); ++middle) {
+        std::vector<std::uint32_t> ends;
+        for (const std::uint32_t bond : compound.seen.bonds[middle]) {
+            const std::uint32_t end = other_end(compound.graph.bonds[bond], middle);
+            if (!compound.graph.is_hydrogen(end)) ends.push_back(end);
+        }
+        if (compound.graph.is_hydrogen(middle) || ends.size() < 2) continue;
+        places[middle] = Vec3::Zero();
+        places[ends[0]] = Vec3(1.45, 0, 0);
+        places[ends[1]] = Vec3(-0.6, 1.3, 0);
+        return;
+    }
+}
+
 // The residue alone, where its own parameters relax it.
-std::vector<Vec3> build_places(const ForceField& force_field, const std::string& name) {
+std::vector<Vec3> build_places(const ForceField& force_field, const ModelCompound& compound) {
+    const std::string& name = compound.name;
     const Residue& residue = force_field.residues.at(name);
     Structure structure;
     structure.file = name;
@@ -33,7 +50,7 @@ std::vector<Vec3> build_places(const ForceField& force_field, const std::string&
         structure.positions.push_back(Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
         structure.lines.push_back(0);
     }
-    structure.positions.front() = Vec3::Zero();
+    place_first(compound, structure.positions);
     const Connectivity connectivity = build_connectivity(force_field, structure);
     const Topology topology = build_topology(connectivity, force_field);
     (void)build_positions(connectivity, topology, find_internal_coordinates(force_field, structure),
@@ -163,7 +180,7 @@ LigandComparison compare(const ForceField& force_field, const LigandModel& model
         squares += std::pow(made.charges[i] - compound.charges[i], 2);
     }
     result.charge_rms = std::sqrt(squares / static_cast<double>(graph.size()));
-    result.poses = compare_poses(compound, water, build_places(force_field, compound.name),
+    result.poses = compare_poses(compound, water, build_places(force_field, compound),
                                  numbers_of(force_field, force_field.residues.at(compound.name)),
                                  numbers_of(copy, made.residue));
     return result;

@@ -1,10 +1,14 @@
 #include "ligands/bond_orders.h"
 
+#include "ligands/perception.h"
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 
 namespace palpa {
 namespace {
@@ -120,6 +124,79 @@ bool is_middle_of_azide(const MoleculeGraph& graph, const BondLists& bonds, std:
     return is_end(at(0)) || is_end(at(1));
 }
 
+// A carbon that is left open looks for a nitrogen that can be a cation: beside it in a ring, where
+// that keeps the ring aromatic, then elsewhere. Returns whether all found one.
+bool find_cations(const MoleculeGraph& graph, const BondLists& bonds, const std::vector<int>& open,
+                  Pairing& pairing) {
+    std::vector<bool> in_ring(graph.size());
+    for (const auto& ring : find_rings(graph)) {
+        for (const std::uint32_t atom : ring) in_ring[atom] = true;
+    }
+    bool all = true;
+    for (std::uint32_t i = 0; i < graph.size(); ++i) {
+        if (graph.atoms[i].element != "C" || pairing.open(i) == 0) continue;
+        std::vector<std::pair<int, std::uint32_t>> candidates;
+        for (std::uint32_t n = 0; n < graph.size(); ++n) {
+            if (graph.atoms[n].element != "N" || bonds[n].size() != 3 || open[n] != 0) continue;
+            const bool is_beside = std::any_of(
+                bonds[i].begin(), bonds[i].end(),
+                [&](std::uint32_t bond) { return other_end(graph.bonds[bond], i) == n; });
+            candidates.emplace_back((is_beside ? 0 : 1) + (in_ring[n] ? 0 : 2), n);
+        }
+        std::sort(candidates.begin(), candidates.end());
+        for (const auto& [rank, n] : candidates) {
+            if (pairing.open(i) == 0) break;
+            pairing.set_open(n, 1);
+            pairing.satisfy(i);
+            pairing.set_open(n, 0);
+        }
+        all = all && pairing.open(i) == 0;
+    }
+    return all;
+}
+
+// `cation`: a nitrogen of three neighbours that has a fourth bond from the start.
+bool assign_with(MoleculeGraph& graph, std::optional<std::uint32_t> cation) {
+    const BondLists bonds = bonds_of_atoms(graph);
+    std::vector<int> open(graph.size());
+    for (GraphBond& bond : graph.bonds) bond.order = 1;
+    for (std::uint32_t i = 0; i < graph.size(); ++i) {
+        open[i] = is_middle_of_azide(graph, bonds, i) ? 2 : open_valence(graph, bonds, i);
+    }
+    if (cation) open[*cation] = 1;
+    Pairing pairing(graph, open, std::vector<bool>(graph.bonds.size(), true));
+    for (const char* const element : {"C", "SI", "P", "SE", "S", "N", "O"}) {
+        for (std::uint32_t i = 0; i < graph.size(); ++i) {
+            if (graph.atoms[i].element == element) pairing.satisfy(i);
+        }
+    }
+    const bool all = find_cations(graph, bonds, open, pairing);
+    charge_by_valence(graph);
+    return all;
+}
+
+bool has_cation_of_ring(const MoleculeGraph& graph) {
+    const BondLists bonds = bonds_of_atoms(graph);
+    for (const auto& ring : find_rings(graph)) {
+        for (const std::uint32_t atom : ring) {
+            for (const std::uint32_t bond : bonds[atom]) {
+                const std::uint32_t other = other_end(graph.bonds[bond], atom);
+                if (graph.bonds[bond].order != 2) continue;
+                for (const std::uint32_t end : {atom, other}) {
+                    if (graph.atoms[end].element == "N" && graph.atoms[end].charge > 0) return true;
+                }
+            }
+        }
+    }
+    return false;
+}
+
+std::size_t count_aromatic(const MoleculeGraph& graph) {
+    const Perceived seen = perceive(graph);
+    return static_cast<std::size_t>(
+        std::count(seen.ring_is_aromatic.begin(), seen.ring_is_aromatic.end(), true));
+}
+
 }  // namespace
 
 int usual_valence(std::string_view element, int bonds) noexcept {
@@ -152,31 +229,21 @@ int usual_valence(std::string_view element, int bonds) noexcept {
 }
 
 bool assign_bond_orders(MoleculeGraph& graph) {
+    const bool all = assign_with(graph, std::nullopt);
+    if (!all || !has_cation_of_ring(graph)) return all;
+    // Of several nitrogens that may be the cation, the one that leaves most rings aromatic.
+    std::size_t most = count_aromatic(graph);
+    const MoleculeGraph first = graph;
     const BondLists bonds = bonds_of_atoms(graph);
-    std::vector<int> open(graph.size());
-    for (GraphBond& bond : graph.bonds) bond.order = 1;
-    for (std::uint32_t i = 0; i < graph.size(); ++i) {
-        open[i] = is_middle_of_azide(graph, bonds, i) ? 2 : open_valence(graph, bonds, i);
+    for (std::uint32_t n = 0; n < graph.size(); ++n) {
+        if (graph.atoms[n].element != "N" || bonds[n].size() != 3) continue;
+        MoleculeGraph other = first;
+        if (!assign_with(other, n) || total_charge(other) != total_charge(first)) continue;
+        const std::size_t aromatic = count_aromatic(other);
+        if (aromatic <= most) continue;
+        most = aromatic;
+        graph = std::move(other);
     }
-    Pairing pairing(graph, open, std::vector<bool>(graph.bonds.size(), true));
-    for (const char* const element : {"C", "SI", "P", "SE", "S", "N", "O"}) {
-        for (std::uint32_t i = 0; i < graph.size(); ++i) {
-            if (graph.atoms[i].element == element) pairing.satisfy(i);
-        }
-    }
-    // A carbon that is left open looks for a nitrogen that can be a cation.
-    bool all = true;
-    for (std::uint32_t i = 0; i < graph.size(); ++i) {
-        if (graph.atoms[i].element != "C" || pairing.open(i) == 0) continue;
-        for (std::uint32_t n = 0; n < graph.size() && pairing.open(i) > 0; ++n) {
-            if (graph.atoms[n].element != "N" || bonds[n].size() != 3 || open[n] != 0) continue;
-            pairing.set_open(n, 1);
-            pairing.satisfy(i);
-            pairing.set_open(n, 0);
-        }
-        all = all && pairing.open(i) == 0;
-    }
-    charge_by_valence(graph);
     return all;
 }
 

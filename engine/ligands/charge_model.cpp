@@ -15,7 +15,7 @@ constexpr double chi_ridge = 1, extra_ridge = 2;
 // A mean over n atoms counts n / (n + this): those of single atoms would be noise.
 constexpr double residual_ridge = 0.3;
 
-constexpr std::size_t first_residual = static_cast<std::size_t>(Surroundings::Atom);
+constexpr std::size_t first_residual = static_cast<std::size_t>(Surroundings::Kinds);
 
 std::size_t index_of(std::map<std::string, std::size_t>& indices, const std::string& type) {
     return indices.emplace(type, indices.size()).first->second;

@@ -12,8 +12,8 @@ namespace {
 
 std::string_view name_of(Surroundings level) {
     constexpr std::array<std::string_view, surroundings_levels> names{
-        "its element alone", "its bonds",      "the atom alone",  "kinds of neighbours",
-        "one bond away",     "two bonds away", "three bonds away"};
+        "its element alone",     "its bonds",     "its neighbours' elements", "its rings",
+        "its neighbours' bonds", "one bond away", "two bonds away",           "three bonds away"};
     return names[static_cast<std::size_t>(level)];
 }
 

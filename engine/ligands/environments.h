@@ -15,13 +15,14 @@ namespace palpa {
 enum class Surroundings : std::uint8_t {
     Element,
     Bonds,        // and the kinds of its bonds
-    Atom,         // and its hydrogens, ring sizes and charge
-    Neighbours,   // and its neighbours' elements and bonds
+    Kinds,        // and its hydrogens, and its neighbours' elements and pi bonds
+    Atom,         // and its charge and ring sizes but for saturated rings of six
+    Neighbours,   // and all its ring sizes, and its neighbours' bonds
     OneBondAway,  // and all of that of its neighbours
     TwoBondsAway,
     ThreeBondsAway
 };
-inline constexpr std::size_t surroundings_levels = 7;
+inline constexpr std::size_t surroundings_levels = 8;
 
 // One of each level. Equal in any order of the atoms, and in each Kekulé form.
 

@@ -6,7 +6,7 @@
 namespace palpa {
 
 double level_penalty(Surroundings level) noexcept {
-    constexpr std::array<double, surroundings_levels> penalties{100, 60, 30, 20, 10, 3, 0};
+    constexpr std::array<double, surroundings_levels> penalties{100, 60, 40, 30, 20, 10, 3, 0};
     return penalties[static_cast<std::size_t>(level)];
 }
 

@@ -41,7 +41,7 @@ private:
 
 // What a type that is found at this level is worth less: 0 for surroundings that are equal to three
 // bonds away, 100 where only the element is. Shares of wrong types by level are in
-// scenes/ligands/results.md.
+// tools/ligands.md.
 double level_penalty(Surroundings level) noexcept;
 
 }  // namespace palpa
