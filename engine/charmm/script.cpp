@@ -51,6 +51,7 @@ bool Script::follow() { return follow(statements_.words()); }
 
 bool Script::follow(Words words) {
     const std::string_view keyword = words[0].substr(0, 4);
+    if (keyword == "RETU") return false;
     if (keyword == "SET") {
         set(words);
     } else if (keyword == "IF") {
@@ -67,7 +68,7 @@ bool Script::follow(Words words) {
     } else if (keyword == "STRE") {
         note_other_file();
     }
-    return keyword != "RETU";
+    return true;  // `words` may be gone: jumps move on
 }
 
 // IF a EQ b THEN ... [ELSE ...] ENDIF, or IF a EQ b statement.

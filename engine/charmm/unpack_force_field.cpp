@@ -22,6 +22,7 @@ constexpr std::size_t most_plain_bytes = std::size_t{1} << 28;
 constexpr std::size_t most_about_bytes = std::size_t{1} << 16;
 constexpr std::size_t longest_name = 100;
 constexpr int most_multiplicity = 12;
+constexpr std::size_t most_reserved = 1000;  // elements, before any has been read
 
 class PackReader {
 public:
@@ -93,7 +94,7 @@ public:
     template <class List, class Each>
     void list(List& values, const Each& each) {
         const std::size_t size = size_of_list();
-        values.reserve(size);
+        values.reserve(std::min(size, most_reserved));
         for (std::size_t i = 0; i < size; ++i) each(values.emplace_back());
     }
     template <class Map, class Key, class Value>

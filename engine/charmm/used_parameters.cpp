@@ -76,4 +76,26 @@ ForceField keep_used_parameters(const ForceField& force_field, const Connectivit
     return kept;
 }
 
+ForceField keep_named_residues(const ForceField& force_field, std::span<const AtomName> names) {
+    ForceField kept;
+    kept.files = force_field.files;
+    kept.types = force_field.types;
+    for (const AtomName& name : names) {
+        const auto found = force_field.residues.find(name.residue);
+        if (found != force_field.residues.end()) kept.residues.insert(*found);
+    }
+    kept.patches = force_field.patches;
+    kept.generates_angles = force_field.generates_angles;
+    kept.generates_dihedrals = force_field.generates_dihedrals;
+    kept.nonbonded = force_field.nonbonded;
+    kept.bonds = force_field.bonds;
+    kept.angles = force_field.angles;
+    kept.dihedrals = force_field.dihedrals;
+    kept.impropers = force_field.impropers;
+    kept.cmaps = force_field.cmaps;
+    kept.nbfix = force_field.nbfix;
+    kept.about = force_field.about;
+    return kept;
+}
+
 }  // namespace palpa

@@ -1,7 +1,10 @@
 // The few parameters that one system needs of a whole force field.
 #pragma once
 #include "charmm/force_field.h"
+#include "molecule/atoms.h"
 #include "molecule/connectivity.h"
+
+#include <span>
 
 namespace palpa {
 
@@ -9,5 +12,9 @@ namespace palpa {
 // with the whole one; an entry that it would not take is not there. Parameters that are missing
 // stay missing.
 ForceField keep_used_parameters(const ForceField& force_field, const Connectivity& connectivity);
+
+// The same force field without the residues that no atom of the structure stands in, which are most
+// of a large one: cheap to change and to give back.
+ForceField keep_named_residues(const ForceField& force_field, std::span<const AtomName> names);
 
 }  // namespace palpa

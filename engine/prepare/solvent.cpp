@@ -5,6 +5,7 @@
 #include "charmm/charge_groups.h"
 #include "charmm/find_parameters.h"
 #include "charmm/ionic_groups.h"
+#include "charmm/used_parameters.h"
 #include "core/load_error.h"
 
 #include <fmt/format.h>
@@ -157,7 +158,7 @@ std::optional<SolvatedSystem> solvate(const ForceField& force_field, const Struc
                                       const PrepareSettings& settings, Report& report) {
     if (settings.solvent == Solvent::None) return std::nullopt;
     SolvatedSystem system;
-    system.force_field = neutralise_ionic_groups(force_field);
+    system.force_field = neutralise_ionic_groups(keep_named_residues(force_field, structure.names));
     system.connectivity = build_connectivity(system.force_field, structure, generate);
     const std::vector<std::vector<std::uint32_t>> groups =
         find_charge_groups(system.force_field, structure, generate);
