@@ -29,7 +29,14 @@ public:
     PackReader(std::string_view bytes, const std::string& file)
         : bytes_(bytes), file_(file), place_{std::filesystem::path(file).filename().string()} {}
 
-    bool is_at_end() const noexcept { return at_ == bytes_.size(); }
+    // That all bytes were read, and no name was new twice: then places stand for names.
+    void finish_all() const {
+        if (at_ != bytes_.size()) fail("more than its content");
+        std::vector<std::string_view> names;
+        for (const KnownName& known : names_) names.push_back(known.text);
+        std::ranges::sort(names);
+        if (std::ranges::adjacent_find(names) != names.end()) fail("a name that is new twice");
+    }
 
     [[noreturn]] void fail(std::string_view what) const {
         throw LoadError({file_}, fmt::format("the packed force field is damaged: {} at byte {} of "
@@ -277,7 +284,7 @@ ForceField unpack_fields(std::string_view plain, const std::string& file) {
     ForceField force_field;
     PackReader reader(plain, file);
     visit_force_field(reader, force_field);
-    if (!reader.is_at_end()) reader.fail("more than its content");
+    reader.finish_all();
     check_dihedrals(reader, force_field.dihedrals);
     check_dihedrals(reader, force_field.impropers);
     return force_field;
