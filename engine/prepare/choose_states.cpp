@@ -68,8 +68,8 @@ private:
         return structure_.names[residue.first].residue;
     }
 
-    bool is_given(const ResidueRange& residue) const {
-        return std::binary_search(settings_.given.begin(), settings_.given.end(), residue.first);
+    static bool is_among(std::span<const std::size_t> firsts, const ResidueRange& residue) {
+        return std::binary_search(firsts.begin(), firsts.end(), residue.first);
     }
 
     std::size_t hydrogens(const ResidueRange& residue, std::string_view heavy) const {
@@ -81,7 +81,7 @@ private:
         const std::string_view name = name_of(residue);
         const bool is_histidine = name == "HIS";
         if (!is_histidine && name != "ASN" && name != "GLN") return add_given_ring(residue);
-        if (is_given(residue)) return;
+        if (is_among(settings_.given, residue)) return;
         const TurnedAtoms turned = turned_atoms_of(name);
         const auto is_there = [&](std::string_view atom) {
             return find_atom(structure_, residue, atom).has_value();
@@ -99,7 +99,8 @@ private:
         if (is_histidine && given > 0 && tell_by_hydrogens(residue)) return;
         Group group{residue, {}, {}, 0};
         add_states(group, false);
-        if (settings_.may_flip && given == 0 && is_there(turned.axis[0])) add_states(group, true);
+        const bool may_flip = settings_.may_flip && given == 0 && is_there(turned.axis[0]);
+        if (may_flip && !is_among(settings_.held, residue)) add_states(group, true);
         groups_.push_back(std::move(group));
     }
 

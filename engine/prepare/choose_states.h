@@ -18,6 +18,8 @@ struct StateSettings {
     std::span<const Vec3> waters;  // Å, oxygens of waters that are not in the structure
     // First atoms of residues that stay as they are, rising; a histidine among them has a state.
     std::span<const std::size_t> given;
+    // Likewise of residues that are not turned over.
+    std::span<const std::size_t> held;
 };
 
 struct ChosenState {

@@ -21,7 +21,6 @@ namespace {
 
 using std::numbers::pi;
 using Quaternion = Eigen::Quaterniond;
-using Kind = OrientedGroup::Kind;
 
 constexpr double least_gain = 1e-3;  // kcal/mol; below it nothing has changed
 constexpr double least_turn = 0.05;  // Å; below it others need not look again
@@ -81,11 +80,6 @@ public:
             entry.energy_before = energy_now(group);
         }
         settle(report);
-        bool has_flipped = false;
-        for (std::size_t i = 0; i < groups_.size(); ++i) {
-            if (is_flip(groups_[i])) has_flipped = try_flip(i, report) || has_flipped;
-        }
-        if (has_flipped) settle(report);
         for (std::size_t i = 0; i < groups_.size(); ++i) {
             report.groups[i].dihedral_after = dihedral(groups_[i]);
             report.groups[i].energy_after = energy_now(groups_[i]);
@@ -107,10 +101,6 @@ private:
         std::size_t near = 0;  // how many, the first ones, are within near_range of the centre
     };
     enum class Extent { Near, All };
-
-    static bool is_flip(const TurningGroup& group) noexcept {
-        return group.kind == Kind::Amide || group.kind == Kind::Imidazole;
-    }
 
     // Both ways round, beside what `Exclusions` holds.
     static Lists find_excluded(const Topology& topology) {
@@ -372,32 +362,21 @@ private:
         for (std::size_t i = 0; i < start.size(); ++i) positions_[group.moved[i]] = start[i];
     }
 
-    // Groups that turn freely, near an atom.
-    std::vector<std::uint32_t> find_turning_near(std::uint32_t atom) const {
-        std::vector<std::uint32_t> found;
+    void wake_around(std::uint32_t atom, std::size_t but) {
         grid_.visit_near(positions_[atom], influence, [&](std::uint32_t other) {
             for (const std::uint32_t number : of_centre_.of(other)) {
-                if (!is_flip(groups_[number])) found.push_back(number);
+                if (number != but) is_waiting_[number] = true;
             }
         });
-        std::sort(found.begin(), found.end());
-        return found;
-    }
-
-    void wake_around(std::uint32_t atom, std::size_t but) {
-        for (const std::uint32_t number : find_turning_near(atom)) {
-            if (number != but) is_waiting_[number] = true;
-        }
     }
 
     // Turns group after group until none has a reason to.
     void settle(OrientReport& report) {
-        const auto waits = [&](std::size_t i) { return is_waiting_[i] && !is_flip(groups_[i]); };
         report.is_settled = false;
         for (int sweep = 0; sweep < settings_.sweep_limit; ++sweep) {
             bool is_still = true;
             for (std::size_t i = 0; i < groups_.size(); ++i) {
-                if (!waits(i)) continue;
+                if (!is_waiting_[i]) continue;
                 is_waiting_[i] = false;
                 is_still = false;
                 change_ += turn(i);
@@ -408,42 +387,6 @@ private:
             }
             ++report.sweeps;
         }
-    }
-
-    // Half a turn, and what is near turned to fit: kept if that gains enough.
-    bool try_flip(std::size_t number, OrientReport& report) {
-        const TurningGroup& group = groups_[number];
-        std::vector<std::uint32_t> near;
-        for (const std::uint32_t atom : group.moved) {
-            if (graph_.is_hydrogen(atom)) continue;
-            const auto some = find_turning_near(atom);
-            near.insert(near.end(), some.begin(), some.end());
-        }
-        std::sort(near.begin(), near.end());
-        near.erase(std::unique(near.begin(), near.end()), near.end());
-        const std::vector<Vec3> start = places(group);
-        std::vector<std::vector<Vec3>> near_start;
-        for (const std::uint32_t other : near) near_start.push_back(places(groups_[other]));
-        const std::vector<bool> waiting = is_waiting_;
-
-        const double before = energy_now(group);
-        const Vec3 axis = positions_[group.centre] - positions_[group.axis.value_or(group.centre)];
-        if (!(axis.norm() > 0)) return false;
-        put(group, start, Quaternion(Eigen::AngleAxisd(pi, axis.normalized())));
-        double change = energy(group, Extent::All) - before;
-        for (int pass = 0; pass < 2; ++pass) {
-            for (const std::uint32_t other : near) change += turn(other);
-        }
-        report.groups[number].flip_gain = -change;
-        if (-change > settings_.flip_gain) {
-            report.groups[number].is_flipped = true;
-            change_ += change;
-            return true;
-        }
-        put_back(group, start);
-        for (std::size_t i = 0; i < near.size(); ++i) put_back(groups_[near[i]], near_start[i]);
-        is_waiting_ = waiting;
-        return false;
     }
 
     const Topology& topology_;

@@ -150,7 +150,6 @@ void build_missing(PreparedSystem& system, const std::vector<AtomCoordinate>& co
 void orient(PreparedSystem& system, std::span<const std::uint32_t> added,
             const PrepareSettings& settings) {
     OrientSettings orient_settings;
-    orient_settings.may_flip = false;  // chosen before, by prepare/choose_states.h
     // Thousands of waters settle slowly, and need not: each has been turned twice.
     constexpr std::size_t many = 3000;
     if (settings.keeps_waters && added.size() > many) orient_settings.sweep_limit = 2;

@@ -2,6 +2,7 @@
 
 #include "charmm/missing.h"
 #include "core/text.h"
+#include "prepare/asked_flips.h"
 #include "prepare/choose.h"
 #include "prepare/choose_states.h"
 #include "prepare/components.h"
@@ -30,7 +31,6 @@ using Pair = std::pair<std::string_view, std::string_view>;
 
 constexpr std::string_view heading = "Residue names";
 constexpr std::string_view protonation_heading = "Protonation";
-constexpr std::string_view turned_heading = "Amides and histidines turned over";
 
 // What other programs and the PDB call residues that CHARMM has.
 constexpr auto residue_aliases = std::to_array<Pair>({{"HID", "HSD"},
@@ -209,8 +209,10 @@ private:
             });
             if (is_chosen || is_bonded) given.push_back(residue.first);
         }
+        const std::vector<std::size_t> held =
+            turn_as_asked(settings_.turned_over, bonds, structure_, report_, missing_);
         for (ChosenState& state :
-             palpa::choose_states(structure_, {settings_.flips, waters_, given})) {
+             palpa::choose_states(structure_, {settings_.flips, waters_, given, held})) {
             const std::size_t residue = state.residue;
             states_.emplace(residue, std::move(state));
         }
@@ -415,6 +417,8 @@ private:
             take_state(residue, chosen->second);
             return;
         }
+        // What was asked for it is refused; others may be so too.
+        if (name == "HIS" && !is_known(name)) rename_residue(structure_, residue, "HSE");
         if (!has_hydrogens(residue)) return;
         if (name == "ASP") find_acid(residue, "OD1", "OD2", "ASPP");
         if (name == "GLU") find_acid(residue, "OE1", "OE2", "GLUP");

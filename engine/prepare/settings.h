@@ -47,7 +47,8 @@ struct PrepareSettings {
     std::vector<std::filesystem::path> ligand_files;
     std::filesystem::path entry;
 
-    bool flips = true;  // amides and imidazoles may be turned over
+    bool flips = true;                       // amides and imidazoles may be turned over
+    std::vector<ResidueChoice> turned_over;  // those that are, whatever the search would choose
     bool relaxes = true;
     std::optional<AlignSettings> align;
 

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <numbers>
 #include <string_view>
+#include <vector>
 
 namespace palpa {
 namespace {
@@ -105,11 +106,17 @@ void flip(Structure& structure, const ResidueRange& residue) {
     if (!one || !other) return;
     const Vec3 axis = structure.positions[*other] - structure.positions[*one];
     if (!(axis.norm() > 0)) return;
+    std::vector<std::size_t> moved;
     for (const std::string_view name : turned.atoms) {
         const auto atom = find_atom(structure, residue, name);
         if (!atom) continue;
-        structure.positions[*atom] =
-            half_turn(structure.positions[*atom], structure.positions[*other], axis.normalized());
+        const std::vector<std::size_t> hydrogens = hydrogens_on(structure, residue, *atom);
+        moved.push_back(*atom);
+        moved.insert(moved.end(), hydrogens.begin(), hydrogens.end());
+    }
+    for (const std::size_t atom : moved) {
+        structure.positions[atom] =
+            half_turn(structure.positions[atom], structure.positions[*other], axis.normalized());
     }
 }
 

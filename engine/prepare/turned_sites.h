@@ -23,7 +23,8 @@ TurnedAtoms turned_atoms_of(std::string_view residue);
 std::vector<HydrogenSite> find_turned_sites(const Structure& structure, const ResidueRange& residue,
                                             bool is_flipped, std::string_view histidine);
 
-// Turns the end of an amide, or the ring of a histidine, by half a turn about its bond.
+// Turns the end of an amide, or the ring of a histidine, by half a turn about its bond, with the
+// hydrogens that are on it.
 void flip(Structure& structure, const ResidueRange& residue);
 
 }  // namespace palpa

@@ -1,4 +1,4 @@
-// Which atoms may turn together: rotors, waters, amides and imidazoles, found by their bonds.
+// Which atoms may turn together: rotors and waters, found by their bonds.
 #pragma once
 #include "prepare/bond_graph.h"
 #include "prepare/orient.h"

@@ -59,7 +59,8 @@ StructureWriter glutamine() {
 }
 
 ChosenState state_of(const StructureWriter& writer, const std::vector<Vec3>& waters = {}) {
-    for (ChosenState& state : choose_states(writer.structure(), {.waters = waters, .given = {}})) {
+    for (ChosenState& state :
+         choose_states(writer.structure(), {.waters = waters, .given = {}, .held = {}})) {
         if (state.residue == 0) return state;
     }
     return {};
@@ -118,10 +119,10 @@ TEST_CASE("a ring turns where a carbon stands between its nitrogen's partners", 
     const ChosenState state = state_of(writer);
     CHECK(state.is_flipped);
     CHECK(state.histidine == "HSD");
-    StateSettings still{.may_flip = false, .waters = {}, .given = {}};
+    StateSettings still{.may_flip = false, .waters = {}, .given = {}, .held = {}};
     CHECK_FALSE(choose_states(writer.structure(), still).at(0).is_flipped);
     const std::vector<std::size_t> given{0};
-    CHECK(choose_states(writer.structure(), {.waters = {}, .given = given}).empty());
+    CHECK(choose_states(writer.structure(), {.waters = {}, .given = given, .held = {}}).empty());
 }
 
 TEST_CASE("an amide turns for a partner alone", "[prepare]") {
@@ -139,12 +140,14 @@ TEST_CASE("an amide turns for a partner alone", "[prepare]") {
     CHECK(turned.is_flipped);
     CHECK(turned.gain > 0.5);
     CHECK_THAT(turned.reason, Contains("NE2 gives to ALA A 5 O"));
+    const std::vector<std::size_t> held{0};
+    CHECK(choose_states(acceptor.structure(), {.waters = {}, .given = {}, .held = held}).empty());
     StructureWriter good = glutamine();  // before the nitrogen
     add_carbonyl(good, 5, {0.66, -4.05, 0}, {0.66, -5.3, 0});
     CHECK_FALSE(state_of(good).is_flipped);
     StructureWriter glycan = acceptor;
     const std::vector<std::size_t> given{0};
-    CHECK(choose_states(glycan.structure(), {.waters = {}, .given = given}).empty());
+    CHECK(choose_states(glycan.structure(), {.waters = {}, .given = given, .held = {}}).empty());
 }
 
 TEST_CASE("two amides that face each other turn together or not at all", "[prepare]") {
@@ -195,7 +198,7 @@ std::set<std::string> turned_in(const Structure& structure) {
 std::string_view histidine_of(const Structure& structure, const std::string& segment,
                               const std::string& number) {
     static std::vector<ChosenState> states;
-    states = choose_states(structure, {.may_flip = false, .waters = {}, .given = {}});
+    states = choose_states(structure, {.may_flip = false, .waters = {}, .given = {}, .held = {}});
     for (const ChosenState& state : states) {
         const AtomName& name = structure.names[state.residue];
         if (name.segment == segment && name.number == number) return state.histidine;

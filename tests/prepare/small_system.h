@@ -10,7 +10,7 @@
 
 namespace palpa::test {
 
-// Backbone without hydrogens but for HN; ALA, ASP (with ASPP), CYS (DISU), HSD, HSE, HSP, TIP3,
+// Backbone without hydrogens but for HN; ALA, ASP (with ASPP), CYS (DISU), GLN, HSD, HSE, HSP, TIP3,
 // SOD, a ligand LIG of three atoms; NTER, CTER, ACE, ACED, CT3.
 inline constexpr std::string_view small_topology = R"(read rtf
 MASS -1 C 12.0 C
@@ -56,6 +56,18 @@ ATOM HG1 H 0.0
 ATOM C C 0.0
 ATOM O O 0.0
 BOND N HN N CA CA SG SG HG1 CA C C O C +N
+RESI GLN 0.0
+ATOM N N 0.0
+ATOM CA C 0.0
+ATOM CG C 0.0
+ATOM CD C 0.0
+ATOM OE1 O 0.0
+ATOM NE2 N 0.0
+ATOM HE21 H 0.0
+ATOM HE22 H 0.0
+ATOM C C 0.0
+ATOM O O 0.0
+BOND N CA CA CG CG CD CD OE1 CD NE2 NE2 HE21 NE2 HE22 CA C C O C +N
 RESI HSD 0.0
 ATOM N N 0.0
 ATOM CA C 0.0

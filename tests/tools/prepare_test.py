@@ -304,8 +304,6 @@ class Prepare(PrepareCase):
     def test_what_cannot_be_prepared_is_told_in_one_line(self):
         hiv = self.data / "hiv"
         one_line = [
-            (hiv / "1hsg_ligand.pdb", [], "'MK1'.*--without MK1"),
-            (hiv / "1hvr_protein.pdb", [], "'CSO'.*--as CSO=CYS"),
             (hiv / "1hsg_protein.pdb", ["--protonation", "A:25=ASPX"], "did you mean 'ASPP'"),
             (hiv / "1hsg_protein.pdb", ["--without", "HOH"], "nothing here is 'HOH'"),
             (hiv / "1hsg_protein.pdb", ["--first", "C=NTER"], "no chain or segment 'C'"),
@@ -315,6 +313,10 @@ class Prepare(PrepareCase):
              "patch LSN is not for ASP A 25, which has no 'HZ3'"),
             (hiv / "1hpv_protein.pdb", ["--protonation", "A:25=ASPP", "A:25=ASP"],
              "two states for ASP A 25"),
+            (hiv / "1hpv_protein.pdb", ["--flip", "A:125"], "--flip: no residue A:125 here"),
+            (hiv / "1hpv_protein.pdb", ["--flip", "A:25"],
+             "--flip: ASP A 25 has no end to turn over; expected an ASN, GLN or HIS"),
+            (hiv / "1hpv_protein.pdb", ["--flip", "25"], "--flip 25: expected CHAIN:NUMBER"),
             (hiv / "1hpv_protein.pdb", ["--first", "A=NTER"], "NTER is not for PRO A 1"),
             (hiv / "1hpv_protein.pdb", ["--as", "QQQ=ALA"], "no residue 'QQQ' here"),
             (hiv / "1hpv_protein.pdb", ["--altloc", "A:13=B"], "--altloc A:13=B"),
@@ -326,6 +328,11 @@ class Prepare(PrepareCase):
                 message = self.refuse(structure, *options)
                 self.assertRegex(message, expected)
                 self.assertEqual(message.strip().count("\n"), 0, message)
+        for structure, expected in (
+                ("1hsg_ligand", "MK1 +45 atoms +B:902\n.*--without MK1.*\n.*a residue is not in"),
+                ("1hvr_protein", "CSO +9 atoms +A:67 B:67 .*\n.*--as CSO=CYS.*\n.*a residue is not")):
+            with self.subTest(expected=expected):
+                self.assertRegex(self.refuse(hiv / f"{structure}.pdb"), expected)
         result = self.palpa("prepare", hiv / "5vea_ligand.pdb", "--toppar", *self.toppar(),
                             *self.tl3(), "-o", self.folder / "refused")
         self.assertEqual(result.returncode, 2)

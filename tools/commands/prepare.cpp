@@ -85,6 +85,9 @@ PrepareSettings build_settings(const PrepareOptions& options) {
         settings.structural_waters.push_back(
             read_choice(text, "--structural-water", "CHAIN:NUMBER, as in A:301"));
     }
+    for (const std::string& text : options.flips) {
+        settings.turned_over.push_back(read_choice(text, "--flip", "CHAIN:NUMBER, as in A:40"));
+    }
     if (options.solvent == "none" && !options.structural_waters.empty()) {
         throw LoadError({"--structural-water " + options.structural_waters.front()},
                         "is of implicit water; expected --keep-waters with --solvent none");
@@ -346,6 +349,10 @@ void add_prepare_choices(CLI::App& prepare, PrepareOptions& options) {
                     "CHAIN:NUMBER=LETTER: the location to take, not the most occupied")
         ->type_name("CHAIN:NUMBER=LETTER");
     add_negation(prepare, "--no-flips", settings.flips, "amides and imidazoles stay as they are");
+    prepare
+        .add_option("--flip", options.flips,
+                    "CHAIN:NUMBER: this amide or imidazole is turned over, whatever is found best")
+        ->type_name("CHAIN:NUMBER");
     add_negation(prepare, "--no-relax", settings.relaxes,
                  "atoms stay where they are or were built");
 }

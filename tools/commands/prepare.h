@@ -11,13 +11,13 @@ namespace palpa {
 struct PrepareOptions {
     std::filesystem::path structure;
     std::vector<std::filesystem::path> toppar, parameters;  // beside the built-in force field
-    bool only_toppar = false;                   // or in place of it
+    bool only_toppar = false;                               // or in place of it
     std::filesystem::path folder;
     PrepareSettings settings;
     // As written: "CSO=CYS", "A:25=ASPP", "A:53=B", "A=NTER", "A:3-A:40".
     std::vector<std::string> as, protonation, alternates, first, last, disulphides;
-    std::vector<std::string> structural_waters;  // "A:301"
-    std::string solvent = "auto";                // or a name of solvent_names
+    std::vector<std::string> structural_waters, flips;  // "A:301"
+    std::string solvent = "auto";                       // or a name of solvent_names
     std::string grab;  // for the hand of scene.toml, see prepare/hand_choice.h
     bool makes_scene = true;
     std::string title;               // what the files say of themselves; a line of our own if empty
