@@ -18,7 +18,9 @@ def run(*command, **options):
 
 class Scripts(unittest.TestCase):
     def test_every_tool_explains_itself(self):
-        for name in ("build", "run", "test", "scripts/plot_stroke", "scripts/play_ways_out", "scripts/check_style",
+        for name in ("build", "run", "test", "scripts/plot_stroke", "scripts/play_ways_out",
+                     "scripts/prepare_entries",
+                     "scripts/check_style",
                      "scripts/check_windows", "scripts/make_manual", "scripts/check_skips",
                      "scripts/compare_peers",
                      "scripts/compare_tl3", "scripts/mutate", "scripts/plot_adaptive",
