@@ -10,8 +10,8 @@
 
 namespace palpa::test {
 
-// Backbone without hydrogens but for HN; ALA, ASP (with ASPP), CYS (DISU), GLN, HSD, HSE, HSP, TIP3,
-// SOD, a ligand LIG of three atoms; NTER, CTER, ACE, ACED, CT3.
+// Backbone without hydrogens but for HN; ALA, ASP (with ASPP), CYS (DISU), GLN, HSD, HSE, HSP,
+// TIP3, SOD, a ligand LIG of three atoms; NTER, CTER, ACE, ACED, CT3.
 inline constexpr std::string_view small_topology = R"(read rtf
 MASS -1 C 12.0 C
 MASS -1 N 14.0 N

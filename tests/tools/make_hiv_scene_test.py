@@ -45,12 +45,14 @@ class MakeHivScene(unittest.TestCase):
                     self.assertEqual(a[:4] + a[7:9], b[:4] + b[7:9])
                 kept_groups = groups_of(theirs)
                 for key, group in groups_of(ours).items():
-                    # An ammonium has turned on another way, a third of a turn farther: which of its
-                    # hydrogens has which name does not matter.
+                    # The scene was made when side chains were turned over after their hydrogens
+                    # were built, not before: ammonium came to its place on another way, with its
+                    # three hydrogens, which are alike, in another order.
                     off = min(farthest(group, order)
                               for order in itertools.permutations(kept_groups[key]))
-                    # Minimising magnifies what compilers round differently.
-                    self.assertLess(off, 0.02, group)
+                    # Minimising magnifies what is rounded differently, and stops where the rms
+                    # force is below 0.1 kcal/mol/Å, not at the minimum.
+                    self.assertLess(off, 0.04, group)
             for name in ("solvent.psf", "solvent.prm"):
                 self.assertEqual((Path(folder) / name).read_text(),
                                  (ROOT / "scenes" / "hiv" / name).read_text(), name)
