@@ -129,6 +129,7 @@ struct Tuning {
     SystemCopy copy;
     std::string title, topology_title;  // of files
     bool is_turned = true;              // the way out is +x
+    bool may_hold_another = true;       // nothing was asked for
     Structure rest;                     // the copy's atoms where their joints came to rest
     Vec3 way = Vec3::UnitX();
     SceneText text;
@@ -306,6 +307,52 @@ Played try_ways(const std::filesystem::path& folder, const StageFunction& on_sta
     return best;
 }
 
+void rest_region(const std::filesystem::path& folder, const StageFunction& on_stage,
+                 Tuning& tuning) {
+    set_region(tuning);
+    tuning.tuning.relax_steps = relax_steps_for(tuning.rest.names.size());
+    write_scene(folder, tuning);
+    bring_to_rest(folder, on_stage, tuning);
+}
+
+// With constant gains and a first period, then with those of the file.
+Played tune_coupling(const std::filesystem::path& folder, const StageFunction& on_stage,
+                     Tuning& tuning) {
+    tuning.tuning.feel_pN.reset();
+    tuning.tuning.coupling_note.clear();
+    tuning.tuning.period_note.clear();
+    tuning.tuning.period_ms = first_period_ms(tuning.rest.names.size());
+    const Played first = try_ways(folder, on_stage, tuning);
+    set_coupling(first, tuning);
+    set_period(first, tuning);
+    const Played played =
+        play_written(folder, "playing the scene", {way_out_only}, on_stage, tuning);
+    if (choose_period_ms(played.p99_us) > tuning.tuning.period_ms) set_period(played, tuning);
+    return played;
+}
+
+bool holds_chain(const Tuning& tuning) {
+    constexpr std::size_t most_of_ligand = 300;  // atoms
+    const HandChoice& hand = tuning.copy.hand;
+    return hand.atom.empty() && hand.held.size() > most_of_ligand;
+}
+
+void describe_hand(Tuning& tuning) {
+    tuning.text.about =
+        fmt::format("In the hand: {}. The emulated hand pulls it by 4 Å and brings it back.",
+                    tuning.copy.hand.words);
+}
+
+// In place of a chain that is bound too firmly.
+void hold_residue(const Played& chain, Tuning& tuning) {
+    SystemCopy& copy = tuning.copy;
+    const std::string reason =
+        fmt::format("{} moves by {:.2f} Å only", copy.hand.words, chain.moved_angstrom);
+    copy.hand = choose_residue(copy.structure, copy.segments);
+    copy.hand.reason = fmt::format("{}; {}", reason, copy.hand.reason);
+    describe_hand(tuning);
+}
+
 TunedScene tune(PreparedSystem& system, Tuning& tuning, const StageFunction& tell_stage) {
     const WorkFolder scratch;
     const StageFunction on_stage = [&](std::string_view stage, std::optional<double> share) {
@@ -318,17 +365,14 @@ TunedScene tune(PreparedSystem& system, Tuning& tuning, const StageFunction& tel
     constexpr std::size_t base_freedom = 6;  // of what is in the hand
     if (!tuning.tuning.region_angstrom &&
         tuning.joints + base_freedom > static_cast<std::size_t>(most_second_order_coordinates)) {
-        set_region(tuning);
-        tuning.tuning.relax_steps = relax_steps_for(tuning.rest.names.size());
-        write_scene(folder, tuning);
-        bring_to_rest(folder, on_stage, tuning);
+        rest_region(folder, on_stage, tuning);
     }
-    const Played first = try_ways(folder, on_stage, tuning);
-    set_coupling(first, tuning);
-    set_period(first, tuning);
-    const Played played =
-        play_written(folder, "playing the scene", {way_out_only}, on_stage, tuning);
-    if (choose_period_ms(played.p99_us) > tuning.tuning.period_ms) set_period(played, tuning);
+    Played played = tune_coupling(folder, on_stage, tuning);
+    if (tuning.may_hold_another && played.moved_angstrom < least_moved && holds_chain(tuning)) {
+        hold_residue(played, tuning);
+        if (tuning.tuning.region_angstrom) rest_region(folder, on_stage, tuning);
+        played = tune_coupling(folder, on_stage, tuning);
+    }
     report_scene(played, tuning, system.report);
     return {tuning.files(), tuning.copy.hand.words, played.felt_newton, played.moved_angstrom};
 }
@@ -363,11 +407,10 @@ TunedScene tune_scene(PreparedSystem& system, const std::string& grab, bool is_a
     tuning.topology_title = topology_title(system, title);
     tuning.text.solvent = system.solvent;
     tuning.is_turned = !is_aligned;
+    tuning.may_hold_another = grab.empty();
     tuning.rest = tuning.copy.structure;
     tuning.text.title = name;
-    tuning.text.about =
-        fmt::format("In the hand: {}. The emulated hand pulls it by 4 Å and brings it back.",
-                    tuning.copy.hand.words);
+    describe_hand(tuning);
     for (const ApproximatePart& part : system.approximate) {
         tuning.text.approximate.push_back(part.residue);
     }
@@ -377,7 +420,6 @@ TunedScene tune_scene(PreparedSystem& system, const std::string& grab, bool is_a
     const std::size_t atoms = tuning.rest.names.size();
     if (count_mobile_atoms(tuning.copy.segments) > most_atoms_all_move) set_region(tuning);
     tuning.tuning.relax_steps = relax_steps_for(atoms);
-    tuning.tuning.period_ms = first_period_ms(atoms);
     return tune(system, tuning, on_stage);
 }
 

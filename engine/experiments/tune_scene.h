@@ -17,7 +17,8 @@ struct TunedScene {
     double moved_angstrom = 0;  // of what is in the hand, its middle
 };
 
-// Chooses what the hand holds (prepare/hand_choice.h, `grab`), brings a copy of the system to rest,
+// Chooses what the hand holds (prepare/hand_choice.h, `grab`; a residue where a chain that was not
+// asked for hardly moves), brings a copy of the system to rest,
 // turns it so that the way out is +x unless it `is_aligned`, plays the stroke with constant gains
 // to find the forces and how long a step takes, and again with those in the file. What was found is
 // added to the system's report, or why there is no scene. `title`: as for write_prepared; `name`:

@@ -106,25 +106,32 @@ HandChoice hold_most_exposed(const Structure& structure, const SystemSegment& se
                                     neighbourhood, fewest));
 }
 
-HandChoice choose_by_size(const Structure& structure, std::span<const SystemSegment> segments) {
-    constexpr std::size_t most_in_hand = 2000;  // atoms
-    const SystemSegment* smallest = nullptr;
+const SystemSegment& find_largest(const Structure& structure,
+                                  std::span<const SystemSegment> segments) {
     const SystemSegment* largest = nullptr;
     for (const SystemSegment& segment : segments) {
         if (segment.kind != SegmentKind::Molecule) continue;
-        if (!smallest || segment.atoms.size() <= smallest->atoms.size()) smallest = &segment;
         if (!largest || segment.atoms.size() > largest->atoms.size()) largest = &segment;
     }
-    if (!largest) {
-        throw LoadError({structure.file},
-                        "no molecule to hold: only water, ions and pieces that are not bonded");
+    if (largest) return *largest;
+    throw LoadError({structure.file},
+                    "no molecule to hold: only water, ions and pieces that are not bonded");
+}
+
+HandChoice choose_by_size(const Structure& structure, std::span<const SystemSegment> segments) {
+    constexpr std::size_t most_in_hand = 2000;  // atoms
+    const SystemSegment& largest = find_largest(structure, segments);
+    const SystemSegment* smallest = &largest;
+    for (const SystemSegment& segment : segments) {
+        if (segment.kind != SegmentKind::Molecule) continue;
+        if (segment.atoms.size() <= smallest->atoms.size()) smallest = &segment;
     }
-    if (smallest != largest && smallest->atoms.size() <= most_in_hand) {
-        const bool is_alone = smallest->atoms.size() < largest->atoms.size();
+    if (smallest != &largest && smallest->atoms.size() <= most_in_hand) {
+        const bool is_alone = smallest->atoms.size() < largest.atoms.size();
         return hold_all(*smallest, is_alone ? "it is the smallest molecule"
                                             : "it is the last of molecules alike");
     }
-    return hold_most_exposed(structure, *largest);
+    return hold_most_exposed(structure, largest);
 }
 
 HandChoice choose_by_name(const Structure& structure, std::span<const SystemSegment> segments,
@@ -189,6 +196,10 @@ HandChoice choose_hand(const Structure& structure, std::span<const SystemSegment
                        std::string_view grab) {
     return grab.empty() ? choose_by_size(structure, segments)
                         : choose_by_name(structure, segments, grab);
+}
+
+HandChoice choose_residue(const Structure& structure, std::span<const SystemSegment> segments) {
+    return hold_most_exposed(structure, find_largest(structure, segments));
 }
 
 Vec3 find_way_out(const Structure& structure, std::span<const std::uint32_t> held) {

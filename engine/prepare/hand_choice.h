@@ -28,6 +28,9 @@ struct HandChoice {
 HandChoice choose_hand(const Structure& structure, std::span<const SystemSegment> segments,
                        std::string_view grab);
 
+// Of the largest molecule the residue that moves most easily, as above.
+HandChoice choose_residue(const Structure& structure, std::span<const SystemSegment> segments);
+
 // The direction in which what is held meets the fewest heavy atoms on its next 12 Å; of those alike
 // the one that leads most away from its neighbours. A unit vector.
 Vec3 find_way_out(const Structure& structure, std::span<const std::uint32_t> held);
