@@ -47,9 +47,10 @@ void ImdClient::begin() {
     std::error_code error;
     socket_ = Socket::connect(options_.address, options_.port, error);
     if (error == std::errc::invalid_argument) {
-        return lose("is no address of numbers, as 127.0.0.1 is");
+        return lose("is no address of numbers, as 127.0.0.1 is", ImdLack::Answer);
     }
-    if (error) return lose(fmt::format("cannot be connected to: {}", error.message()));
+    if (error)
+        return lose(fmt::format("cannot be connected to: {}", error.message()), ImdLack::Answer);
     phase_ = Phase::Connecting;
     set_state(ImdState::Waiting, "is being connected to");
 }
@@ -64,12 +65,13 @@ void ImdClient::drop() {
 void ImdClient::set_state(ImdState state, std::string why) {
     state_ = state;
     why_ = fmt::format("the engine at {}:{} {}", options_.address, options_.port, why);
-    if (state == ImdState::Waiting && !loss_.empty()) why_ += "; before, it " + loss_;
+    if (state != ImdState::Closed && !loss_.empty() && loss_ != why)
+        why_ += "; before, it " + loss_;
 }
 
 // An engine that is still connected gets a farewell, and its bytes are read for a while longer:
 // closing a socket with unread bytes would discard what was written last.
-void ImdClient::lose(const std::string& why, bool is_ended) {
+void ImdClient::lose(const std::string& why, ImdLack lack, bool is_ended) {
     const bool was_running = phase_ == Phase::Running;
     if (was_running) say_farewell(Phase::Leaving);
     if (!was_running || is_ended) {
@@ -77,7 +79,12 @@ void ImdClient::lose(const std::string& why, bool is_ended) {
         phase_ = Phase::Lost;
     }
     since_s_ = now_s_;
-    loss_ = why;
+    // An engine that ended over what was wrong at first cannot be connected to afterwards.
+    const bool follows = lack == ImdLack::Answer && lack_ != ImdLack::Answer && !loss_.empty();
+    if (!follows) {
+        loss_ = why;
+        lack_ = lack;
+    }
     set_state(ImdState::Lost, why);
 }
 
@@ -93,7 +100,7 @@ bool ImdClient::poll(double now_s, int at_most_ms) {
     wait(at_most_ms);
     if (phase_ == Phase::Connecting && has_room_) {
         if (const std::error_code error = socket_.find_error()) {
-            lose(fmt::format("cannot be connected to: {}", error.message()));
+            lose(fmt::format("cannot be connected to: {}", error.message()), ImdLack::Answer);
         } else {
             phase_ = Phase::Greeting;
             set_state(ImdState::Waiting, "is connected and has not sent its handshake");
@@ -129,9 +136,11 @@ bool ImdClient::read() {
         if (phase_ == Phase::Leaving) {
             if (got.is_ended || got.error) finish_leaving("was left in order");
         } else if (got.is_ended) {
-            lose(fmt::format("closed the connection {}", decoder_.find_place()), true);
+            lose(fmt::format("closed the connection {}", decoder_.find_place()), ImdLack::Order,
+                 true);
         } else if (got.error) {
-            lose(fmt::format("is lost {}: {}", decoder_.find_place(), got.error.message()), true);
+            lose(fmt::format("is lost {}: {}", decoder_.find_place(), got.error.message()),
+                 ImdLack::Order, true);
         } else {
             is_newer |= take(std::span(bytes).first(got.bytes));
         }
@@ -146,7 +155,8 @@ bool ImdClient::take(std::span<const std::byte> bytes) {
     while (!bytes.empty()) {
         bytes = bytes.subspan(decoder_.take(bytes));
         if (!decoder_.problem().empty()) {
-            lose(fmt::format("is left: {}", decoder_.problem()));
+            lose(fmt::format("is left: {}", decoder_.problem()),
+                 decoder_.other_atoms() > 0 ? ImdLack::Atoms : ImdLack::Order);
             break;
         }
         const ImdMessage* const message = decoder_.message();
@@ -163,7 +173,8 @@ bool ImdClient::take(std::span<const std::byte> bytes) {
             options_.limits.atoms = decoder_.atoms();
         } else if (message->type == ImdType::Disconnect || message->type == ImdType::Kill ||
                    message->type == ImdType::Error) {
-            lose(fmt::format("ended the session by a '{}' message", imd_name(message->type)));
+            lose(fmt::format("ended the session by a '{}' message", imd_name(message->type)),
+                 ImdLack::Order);
         }
         if (phase_ != Phase::Greeting && phase_ != Phase::Running) break;
     }
@@ -174,16 +185,19 @@ void ImdClient::take_greeting() {
     if (!decoder_.is_ready()) return;
     if (options_.version && decoder_.version() != *options_.version) {
         return lose(fmt::format("is left: it speaks version {}, expected {}", decoder_.version(),
-                                *options_.version));
+                                *options_.version),
+                    ImdLack::Version);
     }
     if (decoder_.version() == 3) session_ = decoder_.message()->session;
     if (decoder_.version() == 3 && !session_.coordinates) {
-        return lose("is left: it announced frames without coordinates, expected some");
+        return lose("is left: it announced frames without coordinates, expected some",
+                    ImdLack::Order);
     }
     units_ = options_.units.value_or(imd_units_of(decoder_.version()));
     builder_ = ImdFrameBuilder(units_);
     add_imd_command(outgoing_, ImdType::Go);
     phase_ = Phase::Running;
+    lack_ = ImdLack::Frame;
     since_s_ = now_s_;
     set_state(ImdState::Waiting, "has not sent a frame yet");
 }
@@ -199,7 +213,8 @@ void ImdClient::check_delay() {
             if (passed_s > options_.answer_within_s) {
                 lose(fmt::format("did not {} within {} s",
                                  phase_ == Phase::Connecting ? "answer" : "send its handshake",
-                                 options_.answer_within_s));
+                                 options_.answer_within_s),
+                     phase_ == Phase::Connecting ? ImdLack::Answer : ImdLack::Handshake);
             }
             return;
         case Phase::Leaving:
@@ -218,7 +233,7 @@ void ImdClient::check_delay() {
         let_go();
         set_state(ImdState::Late, fmt::format("has not sent a frame for {:.1f} s", passed_s));
     } else {
-        lose(fmt::format("has not sent a frame for {:.1f} s", passed_s));
+        lose(fmt::format("has not sent a frame for {:.1f} s", passed_s), ImdLack::Order);
     }
 }
 

@@ -35,6 +35,16 @@ enum class ImdState : std::uint8_t {
     Lost,       // over, and why() says what came and what was expected
 };
 
+// What keeps frames from coming, or last did.
+enum class ImdLack : std::uint8_t {
+    Answer,     // to the connection
+    Handshake,  // after it
+    Frame,      // after the handshake
+    Version,    // it speaks another than the options ask for
+    Atoms,      // it sends another number than the options have
+    Order,      // anything else: it ended, or sent nonsense
+};
+
 struct ImdClientOptions {
     std::string address = "127.0.0.1";  // of numbers, or "localhost"
     std::uint16_t port = imd_port;
@@ -70,6 +80,10 @@ public:
     ImdState state() const noexcept { return state_; }
     // One sentence of the state, in lower case without a full stop.
     const std::string& why() const noexcept { return why_; }
+    // Of one that cannot be connected to any more, what came before.
+    ImdLack lack() const noexcept { return phase_ == Phase::Greeting ? ImdLack::Handshake : lack_; }
+    // How many atoms it sends, where their number is what is wrong; else 0.
+    std::size_t other_atoms() const noexcept { return decoder_.other_atoms(); }
     // The newest one, also once the engine was lost; null before the first.
     const ImdFrame* frame() const noexcept { return frames_ == 0 ? nullptr : &frame_; }
     std::uint64_t frames() const noexcept { return frames_; }  // that came whole
@@ -110,7 +124,7 @@ private:
     void say_farewell(Phase next);
     void check_delay();
     void drop();
-    void lose(const std::string& why, bool is_ended = false);
+    void lose(const std::string& why, ImdLack lack, bool is_ended = false);
     void finish_leaving(const char* how);
     void set_state(ImdState state, std::string why);
     std::string find_pull_problem(std::span<const std::int32_t> atoms,
@@ -121,6 +135,7 @@ private:
     Phase phase_ = Phase::Closed;
     ImdState state_ = ImdState::Closed;
     std::string why_ = "no engine is connected to", loss_;
+    ImdLack lack_ = ImdLack::Answer;
     double now_s_ = 0, since_s_ = 0;  // of the last call; since the phase began or a frame came
     bool has_input_ = false, has_room_ = false;
 

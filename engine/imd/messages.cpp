@@ -276,6 +276,8 @@ void ImdDecoder::check_length() {
                 limits_.atoms = static_cast<std::size_t>(length);
             } else if (std::cmp_not_equal(length, limits_.atoms)) {
                 refuse_length(fmt::format("{} atoms", limits_.atoms));
+                if (length > 0 && message_.type == ImdType::Positions)
+                    other_atoms_ = static_cast<std::size_t>(length);
             }
             return;
         case ImdType::ClientForces:

@@ -128,6 +128,8 @@ public:
     std::endian order() const noexcept { return order_; }
     // 0 until a message or the limits give them.
     std::size_t atoms() const noexcept { return limits_.atoms; }
+    // How many the coordinates had that were refused for their number; 0 where none were.
+    std::size_t other_atoms() const noexcept { return other_atoms_; }
     // Of an engine: that "go" may be sent. In version 3 the session has come too.
     bool is_ready() const noexcept { return is_ready_; }
     // Where a stream that ends now would be cut: "inside a 'coordinates' message, after 12 of 36
@@ -148,6 +150,7 @@ private:
 
     bool is_of_engine_;
     ImdLimits limits_;
+    std::size_t other_atoms_ = 0;
     int version_ = 0;
     std::endian order_ = std::endian::native;
     bool is_ready_ = false;           // of an engine: see above; of a client: it has said Go

@@ -211,9 +211,31 @@ ImdClientOptions client_options(const SceneDescription& scene, std::size_t atoms
     // Who asks for version 3 means it.
     options.pulls_in_version_3 = engine.protocol == EngineProtocol::Three;
     options.late_after_s = engine.late_s;
+    // One that gave up stays in the backlog of an engine that has a client, and LAMMPS ends over
+    // it.
+    options.answer_within_s = std::max(options.answer_within_s, engine.wait_s);
     constexpr double again_s = 0.5;
     options.retry_after_s = again_s;
     return options;
+}
+
+// Another attempt would find the same.
+bool is_another_engine(const ImdClient& client) {
+    return client.lack() == ImdLack::Version || client.lack() == ImdLack::Atoms;
+}
+
+// Of all molecules, where it is one.
+std::string find_list_of_atoms(const SceneDescription& scene) {
+    const auto file_of = [](const MoleculeDescription& molecule) {
+        return molecule.topology.empty() ? molecule.structure : molecule.topology;
+    };
+    std::filesystem::path file = scene.engine->atoms;
+    if (file.empty()) file = file_of(scene.molecules.front());
+    const bool is_one = !scene.engine->atoms.empty() ||
+                        std::ranges::all_of(scene.molecules, [&](const auto& molecule) {
+                            return file_of(molecule) == file;
+                        });
+    return is_one ? file.string() : "the scene";
 }
 
 // How long a step waits for a frame. Once frames have ceased it looks for them only briefly.
@@ -335,6 +357,7 @@ void set_remote_engine(const SceneDescription& scene, World& world) {
     RemoteEngine engine;
     engine.settings = *scene.engine;
     engine.atoms = find_engine_atoms(scene, world.resource<AtomTable>());
+    engine.listed_in = find_list_of_atoms(scene);
     engine.client =
         std::make_shared<ImdClient>(client_options(scene, engine.atoms.in_table.size()));
     world.set_resource(std::move(engine));
@@ -384,7 +407,7 @@ bool take_newest_frame(World& world) {
         time_s = wall_clock_s();
         is_interrupted = is_interrupted || client.state() != ImdState::Connected;
     } while (client.frames() == before && time_s - begin < patience_s(engine) &&
-             noted_interrupt() == 0);
+             noted_interrupt() == 0 && !(engine.is_awaited && is_another_engine(client)));
     const bool is_new = client.frames() != engine.frames && client.frame();
     if (is_new) {
         note_frame(engine, time_s);
@@ -416,9 +439,30 @@ void await_engine(World& world) {
     engine.is_awaited = before;
     if (came) return;
     throw EngineLost({"engine " + engine.settings.address},
-                     engine.client->why() +
-                         "; expected one that listens there and sends frames: "
-                         "start it first, or wait longer (engine.wait_s)");
+                     engine.client->why() + "; " + advise(engine));
+}
+
+std::string advise(const RemoteEngine& engine) {
+    const std::string usual = "expected one that listens there and sends frames";
+    switch (engine.client->lack()) {
+        case ImdLack::Answer:
+            // It was there before.
+            if (engine.frames > 0) return usual;
+            return usual + ": start it first, or wait longer (engine.wait_s)";
+        case ImdLack::Handshake:
+            return "another client may hold it: expected it to be free (LAMMPS takes one client at "
+                   "a time, and ends itself over one that gave up)";
+        case ImdLack::Frame:
+            return "expected frames: wait longer (engine.wait_s)";
+        case ImdLack::Version:
+            return "leave engine.protocol out to take any";
+        case ImdLack::Atoms:
+            return fmt::format(
+                "{} lists {} atoms, the engine sends {}: give the structure of what it sends",
+                engine.listed_in, engine.atoms.in_table.size(), engine.client->other_atoms());
+        default:
+            return usual;
+    }
 }
 
 void leave_engine(World& world) {

@@ -29,6 +29,7 @@ struct RemoteEngine {
     EngineDescription settings;
     EngineAtoms atoms;
     std::shared_ptr<ImdClient> client;
+    std::string listed_in;    // the file that has its atoms, for messages
     bool is_awaited = false;  // a step waits for a frame: no window
 
     std::uint64_t frames = 0;         // that came so far
@@ -101,6 +102,8 @@ void pause_engine(World& world, bool is_paused);
 
 // Null where the world has none.
 const RemoteEngine* find_remote_engine(const World& world) noexcept;
+// What would be right, of an engine that does not send: "expected ..."
+std::string advise(const RemoteEngine& engine);
 // Whether a run without a window is to end: nothing has come for long.
 bool is_engine_gone(const World& world) noexcept;
 // From the atoms' motion to the force on the hand, s: step, frame and low-pass.
