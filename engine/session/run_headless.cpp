@@ -10,6 +10,7 @@
 #include "simulation/components.h"
 #include "simulation/edit.h"
 #include "simulation/held.h"
+#include "simulation/playback.h"
 #include "simulation/remote_engine.h"
 #include "simulation/resources.h"
 #include "simulation/step.h"
@@ -273,6 +274,11 @@ std::vector<std::string> list_warnings(const SceneDescription& scene, const Worl
             relaxed->rms_force, relaxed->steps));
     }
     warn_of_stroke(scene, world, script, 0, warnings);
+    if (scene.engine && scene.engine->program == EngineProgram::Unknown &&
+        scene.engine->rate == 1) {
+        warnings.emplace_back(
+            "engine.rate is 1: LAMMPS takes forces only where it sends every second step or rarer");
+    }
     return warnings;
 }
 
@@ -575,6 +581,9 @@ Summary run_headless(const SceneDescription& scene, World& world, std::span<Devi
     Summary summary = log.summary(world, hands);
     summary.warnings = warnings;
     warn_of_outcome(summary);
+    if (const std::optional<PlaybackState> played = find_playback(world);
+        played && !played->problem.empty())
+        summary.warnings.push_back(played->problem);
     if (recording) recording->finish(summary);
     return summary;
 }

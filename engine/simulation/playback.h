@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace palpa {
 
@@ -27,6 +28,7 @@ struct Playback {
     std::optional<std::size_t> shown{};  // nothing: to be put in the atom table anew
     std::optional<double> time_ps{};     // of the frame, where the file tells
     std::string problem{};               // why it stands still, though not paused; else empty
+    std::string damage{};                // of the frame that was due, until others are asked for
 };
 
 // What a person asks of it.
@@ -63,6 +65,10 @@ void start_playback(World& world, const std::filesystem::path& file,
 // Nothing where nothing is played.
 void order_playback(World& world, const PlaybackOrder& order);
 std::optional<PlaybackState> find_playback(const World& world);
+
+// What is wrong with the file that is played, as far as opening it tells, a sentence each: that it
+// was cut off, above all. Nothing where nothing is played.
+std::vector<std::string> list_playback_notes(const World& world);
 
 // What another world, which takes this one's place, goes on with.
 void carry_playback(const World& world, World& other);

@@ -1,4 +1,5 @@
 """palpa run --trajectory: frames of other programs, and what a hand feels in them."""
+import json
 import struct
 import unittest
 
@@ -87,6 +88,31 @@ class Played(Trajectories):
     def test_a_frame_that_is_not_there_is_refused(self):
         path = self.write([0, 1])
         self.refused("frame 9", WATER, "--headless", "--trajectory", path, "--trajectory-frame", 9)
+
+    def check_warned(self, folder, *expected):
+        warnings = " ".join(json.loads((folder / "summary.json").read_text())["warnings"])
+        for words in expected:
+            self.assertIn(words, warnings)
+
+    def test_a_damaged_frame_is_warned_of_and_the_one_before_it_stays(self):
+        path = self.write([0, 0.5, float("nan"), 1.5])
+        folder, rows = self.play(path, "--seconds", "1", "--trajectory-speed", "10")
+        self.check_warned(folder, "stands at frame 2 of 4", "frame 3", "coordinate")
+        self.assertAlmostEqual(rows[-1]["molecule_x_angstrom"] - rows[0]["molecule_x_angstrom"], 0.5, delta=0.02)
+        self.refused("coordinate", WATER, "--headless", "--trajectory", path, "--trajectory-frame", 3)
+
+    def test_a_file_that_was_cut_off_is_warned_of(self):
+        path = self.write([0, 0.5, 1.0, 1.5])
+        path.write_bytes(path.read_bytes()[:-100])
+        folder, _ = self.play(path, "--seconds", "0.3")
+        self.check_warned(folder, "has 3 frames", "within frame 4", "cut off")
+
+    def test_a_recording_of_it_cannot_be_played_again(self):
+        folder, _ = self.play(self.write([0, 1]), "--seconds", "0.2")
+        self.assertNotIn("run it again", (folder / "session.toml").read_text())
+        result = self.palpa("replay", folder, "--verify")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("its frames are not in", result.stderr)
 
     def test_models_of_a_pdb_file_are_frames(self):
         first, second = self.tmp / "1.pdb", self.tmp / "2.pdb"

@@ -46,6 +46,16 @@ std::size_t move_on(Playback& playback, double period_s) {
     return due;
 }
 
+// The atoms stay, and it is not tried again at each step.
+void stand_before(Playback& playback, std::size_t due, const std::string& what) {
+    playback.damage =
+        fmt::format("the trajectory stands at frame {} of {}: {}", playback.shown.value_or(due) + 1,
+                    playback.trajectory->frame_count(), what);
+    playback.problem = playback.damage;
+    playback.is_paused = true;
+    playback.shown = due;
+}
+
 // From where the frame has it, as a piece of the shape that it has there.
 void hold_in_frame(World& world, Entity hand) {
     Grip& grip = *world.find<Grip>(hand);
@@ -102,14 +112,13 @@ void play_trajectory(World& world, const StepInput& /*input*/) {
         playback->shown.reset();  // whatever moved meanwhile
         return;
     }
+    playback->problem = playback->damage;
     const std::size_t due = move_on(*playback, world.resource<Clock>().period_s);
     if (playback->shown == due) return;
     try {
         show(world, *playback, due);
     } catch (const LoadError& error) {
-        playback->problem = error.what();
-        playback->is_paused = true;
-        playback->shown = due;  // the atoms stay; it is not tried again at each step
+        stand_before(*playback, due, error.what());
     }
 }
 
@@ -153,6 +162,7 @@ void order_playback(World& world, const PlaybackOrder& order) {
     Playback* const playback = world.find_resource<Playback>();
     if (!playback) return;
     const std::size_t last = playback->trajectory->frame_count() - 1;
+    if (order.frame || order.paused == false) playback->damage.clear();
     if (order.frame) playback->at = static_cast<double>(std::min(*order.frame, last));
     if (order.frames_per_s) playback->frames_per_s = std::max(*order.frames_per_s, 0.0);
     if (!order.paused) return;
@@ -171,6 +181,16 @@ std::optional<PlaybackState> find_playback(const World& world) {
                          playback->is_paused,
                          playback->time_ps,
                          playback->problem};
+}
+
+std::vector<std::string> list_playback_notes(const World& world) {
+    std::vector<std::string> notes;
+    const Playback* const playback = world.find_resource<Playback>();
+    if (!playback) return notes;
+    for (const std::string& note : playback->trajectory->notes())
+        notes.push_back(fmt::format("the trajectory has {} frames: the file {}",
+                                    playback->trajectory->frame_count(), note));
+    return notes;
 }
 
 void carry_playback(const World& world, World& other) {
