@@ -40,7 +40,7 @@ class Film(unittest.TestCase):
                          ["10", 64, 48, "10/1"])
 
     def test_without_ffmpeg_there_are_pictures(self):
-        result = self.render("--film", self.film, "--seconds", 0.5, "--fps", 10, PATH=str(self.tmp))
+        result = self.render("--film", self.film, "--seconds", 0.5, "--fps", 10, PATH=str(self.tmp), code=1)
         self.assertIn("ffmpeg is not installed", result.stdout)
         names = sorted(path.name for path in self.frames.iterdir())
         self.assertEqual(names, [f"{i:05}.png" for i in range(5)])
@@ -48,11 +48,21 @@ class Film(unittest.TestCase):
         self.assertEqual(set(sizes), {(64, 48)})
         self.assertFalse(self.film.exists())
         self.render("--film", self.film, "--seconds", 0.5, "--fps", 10, PATH=str(self.tmp), code=2)
-        self.render("--film", self.film, "--seconds", 0.2, "--fps", 10, "--overwrite", PATH=str(self.tmp))
+        self.render("--film", self.film, "--seconds", 0.2, "--fps", 10, "--overwrite", PATH=str(self.tmp),
+                    code=1)
         self.assertEqual(len(list(self.frames.iterdir())), 2)
 
+    def test_a_film_that_fails_is_a_failure(self):
+        broken = self.tmp / "ffmpeg"
+        broken.write_text("#!/bin/sh\necho no encoder >&2\nexit 1\n")
+        broken.chmod(0o755)
+        path = f"{self.tmp}{os.pathsep}{os.environ['PATH']}"
+        result = self.render("--film", self.film, "--seconds", 0.2, "--fps", 10, PATH=path, code=1)
+        self.assertIn("no encoder", result.stdout)
+
     def test_a_film_begins_after_time_and_is_what_pictures_show(self):
-        self.render("--film", self.film, "--seconds", 0.1, "--fps", 10, "--time", 1, PATH=str(self.tmp))
+        self.render("--film", self.film, "--seconds", 0.1, "--fps", 10, "--time", 1, PATH=str(self.tmp),
+                    code=1)
         self.render("-o", self.tmp / "start.png")
         first, = self.frames.iterdir()
         self.assertNotEqual(first.read_bytes(), (self.tmp / "start.png").read_bytes())

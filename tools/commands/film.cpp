@@ -59,7 +59,7 @@ int make_film(SceneDescription scene, World& world, const ViewSettings& view,
         fmt::print("{}: {} pictures of {}x{}; {}\n", end.folder.string(), film.frame_count(),
                    options.width, options.height, end.why);
     }
-    return exit_code_after(0);
+    return exit_code_after(end.is_film ? 0 : 1);
 }
 
 }  // namespace palpa

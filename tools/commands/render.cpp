@@ -196,8 +196,8 @@ void add_render(CLI::App& program, ProgramCommand& chosen) {
     CLI::Option* const film =
         render
             .add_option("--film", options.film,
-                        "a film instead, by ffmpeg; where that is not installed its pictures, in "
-                        "the folder FILE-frames")
+                        "a film instead, by ffmpeg; where that makes none its pictures, in the "
+                        "folder FILE-frames, and exit code 1")
             ->type_name("FILE.mp4");
     render.add_option("--seconds", options.film_seconds, "simulated, of the film, 10 unless given")
         ->check(in_range(0.001, 1e5))
