@@ -328,13 +328,14 @@ std::string format_start(const RunOptions& options) {
 
 Cutoff gromacs_cutoff(const RunSystem& system) {
     // CHARMM36's; half of the box must have room for the list's buffer as well.
-    constexpr double from = 10, to = 12, buffer = 1, width = 2, least = 4;
+    constexpr double from = 10, to = 12, buffer = 1, width = 2,
+                     least = 0.5 * shortest_gromacs_edge - buffer;
     const double room = std::floor(10 * (0.5 * system.box->minCoeff() - buffer)) / 10;
     if (room < least) {
         throw LoadError({system.connectivity.file},
                         fmt::format("the box's shortest edge of {:.2f} Å has no room for a cutoff; "
                                     "expected at least {} Å",
-                                    system.box->minCoeff(), 2 * (least + buffer)));
+                                    system.box->minCoeff(), shortest_gromacs_edge));
     }
     return room >= to ? Cutoff{from, to} : Cutoff{room - width, room};
 }

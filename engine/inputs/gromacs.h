@@ -27,6 +27,9 @@ std::vector<TextFile> format_gromacs(const RunSystem& system, const RunOptions& 
 // The places of the atoms in system.gro, Å.
 std::vector<Vec3> gromacs_positions(const RunSystem& system);
 
+// Å; of a box that has room for a cutoff.
+inline constexpr double shortest_gromacs_edge = 10;
+
 // Å; from where Lennard-Jones forces are switched off, and where all pairs end.
 struct Cutoff {
     double from, to;

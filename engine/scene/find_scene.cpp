@@ -2,6 +2,7 @@
 
 #include "core/files.h"
 #include "core/load_error.h"
+#include "core/shell_word.h"
 #include "core/text.h"
 #include "platform/program.h"
 
@@ -47,11 +48,6 @@ std::string join_some(const std::vector<std::string>& names) {
     return fmt::format("{}{}",
                        fmt::join(names.begin(), names.begin() + static_cast<long>(count), ", "),
                        names.size() > count ? ", ..." : "");
-}
-
-// As it is typed in a shell.
-std::string shell_word(const std::string& word) {
-    return word.find_first_of(" ()&;'") == std::string::npos ? word : "\"" + word + "\"";
 }
 
 std::string prepare_hint(const fs::path& structure) {

@@ -204,6 +204,21 @@ class Files(Case):
             again = palpa("engine", engine, ROOT / "scenes/hairpin/vacuum.toml", "-o", self.folder, "--overwrite")
             self.assertEqual(again.returncode, 0, again.stderr)
 
+    def test_names_with_spaces_are_quoted_in_the_next_line(self):
+        folder = self.folder.parent / "my run"
+        result = palpa("engine", "gromacs", ROOT / "scenes/hairpin/vacuum.toml", "-o", folder)
+        self.assertIn(f'sh "{folder}/run.sh"\n', result.stdout)
+        self.assertIn(f'--topology "{folder}/system.psf"\n', result.stdout)
+
+    def test_a_box_too_short_for_a_run_has_no_next_line(self):
+        psf, coordinates, toppar = box("water")
+        for waters, expected in ((8, "too short for a run"), (64, "palpa engine gromacs")):
+            folder = self.folder / str(waters)
+            result = palpa("engine", "box", "-o", folder, "--waters", waters, "--toppar", *toppar)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertIn(expected, result.stdout)
+        self.assertNotIn("too short", result.stdout)
+
     def test_what_cannot_be_run_is_refused(self):
         psf, coordinates, toppar = box("peptide")
         system = ["--psf", psf, "--coordinates", coordinates, "--toppar", *toppar]

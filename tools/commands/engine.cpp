@@ -6,6 +6,7 @@
 #include "charmm/write_parameters.h"
 #include "core/files.h"
 #include "core/load_error.h"
+#include "core/shell_word.h"
 #include "core/text.h"
 #include "formats/crd.h"
 #include "formats/psf.h"
@@ -179,10 +180,11 @@ int write_input(const EngineOptions& options) {
     }
     const std::string folder = options.folder.string();
     fmt::print(
-        "{} atoms, {}: {}\nstart it:  sh {}/run.sh\njoin it:   palpa connect 127.0.0.1:{} "
-        "--topology {}/{}.psf\n",
-        system.positions.size(), system.box ? "in a box" : "in vacuum", folder, folder, run.port,
-        folder, run.sent.empty() ? "system" : "sent");
+        "{} atoms, {}: {}\nstart it:  sh {}\njoin it:   palpa connect 127.0.0.1:{} "
+        "--topology {}\n",
+        system.positions.size(), system.box ? "in a box" : "in vacuum", folder,
+        shell_word(folder + "/run.sh"), run.port,
+        shell_word(folder + (run.sent.empty() ? "/system.psf" : "/sent.psf")));
     return 0;
 }
 
@@ -225,11 +227,18 @@ int write_box(const EngineOptions& options) {
                   {"system.crd", format_coordinates(box.connectivity, box.positions, title)},
                   {"system.prm", format_parameters(used, title)}});
     const std::string folder = options.folder.string();
+    fmt::print("{} waters, {} atoms: {}\n", box.waters, box.positions.size(), folder);
+    if (box.edge < shortest_gromacs_edge) {
+        fmt::print(
+            "its edge of {:.2f} Å is too short for a run: GROMACS needs {} Å; more --waters\n",
+            box.edge, shortest_gromacs_edge);
+        return 0;
+    }
     fmt::print(
-        "{0} waters, {1} atoms: {2}\nmake the input of a run:  palpa engine gromacs -o {2}-run "
-        "--box {3} --psf {2}/system.psf --coordinates {2}/system.crd --toppar "
-        "{2}/system.prm\n",
-        box.waters, box.positions.size(), folder, edges);
+        "make the input of a run:  palpa engine gromacs -o {} --box {} --psf {} --coordinates {} "
+        "--toppar {}\n",
+        shell_word(folder + "-run"), edges, shell_word(folder + "/system.psf"),
+        shell_word(folder + "/system.crd"), shell_word(folder + "/system.prm"));
     return 0;
 }
 

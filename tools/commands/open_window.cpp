@@ -5,6 +5,7 @@
 #include "app/window_devices.h"
 #include "core/files.h"
 #include "core/load_error.h"
+#include "core/shell_word.h"
 #include "experiments/emulated_hand.h"
 #include "haptics/hand.h"
 #include "render/picture.h"
@@ -69,7 +70,7 @@ std::string describe_saved(const fs::path& file) {
         return file.string();
     } catch (const LoadError&) {
         return fmt::format("{}; it names files in other folders, so open it with 'palpa run {} {}'",
-                           file.string(), file.string(), allow_outside);
+                           file.string(), shell_word(file.string()), allow_outside);
     }
 }
 

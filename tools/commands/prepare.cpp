@@ -4,6 +4,7 @@
 #include "charmm/force_field.h"
 #include "core/files.h"
 #include "core/load_error.h"
+#include "core/shell_word.h"
 #include "core/text.h"
 #include "experiments/tune_scene.h"
 #include "formats/structure.h"
@@ -283,7 +284,7 @@ int prepare_command(const PrepareOptions& options) {
         fmt::print(
             "in the hand: {}\nfeel it in a window:   palpa run {}   (hold Space and move "
             "the mouse)\nplay it without one:   palpa run {} --headless\n",
-            scene.in_hand, folder, folder);
+            scene.in_hand, shell_word(folder), shell_word(folder));
     }
     return 0;
 }
