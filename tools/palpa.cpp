@@ -100,7 +100,7 @@ int main(int argc, char** argv) {
         fmt::print(stderr, "palpa: {}\n", error.what());
         return bad_input;
     } catch (const palpa::EngineLost& error) {
-        fmt::print(stderr, "{}\n", error.what());
+        fmt::print(stderr, "{}\n", palpa::cite_as_typed(error.what(), arguments));
         return palpa::engine_lost;
     } catch (const palpa::LoadError& error) {
         fmt::print(stderr, "{}\n", palpa::cite_as_typed(error.what(), arguments));

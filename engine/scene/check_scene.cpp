@@ -151,16 +151,23 @@ void check_grab(const SceneDescription& scene, Problems& problems) {
     }
 }
 
+// As the system reads numbers: fewer than four parts are one too.
+bool is_host_in_numbers(std::string_view host) {
+    constexpr std::int64_t most_parts = 4, most = 255;
+    std::int64_t parts = 0;
+    for (std::size_t begin = 0; begin <= host.size(); ++parts) {
+        const std::size_t end = std::min(host.find('.', begin), host.size());
+        const std::string_view part = host.substr(begin, end - begin);
+        if (part.empty() || part.find_first_not_of("0123456789") != part.npos) return false;
+        const auto number = find_integer(part);
+        if (!number || *number > most) return false;
+        begin = end + 1;
+    }
+    return parts <= most_parts;
+}
+
 void check_engine(const EngineDescription& engine, Problems& problems) {
-    const std::size_t colon = engine.address.rfind(':');
-    const std::int64_t port =
-        colon == std::string::npos
-            ? 0
-            : find_integer(std::string_view(engine.address).substr(colon + 1)).value_or(0);
-    const std::string_view host = std::string_view(engine.address).substr(0, colon);
-    const bool is_host = host == "localhost" ||
-                         (!host.empty() && host.find_first_not_of("0123456789.") == host.npos);
-    if (!is_host || port < 1 || port > 65535) {
+    if (!is_engine_address(engine.address)) {
         problems.add(problems.place_of("engine.address"),
                      fmt::format("'engine.address' is \"{}\"; expected HOST:PORT with the host in "
                                  "numbers, as \"127.0.0.1:8888\"",
@@ -168,8 +175,8 @@ void check_engine(const EngineDescription& engine, Problems& problems) {
     }
     if (engine.program == EngineProgram::Lammps && engine.rate == 1) {
         problems.add(problems.place_of("engine.rate"),
-                     "'engine.rate' is 1, at which LAMMPS takes no forces; expected 2 or more, or "
-                     "0: as its input has it");
+                     "'engine.rate' is 1, at which LAMMPS takes no forces: it does where it sends "
+                     "every second step or rarer; expected 2 or more, or 0: as its input has it");
     }
 }
 
@@ -184,6 +191,14 @@ void check_view(const ViewDescription& view, const SceneDescription& scene, Prob
 }
 
 }  // namespace
+
+bool is_engine_address(std::string_view address) {
+    const std::size_t colon = address.rfind(':');
+    if (colon == address.npos) return false;
+    const std::string_view host = address.substr(0, colon);
+    const std::int64_t port = find_integer(address.substr(colon + 1)).value_or(0);
+    return (host == "localhost" || is_host_in_numbers(host)) && port >= 1 && port <= 65535;
+}
 
 void check_edits(const SceneDescription& scene, Problems& problems) {
     if (problems.any()) return;  // of a key that is wrong nothing was kept

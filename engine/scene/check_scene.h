@@ -3,10 +3,14 @@
 #include "scene/description.h"
 #include "scene/problems.h"
 
+#include <string_view>
+
 namespace palpa {
 
 void check_scene(const SceneDescription& scene, Problems& problems);
 void check_edits(const SceneDescription& scene, Problems& problems);
+// "HOST:PORT", the host in numbers or "localhost".
+bool is_engine_address(std::string_view address);
 void check_coupling(const CouplingDescription& coupling, Problems& problems);
 
 }  // namespace palpa

@@ -83,6 +83,8 @@ class Cli(unittest.TestCase):
                 self.assertNotRegex(result.stdout, r"\{|TEXT\b|FLOAT|UINT|REQUIRED|Needs:|Excludes:")
                 self.assertLessEqual(max(map(len, result.stdout.split("\nExample")[0].splitlines())), 100)
         self.assertIn("Exit codes", page)
+        for code in ("0", "1", "2", "3", "4", "128\\+N"):
+            self.assertRegex(page, rf"\n  {code} +\w")
         self.assertEqual(self.palpa("help").stdout, page)
 
     def test_what_is_misspelt_gets_the_near_name(self):

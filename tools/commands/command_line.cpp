@@ -40,10 +40,12 @@ constexpr std::array renamed_commands = std::to_array<RenamedCommand>(
 
 constexpr const char* exit_codes =
     "Exit codes\n"
-    "  0    done\n"
-    "  1    done, and what was checked does not hold (report, replay --verify, devices, ...)\n"
-    "  2    wrong arguments or input; nothing was changed\n"
-    "  3    an error in Palpa itself\n"
+    "  0      done\n"
+    "  1      done, and what was checked does not hold (report, replay --verify, devices, ...),\n"
+    "         or no film came out (render --film)\n"
+    "  2      wrong arguments or input, or something missing; nothing was changed\n"
+    "  3      an error in Palpa itself\n"
+    "  4      no remote engine answered, or it was lost for good (connect, run)\n"
     "  128+N  ended by signal N; a recording that had begun is complete up to there\n";
 
 // Words of `text` in lines from `column` on; the first line continues one of `used` letters.
@@ -225,6 +227,20 @@ std::string explain_extras(const CLI::App& program, const CLI::App& command) {
                        hint_of(extra, names_of_options(command)));
 }
 
+// Keys of the scene that palpa connect makes, as its options.
+std::string cite_connect(std::string message) {
+    constexpr std::array<std::array<std::string_view, 2>, 3> keys{
+        {{"engine.wait_s", "--wait"},
+         {"engine.protocol", "--protocol"},
+         {"engine.rate", "--rate"}}};
+    if (message.starts_with("--set")) return message;
+    for (const auto& [key, option] : keys) {
+        if (const std::size_t at = message.find(key); at != std::string::npos)
+            message.replace(at, key.size(), option);
+    }
+    return message;
+}
+
 }  // namespace
 
 void describe(CLI::App& command, const std::string& group, const std::vector<std::string>& examples,
@@ -256,6 +272,7 @@ void add_setting(CLI::App& command, const std::string& option, const std::string
 }
 
 std::string cite_as_typed(const std::string& message, const std::vector<std::string>& arguments) {
+    if (!arguments.empty() && arguments.front() == "connect") return cite_connect(message);
     for (const auto& [option, key, value] : setting_options) {
         const std::string cited = fmt::format("--set {}=", key);
         if (!message.starts_with(cited)) continue;

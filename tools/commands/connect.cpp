@@ -1,13 +1,16 @@
 // palpa connect: a remote engine under the hand, without a scene file.
 #include "core/files.h"
 #include "core/load_error.h"
+#include "core/shell_word.h"
 #include "core/text.h"
 #include "formats/gro.h"
 #include "formats/psf.h"
 #include "formats/structure.h"
 #include "molecule/alternatives.h"
+#include "scene/check_scene.h"
 #include "scene/read_scene.h"
 #include "scene/write_scene.h"
+#include "session/recording.h"
 #include "simulation/sources.h"
 #include "tools/commands/command.h"
 #include "tools/commands/command_line.h"
@@ -22,6 +25,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 namespace palpa {
@@ -48,8 +52,24 @@ struct Part {
     bool is_solvent = false;  // water or ions
 };
 
+void check_topology_name(const fs::path& path) {
+    constexpr std::array<std::string_view, 7> endings{".PDB", ".ENT", ".CIF", ".MMCIF",
+                                                      ".CRD", ".COR", ".GRO"};
+    constexpr const char* expected =
+        "expected a .psf, .gro, .pdb, .cif or .crd file, which lists the engine's atoms";
+    std::error_code error;
+    if (fs::is_directory(path, error))
+        throw LoadError({path.string()}, fmt::format("is a folder; {}", expected));
+    const bool is_packed = upper_case(path.extension().string()) == ".GZ";
+    const std::string ending = (is_packed ? path.stem() : path).extension().string();
+    if (std::ranges::find(endings, upper_case(ending)) != endings.end()) return;
+    throw LoadError({path.string()},
+                    fmt::format("is no structure or topology by its ending; {}", expected));
+}
+
 std::vector<AtomName> read_names(const fs::path& path) {
     if (is_psf(path)) return read_psf(path).names;
+    check_topology_name(path);
     const Structure structure = read_structure(path);
     refuse_alternatives(structure);
     return structure.names;
@@ -195,11 +215,12 @@ SceneDescription build_scene(const ConnectOptions& options) {
 }
 
 int connect_command(const ConnectOptions& options) {
-    if (options.address.find(':') == std::string::npos) {
+    if (!is_engine_address(options.address)) {
         throw LoadError({options.address},
-                        "is no address of an engine; expected HOST:PORT, as "
-                        "127.0.0.1:8888");
+                        "is no address of an engine; expected HOST:PORT with the host in numbers "
+                        "and a port from 1 to 65535, as 127.0.0.1:8888");
     }
+    if (options.run.record) check_record_folder(*options.run.record, options.run.overwrites);
     SceneDescription description = build_scene(options);
     const auto absolute = [](const fs::path& path) { return fs::absolute(path).generic_string(); };
     const std::string text = format_scene(description, absolute);
@@ -214,7 +235,7 @@ int connect_command(const ConnectOptions& options) {
         write_text_file(*options.scene, format_scene(scene, beside),
                         options.run.overwrites ? Existing::Replace : Existing::Refuse);
         fmt::print("written: {}; run it with: palpa run {} {}\n", options.scene->string(),
-                   options.scene->string(), allow_outside);
+                   shell_word(options.scene->string()), allow_outside);
     }
     return run_scene(scene, options.run);
 }
@@ -265,12 +286,16 @@ void add_connect(CLI::App& program, ProgramCommand& chosen) {
     connect.option_defaults()->group("Without a window");
     connect.add_flag("--headless", options.run.headless,
                      "as fast as frames come; the emulated hand holds still, or leads");
-    connect.add_option("--seconds", options.seconds, "length of the run, 60 unless given")
+    connect
+        .add_option("--seconds", options.seconds,
+                    "length of the run in periods of --period-ms, neither the engine's time nor "
+                    "the wall clock's; 60 unless given")
         ->check(in_range(1e-3, 1e5));
     connect
         .add_option("--lead", options.lead,
                     "X,Y,Z, Å: the emulated hand leads what it holds there by the end")
         ->delimiter(',')
+        ->check(in_range(-1e5, 1e5))
         ->type_name("");
     connect.add_flag("--json", options.run.json, "print the summary as JSON");
     connect.option_defaults()->group("With and without a window");
