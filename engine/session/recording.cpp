@@ -169,15 +169,40 @@ std::map<fs::path, std::string> input_names(const std::vector<fs::path>& files) 
 }
 
 constexpr std::string_view session_mark = "# A recorded Palpa session";
+constexpr std::string_view trajectory_mark =
+    "# A recorded Palpa session, in which a trajectory moved the atoms";
+
+// What the head of a session says about running it again.
+std::string describe_return(const SceneDescription& scene, RecordedBy by) {
+    if (scene.engine) {
+        return fmt::format(
+            "{}, every field written out. A remote engine\n# moved the atoms, and its frames are "
+            "not here: it cannot be played again.\n",
+            session_mark);
+    }
+    switch (by) {
+        case RecordedBy::Trajectory:
+            return fmt::format(
+                "{},\n# every field written out. Its frames are not here: it cannot be played "
+                "again.\n",
+                trajectory_mark);
+        case RecordedBy::Journal:
+            return fmt::format(
+                "{}, every field written out. To play what people did in it (journal.txt):\n#   "
+                "palpa replay THIS_FOLDER\n",
+                session_mark);
+        default:
+            return fmt::format(
+                "{}, every field written out. To run it again:\n#   palpa run session.toml "
+                "--headless --record NEW_FOLDER\n",
+                session_mark);
+    }
+}
 
 std::string format_session(const SceneDescription& scene, RecordedBy by = RecordedBy::Hand) {
     const std::map<fs::path, std::string> names = input_names(input_files(scene));
-    return fmt::format(
-        "{}, every field written out. To {}\n{}", session_mark,
-        by == RecordedBy::Hand
-            ? "run it again:\n#   palpa run session.toml --headless --record NEW_FOLDER"
-            : "play what people did in it (journal.txt):\n#   palpa replay THIS_FOLDER",
-        format_scene(scene, [&](const fs::path& file) { return names.at(file); }));
+    return describe_return(scene, by) +
+           format_scene(scene, [&](const fs::path& file) { return names.at(file); });
 }
 
 bool is_recording(const fs::path& folder) {
@@ -235,7 +260,22 @@ void make_folder(const fs::path& folder) {
     if (error) throw LoadError({folder.string()}, "cannot be made: " + error.message());
 }
 
+// By the nearest folder that is there.
+void check_can_be_made(const fs::path& folder) {
+    std::error_code error;
+    fs::path parent = fs::absolute(folder, error).parent_path();
+    while (parent.has_relative_path() && !fs::exists(parent, error)) parent = parent.parent_path();
+    if (!fs::is_directory(parent, error)) {
+        throw LoadError({folder.string()},
+                        fmt::format("cannot be made: {} is no folder", parent.string()));
+    }
+}
+
 }  // namespace
+
+bool is_of_trajectory(const fs::path& folder) {
+    return begins_with(folder / "session.toml", trajectory_mark);
+}
 
 InputNames::InputNames(const SceneDescription& scene) {
     (void)input_names(input_files(scene), taken_);
@@ -245,7 +285,7 @@ std::string InputNames::add(const fs::path& file) { return input_name(file, take
 
 void check_record_folder(const fs::path& folder, bool overwrites) {
     std::error_code error;
-    if (!fs::exists(folder, error)) return;
+    if (!fs::exists(folder, error)) return check_can_be_made(folder);
     if (!fs::is_directory(folder, error)) {
         throw LoadError({folder.string()}, "is a file; expected a folder to record into");
     }
@@ -320,7 +360,7 @@ nlohmann::ordered_json accuracy_as_json(const AccuracyReport& report) {
 }
 
 // What one hand felt and did.
-void add_felt(const Summary& hand, nlohmann::ordered_json& json) {
+void add_felt(const Summary& hand, bool has_engine, nlohmann::ordered_json& json) {
     if (hand.ripple) {
         json["ripple_N"] = hand.ripple->rms;
         json["ripple_Hz"] = hand.ripple->hertz;
@@ -333,6 +373,8 @@ void add_felt(const Summary& hand, nlohmann::ordered_json& json) {
         json["largest_attraction_N"] = hand.largest_attraction_N;
         json["largest_repulsion_N"] = hand.largest_repulsion_N;
     }
+    // A spring to an engine's atoms is measured from no other molecule.
+    if (has_engine) return;
     json["closest_angstrom"] = hand.closest_angstrom;
     json["last_angstrom"] = hand.last_angstrom;
 }
@@ -394,7 +436,7 @@ std::string format_summary(const SceneDescription& scene, const Summary& summary
     json["step_p99_us"] = summary.step_p99_us;
     json["steps_not_finite"] = summary.steps_not_finite;
     if (summary.client_pulls > 0) json["client_pulls"] = summary.client_pulls;
-    add_felt(summary, json);
+    add_felt(summary, scene.engine.has_value(), json);
     if (summary.activity) {
         json["active_mean"] = summary.activity->active;
         json["neglected_share"] = summary.activity->neglected_share;
@@ -437,7 +479,7 @@ std::string format_summary(const SceneDescription& scene, const Summary& summary
         const Summary& hand = summary.other_hands[i];
         nlohmann::ordered_json& other = json[fmt::format("hand_{}", i + 2)];
         other["device"] = hand.device;
-        add_felt(hand, other);
+        add_felt(hand, scene.engine.has_value(), other);
         add_safety(hand, other);
     }
     json["neglected"] = summary.neglected;

@@ -53,7 +53,11 @@ private:
 };
 
 // What brings a recorded session back: the scene's own hand, or a journal.
-enum class RecordedBy { Hand, Journal };
+// A trajectory that moved the atoms is not in the recording, and does not come back.
+enum class RecordedBy { Hand, Journal, Trajectory };
+
+// Whether the folder holds a recording by a trajectory.
+bool is_of_trajectory(const std::filesystem::path& folder);
 
 class Recording {
 public:

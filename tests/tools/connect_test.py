@@ -2,6 +2,7 @@
 import csv
 import json
 import os
+import socket
 import struct
 import subprocess
 import sys
@@ -100,7 +101,50 @@ class Connected(unittest.TestCase):
         engine = self.start(version=2)
         result = self.connect(engine, "--seconds", 1, "--protocol", "3", "--wait", 2)
         self.assertEqual(result.returncode, 4)
-        self.assertIn("version 2", result.stderr)
+        # What came first, and neither what follows nor advice to start what is there.
+        self.assertIn("speaks version 2, expected 3; leave --protocol out", result.stderr)
+        self.assertNotIn("start it first", result.stderr)
+
+    def test_another_number_of_atoms_is_refused_with_both(self):
+        engine = Engine(PLACES[:6], masses=MASSES[:6])
+        engine.start()
+        self.addCleanup(engine.stop)
+        result = self.connect(engine, "--seconds", 1, "--wait", 2)
+        self.assertEqual(result.returncode, 4)
+        self.assertIn("run.gro lists 9 atoms, the engine sends 6: give the structure", result.stderr)
+        self.assertNotIn("start it first", result.stderr)
+
+    def test_one_that_is_held_by_another_client(self):
+        with socket.create_server(("127.0.0.1", 0)) as busy:
+            result = self.connect(busy.getsockname()[1], "--seconds", 1, "--wait", 1)
+        self.assertEqual(result.returncode, 4)
+        self.assertIn("has not sent its handshake; another client may hold it", result.stderr)
+
+    def test_bad_arguments_are_named(self):
+        cases = ((("--lead", "nan,0,0"), "--lead"), (("--record", self.topology / "r"), "is no folder"))
+        for arguments, expected in cases:
+            result = self.connect(1, *arguments)
+            self.assertEqual(result.returncode, 2, result.stderr)
+            self.assertIn(expected, result.stderr)
+        for address in ("127.0.0.1:99999", "999.0.0.1:8888", "127.0.0.1", "1.2.3.4.5:8888"):
+            result = subprocess.run([PROGRAM, "connect", address, "--topology", self.topology, "--headless"],
+                                    capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=60)
+            self.assertEqual(result.returncode, 2, result.stderr)
+            self.assertIn("is no address of an engine", result.stderr)
+        wrong = self.folder / "run.txt"
+        wrong.write_text("")
+        for topology in (wrong, self.folder):
+            result = self.connect(1, topology=topology)
+            self.assertEqual(result.returncode, 2)
+            self.assertIn("expected a .psf", result.stderr)
+
+    def test_its_recording_cannot_be_played_again(self):
+        summary, _ = self.record(self.start())
+        self.assertNotIn("closest_angstrom", summary)
+        self.assertNotIn("run it again", (self.folder / "record" / "session.toml").read_text())
+        result = subprocess.run([PROGRAM, "replay", self.folder / "record"], capture_output=True, text=True, timeout=60)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("its frames are not in the recording", result.stderr)
 
     def test_an_atom_is_held_by_number_and_by_name(self):
         for hold in ("5", "HW1 2", "2 HW1", "WAT HW1 2"):
@@ -133,6 +177,7 @@ class Connected(unittest.TestCase):
         result = self.connect(port, "--seconds", 1, "--wait", 1)
         self.assertEqual(result.returncode, 4)
         self.assertIn(f"127.0.0.1:{port}", result.stderr)
+        self.assertIn("start it first, or wait longer (--wait)", result.stderr)
 
     def test_an_engine_that_ends_is_lost(self):
         engine = self.start(frames=50)

@@ -242,11 +242,19 @@ void print_summary(const SceneDescription& scene, const Summary& s) {
     fmt::print("  net work    {:+.4f} J on the hand\n", s.net_work_J);
     for (std::size_t i = 0; i < s.other_hands.size(); ++i) {
         const Summary& other = s.other_hands[i];
-        fmt::print("  hand {}      {:.3f} N at most, {:+.4f} J of net work; {:.3f} Å at the end\n",
-                   i + 2, other.largest_felt_N, other.net_work_J, other.last_angstrom);
+        fmt::print("  hand {}      {:.3f} N at most, {:+.4f} J of net work", i + 2,
+                   other.largest_felt_N, other.net_work_J);
+        if (scene.engine) {
+            fmt::print("\n");
+        } else {
+            fmt::print("; {:.3f} Å at the end\n", other.last_angstrom);
+        }
     }
-    fmt::print("  molecule    {:.3f} Å at the closest, {:.3f} Å at the end\n", s.closest_angstrom,
-               s.last_angstrom);
+    // A spring to an engine's atoms is measured from no other molecule.
+    if (!scene.engine) {
+        fmt::print("  molecule    {:.3f} Å at the closest, {:.3f} Å at the end\n",
+                   s.closest_angstrom, s.last_angstrom);
+    }
     if (s.unbinding) {
         const UnbindingPath& j = *s.unbinding;
         fmt::print("  unbinding   centre of mass up to {:.2f} Å from its start", j.farthest);

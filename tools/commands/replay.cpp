@@ -8,6 +8,7 @@
 #include "scene/read_scene.h"
 #include "session/journal.h"
 #include "session/play_journal.h"
+#include "session/recording.h"
 #include "session/replay.h"
 #include "session/run_headless.h"
 #include "simulation/held.h"
@@ -41,8 +42,21 @@ SceneDescription read_session(const std::filesystem::path& folder) {
     return read_scene(session, {});
 }
 
+// What moved the atoms and is not in the recording.
+void check_is_whole(const std::filesystem::path& folder, const SceneDescription& scene) {
+    if (scene.engine) {
+        throw LoadError(scene.place_of("engine"),
+                        "a remote engine moved the atoms, and its frames are not in the recording; "
+                        "expected one without [engine]");
+    }
+    if (is_of_trajectory(folder)) {
+        throw LoadError({folder.string()},
+                        "a trajectory moved the atoms (--trajectory), and its frames are not in "
+                        "the recording; expected one without");
+    }
+}
+
 void check_repeats(const SceneDescription& scene) {
-    refuse_remote_engine(scene);
     if (!scene.statics.budget_us) return;
     throw LoadError(
         scene.place_of("statics.budget_us"),
@@ -181,6 +195,7 @@ bool has_journal(const std::filesystem::path& folder) {
 
 int replay_command(const ReplayOptions& options) {
     SceneDescription scene = read_session(options.recording);
+    check_is_whole(options.recording, scene);
     if (has_journal(options.recording)) return replay_journal(options, scene);
     check_no_client_pulled(options.recording);
     if (!options.verify) {

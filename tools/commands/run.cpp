@@ -178,7 +178,8 @@ int run_without_window(SceneDescription scene, World& world,
     note_interrupts();  // a recording that is begun is ended in order
     std::optional<Recording> recording;
     if (options.record)
-        recording.emplace(*options.record, scene, options.overwrites, devices.size());
+        recording.emplace(*options.record, scene, options.overwrites, devices.size(),
+                          options.trajectory ? RecordedBy::Trajectory : RecordedBy::Hand);
     if (recording) recording->begin_trajectory(trajectory_settings(options));
     std::vector<Device*> hands;
     for (const std::unique_ptr<Device>& device : devices) hands.push_back(device.get());
@@ -190,9 +191,7 @@ int run_without_window(SceneDescription scene, World& world,
     }
     if (options.record && options.trajectory) {
         warnings.emplace_back(
-            "session.toml of this recording has no trajectory to play; whoever runs it again has "
-            "to "
-            "name --trajectory again");
+            "this recording does not have the trajectory's frames: it cannot be played again");
     }
     const std::unique_ptr<FrameServer> server = open_server(options.serve, world, !options.json);
     std::optional<ServedRun> served;
@@ -212,7 +211,9 @@ int run_without_window(SceneDescription scene, World& world,
         [&] { return noted_interrupt() != 0 || is_engine_gone(world); }, before_step);
     progress.wipe();
     const bool is_gone = is_engine_gone(world);
-    const std::string engine = describe_engine(world);
+    const std::string engine =
+        is_gone ? describe_engine(world) + "; " + advise(*find_remote_engine(world))
+                : std::string();
     leave_engine(world);
     if (noted_interrupt() != 0 || is_gone)
         scene.seconds = static_cast<double>(summary.ticks) / servo_rate_hz;
@@ -224,10 +225,7 @@ int run_without_window(SceneDescription scene, World& world,
         print_summary(scene, summary);
         if (options.record) fmt::print("recorded in {}\n", options.record->string());
     }
-    if (is_gone) {
-        fmt::print(stderr, "{}; expected one that listens there and sends frames\n",
-                   printable(engine));
-    }
+    if (is_gone) fmt::print(stderr, "{}\n", printable(engine));
     return exit_code_after(is_gone ? engine_lost : 0);
 }
 
@@ -271,9 +269,11 @@ int run_scene(const SceneDescription& read, const RunOptions& options) {
              list_hand_warnings(scene, world, script, slot, progress.stages()))
             warnings.push_back(std::move(warning));
     }
+    for (std::string& note : list_playback_notes(world)) warnings.push_back(std::move(note));
     progress.wipe();
     if (options.check_only) return print_check(scene, world, warnings, progress);
     if (!options.headless) {
+        print_warnings(list_playback_notes(world));
         return exit_code_after(open_window(scene, world, settings, options));
     }
     // Complaints about the size of frames come before a recording is begun.
@@ -315,6 +315,7 @@ void add_serve_options(CLI::App& run, ServeChoice& serve) {
         run.add_option("--serve", serve.port,
                        "be an engine that VMD, imdclient and others watch and pull, on this port; "
                        "0: one that is free")
+            ->check(in_range(0, 65535))
             ->type_name("PORT");
     run.add_option("--serve-version", serve.options.version, "of IMD, 2 unless given, or 3")
         ->check(CLI::IsMember({2, 3}))
