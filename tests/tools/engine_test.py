@@ -211,10 +211,10 @@ class Files(Case):
         self.assertIn(f'--topology "{folder}/system.psf"\n', result.stdout)
 
     def test_a_box_too_short_for_a_run_has_no_next_line(self):
-        psf, coordinates, toppar = box("water")
         for waters, expected in ((8, "too short for a run"), (64, "palpa engine gromacs")):
             folder = self.folder / str(waters)
-            result = palpa("engine", "box", "-o", folder, "--waters", waters, "--toppar", *toppar)
+            result = palpa("engine", "box", "-o", folder, "--waters", waters, "--toppar",
+                           ROOT / "scenes/water/tip3p.str")
             self.assertEqual(result.returncode, 0, result.stderr)
             self.assertIn(expected, result.stdout)
         self.assertNotIn("too short", result.stdout)
