@@ -321,6 +321,8 @@ TEST_CASE("an engine that says what is no IMD is left with a sentence", "[imd][c
         session.accept();
         session.engine.send(greeting + frame_at(0));
         session.expect_lost("a 'coordinates' message came with a length of 2, expected 3 atoms");
+        CHECK(session.client->lack() == ImdLack::Atoms);
+        CHECK(session.client->other_atoms() == 2);
     }
     {
         Session session;
@@ -369,6 +371,24 @@ TEST_CASE("an engine that is not there, or says nothing, is lost in time", "[imd
     silent.now += 6;
     silent.poll();
     silent.expect_lost("did not send its handshake within 5 s");
+}
+
+// As LAMMPS, which ends when a client leaves at once.
+TEST_CASE("of an engine that ended over it the first cause is told", "[imd][client]") {
+    Session session({.version = 3, .retry_after_s = 2});
+    session.accept();
+    session.engine.send(test::handshake(native, 2), [&] { session.poll(); });
+    session.expect_lost("is left: it speaks version 2, expected 3");
+    CHECK(session.client->lack() == ImdLack::Version);
+    session.engine.close();
+    session.listening = Socket();
+    session.now += 3;
+    session.poll();
+    session.until([&] { return session.client->state() == ImdState::Lost; });
+    CHECK_THAT(session.client->why(), Contains("cannot be connected to"));
+    CHECK_THAT(session.client->why(),
+               EndsWith("before, it is left: it speaks version 2, expected 3"));
+    CHECK(session.client->lack() == ImdLack::Version);
 }
 
 TEST_CASE("a lost engine is tried again where that was asked for", "[imd][client]") {
