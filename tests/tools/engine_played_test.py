@@ -70,7 +70,7 @@ class Played(unittest.TestCase):
         record = self.folder / "record"
         result = self.palpa("connect", f"127.0.0.1:{self.port}", "--topology", self.run_folder / "sent.psf",
                             "--headless", "--seconds", seconds, "--lead", f"{way_angstrom},0,0", "--spring", SPRING,
-                            "--rate", rate, "--wait", 60, "--set", "engine.late_s=30", "--program", program,
+                            "--rate", rate, "--wait", 200, "--set", "engine.late_s=30", "--program", program,
                             "--record", record, "--json")
         output = (self.folder / "output").read_text(errors="replace")[-2000:]
         self.assertEqual(result.returncode, 0, result.stderr + output)
