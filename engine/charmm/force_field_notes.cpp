@@ -9,7 +9,7 @@
 namespace palpa {
 namespace {
 
-constexpr std::size_t most_told = 3;
+constexpr std::size_t most_listed = 3;
 
 std::string describe_kind(ForceFieldNote::Kind kind, std::size_t count) {
     const char* const s = count == 1 ? "" : "s";
@@ -57,12 +57,12 @@ std::vector<std::string> describe_notes(std::span<const ForceFieldNote> notes) {
         std::vector<std::string> first;
         std::size_t count = 0;
         for (const ForceFieldNote& note : notes) {
-            if (note.kind != kind || ++count > most_told) continue;
+            if (note.kind != kind || ++count > most_listed) continue;
             first.push_back(describe_note(note));
         }
         if (count == 0) continue;
         lines.push_back(fmt::format("{}: {}{}", describe_kind(kind, count), fmt::join(first, "; "),
-                                    count > most_told ? "; ..." : ""));
+                                    count > most_listed ? "; ..." : ""));
     }
     return lines;
 }

@@ -3,7 +3,7 @@
 // An atom's charge is its formal charge, and for each bond what flows along it. The flow between
 // types a and b is chi(b) - chi(a) + d(a, b): the d of pairs that residues have, chi for pairs that
 // none has. chi and d are found by least squares over all atoms of all residues, d and chi being
-// drawn towards 0. What is left over is averaged over atoms of equal surroundings, level by level,
+// drawn towards 0. The remainder is averaged over atoms of equal surroundings, level by level,
 // and added where an atom has such surroundings.
 #pragma once
 #include "ligands/environments.h"

@@ -2,6 +2,7 @@
 
 #include "ligands/bond_orders.h"
 #include "ligands/perception.h"
+#include "molecule/element.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -225,30 +226,6 @@ private:
 };
 
 }  // namespace
-
-double covalent_radius(const std::string& element) noexcept {
-    struct Radius {
-        std::string_view element;
-        double value;  // Å
-    };
-    static constexpr auto radii = std::to_array<Radius>({{"H", 0.31},
-                                                         {"B", 0.84},
-                                                         {"C", 0.76},
-                                                         {"N", 0.71},
-                                                         {"O", 0.66},
-                                                         {"F", 0.57},
-                                                         {"SI", 1.11},
-                                                         {"P", 1.07},
-                                                         {"S", 1.05},
-                                                         {"CL", 1.02},
-                                                         {"SE", 1.20},
-                                                         {"BR", 1.20},
-                                                         {"I", 1.39}});
-    for (const Radius& radius : radii) {
-        if (radius.element == element) return radius.value;
-    }
-    return 1.5;
-}
 
 void find_bonds(MoleculeGraph& graph) {
     graph.bonds.clear();

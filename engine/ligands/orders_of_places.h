@@ -4,13 +4,10 @@
 
 namespace palpa {
 
-// Bonds between atoms with positions: those closer than the sum of their covalent radii (Cordero
-// and others, Dalton Transactions 2008, 2832) and 0.4 Å, hydrogens to the one nearest atom. What
+// Bonds between atoms with positions: those closer than the sum of their covalent radii
+// (molecule/element.h) and 0.4 Å, hydrogens to the one nearest atom. What
 // bonds the graph had is dropped; all orders are 1.
 void find_bonds(MoleculeGraph& graph);
-
-// The radius that is meant, Å; 1.5 of an element that is not in the table.
-double covalent_radius(const std::string& element) noexcept;
 
 // Orders of the bonds of a molecule without hydrogens. An atom may have a double bond if it is
 // flat: three neighbours whose angles add up to 353 degree, two with an angle above 117 degree (N:

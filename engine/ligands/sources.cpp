@@ -35,8 +35,8 @@ bool has_hydrogen_on_carbon(const MoleculeGraph& graph) {
     });
 }
 
-// What is left open at the ends of bonds that a file calls aromatic, where it has no hydrogens: at
-// carbon one, at nitrogen and oxygen what three or two bonds leave.
+// Free valences of atoms in bonds that a file calls aromatic, where it has no hydrogens: one of
+// carbon; of nitrogen and oxygen three and two less their bonds.
 std::vector<int> open_ends(const LigandFile& file) {
     const BondLists bonds = bonds_of_atoms(file.graph);
     std::vector<int> open(file.graph.size());

@@ -37,6 +37,20 @@ constexpr std::array charmm_ions =
 constexpr std::array plain_pairs =
     std::to_array<std::string_view>({"BR", "CL", "CU", "FE", "MG", "MN", "SE", "ZN"});
 
+constexpr std::array radii = std::to_array<std::pair<std::string_view, double>>({{"H", 0.31},
+                                                                                 {"B", 0.84},
+                                                                                 {"C", 0.76},
+                                                                                 {"N", 0.71},
+                                                                                 {"O", 0.66},
+                                                                                 {"F", 0.57},
+                                                                                 {"SI", 1.11},
+                                                                                 {"P", 1.07},
+                                                                                 {"S", 1.05},
+                                                                                 {"CL", 1.02},
+                                                                                 {"SE", 1.20},
+                                                                                 {"BR", 1.20},
+                                                                                 {"I", 1.39}});
+
 }  // namespace
 
 bool is_element(std::string_view symbol) noexcept {
@@ -60,6 +74,13 @@ std::string find_element_of_name(std::string_view atom, std::string_view residue
         std::find(plain_pairs.begin(), plain_pairs.end(), letters) != plain_pairs.end();
     const std::string symbol = plain ? letters : letters.substr(0, 1);
     return is_element(symbol) ? symbol : std::string();
+}
+
+double covalent_radius(std::string_view element) noexcept {
+    const auto* const found =
+        std::ranges::find(radii, element, &std::pair<std::string_view, double>::first);
+    constexpr double other = 1.4;
+    return found == radii.end() ? other : found->second;
 }
 
 }  // namespace palpa

@@ -14,4 +14,8 @@ bool is_element(std::string_view symbol) noexcept;
 // mean anything else ("FE" in "HEM", "CL1", "SE").
 std::string find_element_of_name(std::string_view atom, std::string_view residue);
 
+// Half of a single bond to an atom of the element, Å (B. Cordero et al., Dalton Trans. 2008, 2832);
+// 1.4 for elements that organic molecules lack.
+double covalent_radius(std::string_view element) noexcept;
+
 }  // namespace palpa

@@ -1,8 +1,8 @@
 #include "prepare/approximate_unknown.h"
 
 #include "ligands/approximate.h"
-#include "ligands/orders_of_places.h"
 #include "ligands/sources.h"
+#include "molecule/element.h"
 #include "prepare/residue_names.h"
 #include "prepare/residues.h"
 

@@ -137,7 +137,7 @@ void check_structural_waters(const Structure& structure, const PrepareSettings& 
 // Why a residue is left out.
 enum class Reason { None, Asked, Water, Ion, Crystal };
 
-// Counts what is left out, and reports it.
+// Counts omitted residues by reason and name, and reports them.
 class LeftOut {
 public:
     void add(Reason reason, const std::string& name) {

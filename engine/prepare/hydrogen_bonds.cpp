@@ -1,5 +1,6 @@
 #include "prepare/hydrogen_bonds.h"
 
+#include "molecule/element.h"
 #include "prepare/anchor_grid.h"
 #include "prepare/choose.h"
 #include "prepare/match_by_bonds.h"

@@ -141,27 +141,6 @@ void BondedAtoms::add_bond(std::uint32_t a, std::uint32_t b) {
     neighbours[b].push_back(a);
 }
 
-double covalent_radius(std::string_view element) noexcept {
-    using Radius = std::pair<std::string_view, double>;
-    constexpr auto radii = std::to_array<Radius>({{"H", 0.31},
-                                                  {"B", 0.84},
-                                                  {"C", 0.76},
-                                                  {"N", 0.71},
-                                                  {"O", 0.66},
-                                                  {"F", 0.57},
-                                                  {"SI", 1.11},
-                                                  {"P", 1.07},
-                                                  {"S", 1.05},
-                                                  {"CL", 1.02},
-                                                  {"SE", 1.20},
-                                                  {"BR", 1.20},
-                                                  {"I", 1.39}});
-    const auto* const found = std::find_if(
-        radii.begin(), radii.end(), [&](const Radius& radius) { return radius.first == element; });
-    constexpr double metal = 1.4;
-    return found == radii.end() ? metal : found->second;
-}
-
 BondedAtoms find_bonded_atoms(const Structure& structure, const ResidueRange& residue) {
     constexpr double slack = 0.4;  // Å
     BondedAtoms atoms;
@@ -189,8 +168,8 @@ BondedAtoms find_bonded_atoms(const Structure& structure, const ResidueRange& re
 std::string element_of(const ForceField& force_field, const ResidueAtom& atom,
                        std::string_view name) {
     const auto type = find_type(force_field, atom.type);
-    const bool is_told = type != force_field.types.end() && !type->second.element.empty();
-    return is_told ? type->second.element : find_element_of_name(name, "");
+    const bool is_stated = type != force_field.types.end() && !type->second.element.empty();
+    return is_stated ? type->second.element : find_element_of_name(name, "");
 }
 
 BondedAtoms find_bonded_atoms(const ForceField& force_field, const Residue& residue) {

@@ -22,10 +22,6 @@ struct BondedAtoms {
     void add_bond(std::uint32_t a, std::uint32_t b);
 };
 
-// Å, of a single bond: half of it to an atom of the element (Cordero et al., Dalton Trans. 2008,
-// 2832); 1.4 for elements that organic molecules lack.
-double covalent_radius(std::string_view element) noexcept;
-
 // The heavy atoms of a residue, in the order of the file; bonded where they are closer than their
 // covalent radii and 0.4 Å allow.
 BondedAtoms find_bonded_atoms(const Structure& structure, const ResidueRange& residue);

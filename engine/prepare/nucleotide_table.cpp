@@ -1,5 +1,5 @@
 // Names: wwPDB Chemical Component Dictionary and the files of older programs. That the sugar is
-// deoxyribose is told by its atoms, not here.
+// deoxyribose is recognised by its atoms, not here.
 #include "prepare/component_tables.h"
 
 #include <array>

@@ -1,5 +1,6 @@
 #include "prepare/residue_links.h"
 
+#include "molecule/element.h"
 #include "prepare/anchor_grid.h"
 #include "prepare/choose.h"
 #include "prepare/components.h"

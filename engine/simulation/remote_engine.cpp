@@ -28,21 +28,21 @@ namespace {
 struct ElementData {
     const char* symbol;
     double mass;    // amu
-    double radius;  // Å, covalent (Cordero and others, Dalton Trans. 2008, 2832); 0: has no bonds
+    bool can_bond;  // covalently
 };
 
 constexpr ElementData elements[] = {
-    {"H", 1.008, 0.31},   {"C", 12.011, 0.76},  {"N", 14.007, 0.71}, {"O", 15.999, 0.66},
-    {"F", 18.998, 0.57},  {"NA", 22.990, 0},    {"MG", 24.305, 0},   {"P", 30.974, 1.07},
-    {"S", 32.06, 1.05},   {"CL", 35.45, 1.02},  {"K", 39.098, 0},    {"CA", 40.078, 0},
-    {"MN", 54.938, 0},    {"FE", 55.845, 0},    {"CU", 63.546, 0},   {"ZN", 65.38, 0},
-    {"SE", 78.971, 1.20}, {"BR", 79.904, 1.20}, {"I", 126.904, 1.39}};
+    {"H", 1.008, true},    {"C", 12.011, true},   {"N", 14.007, true},   {"O", 15.999, true},
+    {"F", 18.998, true},   {"NA", 22.990, false}, {"MG", 24.305, false}, {"P", 30.974, true},
+    {"S", 32.06, true},    {"CL", 35.45, true},   {"K", 39.098, false},  {"CA", 40.078, false},
+    {"MN", 54.938, false}, {"FE", 55.845, false}, {"CU", 63.546, false}, {"ZN", 65.38, false},
+    {"SE", 78.971, true},  {"BR", 79.904, true},  {"I", 126.904, true}};
 
 const ElementData& element_of(std::string_view symbol) {
     const auto* const found = std::ranges::find(
         elements, symbol, [](const ElementData& e) { return std::string_view(e.symbol); });
     // No mass where it is not known, as of virtual sites.
-    static constexpr ElementData unknown{"", 0, 0};
+    static constexpr ElementData unknown{"", 0, false};
     return found == std::end(elements) ? unknown : *found;
 }
 
@@ -86,8 +86,8 @@ void add_bonds_by_distance(AtomRange range, AtomTable& table) {
             for (const std::uint32_t j : found->second) {
                 const ElementData &a = element_of(table.element[i]),
                                   &b = element_of(table.element[j]);
-                if (a.radius == 0 || b.radius == 0 || (a.mass < 2 && b.mass < 2)) continue;
-                const double reach = a.radius + b.radius + slack;
+                if (!a.can_bond || !b.can_bond || (a.mass < 2 && b.mass < 2)) continue;
+                const double reach = covalent_radius(a.symbol) + covalent_radius(b.symbol) + slack;
                 if ((table.positions[i] - table.positions[j]).squaredNorm() < reach * reach)
                     table.bonds.push_back({j, i});
             }

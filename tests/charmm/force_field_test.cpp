@@ -604,7 +604,7 @@ TEST_CASE("words behind an ATOM line's charge are passed over and noted", "[char
     CHECK(describe_note(force_field.notes[0]) == "a.str:2: 'C' behind an ATOM line is passed over");
 }
 
-TEST_CASE("of many notes the first few are told and the others counted", "[charmm][force_field]") {
+TEST_CASE("of many notes the first three are listed and all are counted", "[charmm][force_field]") {
     std::string text = "BONDS\n";
     for (const char* const k : {"1.0", "2.0", "3.0", "4.0", "5.0"}) {
         text += fmt::format("A B {} 1.5\n", k);

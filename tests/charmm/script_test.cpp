@@ -120,7 +120,7 @@ TEST_CASE("other files are noted and not read", "[charmm][script]") {
     CHECK(field.notes[1].kind == ForceFieldNote::Kind::OtherFile);
 }
 
-TEST_CASE("a block without its end is told as cut, an end without its block as wrong",
+TEST_CASE("a block without its end is refused as cut, an end without its block as wrong",
           "[charmm][script]") {
     CHECK(
         error_of("set m 1\nif m eq 1 then\n" + part("A")) ==

@@ -374,7 +374,7 @@ TEST_CASE("an engine that is not there, or says nothing, is lost in time", "[imd
 }
 
 // As LAMMPS, which ends when a client leaves at once.
-TEST_CASE("of an engine that ended over it the first cause is told", "[imd][client]") {
+TEST_CASE("an engine that ended over an error is reported with its first error", "[imd][client]") {
     Session session({.version = 3, .retry_after_s = 2});
     session.accept();
     session.engine.send(test::handshake(native, 2), [&] { session.poll(); });

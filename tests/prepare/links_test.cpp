@@ -188,7 +188,7 @@ TEST_CASE("sugars get CHARMM's names and the patches of their bonds", "[prepare]
     CHECK(linked.report.warnings().empty());
 }
 
-TEST_CASE("a link that a file states is a bond, and one without a patch is told",
+TEST_CASE("a link that a file states is a bond, and one without a patch is warned of",
           "[prepare][links]") {
     StructureWriter writer = glycan();
     writer.atom("MAN", "A", 4, "C1", {12.2, 0, 0}, "C")
@@ -253,7 +253,8 @@ TEST_CASE("ions are known by their names, whatever else has them", "[prepare][li
     }
 }
 
-TEST_CASE("what a force field lacks is told by kind with what to do", "[prepare][links]") {
+TEST_CASE("residues that a force field lacks are listed by kind with what to do",
+          "[prepare][links]") {
     StructureWriter writer;
     writer.atom("BMA", "A", 1, "C1", {0, 0, 0}, "C").atom("BMA", "A", 1, "C2", {1.5, 0, 0}, "C");
     writer.atom("ANP", "A", 2, "PG", {9, 0, 0}, "P").atom("ANP", "A", 2, "O1G", {9, 1.5, 0}, "O");
