@@ -27,6 +27,21 @@ struct ConeShape {
     bool is_on_top = false;
 };
 
+// A closed or open surface of triangles, seen from both sides.
+struct MeshVertex {
+    glm::vec3 place{0};
+    glm::vec3 normal{0, 0, 1};  // unit vector, outward
+    glm::vec3 colour{1};
+    std::uint32_t pick = 0;
+};
+struct MeshShape {
+    std::vector<MeshVertex> vertices{};
+    // Three to a triangle, counter-clockwise as seen from outside; a triangle is picked as its
+    // first.
+    std::vector<std::uint32_t> indices{};
+    float opacity = 1;  // below 1 what lies behind shines through
+};
+
 struct FrameCamera {
     glm::vec3 eye{0, 0, 10}, target{0}, up{0, 1, 0};
     float vertical_angle = 0.6F;  // rad
@@ -40,6 +55,7 @@ struct FrameCamera {
 struct FrameScene {
     std::vector<SphereShape> spheres{};
     std::vector<ConeShape> cones{};
+    std::vector<MeshShape> meshes{};
     FrameCamera camera{};
     glm::vec3 background{1};
     int outline = 1;        // its width in pixels
