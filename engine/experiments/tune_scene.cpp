@@ -248,14 +248,14 @@ void report_scene(const Played& played, const Tuning& tuning, Report& report) {
         report.add(heading, fmt::format("bonded to each other, so one molecule there: {}",
                                         fmt::join(names, ", ")));
     }
-    report.add(heading,
-               fmt::format("{} joints turn, in {}; brought to rest: {:.2f} to "
-                           "{:.2f} kcal/mol in {} steps, moved {:.2f} Å at most (relaxed.crd)",
-                           tuning.joints,
-                           tuning.text.solvent == Solvent::None ? "vacuum with full charges"
-                                                                : "EEF1-SB's implicit water",
-                           tuning.relaxed.energy_before, tuning.relaxed.energy_after,
-                           tuning.relaxed.steps, tuning.relaxed.largest_move));
+    report.add(
+        heading,
+        fmt::format("{} joints turn, in {}; brought to rest: {:.2f} to "
+                    "{:.2f} kcal/mol in {} steps, moved {:.2f} Å at most (relaxed.crd)",
+                    tuning.joints,
+                    tuning.text.solvent == Solvent::None ? "vacuum" : "EEF1-SB's implicit water",
+                    tuning.relaxed.energy_before, tuning.relaxed.energy_after, tuning.relaxed.steps,
+                    tuning.relaxed.largest_move));
     if (tuning.relaxed.end != RelaxEnd::Converged) {
         report.add(heading, fmt::format("not yet at rest: an rms force of {:.3g} kcal/mol per "
                                         "radian and Å is left; palpa relax goes on",

@@ -19,6 +19,7 @@
 #include "prepare/check_coordinates.h"
 #include "prepare/choose.h"
 #include "prepare/orient.h"
+#include "prepare/phosphates.h"
 #include "prepare/relax.h"
 #include "prepare/residue_names.h"
 #include "prepare/residues.h"
@@ -29,6 +30,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <span>
@@ -223,6 +225,21 @@ void take_solvated(SolvatedSystem solvated, PreparedSystem& system) {
     report_charge(system);
 }
 
+// Likewise after everything has been placed with full charges.
+void take_reduced_phosphates(PreparedSystem& system) {
+    system.reduced_phosphates = reduce_phosphates(system.connectivity, system.connectivity.charge);
+    if (system.reduced_phosphates == 0) return;
+    reduce_phosphates(system.connectivity, system.topology.charge);
+    const double charge =
+        std::accumulate(system.topology.charge.begin(), system.topology.charge.end(), 0.0);
+    system.report.add(
+        "Solvent",
+        fmt::format("{} phosphates of nucleic acids have {} e, not -1, in vacuum: for the "
+                    "counterions that are missing (--full-phosphates keeps the whole charge); "
+                    "charge of the system {:+.2f} e",
+                    system.reduced_phosphates, reduced_phosphate_charge, charge));
+}
+
 // The oxygens of waters of the file that are no part of the system.
 std::vector<Vec3> find_left_out_waters(const Structure& structure, const Structure& chosen,
                                        PrepareSettings settings) {
@@ -312,14 +329,24 @@ PreparedSystem prepare_system(const ForceField& given_force_field, const Structu
     } else {
         warn_of_clash(result, find_closest_contact(result.topology, result.structure.positions));
     }
-    if (system.solvated) take_solvated(std::move(*system.solvated), result);
+    if (system.solvated) {
+        take_solvated(std::move(*system.solvated), result);
+    } else if (!settings.keeps_phosphate_charges && !settings.keeps_waters) {
+        take_reduced_phosphates(result);
+    }
     if (settings.align) align(result.structure, *settings.align, result.structure.positions);
     return result;
 }
 
 std::string topology_title(const PreparedSystem& system, std::string_view title) {
-    if (system.solvent == Solvent::None) return std::string(title);
-    return fmt::format("{}\n{}", neutral_charges_origin, title);
+    if (system.solvent == Solvent::Eef1Sb)
+        return fmt::format("{}\n{}", neutral_charges_origin, title);
+    if (system.reduced_phosphates > 0)
+        return fmt::format(
+            "Phosphates of {} e: B. Tidor et al., J. Biomol. Struct. Dyn. 1, 231 "
+            "(1983).\n{}",
+            reduced_phosphate_charge, title);
+    return std::string(title);
 }
 
 void write_prepared(const PreparedSystem& system, const std::filesystem::path& folder,

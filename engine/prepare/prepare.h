@@ -12,6 +12,7 @@
 #include "prepare/residue_names.h"
 #include "prepare/settings.h"
 
+#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <span>
@@ -30,6 +31,7 @@ struct PreparedSystem {
     Report report;
     Solvent solvent = Solvent::None;  // that charges and parameters are for
     std::vector<ApproximatePart> approximate;
+    std::size_t reduced_phosphates = 0;  // how many have less than their whole charge
 };
 
 // What the force field lacks, beside whatever else is wrong.

@@ -52,6 +52,9 @@ struct PrepareSettings {
     bool relaxes = true;
     std::optional<AlignSettings> align;
 
+    // In vacuum the phosphates of nucleic acids keep their whole charge (prepare/phosphates.h).
+    bool keeps_phosphate_charges = false;
+
     // What stands for the water around; unset: EEF1-SB where it covers all of the system, else
     // none (prepare/solvent.h).
     std::optional<Solvent> solvent = Solvent::None;

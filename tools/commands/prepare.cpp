@@ -334,6 +334,9 @@ void add_prepare_choices(CLI::App& prepare, PrepareOptions& options) {
                     "eef1-sb where it covers every type of atoms, else none")
         ->check(CLI::IsMember({"none", "eef1-sb", "auto"}))
         ->capture_default_str();
+    prepare.add_flag("--full-phosphates", settings.keeps_phosphate_charges,
+                     "in vacuum phosphates of nucleic acids have -0.32 e otherwise, for the "
+                     "counterions that are missing");
     prepare
         .add_option("--structural-water", options.structural_waters,
                     "CHAIN:NUMBER: a water that stays, as a part of the structure")
