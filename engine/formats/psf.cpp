@@ -1,8 +1,8 @@
 #include "formats/psf.h"
 
-#include "core/files.h"
 #include "core/load_error.h"
 #include "core/text.h"
+#include "formats/gzip.h"
 #include "formats/lines.h"
 
 #include <fmt/format.h>
@@ -318,7 +318,7 @@ Connectivity parse_psf(std::string_view text, const std::string& file) {
 }
 
 Connectivity read_psf(const std::filesystem::path& path) {
-    return parse_psf(read_text_file(path), path.string());
+    return parse_psf(read_packed_text_file(path), path.string());
 }
 
 std::string format_psf(const Connectivity& connectivity, std::string_view title) {

@@ -141,11 +141,12 @@ HandChoice choose_by_name(const Structure& structure, std::span<const SystemSegm
         if (segment.name == grab && segments.size() > 1) {
             return hold_all(segment, std::string(reason));
         }
-        if (!grab.starts_with(segment.name + ":")) continue;
+        const bool is_here = grab.starts_with(segment.name + ":");
         for (std::vector<std::uint32_t>& residue : split_residues(structure, segment.atoms)) {
-            if (structure.names[residue.front()].number != grab.substr(segment.name.size() + 1)) {
+            // Of a segment that was joined to this one, the number is "SEGMENT:RESIDUE" itself.
+            const std::string& number = structure.names[residue.front()].number;
+            if (number != grab && !(is_here && number == grab.substr(segment.name.size() + 1)))
                 continue;
-            }
             return hold_residue(structure, segment, std::move(residue), std::string(reason));
         }
     }

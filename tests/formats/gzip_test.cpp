@@ -1,8 +1,11 @@
 // Compressed files are unpacked, and none can fill the memory.
 #include "formats/gzip.h"
 
+#include "core/files.h"
+#include "formats/psf.h"
 #include "formats/structure.h"
 #include "tests/support/load_error_of.h"
+#include "tests/support/paths.h"
 #include "tests/support/temporary_folder.h"
 
 #include <zlib.h>
@@ -69,4 +72,13 @@ TEST_CASE("a compressed structure is read whatever it is called", "[formats][gzi
         CHECK(read_structure(folder.add_file(name, packed(one_atom_line))).names.size() == 1);
     }
     CHECK(read_structure(folder.add_file("d.pdb.gz", one_atom_line)).names.size() == 1);
+}
+
+TEST_CASE("a compressed PSF file is read as the plain one", "[formats][gzip]") {
+    const test::TemporaryFolder folder;
+    const std::string text = read_text_file(test::in_project("scenes/salt-bridge/vacuum.psf"));
+    const Connectivity packed_system = read_psf(folder.add_file("w.psf.gz", packed(text)));
+    const Connectivity plain = parse_psf(text, "w.psf");
+    CHECK(packed_system.charge == plain.charge);
+    CHECK(packed_system.bonds == plain.bonds);
 }

@@ -73,6 +73,15 @@ TEST_CASE("of several chains the smallest is held whole, of those alike the last
     hand = choose_hand(structure, segments_of(structure), "B:7");
     CHECK(hand.segment == "B");
     CHECK(hand.atom == "7");
+    Structure joined = structure;
+    for (std::size_t i = 0; i < joined.names.size(); ++i) {
+        if (joined.names[i].segment != "B") continue;
+        joined.names[i].number = "B:" + joined.names[i].number;  // as where segments are joined
+        joined.names[i].segment = "A";
+    }
+    hand = choose_hand(joined, segments_of(joined), "B:7");
+    CHECK(hand.segment == "A");
+    CHECK(hand.atom == "B:7");
     hand = choose_hand(structure, segments_of(structure), "A");
     CHECK(hand.atom.empty());
     CHECK(hand.held.size() == 320);
