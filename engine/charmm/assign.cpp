@@ -72,6 +72,7 @@ struct NewAtom {
     const Vec3& position;
     const std::string& type;
     double charge;
+    double b_factor;
     std::optional<double> mass;  // else the type's
 };
 
@@ -90,6 +91,7 @@ void add_atom(const ForceField& force_field, const NewAtom& atom, const TextPlac
     table.sqrt_epsilon.push_back(std::sqrt(nonbonded->epsilon));
     table.half_rmin.push_back(nonbonded->half_rmin);
     table.type.push_back(add_type(name, table));
+    table.b_factor.push_back(atom.b_factor);
 }
 
 // All of `added` but its bonds behind what the table holds.
@@ -106,6 +108,7 @@ AtomRange append(const AtomTable& added, AtomTable& table) {
     behind(table.charge, added.charge);
     behind(table.sqrt_epsilon, added.sqrt_epsilon);
     behind(table.half_rmin, added.half_rmin);
+    behind(table.b_factor, added.b_factor);
     for (const std::uint32_t type : added.type) {
         table.type.push_back(add_type(added.type_names[type], table));
     }
@@ -155,8 +158,10 @@ AtomRange add_segment_atoms(const ForceField& force_field, const Structure& stru
         const ResidueAtom* const atom =
             find_template(force_field, name, {structure.file, structure.lines[i], 0}, missing);
         if (!atom) continue;
-        add_atom(force_field, {name, structure.positions[i], atom->type, atom->charge, {}},
-                 atom->place, added, missing);
+        add_atom(
+            force_field,
+            {name, structure.positions[i], atom->type, atom->charge, b_factor_of(structure, i), {}},
+            atom->place, added, missing);
     }
     check_complete(force_field, structure, segment, missing);
     missing.throw_if_any();
@@ -187,10 +192,11 @@ AtomRange add_segment_atoms(const ForceField& force_field, const Connectivity& c
             continue;
         }
         new_index[i] = static_cast<std::uint32_t>(table.size() + added.size());
-        add_atom(force_field,
-                 {name, structure.positions[found->second], connectivity.type[i],
-                  connectivity.charge[i], connectivity.mass[i]},
-                 place, added, missing);
+        add_atom(
+            force_field,
+            {name, structure.positions[found->second], connectivity.type[i], connectivity.charge[i],
+             b_factor_of(structure, found->second), connectivity.mass[i]},
+            place, added, missing);
         places.erase(found);
     }
     for (const auto& [name, i] : places) {

@@ -19,14 +19,15 @@ namespace {
 
 // Where the fields of one atom stand, and how long its line is at least.
 struct Layout {
-    Columns residue, atom, x, y, z, segment, number;
+    Columns residue, atom, x, y, z, segment, number, weight;
     std::size_t shortest = number.first + 1;
 };
 
 // (I5,I5,1X,A4,1X,A4,3F10.5,1X,A4,1X,A4,F10.5) and (2I10,2X,A8,2X,A8,3F20.10,2X,A8,2X,A8,F20.10)
-constexpr Layout normal_layout{{11, 4}, {16, 4}, {20, 10}, {30, 10}, {40, 10}, {51, 4}, {56, 4}};
+constexpr Layout normal_layout{{11, 4},  {16, 4}, {20, 10}, {30, 10},
+                               {40, 10}, {51, 4}, {56, 4},  {60, 10}};
 constexpr Layout extended_layout{{22, 8},  {32, 8},  {40, 20}, {60, 20},
-                                 {80, 20}, {102, 8}, {112, 8}};
+                                 {80, 20}, {102, 8}, {112, 8}, {120, 20}};
 
 class Reader {
 public:
@@ -51,6 +52,8 @@ public:
                                     count_line_));
             }
         }
+        if (std::ranges::all_of(structure_.weights, [](double weight) { return weight == 0; }))
+            structure_.weights.clear();
         return std::move(structure_);
     }
 
@@ -122,6 +125,7 @@ private:
         const double y = coordinate(line, layout_.y);
         const double z = coordinate(line, layout_.z);
         structure_.positions.emplace_back(x, y, z);
+        structure_.weights.push_back(find_real(find_field(line, layout_.weight)).value_or(0));
         structure_.names.push_back(std::move(name));
         structure_.lines.push_back(lines_.number());
     }
@@ -159,7 +163,7 @@ std::string format_crd(const Structure& structure, std::string_view title) {
             std::back_inserter(text),
             "{:10}{:10}  {:<8}  {:<8}{:20.10f}{:20.10f}{:20.10f}  {:<8}  {:<8}{:20.10f}\n",
             atom + 1, residue, name.residue, name.atom, p.x(), p.y(), p.z(), name.segment,
-            name.number, 0.0);
+            name.number, b_factor_of(structure, atom));
     }
     return text;
 }

@@ -86,6 +86,10 @@ struct Structure {
     std::vector<Vec3> positions;     // Å
     std::vector<std::size_t> lines;  // the atom's line in the file, for messages
 
+    // Of CHARMM coordinate files whose weights, where prepare writes B-factors, are not all 0: one
+    // an atom, Å^2. Empty for all others; files with records have them there.
+    std::vector<double> weights{};
+
     // Of PDB and mmCIF files; empty for all others.
     std::vector<AtomRecord> records{};      // one an atom
     std::vector<std::size_t> chain_ends{};  // each as the number of atoms before it
@@ -98,6 +102,9 @@ struct Structure {
     std::vector<SymmetryOperator> operators{};  // of the assemblies
     std::vector<Assembly> assemblies{};
 };
+
+// Å^2; 0 where the file has none.
+double b_factor_of(const Structure& structure, std::size_t atom) noexcept;
 
 // A range of an atom table.
 struct AtomRange {
@@ -130,6 +137,7 @@ struct AtomTable {
     std::vector<double> sqrt_epsilon;  // (kcal/mol)^(1/2), root of the Lennard-Jones well depth
     std::vector<double> half_rmin;     // Å, half the distance of the well's minimum
     std::vector<std::uint32_t> type;   // index into `type_names`
+    std::vector<double> b_factor;      // Å^2, of the structure file; 0 where it has none
     SolvationColumns solvation;
 
     // Bonded pairs of atoms, by index.

@@ -141,6 +141,7 @@ Structure build_structure(const World& world, std::span<const std::uint32_t> ato
         record.chain = table.names[atom].segment;
         record.element = element_of(table, atom);
         record.element_guessed = table.element[atom].empty();
+        record.b_factor = table.b_factor[atom];
         read_number(table.names[atom], record);
         structure.records.push_back(std::move(record));
         if (std::ranges::binary_search(ends, atom + 1)) structure.chain_ends.push_back(i + 1);

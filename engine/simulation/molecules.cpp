@@ -115,6 +115,7 @@ void remove_atoms(World& world, Entity entity) {
     erase(gone, atoms.sqrt_epsilon);
     erase(gone, atoms.half_rmin);
     erase(gone, atoms.type);
+    erase(gone, atoms.b_factor);
     std::erase_if(atoms.bonds, [&](const std::array<std::uint32_t, 2>& bond) {
         return has_atom(gone, bond[0]) || has_atom(gone, bond[1]);
     });

@@ -62,6 +62,7 @@ void add_atom(const AtomName& name, const Vec3& place, std::string element, doub
     table.charge.push_back(charge);
     table.sqrt_epsilon.push_back(0);
     table.half_rmin.push_back(0);
+    table.b_factor.push_back(0);
     const auto found = std::ranges::find(table.type_names, type);
     table.type.push_back(static_cast<std::uint32_t>(found - table.type_names.begin()));
     if (found == table.type_names.end()) table.type_names.push_back(type);

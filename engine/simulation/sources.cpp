@@ -84,6 +84,7 @@ std::shared_ptr<const Structure> extract(const Structure& from, const std::strin
         structure->names.back().segment = name;
         structure->positions.push_back(from.positions[i]);
         structure->lines.push_back(from.lines[i]);
+        structure->weights.push_back(b_factor_of(from, i));
     }
     return structure;
 }

@@ -252,3 +252,16 @@ TEST_CASE("CHARMM's own files are read", "[formats][crd]") {
     const Structure back = parse_crd(format_crd(structure, name), "back.crd");
     CHECK(back.positions == structure.positions);
 }
+
+TEST_CASE("weights come back as B-factors, and without any there are none", "[formats][crd]") {
+    Structure structure;
+    structure.names = {{"A", "ALA", "1", "N"}, {"A", "ALA", "1", "CA"}};
+    structure.positions = {Vec3(1, 2, 3), Vec3(4, 5, 6)};
+    CHECK(parse_crd(format_crd(structure, "t"), "a.crd").weights.empty());
+    CHECK(b_factor_of(structure, 1) == 0);
+    structure.records.resize(2);
+    structure.records[1].b_factor = 21.5;
+    const Structure again = parse_crd(format_crd(structure, "t"), "a.crd");
+    CHECK(again.weights == std::vector<double>{0, 21.5});
+    CHECK(b_factor_of(again, 1) == 21.5);
+}

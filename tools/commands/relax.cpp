@@ -99,6 +99,7 @@ int relax_command(const RelaxOptions& options) {
     if (options.coordinates) {
         Structure structure;
         structure.names = world.resource<AtomTable>().names;
+        structure.weights = world.resource<AtomTable>().b_factor;
         structure.positions = reference_positions(world);
         write_text_file(
             *options.coordinates,

@@ -149,6 +149,7 @@ int render_command(const RenderOptions& options) {
     if (options.coordinates) {
         Structure structure;
         structure.names = world.resource<AtomTable>().names;
+        structure.weights = world.resource<AtomTable>().b_factor;
         structure.positions = world.resource<AtomTable>().positions;
         write_text_file(*options.coordinates,
                         format_crd(structure, fmt::format("{}{}\n{} s of it", coordinates_title,
