@@ -34,6 +34,7 @@ void add_commands(CLI::App& program, palpa::ProgramCommand& chosen) {
     palpa::add_relax(program, chosen);
     palpa::add_render(program, chosen);
     palpa::add_export(program, chosen);
+    palpa::add_select(program, chosen);
     palpa::add_energy(program, chosen);
     palpa::add_engine(program, chosen);
     palpa::add_bench(program, chosen);

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -147,5 +148,13 @@ struct AtomTable {
 
     std::size_t size() const noexcept { return names.size(); }
 };
+
+// In upper case: as the table has it, or as the atom's name says (molecule/element.h). Empty where
+// neither tells.
+std::string find_element(const AtomTable& atoms, std::size_t atom);
+
+// Residues of a table: neighbouring atoms of one segment, number and residue name, and of one of
+// the molecules, which may be called alike. Atoms of no molecule have no residue.
+std::vector<AtomRange> list_residues(const AtomTable& atoms, std::span<const AtomRange> molecules);
 
 }  // namespace palpa

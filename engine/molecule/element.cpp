@@ -51,6 +51,22 @@ constexpr std::array radii = std::to_array<std::pair<std::string_view, double>>(
                                                                                  {"BR", 1.20},
                                                                                  {"I", 1.39}});
 
+constexpr std::array bondi_radii =
+    std::to_array<std::pair<std::string_view, double>>({{"H", 1.20},
+                                                        {"D", 1.20},
+                                                        {"C", 1.70},
+                                                        {"N", 1.55},
+                                                        {"O", 1.52},
+                                                        {"F", 1.47},
+                                                        {"SI", 2.10},
+                                                        {"P", 1.80},
+                                                        {"S", 1.80},
+                                                        {"CL", 1.75},
+                                                        {"AS", 1.85},
+                                                        {"SE", 1.90},
+                                                        {"BR", 1.85},
+                                                        {"I", 1.98}});
+
 }  // namespace
 
 bool is_element(std::string_view symbol) noexcept {
@@ -81,6 +97,12 @@ double covalent_radius(std::string_view element) noexcept {
         std::ranges::find(radii, element, &std::pair<std::string_view, double>::first);
     constexpr double other = 1.4;
     return found == radii.end() ? other : found->second;
+}
+
+double van_der_waals_radius(std::string_view element) noexcept {
+    const auto* const found =
+        std::ranges::find(bondi_radii, element, &std::pair<std::string_view, double>::first);
+    return found == bondi_radii.end() ? 0 : found->second;
 }
 
 }  // namespace palpa

@@ -18,4 +18,8 @@ std::string find_element_of_name(std::string_view atom, std::string_view residue
 // 1.4 for elements that organic molecules lack.
 double covalent_radius(std::string_view element) noexcept;
 
+// Van der Waals radius, Å (A. Bondi, J. Phys. Chem. 1964, 68, 441), of hydrogen, halogens and what
+// else organic molecules have; 0 of all others, metals among them.
+double van_der_waals_radius(std::string_view element) noexcept;
+
 }  // namespace palpa

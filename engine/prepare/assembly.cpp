@@ -1,7 +1,7 @@
 #include "prepare/assembly.h"
 
 #include "core/load_error.h"
-#include "prepare/choose.h"
+#include "molecule/residue_kinds.h"
 #include "prepare/residues.h"
 
 #include <fmt/format.h>

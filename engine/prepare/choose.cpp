@@ -2,8 +2,9 @@
 
 #include "core/load_error.h"
 #include "core/text.h"
+#include "molecule/components.h"
+#include "molecule/residue_kinds.h"
 #include "prepare/assembly.h"
-#include "prepare/components.h"
 #include "prepare/residues.h"
 
 #include <fmt/format.h>
@@ -21,10 +22,6 @@ namespace palpa {
 namespace {
 
 constexpr std::string_view choice_heading = "Chosen atoms";
-
-constexpr auto waters = std::to_array<std::string_view>(
-    {"HOH", "WAT", "H2O", "DOD", "SOL", "TIP", "TIP2", "TIP3", "TIP4", "TP3M", "SPC", "SPCE", "OH2",
-     "TP3", "T3P", "WTR", "HHO", "OHH"});
 
 Structure choose_model(const Structure& structure, const PrepareSettings& settings,
                        Report& report) {
@@ -305,10 +302,6 @@ Structure choose_locations(const Structure& structure, const PrepareSettings& se
 }
 
 }  // namespace
-
-bool is_water(std::string_view residue_name) noexcept {
-    return std::find(waters.begin(), waters.end(), residue_name) != waters.end();
-}
 
 Structure choose_atoms(const Structure& structure, const PrepareSettings& settings,
                        Report& report) {

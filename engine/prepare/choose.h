@@ -5,14 +5,10 @@
 #include "prepare/report.h"
 #include "prepare/settings.h"
 
-#include <string_view>
-
 namespace palpa {
 
-bool is_water(std::string_view residue_name) noexcept;
-
 // Takes one model, builds the assembly asked for, leaves out what the settings say and what only
-// the crystal needed (crystal_only in prepare/components.h) where it is bonded to nothing, and
+// the crystal needed (crystal_only in molecule/components.h) where it is bonded to nothing, and
 // takes of each residue with alternate locations the one with the highest mean occupancy, the first
 // in the alphabet where they are equal. Throws LoadError for choices that mean nothing here, and
 // where no atom is left.

@@ -1,6 +1,6 @@
 #include "prepare/choose_states.h"
 
-#include "prepare/anchor_grid.h"
+#include "molecule/point_grid.h"
 #include "prepare/hydrogen_bonds.h"
 #include "prepare/turned_sites.h"
 
@@ -171,7 +171,7 @@ private:
     void score_with_fixed() {
         std::vector<Vec3> places;
         for (const HydrogenSite& site : fixed_) places.push_back(site.place);
-        const AnchorGrid grid(std::move(places));
+        const PointGrid grid(std::move(places));
         for (Group& group : groups_) {
             for (State& state : group.states) {
                 for (const HydrogenSite& site : state.sites) {
@@ -188,7 +188,7 @@ private:
     void find_near_groups() {
         std::vector<Vec3> places;
         for (const Group& group : groups_) places.push_back(group.states[0].sites[0].place);
-        const AnchorGrid grid(std::move(places));
+        const PointGrid grid(std::move(places));
         constexpr double ring =
             2.5;  // Å, from any of a group's sites to any other, both ways round
         for (std::size_t i = 0; i < groups_.size(); ++i) {

@@ -1,8 +1,8 @@
 #include "prepare/hydrogen_bonds.h"
 
 #include "molecule/element.h"
-#include "prepare/anchor_grid.h"
-#include "prepare/choose.h"
+#include "molecule/point_grid.h"
+#include "molecule/residue_kinds.h"
 #include "prepare/match_by_bonds.h"
 
 #include <algorithm>
@@ -139,7 +139,7 @@ private:
 
     const Structure& structure_;
     const std::vector<ResidueRange>& residues_;
-    AnchorGrid grid_;
+    PointGrid grid_;
     std::vector<HydrogenSite> sites_;
 };
 

@@ -1,6 +1,6 @@
 #include "prepare/joined_residues.h"
 
-#include "prepare/components.h"
+#include "molecule/components.h"
 #include "prepare/residues.h"
 
 #include <fmt/format.h>

@@ -12,7 +12,7 @@ namespace palpa {
 void join_caps(Structure& structure, Report& report);
 
 // Retinal on a lysine, a fatty acid on a cysteine and the like (joined_components in
-// prepare/components.h) become one residue with it, where the force field has that; their atoms
+// molecule/components.h) become one residue with it, where the force field has that; their atoms
 // then stand behind the amino acid's.
 void join_components(const ForceField& force_field, const StatedLinks& stated, Structure& structure,
                      Report& report);

@@ -3,7 +3,7 @@
 #include "core/assertion.h"
 #include "field/pair_field.h"
 #include "forces/torsion.h"
-#include "prepare/anchor_grid.h"
+#include "molecule/point_grid.h"
 #include "prepare/bond_graph.h"
 #include "prepare/turning_groups.h"
 
@@ -397,7 +397,7 @@ private:
     std::vector<Quaternion> rotations_;
     Lists excluded_, pairs14_;
     double largest_reach_ = 0;  // Å
-    AnchorGrid grid_;
+    PointGrid grid_;
     Lists of_centre_;  // groups by their centre
     NonbondedSettings nonbonded_;
 

@@ -13,6 +13,7 @@
 #include "formats/crd.h"
 #include "formats/pdb.h"
 #include "formats/psf.h"
+#include "molecule/residue_kinds.h"
 #include "prepare/align.h"
 #include "prepare/atom_names.h"
 #include "prepare/build_positions.h"

@@ -1,9 +1,9 @@
 #include "prepare/residue_links.h"
 
+#include "molecule/components.h"
 #include "molecule/element.h"
-#include "prepare/anchor_grid.h"
-#include "prepare/choose.h"
-#include "prepare/components.h"
+#include "molecule/point_grid.h"
+#include "molecule/residue_kinds.h"
 #include "prepare/match_by_bonds.h"
 #include "prepare/residues.h"
 
@@ -54,7 +54,7 @@ public:
     }
 
     std::vector<ResidueLink> find() {
-        const AnchorGrid grid(structure_.positions);
+        const PointGrid grid(structure_.positions);
         std::set<std::size_t> stated_lines;
         for (const auto& [a, b] : stated_) stated_lines.insert({a, b});
         for (std::size_t i = 0; i < structure_.names.size(); ++i) {

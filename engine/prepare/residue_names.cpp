@@ -2,10 +2,10 @@
 
 #include "charmm/missing.h"
 #include "core/text.h"
+#include "molecule/components.h"
+#include "molecule/residue_kinds.h"
 #include "prepare/asked_flips.h"
-#include "prepare/choose.h"
 #include "prepare/choose_states.h"
-#include "prepare/components.h"
 #include "prepare/joined_residues.h"
 #include "prepare/patch_fit.h"
 #include "prepare/residues.h"

@@ -42,7 +42,7 @@ struct NamedResidues {
 // Residues are named as the settings say; caps (ACE, NME, NH2) become part of the residue beside
 // them, as CHARMM has them, and so do lipids and retinal on their amino acid; names of the PDB and
 // of other programs (HIS, HIE, ASH, CYX, HOH, NA, DA, NAG, HEM ...) become CHARMM's
-// (prepare/components.h). A molecule of the force field that is only called alike is not taken:
+// (molecule/components.h). A molecule of the force field that is only called alike is not taken:
 // elements and bonds must be the same. Histidine without a state gets one
 // (prepare/choose_states.h); hydrogens that the file has decide about Asp, Glu and Lys.
 // `waters`: oxygens of waters that are not in the structure, Å.

@@ -2,7 +2,7 @@
 
 #include "charmm/missing.h"
 #include "core/text.h"
-#include "prepare/choose.h"
+#include "molecule/residue_kinds.h"
 #include "prepare/patch_fit.h"
 #include "prepare/residues.h"
 

@@ -32,7 +32,7 @@ struct PrepareSettings {
     std::vector<ResidueChoice> structural_waters;
     // Residue names ("MK1"), chains ("chain:B") or residues ("A:101") that are left out.
     std::vector<std::string> without;
-    // Likewise, kept though only the crystal needed it (prepare/components.h).
+    // Likewise, kept though only the crystal needed it (molecule/components.h).
     std::vector<std::string> kept;
 
     std::vector<std::pair<std::string, std::string>> residue_names;    // "CSO" -> "CYS"

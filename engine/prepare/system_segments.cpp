@@ -1,6 +1,6 @@
 #include "prepare/system_segments.h"
 
-#include "prepare/choose.h"
+#include "molecule/residue_kinds.h"
 
 #include <algorithm>
 #include <array>

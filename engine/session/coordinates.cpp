@@ -7,7 +7,6 @@
 #include "formats/mmcif.h"
 #include "formats/pdb.h"
 #include "formats/psf.h"
-#include "molecule/element.h"
 #include "simulation/components.h"
 #include "simulation/resources.h"
 
@@ -43,11 +42,6 @@ CoordinateFormat format_of(const fs::path& file) {
 bool is_shown(const World& world, Entity molecule) {
     const Appearance* const appearance = world.find<Appearance>(molecule);
     return !appearance || appearance->visible;
-}
-
-std::string element_of(const AtomTable& atoms, std::uint32_t atom) {
-    if (!atoms.element[atom].empty()) return upper_case(atoms.element[atom]);
-    return find_element_of_name(atoms.names[atom].atom, atoms.names[atom].residue);
 }
 
 // Of a residue number with its insertion code, "27A".
@@ -139,7 +133,7 @@ Structure build_structure(const World& world, std::span<const std::uint32_t> ato
         AtomRecord record;
         record.serial = static_cast<std::int64_t>(i) + 1;
         record.chain = table.names[atom].segment;
-        record.element = element_of(table, atom);
+        record.element = find_element(table, atom);
         record.element_guessed = table.element[atom].empty();
         record.b_factor = table.b_factor[atom];
         read_number(table.names[atom], record);

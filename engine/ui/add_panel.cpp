@@ -1,6 +1,7 @@
 #include "ui/add_panel.h"
 
 #include "core/text.h"
+#include "molecule/residue_kinds.h"
 #include "ui/layout.h"
 
 #include <fmt/format.h>
@@ -50,11 +51,6 @@ std::string as_base(std::string_view text) {
     while (!base.empty() && std::isdigit(static_cast<unsigned char>(base.back())) != 0)
         base.pop_back();
     return base.empty() ? "m" : base;
-}
-
-bool is_water(std::string_view residue) {
-    constexpr std::array<std::string_view, 6> waters{"TIP3", "TIP4", "TIP5", "HOH", "WAT", "SPC"};
-    return std::ranges::find(waters, residue) != waters.end();
 }
 
 bool is_topology(const std::filesystem::path& file) {

@@ -1,8 +1,8 @@
 // Names of the PDB become CHARMM's, by tables and by bonds, and what is bonded gets its patch.
 #include "prepare/residue_links.h"
 
+#include "molecule/components.h"
 #include "prepare/atom_names.h"
-#include "prepare/components.h"
 #include "prepare/match_by_bonds.h"
 #include "prepare/residue_names.h"
 #include "prepare/segments.h"

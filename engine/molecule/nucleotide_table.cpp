@@ -1,6 +1,6 @@
 // Names: wwPDB Chemical Component Dictionary and the files of older programs. That the sugar is
 // deoxyribose is recognised by its atoms, not here.
-#include "prepare/component_tables.h"
+#include "molecule/component_tables.h"
 
 #include <array>
 

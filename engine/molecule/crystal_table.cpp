@@ -1,6 +1,6 @@
 // Buffers, precipitants, cryoprotectants, detergents and marks of programs, by the wwPDB's names:
 // what helps a crystal, or a picture of a membrane, and is no part of the molecule.
-#include "prepare/component_tables.h"
+#include "molecule/component_tables.h"
 
 #include <array>
 

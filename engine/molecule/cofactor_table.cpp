@@ -1,6 +1,6 @@
 // Names: wwPDB Chemical Component Dictionary, and the streams of toppar_c36 of July 2024 named in
 // components.cpp.
-#include "prepare/component_tables.h"
+#include "molecule/component_tables.h"
 
 #include <array>
 

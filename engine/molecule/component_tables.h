@@ -1,6 +1,6 @@
-// The tables behind prepare/components.h, one for each kind of residue.
+// The tables behind molecule/components.h, one for each kind of residue.
 #pragma once
-#include "prepare/components.h"
+#include "molecule/components.h"
 
 namespace palpa {
 

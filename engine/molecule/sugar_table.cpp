@@ -1,5 +1,5 @@
 // Names: wwPDB Chemical Component Dictionary, and top_all36_carb.rtf of July 2024.
-#include "prepare/component_tables.h"
+#include "molecule/component_tables.h"
 
 #include <algorithm>
 #include <array>

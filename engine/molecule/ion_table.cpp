@@ -1,7 +1,7 @@
 // Names: wwPDB Chemical Component Dictionary and the files of other programs; residues of
 // toppar_water_ions.str and toppar_ions_won.str of July 2024. An oxidation state that a name leaves
 // open is the usual one in proteins.
-#include "prepare/component_tables.h"
+#include "molecule/component_tables.h"
 
 #include <array>
 

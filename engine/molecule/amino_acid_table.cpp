@@ -1,6 +1,6 @@
 // Names: wwPDB Chemical Component Dictionary, and top_all36_prot.rtf and its streams of July 2024.
 // Phosphates stand in the state of pH 7, with two charges.
-#include "prepare/component_tables.h"
+#include "molecule/component_tables.h"
 
 #include <array>
 

@@ -1,6 +1,6 @@
-#include "prepare/components.h"
+#include "molecule/components.h"
 
-#include "prepare/component_tables.h"
+#include "molecule/component_tables.h"
 
 #include <algorithm>
 #include <array>

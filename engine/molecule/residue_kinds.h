@@ -1,0 +1,36 @@
+// What residues are: protein, nucleic acid, water and so on.
+#pragma once
+#include "molecule/atoms.h"
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace palpa {
+
+// Each residue is of one kind.
+enum class ResidueKind : std::uint8_t {
+    Water,
+    Ion,      // one atom, of a metal or a halogen
+    Protein,  // with its caps
+    Nucleic,  // free nucleotides are ligands
+    Glycan,   // sugars, bound or free
+    Lipid,
+    Ligand,  // all else
+};
+
+// By its name in the PDB, in CHARMM or in other programs.
+bool is_water(std::string_view residue) noexcept;
+
+// Of each residue, a range of the table. By its atoms where these tell: a water is an oxygen with
+// two hydrogens, an amino acid has N, CA and C, a nucleotide a ribose and a bond to the next
+// nucleotide. Else by its name: of the PDB (molecule/components.h) and of CHARMM36.
+std::vector<ResidueKind> find_residue_kinds(const AtomTable& atoms,
+                                            std::span<const AtomRange> residues);
+
+// The names of backbone atoms: N, CA, C and O of an amino acid with what ends a chain; of a
+// nucleotide its phosphate and the carbons and oxygens up to the next one. Hydrogens have none.
+bool is_of_backbone(ResidueKind kind, std::string_view atom) noexcept;
+
+}  // namespace palpa

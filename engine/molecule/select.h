@@ -1,0 +1,58 @@
+// Atoms by expressions, in the words of VMD's users where they fit: "protein and within 5 of
+// resname LIG". tools/selections.md has the language.
+#pragma once
+#include "molecule/atoms.h"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace palpa {
+
+struct SelectionNode;  // molecule/selection_tree.h
+
+// An expression, ready to be evaluated again and again; copies share it.
+struct Selection {
+    std::string source;  // for messages: "selection", or what the expression is from
+    std::shared_ptr<const SelectionNode> root;
+};
+
+// Throws LoadError, "SOURCE, column 9: 'protien', expected ...": columns are letters, from 1.
+Selection parse_selection(std::string_view text, std::string source = "selection");
+
+// Whether other atoms may be selected once atoms have moved, or hands hold others.
+bool depends_on_positions(const Selection& selection);
+bool depends_on_hands(const Selection& selection);
+
+struct NamedRange {
+    std::string name;
+    AtomRange atoms;
+};
+
+// What an atom's residue is part of.
+enum class SecondaryStructure : std::uint8_t { Other, Helix, Strand, Coil };  // other: no protein
+
+// The atoms to select from, and what expressions may say of them.
+struct SelectionContext {
+    const AtomTable& atoms;
+    std::span<const NamedRange> molecules;     // none: the table is one, without a name
+    std::span<const std::uint32_t> hand = {};  // atoms that hands hold
+    // One entry per atom; empty where nobody has found it.
+    std::span<const SecondaryStructure> structure = {};
+    // One entry per atom; empty where chains are told by segments: "A" or "PROA", as CHARMM-GUI
+    // names them.
+    std::span<const std::string> chains = {};
+};
+
+// Which atoms are selected, by number. Throws LoadError as parse_selection does, for a molecule
+// that is not there, and where the secondary structure is asked for and not known.
+std::vector<bool> select_atoms(const Selection& selection, const SelectionContext& context);
+
+// A single line that says what the first words are, for messages and help.
+inline constexpr std::string_view selection_examples =
+    "protein, chain A, resid 50:80, resname LIG, name CA or within 5 of ligand";
+
+}  // namespace palpa
