@@ -107,22 +107,40 @@ private:
                                                : static_cast<float>(run.end) - 0.5F;
     }
 
-    // Atoms CA, of strands their means with the neighbours', so that these have no pleats.
+    // Atoms CA; of strands their means with the neighbours', so that these have no pleats, of coil
+    // a little of that, so that it has no corners.
     std::vector<glm::vec3> guides() const {
         std::vector<glm::vec3> places(chain_.alphas.size());
         for (std::size_t i = 0; i < places.size(); ++i) places[i] = alpha(i);
-        for (const int time : {0, 1}) {
-            const std::vector<glm::vec3> before = places;
-            for (const Run& run : runs_) {
-                if (run.kind != Kind::Strand) continue;
-                // The second time its ends stay, so that they do not shrink.
-                const std::size_t margin = static_cast<std::size_t>(time);
-                for (std::size_t i = run.first + margin; i + margin < run.end; ++i)
-                    if (i > 0 && i + 1 < places.size())
-                        places[i] = (before[i - 1] + 2.0F * before[i] + before[i + 1]) / 4.0F;
-            }
+        const std::vector<glm::vec3> alphas = places;
+        for (const Run& run : runs_) {
+            if (run.kind == Kind::Helix) continue;
+            smooth(alphas, run.first, run.end, run.kind == Kind::Strand ? 2.0F : 6.0F, places);
         }
+        if (runs_.front().kind == Kind::Strand) places.front() = unpleated(alphas, 0, 1, 2);
+        const std::size_t last = places.size() - 1;
+        if (runs_.back().kind == Kind::Strand)
+            places.back() = unpleated(alphas, last, last - 1, last - 2);
+        // Once more within strands: the ends stay, so that they do not shrink.
+        const std::vector<glm::vec3> once = places;
+        for (const Run& run : runs_)
+            if (run.kind == Kind::Strand) smooth(once, run.first + 1, run.end - 1, 2, places);
         return places;
+    }
+
+    // Of a chain's end: as far to its side as the mean of the next one is to the other.
+    static glm::vec3 unpleated(std::span<const glm::vec3> alphas, std::size_t end, std::size_t next,
+                               std::size_t third) {
+        if (alphas.size() < 3) return alphas[end];
+        return alphas[end] - (alphas[end] - 2.0F * alphas[next] + alphas[third]) / 4.0F;
+    }
+
+    // The mean of a place and its neighbours, itself counted `own` times; but of the chain's ends.
+    static void smooth(std::span<const glm::vec3> from, std::size_t first, std::size_t end,
+                       float own, std::span<glm::vec3> to) {
+        for (std::size_t i = std::max<std::size_t>(first, 1); i < std::min(end, from.size() - 1);
+             ++i)
+            to[i] = (from[i - 1] + own * from[i] + from[i + 1]) / (2 + own);
     }
 
     // Where it is known how the ribbon lies: in helices and strands.

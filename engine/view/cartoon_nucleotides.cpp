@@ -20,7 +20,8 @@ namespace {
 
 // Å
 constexpr float strip_half_width = 0.95F, strip_half_thickness = 0.3F;
-constexpr float rung_radius = 0.22F, plate_half_thickness = 0.26F;
+constexpr float rung_radius = 0.25F, plate_half_thickness = 0.3F;
+constexpr float plate_margin = 0.3F;        // beyond the atoms' centres
 constexpr double longest_ester_bond = 2.5;  // from O3' to the next P
 
 struct Nucleotide {
@@ -57,6 +58,13 @@ std::optional<Nucleotide> find_nucleotide(const AtomTable& atoms,
     return Nucleotide{i, start, c1, c3, bridge, has_phosphate};
 }
 
+std::vector<glm::vec3> widened(std::vector<glm::vec3> ring) {
+    glm::vec3 centre{0};
+    for (const glm::vec3& place : ring) centre += place / static_cast<float>(ring.size());
+    for (glm::vec3& place : ring) place += plate_margin * unit_or(place - centre, glm::vec3(0));
+    return ring;
+}
+
 bool is_bonded(const AtomTable& atoms, const Nucleotide& a, const Nucleotide& b) {
     return b.residue == a.residue + 1 && a.bridge && b.has_phosphate &&
            atoms.names[a.start].segment == atoms.names[b.start].segment &&
@@ -90,13 +98,9 @@ public:
         const std::vector<glm::vec3> five = find_ring(residue, {"N9", "C8", "N7", "C5", "C4"});
         if (six.empty()) return 0;
         const Look look = look_of(i);
-        const std::size_t before = mesh.vertices.size();
-        add_plate(six, plate_half_thickness, look, mesh);
-        std::size_t plates = mesh.vertices.size() > before ? 1 : 0;
-        if (!five.empty()) {
-            add_plate(five, plate_half_thickness, look, mesh);
-            ++plates;
-        }
+        std::size_t plates = 0;
+        for (const std::vector<glm::vec3>& ring : {six, five})
+            plates += add_plate(widened(ring), plate_half_thickness, look, mesh) ? 1 : 0;
         add_rung(i, five.empty() ? six[0] : five[0], look, mesh);
         return plates;
     }
@@ -109,10 +113,14 @@ private:
         return {colours_[atom], static_cast<std::uint32_t>(atom)};
     }
 
+    // Places between the ends a little towards the mean of their neighbours, as those of coil are.
     std::vector<glm::vec3> guides() const {
         std::vector<glm::vec3> places;
         for (const Nucleotide& each : chain_) places.push_back(at(each.start));
         places.push_back(at(chain_.back().sugar_to_next));
+        const std::vector<glm::vec3> atoms = places;
+        for (std::size_t i = 1; i + 1 < places.size(); ++i)
+            places[i] = (atoms[i - 1] + 6.0F * atoms[i] + atoms[i + 1]) / 8.0F;
         return places;
     }
 

@@ -129,13 +129,13 @@ void add_sweep(std::span<const Ring> rings, CrossSection section, int sides, Mes
     add_end(rings.back(), shape, first + (rings.size() - 1) * points, true, mesh);
 }
 
-void add_plate(std::span<const glm::vec3> outline, float half_thickness, const Look& look,
+bool add_plate(std::span<const glm::vec3> outline, float half_thickness, const Look& look,
                MeshShape& mesh) {
     glm::vec3 area{0};
     for (std::size_t i = 2; i < outline.size(); ++i)
         area += glm::cross(outline[i - 1] - outline[0], outline[i] - outline[0]);
     const glm::vec3 normal = unit_or(area, glm::vec3(0));
-    if (normal == glm::vec3(0)) return;
+    if (normal == glm::vec3(0)) return false;
     std::vector<glm::vec3> top, bottom;
     for (const glm::vec3& place : outline) {
         top.push_back(place + half_thickness * normal);
@@ -150,6 +150,7 @@ void add_plate(std::span<const glm::vec3> outline, float half_thickness, const L
     add_face(top, normal, look, mesh);
     std::ranges::reverse(bottom);
     add_face(bottom, -normal, look, mesh);
+    return true;
 }
 
 }  // namespace palpa

@@ -33,8 +33,8 @@ struct Look {
 };
 
 // Adds a plate in the plane of a convex outline of three places or more, in their order around.
-// Nothing is added where they are in line.
-void add_plate(std::span<const glm::vec3> outline, float half_thickness, const Look& look,
+// Where they are in line nothing is added, and false returned.
+bool add_plate(std::span<const glm::vec3> outline, float half_thickness, const Look& look,
                MeshShape& mesh);
 
 }  // namespace palpa

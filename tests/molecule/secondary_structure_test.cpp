@@ -1,22 +1,22 @@
 #include "molecule/secondary_structure.h"
 
 #include "molecule/backbone_bonds.h"
+#include "tests/support/ideal_chain.h"
 #include "tests/support/paths.h"
 
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
-#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
-#include <numbers>
 #include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 using namespace palpa;
+using test::build_chain;
 using enum SecondaryStructure;
 
 namespace {
@@ -69,38 +69,6 @@ char merged(char letter) { return std::string("STP").find(letter) < 3 ? '.' : le
 char broad(char letter) {
     if (std::string("HGI").find(letter) < 3) return 'H';
     return letter == 'E' ? 'E' : '.';
-}
-
-// The place at a distance from c, an angle from b and a dihedral from a.
-Vec3 place_from(const Vec3& a, const Vec3& b, const Vec3& c, double length, double angle_deg,
-                double dihedral_deg) {
-    constexpr double radian = std::numbers::pi / 180;
-    const double angle = angle_deg * radian, dihedral = dihedral_deg * radian;
-    const Vec3 x = (c - b).normalized();
-    const Vec3 z = (b - a).cross(x).normalized();
-    const Vec3 y = z.cross(x);
-    return c + length * (-std::cos(angle) * x + std::sin(angle) * std::cos(dihedral) * y +
-                         std::sin(angle) * std::sin(dihedral) * z);
-}
-
-// A chain with these torsions, with the bonds and angles of R. A. Engh, R. Huber, Acta Cryst. A 47,
-// 392 (1991).
-std::vector<BackboneResidue> build_chain(std::size_t count, double phi, double psi) {
-    std::vector<BackboneResidue> chain(count);
-    chain[0].n = {0, 0, 0};
-    chain[0].alpha = {1.458, 0, 0};
-    chain[0].c = place_from({0, 1, 0}, chain[0].n, chain[0].alpha, 1.525, 111.2, 60);
-    for (std::size_t i = 0; i < count; ++i) {
-        BackboneResidue& here = chain[i];
-        here.o = place_from(here.n, here.alpha, here.c, 1.231, 120.8, psi + 180);
-        if (i + 1 == count) break;
-        BackboneResidue& next = chain[i + 1];
-        next.follows = true;
-        next.n = place_from(here.n, here.alpha, here.c, 1.329, 116.2, psi);
-        next.alpha = place_from(here.alpha, here.c, next.n, 1.458, 121.7, 180);
-        next.c = place_from(here.c, next.n, next.alpha, 1.525, 111.2, phi);
-    }
-    return chain;
 }
 
 }  // namespace
