@@ -19,7 +19,7 @@ def run(*command, **options):
 class Scripts(unittest.TestCase):
     def test_every_tool_explains_itself(self):
         for name in ("build", "run", "test", "scripts/plot_stroke", "scripts/play_ways_out",
-                     "scripts/prepare_entries",
+                     "scripts/prepare_entries", "scripts/make_secondary_structure_references",
                      "scripts/check_style",
                      "scripts/check_windows", "scripts/make_manual", "scripts/check_skips",
                      "scripts/compare_peers",

@@ -1,0 +1,42 @@
+#include "view/residue_structure.h"
+
+namespace palpa {
+
+std::size_t find_atom(const AtomTable& atoms, const ResidueSpan& residue, std::string_view name) {
+    std::size_t i = residue.first;
+    while (i < residue.end && atoms.names[i].atom != name) ++i;
+    return i;
+}
+
+Backbone find_backbone(const AtomTable& atoms, std::span<const ResidueSpan> residues) {
+    Backbone found;
+    for (std::size_t i = 0; i < residues.size(); ++i) {
+        const ResidueSpan& residue = residues[i];
+        if (residue.alpha == residue.end) continue;
+        const std::size_t n = find_atom(atoms, residue, "N"), c = find_atom(atoms, residue, "C");
+        std::size_t o = find_atom(atoms, residue, "O");
+        if (o == residue.end) o = find_atom(atoms, residue, "OT1");
+        if (n == residue.end || c == residue.end || o == residue.end) continue;
+        const auto& places = atoms.positions;
+        BackboneResidue backbone{places[n], places[residue.alpha], places[c], places[o]};
+        const AtomName& name = atoms.names[n];
+        backbone.is_proline = name.residue == "PRO" || name.residue == "HYP";
+        backbone.follows = i > 0 && !found.numbers.empty() && found.numbers.back() == i - 1 &&
+                           atoms.names[residues[i - 1].alpha].segment == name.segment &&
+                           is_peptide_bond(found.residues.back().c, backbone.n);
+        found.residues.push_back(backbone);
+        found.numbers.push_back(i);
+    }
+    return found;
+}
+
+std::span<const SecondaryStructure> ResidueStructure::update(
+    const AtomTable& atoms, std::span<const ResidueSpan> residues) {
+    const Backbone backbone = find_backbone(atoms, residues);
+    const std::span<const SecondaryStructure> found = cache_.update(backbone.residues);
+    structure_.assign(residues.size(), SecondaryStructure::Coil);
+    for (std::size_t i = 0; i < found.size(); ++i) structure_[backbone.numbers[i]] = found[i];
+    return structure_;
+}
+
+}  // namespace palpa

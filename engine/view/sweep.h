@@ -1,0 +1,40 @@
+// Closed bodies of triangles: a cross section led along a path, and flat plates.
+#pragma once
+#include "render/frame_scene.h"
+#include "view/ribbon_path.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+namespace palpa {
+
+// A cross section of a body.
+struct Ring {
+    RibbonFrame frame;
+    float half_width = 0.3F, half_thickness = 0.3F;  // Å, along `aside` and out of the plane
+    glm::vec3 colour{1};
+    std::uint32_t pick = 0;
+};
+
+enum class CrossSection {
+    Oval,  // an ellipse, smooth all around
+    Box,   // a rectangle with four crisp edges
+};
+
+// Adds the body through two rings or more, with flat ends. An oval has that many `sides`, at least
+// three. Smooth along the path.
+void add_sweep(std::span<const Ring> rings, CrossSection section, int sides, MeshShape& mesh);
+
+// What a face looks like and is picked as.
+struct Look {
+    glm::vec3 colour{1};
+    std::uint32_t pick = 0;
+};
+
+// Adds a plate in the plane of a convex outline of three places or more, in their order around.
+// Where they are in line nothing is added, and false returned.
+bool add_plate(std::span<const glm::vec3> outline, float half_thickness, const Look& look,
+               MeshShape& mesh);
+
+}  // namespace palpa
