@@ -41,14 +41,13 @@ bool find_caps(const BallGrid& grid, const Ball& ball, double probe, std::vector
                         if (other.atom == ball.atom) return;
                         const double distance = std::sqrt(squared);
                         if (distance >= radius + other_radius) return;
-                        if (distance <= radius - other_radius) return;
-                        // Of two atoms at one place the first has the area.
-                        if (distance < other_radius - radius ||
-                            (distance == other_radius - radius && other.atom < ball.atom)) {
-                            is_free = false;
+                        // Of two balls at one place the first, or the larger, has the area.
+                        const double larger = other_radius - radius;
+                        if (distance <= std::abs(larger)) {
+                            if (larger > 0 || (larger == 0 && other.atom < ball.atom))
+                                is_free = false;
                             return;
                         }
-                        if (distance == 0) return;
                         const double along =
                             (squared + radius * radius - other_radius * other_radius) /
                             (2 * distance);

@@ -14,7 +14,7 @@ using namespace palpa;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 struct Size {
     double area = 0, volume = 0;  // Å^2, Å^3
