@@ -1,0 +1,169 @@
+#include "molecule/surface/accessible_arcs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace palpa {
+namespace {
+
+constexpr double whole_turn = 4;  // square angles
+
+// With the directions of both ends, x and y.
+struct CoveredRange {
+    double from = 0, to = 0;
+    std::array<double, 2> first{}, last{};
+};
+
+// The circle in which two spheres meet; radius 0 where they do not, or hardly.
+AccessibleArc circle_between(const Ball& a, const Ball& b) {
+    AccessibleArc circle;
+    const Vec3 between = b.centre - a.centre;
+    const double distance = between.norm();
+    if (distance >= a.radius + b.radius || distance <= std::abs(a.radius - b.radius)) return circle;
+    const double along =
+        (distance * distance + a.radius * a.radius - b.radius * b.radius) / (2 * distance);
+    circle.axis = between / distance;
+    circle.centre = a.centre + along * circle.axis;
+    circle.radius = std::sqrt(std::max(a.radius * a.radius - along * along, 0.0));
+    circle.x = circle.axis.unitOrthogonal();
+    circle.y = circle.axis.cross(circle.x);
+    return circle;
+}
+
+// The circle's points at angle t are inside of a ball where a cos t + b sin t > s.
+struct Cover {
+    double a = 0, b = 0, s = 0;
+
+    bool is_nothing() const { return s >= 0 && s * s >= a * a + b * b; }
+    bool is_everything() const { return s < 0 && s * s >= a * a + b * b; }
+};
+
+Cover cover_by(const Ball& ball, const AccessibleArc& circle) {
+    const Vec3 to_ball = ball.centre - circle.centre;
+    const double r = circle.radius;
+    // A ball that only touches the circle, as a second one at the same place does, buries nothing.
+    constexpr double margin = 1e-9;  // Å
+    return {to_ball.dot(circle.x), to_ball.dot(circle.y),
+            (r * r + to_ball.squaredNorm() - ball.radius * ball.radius) / (2 * r) + margin};
+}
+
+// Adds what a ball covers, beginning in the first turn. False where that is all, to rounding.
+bool add_covered(const Cover& cover, std::vector<CoveredRange>& ranges) {
+    // Both ends of the chord a x + b y = s of the unit circle.
+    const double square = cover.a * cover.a + cover.b * cover.b;
+    const double along = cover.s / square, across = std::sqrt(square - cover.s * cover.s) / square;
+    CoveredRange range;
+    range.first = {along * cover.a + across * cover.b, along * cover.b - across * cover.a};
+    range.last = {along * cover.a - across * cover.b, along * cover.b + across * cover.a};
+    range.from = square_angle(range.first[0], range.first[1]);
+    range.to = square_angle(range.last[0], range.last[1]);
+    if (range.to < range.from) range.to += whole_turn;
+    // Less than half a circle, or more, as the chord's side says.
+    const bool is_less = range.to - range.from < whole_turn / 2;
+    if (cover.s < 0) {
+        if (is_less) return false;
+    } else if (!is_less) {
+        return true;
+    }
+    ranges.push_back(range);
+    return true;
+}
+
+// What the ranges leave of a circle.
+void add_gaps(AccessibleArc circle, std::vector<CoveredRange>& covered,
+              std::vector<AccessibleArc>& arcs) {
+    if (covered.empty()) {
+        circle.to = whole_turn;
+        circle.ends.fill(circle.centre + circle.radius * circle.x);
+        arcs.push_back(circle);
+        return;
+    }
+    const auto point_at = [&](const std::array<double, 2>& direction) {
+        return Vec3(circle.centre +
+                    circle.radius * (direction[0] * circle.x + direction[1] * circle.y));
+    };
+    const auto add = [&](double from, const CoveredRange& before, double to,
+                         const CoveredRange& behind) {
+        const double shift = from < 0 ? whole_turn : 0;
+        circle.from = from + shift;
+        circle.to = to + shift;
+        circle.ends = {point_at(before.last), point_at(behind.first)};
+        arcs.push_back(circle);
+    };
+    std::ranges::sort(covered, {}, &CoveredRange::from);
+    // Ranges that pass the end of the first turn cover a part of its begin too.
+    const CoveredRange* last = &*std::ranges::max_element(covered, {}, &CoveredRange::to);
+    double reached = last->to - whole_turn;
+    for (const CoveredRange& range : covered) {
+        if (range.from > reached) add(reached, *last, range.from, range);
+        if (range.to <= reached) continue;
+        last = &range;
+        reached = range.to;
+    }
+}
+
+}  // namespace
+
+void find_accessible_arcs(const Ball& ball, std::span<const Ball> balls,
+                          std::vector<AccessibleArc>& arcs) {
+    std::vector<Ball> near;
+    for (const Ball& other : balls) {
+        const double sum = ball.radius + other.radius;
+        if (other.atom != ball.atom && (other.centre - ball.centre).squaredNorm() < sum * sum)
+            near.push_back(other);
+    }
+    // The nearest bury most.
+    std::ranges::sort(near, {}, [&](const Ball& other) {
+        return (other.centre - ball.centre).norm() - other.radius;
+    });
+    std::vector<Cover> covers;
+    std::vector<CoveredRange> covered;
+    for (const Ball& other : near) {
+        if (other.atom < ball.atom) continue;
+        const AccessibleArc circle = circle_between(ball, other);
+        if (circle.radius == 0) continue;
+        covers.clear();
+        covered.clear();
+        const bool is_buried = std::ranges::any_of(near,
+                                                   [&](const Ball& third) {
+                                                       if (third.atom == other.atom) return false;
+                                                       const Cover cover = cover_by(third, circle);
+                                                       if (cover.is_everything()) return true;
+                                                       if (!cover.is_nothing())
+                                                           covers.push_back(cover);
+                                                       return false;
+                                                   }) ||
+                               !std::ranges::all_of(covers, [&](const Cover& cover) {
+                                   return add_covered(cover, covered);
+                               });
+        if (!is_buried) add_gaps(circle, covered, arcs);
+    }
+}
+
+void find_nearest_on_arc(const AccessibleArc& arc, const Vec3& place, double& distance,
+                         Vec3& nearest) noexcept {
+    const Vec3 offset = place - arc.centre;
+    const double height = offset.dot(arc.axis);
+    if (std::abs(height) >= distance) return;
+    const double out = std::sqrt(std::max(offset.squaredNorm() - height * height, 0.0));
+    const double gap = out - arc.radius;
+    if (height * height + gap * gap >= distance * distance) return;
+    const double x = offset.dot(arc.x), y = offset.dot(arc.y);
+    double angle = out > 0 ? square_angle(x, y) : arc.from;
+    while (angle < arc.from) angle += whole_turn;
+    if (angle <= arc.to) {
+        distance = std::sqrt(height * height + gap * gap);
+        nearest =
+            out > 0 ? Vec3(arc.centre + arc.radius / out * (x * arc.x + y * arc.y)) : arc.ends[0];
+        return;
+    }
+    for (const Vec3& end : arc.ends) {
+        const double to_end = (place - end).norm();
+        if (to_end >= distance) continue;
+        distance = to_end;
+        nearest = end;
+    }
+}
+
+}  // namespace palpa
