@@ -40,6 +40,8 @@ struct MeshShape {
     // first.
     std::vector<std::uint32_t> indices{};
     float opacity = 1;  // below 1 what lies behind shines through
+    // No way in from outside: what faces away is hidden, and need not be drawn.
+    bool is_closed = false;
 };
 
 struct FrameCamera {

@@ -3,7 +3,9 @@
 #include "gpu/device.h"
 #include "gpu/resources.h"
 #include "render/frame_scene.h"
+#include "render/mesh_lists.h"
 #include "render/picture.h"
+#include "render/pipelines.h"
 
 #include <cstdint>
 #include <glm/mat4x4.hpp>
@@ -21,7 +23,7 @@ public:
     explicit Renderer(GpuDevice& device);
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
-    ~Renderer();
+    ~Renderer() = default;
 
     // Throws GpuError if the size is 0 or beyond what the device can do.
     void check_size(VkExtent2D size) const;
@@ -53,30 +55,24 @@ private:
         Framebuffer shapes, picture;
     };
 
-    void create_passes();
-    void create_pipelines();
-    VkPipeline create_pipeline(VkShaderModule vertex, VkShaderModule fragment, VkRenderPass pass,
-                               VkCompareOp compare) const;
     Targets create_targets(VkExtent2D size) const;
-    void write_descriptors() const;
     // Whether a buffer grew, so that the descriptors name one that is gone.
-    bool upload_shapes(VkCommandBuffer commands, const FrameScene& scene);
+    bool upload_shapes(VkCommandBuffer commands, const FrameScene& scene, const glm::mat4& view);
+    bool upload_meshes(VkCommandBuffer commands);
+    void record_shapes(VkCommandBuffer commands, const FrameScene& scene) const;
+    void record_picture(VkCommandBuffer commands, const FrameScene& scene) const;
+    void draw_triangles(VkCommandBuffer commands, VkPipeline pipeline,
+                        const TriangleRange& range) const;
     std::uint32_t pick_of(std::uint32_t id) const noexcept;
 
     GpuDevice& device_;
-    VkRenderPass shape_pass_ = VK_NULL_HANDLE, resolve_pass_ = VK_NULL_HANDLE;
-    VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
-    VkPipelineLayout layout_ = VK_NULL_HANDLE;
-    VkDescriptorPool descriptors_ = VK_NULL_HANDLE;
-    VkDescriptorSet set_ = VK_NULL_HANDLE;
-    VkSampler sampler_ = VK_NULL_HANDLE;
-    VkPipeline draw_spheres_ = VK_NULL_HANDLE, draw_cones_ = VK_NULL_HANDLE,
-               shade_ = VK_NULL_HANDLE, outline_ = VK_NULL_HANDLE;
+    Pipelines pipelines_;
 
     // written by every record
     Targets targets_;
-    UploadBuffer shapes_;
-    std::vector<std::uint32_t> picks_;  // of every shape: the spheres', then the cones'
+    MeshLists meshes_;
+    UploadBuffer shapes_, vertices_, layers_;
+    std::vector<std::uint32_t> picks_;  // of every shape and then every triangle, as numbered
 };
 
 // From the world to the camera, and from the camera to the picture's plane, for whoever asks where

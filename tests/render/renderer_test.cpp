@@ -1,6 +1,7 @@
 // Facts that any right picture shows, whatever its colours: what is seen where, and how far away.
 #include "render/renderer.h"
 
+#include "tests/render/pixels.h"
 #include "tests/support/gpu.h"
 
 #include <catch2/catch.hpp>
@@ -13,22 +14,7 @@
 
 using namespace palpa;
 
-namespace {
-
-constexpr std::uint32_t width = 320, height = 240;
-
-std::size_t pixel_of(const FrameCamera& camera, const glm::vec3& point) {
-    const glm::vec3 there = project(camera, point, width, height);
-    return static_cast<std::size_t>(there.y) * width + static_cast<std::size_t>(there.x);
-}
-
-std::size_t count(const Picture& picture, std::uint32_t pick) {
-    std::size_t pixels = 0;
-    for (const std::uint32_t p : picture.picks) pixels += p == pick ? 1 : 0;
-    return pixels;
-}
-
-}  // namespace
+using test::count, test::height, test::pixel_of, test::width;
 
 TEST_CASE("a sphere is seen at its centre, as near as its front", "[render][gpu]") {
     GpuDevice device(test::validated());
