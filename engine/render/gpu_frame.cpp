@@ -33,7 +33,8 @@ GpuFrame build_frame_constants(const FrameScene& scene, VkExtent2D size) {
             camera.centre,
             count_below(scene.spheres),
             spheres + count_below(scene.cones),
-            spheres + cones};
+            spheres + cones,
+            0};
 }
 
 GpuShape build_shape(const glm::mat4& view, const SphereShape& sphere) {

@@ -40,7 +40,7 @@ struct GpuFrame {
     float fog_from;
     glm::vec2 centre;
     std::uint32_t last_sphere_below, last_cone_below;
-    std::uint32_t shapes;
+    std::uint32_t shapes, layer_room;
 };
 static_assert(sizeof(GpuFrame) <= 128, "push constants");
 

@@ -2,10 +2,13 @@
 
 #include "render/gpu_frame.h"
 
+#include "shaders/compose_frag.h"
 #include "shaders/cone_frag.h"
 #include "shaders/cone_vert.h"
+#include "shaders/layers_frag.h"
 #include "shaders/mesh_frag.h"
 #include "shaders/mesh_vert.h"
+#include "shaders/nearest_frag.h"
 #include "shaders/outline_frag.h"
 #include "shaders/resolve_frag.h"
 #include "shaders/resolve_vert.h"
@@ -67,14 +70,27 @@ VkRenderPass create_pass(VkDevice device, std::span<const VkAttachmentDescriptio
         VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
     after.dstStageMask = next_stage;
     after.dstAccessMask = next_access;
+    // And what draws into them again, for what read them or drew them before.
+    VkSubpassDependency before{};
+    before.srcSubpass = VK_SUBPASS_EXTERNAL;
+    before.dstSubpass = 0;
+    before.srcStageMask = VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT | after.srcStageMask;
+    before.srcAccessMask = after.srcAccessMask;
+    before.dstStageMask = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT |
+                          VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT |
+                          VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT;
+    before.dstAccessMask =
+        VK_ACCESS_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT |
+        VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
+    const std::array dependencies{after, before};
     VkRenderPassCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO;
     info.attachmentCount = static_cast<std::uint32_t>(attachments.size());
     info.pAttachments = attachments.data();
     info.subpassCount = 1;
     info.pSubpasses = &subpass;
-    info.dependencyCount = 1;
-    info.pDependencies = &after;
+    info.dependencyCount = static_cast<std::uint32_t>(dependencies.size());
+    info.pDependencies = dependencies.data();
     VkRenderPass pass = VK_NULL_HANDLE;
     check_vulkan(vkCreateRenderPass(device, &info, nullptr, &pass), "vkCreateRenderPass");
     return pass;
@@ -89,6 +105,8 @@ struct Pipelines::Kind {
     bool writes_depth;
     bool has_vertices = false;   // of triangles; else a shader makes them up
     bool shades_meshes = false;  // the constant 0 of resolve.frag
+    bool writes_colour = true;
+    bool blends = false;  // lays colours times their coverage over what is there
 };
 
 Pipelines::Pipelines(const GpuDevice& device)
@@ -100,7 +118,8 @@ Pipelines::Pipelines(const GpuDevice& device)
 }
 
 Pipelines::~Pipelines() {
-    for (const VkPipeline pipeline : {spheres, cones, triangles, shade, shade_meshes, outline}) {
+    for (const VkPipeline pipeline :
+         {spheres, cones, triangles, layers, shade, shade_meshes, outline, compose, nearest}) {
         vkDestroyPipeline(device_, pipeline, nullptr);
     }
     vkDestroyPipelineLayout(device_, layout, nullptr);
@@ -109,21 +128,27 @@ Pipelines::~Pipelines() {
     vkDestroySampler(device_, sampler_, nullptr);
     vkDestroyRenderPass(device_, shape_pass, nullptr);
     vkDestroyRenderPass(device_, picture_pass, nullptr);
+    vkDestroyRenderPass(device_, again_pass, nullptr);
 }
 
 void Pipelines::create_passes() {
     const VkImageLayout depth_layout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
-    const std::array shapes{attachment(seen_format, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL),
-                            attachment(depth_format, depth_layout)};
-    shape_pass = create_pass(
-        device_, shapes,
-        VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT,
-        VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_READ_BIT);
+    std::array shapes{attachment(seen_format, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL),
+                      attachment(depth_format, depth_layout)};
+    const VkPipelineStageFlags readers =
+        VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT;
+    const VkAccessFlags reads =
+        VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_READ_BIT;
+    shape_pass = create_pass(device_, shapes, readers, reads);
+    for (VkAttachmentDescription& kept : shapes) {
+        kept.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
+        kept.initialLayout = kept.finalLayout;
+    }
+    again_pass = create_pass(device_, shapes, readers, reads);
     std::array picture{attachment(drawn_format, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL),
                        attachment(depth_format, depth_layout)};
     picture[1].initialLayout = depth_layout;
     picture[1].loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
-    picture[1].storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
     picture_pass =
         create_pass(device_, picture, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_READ_BIT);
 }
@@ -208,15 +233,34 @@ void Pipelines::write_descriptors(const FrameResources& resources) const {
 void Pipelines::create_pipelines() {
     spheres = create_pipeline(sphere_vert, sphere_frag, {shape_pass, VK_COMPARE_OP_LESS, true});
     cones = create_pipeline(cone_vert, cone_frag, {shape_pass, VK_COMPARE_OP_LESS, true});
-    triangles = create_pipeline(mesh_vert, mesh_frag, {shape_pass, VK_COMPARE_OP_LESS, true, true});
+    triangles = create_pipeline(mesh_vert, mesh_frag,
+                                {.pass = shape_pass,
+                                 .compare = VK_COMPARE_OP_LESS,
+                                 .writes_depth = true,
+                                 .has_vertices = true});
+    layers = create_pipeline(mesh_vert, layers_frag,
+                             {.pass = shape_pass,
+                              .compare = VK_COMPARE_OP_LESS,
+                              .writes_depth = false,
+                              .has_vertices = true,
+                              .writes_colour = false});
     // At the far plane, where something is, and where nothing is: the depth test chooses the
     // pixels.
     shade =
         create_pipeline(resolve_vert, resolve_frag, {picture_pass, VK_COMPARE_OP_GREATER, false});
     shade_meshes = create_pipeline(resolve_vert, resolve_frag,
-                                   {picture_pass, VK_COMPARE_OP_GREATER, false, false, true});
+                                   {.pass = picture_pass,
+                                    .compare = VK_COMPARE_OP_GREATER,
+                                    .writes_depth = false,
+                                    .shades_meshes = true});
     outline =
         create_pipeline(resolve_vert, outline_frag, {picture_pass, VK_COMPARE_OP_EQUAL, false});
+    compose = create_pipeline(resolve_vert, compose_frag,
+                              {.pass = picture_pass,
+                               .compare = VK_COMPARE_OP_ALWAYS,
+                               .writes_depth = false,
+                               .blends = true});
+    nearest = create_pipeline(resolve_vert, nearest_frag, {again_pass, VK_COMPARE_OP_EQUAL, false});
 }
 
 VkPipeline Pipelines::create_pipeline(std::span<const std::uint32_t> vertex_code,
@@ -262,8 +306,13 @@ VkPipeline Pipelines::create_pipeline(std::span<const std::uint32_t> vertex_code
     depth.depthWriteEnable = kind.writes_depth ? VK_TRUE : VK_FALSE;
     depth.depthCompareOp = kind.compare;
     VkPipelineColorBlendAttachmentState write{};
-    write.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
-                           VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
+    if (kind.writes_colour) {
+        write.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
+                               VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
+    }
+    write.blendEnable = kind.blends ? VK_TRUE : VK_FALSE;
+    write.srcColorBlendFactor = write.srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
+    write.dstColorBlendFactor = write.dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
     VkPipelineColorBlendStateCreateInfo blend{};
     blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
     blend.attachmentCount = 1;

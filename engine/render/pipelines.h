@@ -28,11 +28,17 @@ public:
     // Into `seen` and depth: what is seen.
     VkRenderPass shape_pass = VK_NULL_HANDLE;
     VkPipeline spheres = VK_NULL_HANDLE, cones = VK_NULL_HANDLE, triangles = VK_NULL_HANDLE;
+    VkPipeline layers = VK_NULL_HANDLE;  // not into these, but into the lists of layers
 
     // Into the colours, where depth lets it. `shade_meshes` is `shade` where triangles are seen
-    // too.
+    // too; `compose` lays the layers over what is there.
     VkRenderPass picture_pass = VK_NULL_HANDLE;
-    VkPipeline shade = VK_NULL_HANDLE, shade_meshes = VK_NULL_HANDLE, outline = VK_NULL_HANDLE;
+    VkPipeline shade = VK_NULL_HANDLE, shade_meshes = VK_NULL_HANDLE, outline = VK_NULL_HANDLE,
+               compose = VK_NULL_HANDLE;
+
+    // Into `seen` as it is: the nearest layer where nothing is opaque.
+    VkRenderPass again_pass = VK_NULL_HANDLE;
+    VkPipeline nearest = VK_NULL_HANDLE;
 
 private:
     struct Kind;

@@ -66,7 +66,7 @@ Renderer::Renderer(GpuDevice& device)
       pipelines_(device),
       shapes_(device, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT),
       vertices_(device, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT),
-      layers_(device, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) {}
+      layers_(device) {}
 
 Renderer::Targets Renderer::create_targets(VkExtent2D size) const {
     Targets targets;
@@ -113,10 +113,10 @@ bool Renderer::upload_shapes(VkCommandBuffer commands, const FrameScene& scene,
     return moved;
 }
 
-bool Renderer::upload_meshes(VkCommandBuffer commands) {
+bool Renderer::upload_meshes(VkCommandBuffer commands, VkExtent2D size) {
     picks_.insert(picks_.end(), meshes_.picks().begin(), meshes_.picks().end());
     const bool moved_vertices = upload(commands, vertices_, meshes_.vertices());
-    const bool moved_layers = layers_.reserve(0);
+    const bool moved_layers = layers_.reserve(meshes_.has_translucent() ? size : VkExtent2D{0, 0});
     return moved_vertices || moved_layers;
 }
 
@@ -131,12 +131,13 @@ void Renderer::check_size(VkExtent2D size) const {
 void Renderer::record(VkCommandBuffer commands, const FrameScene& scene, VkExtent2D size) {
     check_size(size);
     const glm::mat4 view = view_matrix(scene.camera);
-    const GpuFrame constants = build_frame_constants(scene, size);
+    GpuFrame constants = build_frame_constants(scene, size);
     meshes_.build(scene, view, constants);
     const bool resized = size.width != targets_.size.width || size.height != targets_.size.height;
     if (resized) targets_ = create_targets(size);
     const bool moved_shapes = upload_shapes(commands, scene, view);
-    const bool moved_meshes = upload_meshes(commands);
+    const bool moved_meshes = upload_meshes(commands, size);
+    constants.layer_room = layers_.room();
     if (moved_shapes || moved_meshes || resized) {
         pipelines_.write_descriptors(
             {shapes_.handle(), vertices_.handle(), layers_.handle(), targets_.seen.view()});
@@ -150,8 +151,11 @@ void Renderer::record(VkCommandBuffer commands, const FrameScene& scene, VkExten
     vkCmdPushConstants(commands, pipelines_.layout,
                        VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
                        sizeof(constants), &constants);
+    if (meshes_.has_translucent()) layers_.record_clear(commands);
     record_shapes(commands, scene);
+    if (meshes_.has_translucent()) layers_.record_drawn(commands);
     record_picture(commands, scene);
+    if (meshes_.has_translucent()) record_nearest_layers(commands);
 }
 
 void Renderer::record_shapes(VkCommandBuffer commands, const FrameScene& scene) const {
@@ -167,6 +171,9 @@ void Renderer::record_shapes(VkCommandBuffer commands, const FrameScene& scene) 
     draw_vertices(commands, pipelines_.cones, 6 * scene.cones.size());
     draw_triangles(commands, pipelines_.triangles, meshes_.opaque_inside());
     draw_triangles(commands, pipelines_.triangles, meshes_.opaque_across());
+    // Last, when depth has all that hides them.
+    draw_triangles(commands, pipelines_.layers, meshes_.translucent_inside());
+    draw_triangles(commands, pipelines_.layers, meshes_.translucent_across());
     vkCmdEndRenderPass(commands);
 }
 
@@ -183,10 +190,19 @@ void Renderer::draw_triangles(VkCommandBuffer commands, VkPipeline pipeline,
 
 void Renderer::record_picture(VkCommandBuffer commands, const FrameScene& scene) const {
     std::array<VkClearValue, 1> clear{};
-    clear[0].color = {{scene.background.r, scene.background.g, scene.background.b, 1}};
+    if (!scene.clear_background) {
+        clear[0].color = {{scene.background.r, scene.background.g, scene.background.b, 1}};
+    }
     begin_pass(commands, pipelines_.picture_pass, targets_.picture, targets_.size, clear);
     draw_vertices(commands, meshes_.has_opaque() ? pipelines_.shade_meshes : pipelines_.shade, 3);
     draw_vertices(commands, pipelines_.outline, 3);
+    if (meshes_.has_translucent()) draw_vertices(commands, pipelines_.compose, 3);
+    vkCmdEndRenderPass(commands);
+}
+
+void Renderer::record_nearest_layers(VkCommandBuffer commands) const {
+    begin_pass(commands, pipelines_.again_pass, targets_.shapes, targets_.size, {});
+    draw_vertices(commands, pipelines_.nearest, 3);
     vkCmdEndRenderPass(commands);
 }
 
@@ -197,13 +213,24 @@ Picture Renderer::draw(const FrameScene& scene, std::uint32_t width, std::uint32
     const Readback colours(device_, size, 4);
     std::optional<Readback> seen;
     if (content == PictureContent::All) seen.emplace(device_, size, sizeof(Seen));
-    device_.submit([&](VkCommandBuffer commands) {
-        record(commands, scene, size);
-        colours.record(commands, targets_.colour.handle(), {0, 0});
-        if (seen) record_between_reads(commands, targets_.seen.handle(), {0, 0}, *seen);
-        show_copies_to_host(commands);
-    });
+    const auto submit = [&] {
+        device_.submit([&](VkCommandBuffer commands) {
+            record(commands, scene, size);
+            colours.record(commands, targets_.colour.handle(), {0, 0});
+            if (seen) record_between_reads(commands, targets_.seen.handle(), {0, 0}, *seen);
+            show_copies_to_host(commands);
+        });
+    };
+    submit();
+    if (lacks_layers()) submit();  // now there is room for them
+    if (lacks_layers()) {
+        throw GpuError(
+            fmt::format("a picture of {}x{} has more than {} translucent layers for "
+                        "its pixels together, too many for {}; expected a smaller one",
+                        width, height, layers_.room(), device_.name()));
+    }
     Picture picture{width, height, colours.read<std::uint8_t>(), {}, {}};
+    if (scene.clear_background) divide_by_alpha(picture);
     if (!seen) return picture;
     for (const Seen& pixel : seen->read<Seen>()) {
         picture.picks.push_back(pick_of(pixel.id));
@@ -211,6 +238,10 @@ Picture Renderer::draw(const FrameScene& scene, std::uint32_t width, std::uint32
                                               : pixel.distance);
     }
     return picture;
+}
+
+bool Renderer::lacks_layers() const noexcept {
+    return meshes_.has_translucent() && layers_.had_too_little_room();
 }
 
 std::uint32_t Renderer::pick(std::uint32_t x, std::uint32_t y) {

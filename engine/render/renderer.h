@@ -3,6 +3,7 @@
 #include "gpu/device.h"
 #include "gpu/resources.h"
 #include "render/frame_scene.h"
+#include "render/layer_lists.h"
 #include "render/mesh_lists.h"
 #include "render/picture.h"
 #include "render/pipelines.h"
@@ -39,8 +40,9 @@ public:
     void record(VkCommandBuffer commands, const FrameScene& scene, VkExtent2D size);
 
     // What the recorded commands draw: an image of `size`, R8G8B8A8_UNORM, its values encoded as
-    // sRGB already, left in TRANSFER_SRC_OPTIMAL for transfers that come later in the commands. It
-    // is another image after a `record` with another size.
+    // sRGB already, times their alpha where `clear_background` is wanted, left in
+    // TRANSFER_SRC_OPTIMAL for transfers that come later in the commands. It is another image after
+    // a `record` with another size.
     VkImage colour_image() const noexcept { return targets_.colour.handle(); }
 
     // What is seen at a pixel of the last recorded frame, whose commands are done: a shape's
@@ -58,11 +60,13 @@ private:
     Targets create_targets(VkExtent2D size) const;
     // Whether a buffer grew, so that the descriptors name one that is gone.
     bool upload_shapes(VkCommandBuffer commands, const FrameScene& scene, const glm::mat4& view);
-    bool upload_meshes(VkCommandBuffer commands);
+    bool upload_meshes(VkCommandBuffer commands, VkExtent2D size);
     void record_shapes(VkCommandBuffer commands, const FrameScene& scene) const;
     void record_picture(VkCommandBuffer commands, const FrameScene& scene) const;
+    void record_nearest_layers(VkCommandBuffer commands) const;
     void draw_triangles(VkCommandBuffer commands, VkPipeline pipeline,
                         const TriangleRange& range) const;
+    bool lacks_layers() const noexcept;  // of the last picture drawn
     std::uint32_t pick_of(std::uint32_t id) const noexcept;
 
     GpuDevice& device_;
@@ -71,7 +75,8 @@ private:
     // written by every record
     Targets targets_;
     MeshLists meshes_;
-    UploadBuffer shapes_, vertices_, layers_;
+    UploadBuffer shapes_, vertices_;
+    LayerLists layers_;
     std::vector<std::uint32_t> picks_;  // of every shape and then every triangle, as numbered
 };
 
