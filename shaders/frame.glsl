@@ -14,6 +14,7 @@ layout(push_constant) uniform Frame {
     uint last_cone_below;
     uint shapes;      // how many; the triangles' numbers come after theirs
     uint layer_room;  // for how many nodes of layers.glsl
+    ivec2 origin;     // of this tile in a larger picture, in pixels
 } frame;
 
 // In view space. A sphere is a cone without axis and height.

@@ -24,7 +24,7 @@ const vec2 spiral[8] = vec2[](vec2(0.25, 0.0), vec2(0.354, 0.354), vec2(0.0, 0.7
 float openness(ivec2 pixel, vec3 place, vec3 normal) {
     const float reach = 2.5;  // Å
     float pixels = clamp(reach * frame.projection.y * 0.5 * frame.size.y / -place.z, 2.0, 64.0);
-    float turn = fract(52.9829189 * fract(dot(vec2(pixel), vec2(0.06711056, 0.00583715))));
+    float turn = fract(52.9829189 * fract(dot(vec2(pixel + frame.origin), vec2(0.06711056, 0.00583715))));
     vec2 x = pixels * vec2(cos(0.785398 * turn), sin(0.785398 * turn)), y = vec2(-x.y, x.x);
     float shut = 0.0;
     for (int tap = 0; tap < frame.taps; ++tap) {

@@ -34,7 +34,27 @@ GpuFrame build_frame_constants(const FrameScene& scene, VkExtent2D size) {
             count_below(scene.spheres),
             spheres + count_below(scene.cones),
             spheres + cones,
-            0};
+            0,
+            {0, 0}};
+}
+
+VkExtent2D size_of(const GpuFrame& frame) {
+    return {static_cast<std::uint32_t>(frame.size.x), static_cast<std::uint32_t>(frame.size.y)};
+}
+
+GpuFrame crop_frame(const GpuFrame& whole, const VkRect2D& part) {
+    const glm::vec2 from(part.offset.x, part.offset.y), size(part.extent.width, part.extent.height),
+        whole_size(whole.size), zoom = whole_size / size;
+    // Where the camera's axis is seen, in pixels from the upper left.
+    const glm::vec2 axis = 0.5F * whole_size * glm::vec2(1 + whole.centre.x, 1 - whole.centre.y);
+    const glm::vec2 centre = 2.0F * (axis - from) / size - 1.0F;
+    GpuFrame frame = whole;
+    frame.projection.x *= zoom.x;
+    frame.projection.y *= zoom.y;
+    frame.size = {size, 1.0F / size};
+    frame.centre = {centre.x, -centre.y};
+    frame.origin = {part.offset.x, part.offset.y};
+    return frame;
 }
 
 GpuShape build_shape(const glm::mat4& view, const SphereShape& sphere) {

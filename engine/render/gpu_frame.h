@@ -41,11 +41,17 @@ struct GpuFrame {
     glm::vec2 centre;
     std::uint32_t last_sphere_below, last_cone_below;
     std::uint32_t shapes, layer_room;
+    glm::ivec2 origin;
 };
 static_assert(sizeof(GpuFrame) <= 128, "push constants");
 
 // Shapes are numbered from 1: spheres, then cones, those on top last of their kind; then triangles.
 GpuFrame build_frame_constants(const FrameScene& scene, VkExtent2D size);
+
+VkExtent2D size_of(const GpuFrame& frame);
+
+// The same for a part of that picture, drawn by itself.
+GpuFrame crop_frame(const GpuFrame& whole, const VkRect2D& part);
 
 GpuShape build_shape(const glm::mat4& view, const SphereShape& sphere);
 GpuShape build_shape(const glm::mat4& view, const ConeShape& cone);

@@ -1,7 +1,6 @@
 #include "render/renderer.h"
 
 #include "render/gpu_frame.h"
-#include "render/readback.h"
 
 #include <fmt/format.h>
 #include <array>
@@ -10,8 +9,6 @@
 #include <cstddef>
 #include <cstring>
 #include <glm/gtc/matrix_transform.hpp>
-#include <limits>
-#include <optional>
 #include <span>
 
 namespace palpa {
@@ -130,8 +127,12 @@ void Renderer::check_size(VkExtent2D size) const {
 
 void Renderer::record(VkCommandBuffer commands, const FrameScene& scene, VkExtent2D size) {
     check_size(size);
+    record_frame(commands, scene, build_frame_constants(scene, size));
+}
+
+void Renderer::record_frame(VkCommandBuffer commands, const FrameScene& scene, GpuFrame constants) {
+    const VkExtent2D size = size_of(constants);
     const glm::mat4 view = view_matrix(scene.camera);
-    GpuFrame constants = build_frame_constants(scene, size);
     meshes_.build(scene, view, constants);
     const bool resized = size.width != targets_.size.width || size.height != targets_.size.height;
     if (resized) targets_ = create_targets(size);
@@ -204,60 +205,6 @@ void Renderer::record_nearest_layers(VkCommandBuffer commands) const {
     begin_pass(commands, pipelines_.again_pass, targets_.shapes, targets_.size, {});
     draw_vertices(commands, pipelines_.nearest, 3);
     vkCmdEndRenderPass(commands);
-}
-
-Picture Renderer::draw(const FrameScene& scene, std::uint32_t width, std::uint32_t height,
-                       PictureContent content) {
-    const VkExtent2D size{width, height};
-    check_size(size);
-    const Readback colours(device_, size, 4);
-    std::optional<Readback> seen;
-    if (content == PictureContent::All) seen.emplace(device_, size, sizeof(Seen));
-    const auto submit = [&] {
-        device_.submit([&](VkCommandBuffer commands) {
-            record(commands, scene, size);
-            colours.record(commands, targets_.colour.handle(), {0, 0});
-            if (seen) record_between_reads(commands, targets_.seen.handle(), {0, 0}, *seen);
-            show_copies_to_host(commands);
-        });
-    };
-    submit();
-    if (lacks_layers()) submit();  // now there is room for them
-    if (lacks_layers()) {
-        throw GpuError(
-            fmt::format("a picture of {}x{} has more than {} translucent layers for "
-                        "its pixels together, too many for {}; expected a smaller one",
-                        width, height, layers_.room(), device_.name()));
-    }
-    Picture picture{width, height, colours.read<std::uint8_t>(), {}, {}};
-    if (scene.clear_background) divide_by_alpha(picture);
-    if (!seen) return picture;
-    for (const Seen& pixel : seen->read<Seen>()) {
-        picture.picks.push_back(pick_of(pixel.id));
-        picture.depth.push_back(pixel.id == 0 ? std::numeric_limits<float>::infinity()
-                                              : pixel.distance);
-    }
-    return picture;
-}
-
-bool Renderer::lacks_layers() const noexcept {
-    return meshes_.has_translucent() && layers_.had_too_little_room();
-}
-
-std::uint32_t Renderer::pick(std::uint32_t x, std::uint32_t y) {
-    if (x >= targets_.size.width || y >= targets_.size.height) return Picture::nothing_seen;
-    const Readback readback(device_, {1, 1}, sizeof(Seen));
-    device_.submit([&](VkCommandBuffer commands) {
-        record_between_reads(commands, targets_.seen.handle(),
-                             {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)},
-                             readback);
-        show_copies_to_host(commands);
-    });
-    return pick_of(readback.read<Seen>().front().id);
-}
-
-std::uint32_t Renderer::pick_of(std::uint32_t id) const noexcept {
-    return id == 0 ? Picture::nothing_seen : picks_[id - 1];
 }
 
 }  // namespace palpa

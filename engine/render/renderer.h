@@ -1,8 +1,9 @@
-// Draws a FrameScene without a window: spheres and cones as impostors, deferred.
+// Draws a FrameScene without a window: spheres and cones as impostors, and meshes, deferred.
 #pragma once
 #include "gpu/device.h"
 #include "gpu/resources.h"
 #include "render/frame_scene.h"
+#include "render/gpu_frame.h"
 #include "render/layer_lists.h"
 #include "render/mesh_lists.h"
 #include "render/picture.h"
@@ -15,9 +16,11 @@
 
 namespace palpa {
 
-// Two passes. The first finds for every pixel which shape is nearest and how far; the second shades
-// each pixel that shows one: light from the camera's upper left, ambient occlusion from eight taps
-// of the distances around, a dark outline where distance breaks off, fog in the distance.
+// Two passes. The first finds for every pixel which shape or triangle is nearest and how far; the
+// second shades each pixel that shows one: light from the camera's upper left, ambient occlusion
+// from eight taps of the distances around, a dark outline where distance breaks off, fog in the
+// distance. What is translucent goes into lists of layers, a list a pixel, in the first pass, and is
+// sorted and laid over the opaque picture in the second.
 class Renderer {
 public:
     // Throws GpuError.
@@ -26,17 +29,24 @@ public:
     Renderer& operator=(const Renderer&) = delete;
     ~Renderer() = default;
 
-    // Throws GpuError if the size is 0 or beyond what the device can do.
+    // Throws GpuError if the size is 0 or beyond what the device can do in one piece.
     void check_size(VkExtent2D size) const;
 
-    // Draws, waits, and brings back what is wanted of the picture. Throws GpuError if the size is 0
-    // or beyond what the device can do.
+    // Draws, waits, and brings back what is wanted of the picture, drawn in tiles where it is
+    // beyond what the device can do in one piece. Throws GpuError if the size is 0, a mesh has an
+    // index of no vertex, or there are more translucent layers than the device has room for.
     Picture draw(const FrameScene& scene, std::uint32_t width, std::uint32_t height,
                  PictureContent content = PictureContent::All);
 
-    // Records both passes, for a caller who submits them; the last frame's commands must be done.
+    // The same in tiles of `largest` pixels a side at most; `pick` then knows only the last of
+    // them.
+    Picture draw_in_tiles(const FrameScene& scene, std::uint32_t width, std::uint32_t height,
+                          std::uint32_t largest, PictureContent content = PictureContent::All);
+
+    // Records all passes, for a caller who submits them; the last frame's commands must be done.
     // What they need stays from frame to frame, until the size or the number of shapes grows.
-    // Throws like `draw`.
+    // Throws GpuError like `check_size`, and for meshes like `draw`; where there are more
+    // translucent layers than before some may be missing, which the next record makes room for.
     void record(VkCommandBuffer commands, const FrameScene& scene, VkExtent2D size);
 
     // What the recorded commands draw: an image of `size`, R8G8B8A8_UNORM, its values encoded as
@@ -57,6 +67,8 @@ private:
         Framebuffer shapes, picture;
     };
 
+    void record_frame(VkCommandBuffer commands, const FrameScene& scene, GpuFrame constants);
+    Picture draw_frame(const FrameScene& scene, const GpuFrame& frame, PictureContent content);
     Targets create_targets(VkExtent2D size) const;
     // Whether a buffer grew, so that the descriptors name one that is gone.
     bool upload_shapes(VkCommandBuffer commands, const FrameScene& scene, const glm::mat4& view);

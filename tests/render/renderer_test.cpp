@@ -210,7 +210,7 @@ TEST_CASE("a size of nothing or beyond the device is refused in a sentence", "[r
 
     CHECK_THROWS_AS(renderer.draw(scene, 0, 10), GpuError);
     CHECK_THROWS_AS(renderer.draw(scene, 10, 0), GpuError);
-    CHECK_THROWS_WITH(renderer.draw(scene, 1'000'000, 10),
+    CHECK_THROWS_WITH(renderer.check_size({1'000'000, 10}),
                       Catch::Matchers::Contains("a picture of 1000000x10; expected 1x1 to"));
     test::check_silent(device);
 }
