@@ -12,6 +12,9 @@ layout(push_constant) uniform Frame {
     vec2 centre;      // where the camera's axis is seen, to the right and up, in halves of the picture
     uint last_sphere_below;  // numbers, from 1: what comes after them, of its kind, is on top
     uint last_cone_below;
+    uint shapes;      // how many; the triangles' numbers come after theirs
+    uint layer_room;  // for how many nodes of layers.glsl
+    ivec2 origin;     // of this tile in a larger picture, in pixels
 } frame;
 
 // In view space. A sphere is a cone without axis and height.

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"
 
-layout(set = 0, binding = 1) uniform usampler2D seen;
+layout(set = 0, binding = 3) uniform usampler2D seen;
 layout(location = 0) out vec4 colour;
 
 ivec2 last = ivec2(frame.size.xy) - 1;

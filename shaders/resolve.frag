@@ -1,8 +1,13 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"
+#include "light.glsl"
+#include "mesh.glsl"
 
-layout(set = 0, binding = 1) uniform usampler2D seen;  // id, distance in front of the camera
+// Without, no triangle may be seen: on software nobody pays for the meshes that there are not.
+layout(constant_id = 0) const bool shades_meshes = false;
+
+layout(set = 0, binding = 3) uniform usampler2D seen;  // id, distance in front of the camera
 layout(location = 0) out vec4 colour;
 
 ivec2 last = ivec2(frame.size.xy) - 1;
@@ -19,7 +24,7 @@ const vec2 spiral[8] = vec2[](vec2(0.25, 0.0), vec2(0.354, 0.354), vec2(0.0, 0.7
 float openness(ivec2 pixel, vec3 place, vec3 normal) {
     const float reach = 2.5;  // Å
     float pixels = clamp(reach * frame.projection.y * 0.5 * frame.size.y / -place.z, 2.0, 64.0);
-    float turn = fract(52.9829189 * fract(dot(vec2(pixel), vec2(0.06711056, 0.00583715))));
+    float turn = fract(52.9829189 * fract(dot(vec2(pixel + frame.origin), vec2(0.06711056, 0.00583715))));
     vec2 x = pixels * vec2(cos(0.785398 * turn), sin(0.785398 * turn)), y = vec2(-x.y, x.x);
     float shut = 0.0;
     for (int tap = 0; tap < frame.taps; ++tap) {
@@ -32,6 +37,18 @@ float openness(ivec2 pixel, vec3 place, vec3 normal) {
     return clamp(1.0 - shut / 4.0, 0.0, 1.0);
 }
 
+Surface shape_surface(uint index, vec3 place) {
+    vec4 axis = shapes[index].axis;
+    float slope = shapes[index].paint_a.w;
+    vec3 off = place - shapes[index].start.xyz;
+    float along = dot(off, axis.xyz);
+    vec3 out_of_axis = off - along * axis.xyz;
+    vec3 normal = normalize(out_of_axis - slope * length(out_of_axis) * axis.xyz);
+    if (axis.w > 0.0 && along < 1e-3) normal = -axis.xyz;  // the flat end
+    vec3 paint = along > 0.5 * axis.w ? shapes[index].paint_b.rgb : shapes[index].paint_a.rgb;
+    return Surface(normal, vec4(paint, 1.0));
+}
+
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     uvec2 here = texelFetch(seen, pixel, 0).rg;
@@ -42,23 +59,14 @@ void main() {
                         min(distance_at(pixel + down), distance_at(pixel - down)));
     float outline = clamp((distance - nearest - 0.8) / 0.8, 0.0, 1.0);
 
-    uint index = here.r - 1u;
     vec3 ray = ray_at(gl_FragCoord.xy), place = ray * distance;
-    vec4 axis = shapes[index].axis;
-    float slope = shapes[index].paint_a.w;
-    vec3 off = place - shapes[index].start.xyz;
-    float along = dot(off, axis.xyz);
-    vec3 out_of_axis = off - along * axis.xyz;
-    vec3 normal = normalize(out_of_axis - slope * length(out_of_axis) * axis.xyz);
-    if (axis.w > 0.0 && along < 1e-3) normal = -axis.xyz;  // the flat end
-    vec3 paint = along > 0.5 * axis.w ? shapes[index].paint_b.rgb : shapes[index].paint_a.rgb;
-
-    vec3 light = normalize(vec3(-0.4, 0.6, 0.7));
-    float lit = max(dot(normal, light), 0.0);
-    float shine = pow(max(dot(reflect(-light, normal), normalize(-ray)), 0.0), 32.0);
-    vec3 shaded = paint * (0.35 + 0.65 * lit) * openness(pixel, place, normal) + 0.15 * shine * lit;
-    const float thickest_fog = 0.8;
-    float into_fog = max(distance - frame.fog_from, 0.0) * frame.fog.w;
-    float fog = min(1.0 - exp(-into_fog * into_fog), thickest_fog);
-    colour = vec4(mix(mix(shaded, vec3(0.02), outline), frame.fog.rgb, fog), 1.0);
+    Surface surface;
+    if (shades_meshes && here.r > frame.shapes) {
+        surface = surface_at(here.r - frame.shapes - 1u, place);
+    } else {
+        surface = shape_surface(here.r - 1u, place);
+    }
+    vec3 shaded =
+        light_up(surface.paint.rgb, surface.normal, ray, openness(pixel, place, surface.normal));
+    colour = vec4(fade(mix(shaded, vec3(0.02), outline), distance), 1.0);
 }

@@ -197,9 +197,15 @@ void GpuDevice::choose_physical_device() {
         VkPhysicalDeviceProperties properties;
         vkGetPhysicalDeviceProperties(device, &properties);
         const std::optional<std::uint32_t> family = find_graphics_family(device, surface_);
-        if (properties.apiVersion < VK_API_VERSION_1_1 || !family) {
+        VkPhysicalDeviceFeatures features;
+        vkGetPhysicalDeviceFeatures(device, &features);
+        const bool is_new = properties.apiVersion >= VK_API_VERSION_1_1,
+                   is_writing = features.fragmentStoresAndAtomics == VK_TRUE;
+        if (!family || !is_new || !is_writing) {
             refused += fmt::format("; {}: {}", properties.deviceName,
-                                   family ? "older than Vulkan 1.1" : "has no queue that draws");
+                                   !family   ? "has no queue that draws"
+                                   : !is_new ? "older than Vulkan 1.1"
+                                             : "its fragment shaders cannot write into buffers");
             continue;
         }
         if (rank_of(properties.deviceType) <= best) continue;
@@ -223,6 +229,9 @@ void GpuDevice::create_device() {
     info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
     info.queueCreateInfoCount = 1;
     info.pQueueCreateInfos = &queue;
+    VkPhysicalDeviceFeatures features{};
+    features.fragmentStoresAndAtomics = VK_TRUE;  // lists of what is translucent
+    info.pEnabledFeatures = &features;
     const char* const swapchain = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
     if (surface_ != VK_NULL_HANDLE) {
         info.enabledExtensionCount = 1;

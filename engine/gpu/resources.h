@@ -58,7 +58,7 @@ public:
     [[nodiscard]] bool reserve(VkDeviceSize bytes);
 
     // Where to write before `record` records what brings the first `bytes` to the device, for
-    // shaders to read.
+    // shaders to read, and as vertices.
     std::span<std::byte> mapped() const noexcept;
     void record(VkCommandBuffer commands, VkDeviceSize bytes) const noexcept;
 

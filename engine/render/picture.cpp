@@ -5,6 +5,7 @@
 
 #include <png.h>
 #include <zlib.h>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -44,22 +45,38 @@ std::string software_chunk() {
 
 }  // namespace
 
+void divide_by_alpha(Picture& picture) {
+    for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
+        const std::uint8_t alpha = picture.rgba[i + 3];
+        if (alpha == 255 || alpha == 0) continue;
+        for (std::size_t c = 0; c < 3; ++c) {
+            const float light = decode(picture.rgba[i + c]) * 255 / static_cast<float>(alpha);
+            picture.rgba[i + c] = encode(std::min(light, 1.0F));
+        }
+    }
+}
+
 Picture average_down(const Picture& picture, std::uint32_t factor) {
     std::array<float, 256> light{};
     for (std::size_t i = 0; i < light.size(); ++i) light[i] = decode(static_cast<std::uint8_t>(i));
+    const std::size_t parts = std::size_t{factor} * factor;
     Picture smaller{picture.width / factor, picture.height / factor, {}, {}, {}};
     for (std::size_t y = 0; y < smaller.height; ++y) {
         for (std::size_t x = 0; x < smaller.width; ++x) {
             std::array<float, 3> sum{};
-            for (std::size_t part = 0; part < std::size_t{factor} * factor; ++part) {
+            std::size_t alphas = 0;
+            for (std::size_t part = 0; part < parts; ++part) {
                 const std::size_t from =
                     (y * factor + part / factor) * picture.width + x * factor + part % factor;
-                for (std::size_t c = 0; c < 3; ++c) sum[c] += light[picture.rgba[4 * from + c]];
+                const std::uint8_t alpha = picture.rgba[4 * from + 3];
+                alphas += alpha;
+                for (std::size_t c = 0; c < 3; ++c) {
+                    sum[c] += light[picture.rgba[4 * from + c]] * static_cast<float>(alpha);
+                }
             }
-            for (const float s : sum) {
-                smaller.rgba.push_back(encode(s / static_cast<float>(factor * factor)));
-            }
-            smaller.rgba.push_back(255);
+            const auto weight = static_cast<float>(std::max<std::size_t>(alphas, 1));
+            for (const float s : sum) smaller.rgba.push_back(encode(s / weight));
+            smaller.rgba.push_back(static_cast<std::uint8_t>((alphas + parts / 2) / parts));
         }
     }
     return smaller;

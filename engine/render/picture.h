@@ -12,7 +12,7 @@ namespace palpa {
 // Rows from the top, pixels from the left.
 struct Picture {
     std::uint32_t width = 0, height = 0;
-    std::vector<std::uint8_t> rgba;    // 4 bytes a pixel, sRGB
+    std::vector<std::uint8_t> rgba;    // 4 bytes a pixel, sRGB and alpha
     std::vector<std::uint32_t> picks;  // what is seen: a shape's `pick`, or nothing_seen
     std::vector<float> depth;          // Å in front of the camera; infinity where nothing is
 
@@ -22,8 +22,11 @@ struct Picture {
 // What is wanted of a picture: the colours cost the least.
 enum class PictureContent { Colours, All };
 
+// Colours that are times their alpha become what they are without it; where alpha is 0, black.
+void divide_by_alpha(Picture& picture);
+
 // The colours of a picture `factor` times smaller either way: each pixel is the mean light of
-// factor x factor. The size must be a multiple.
+// factor x factor, weighted by alpha. The size must be a multiple.
 Picture average_down(const Picture& picture, std::uint32_t factor);
 
 // A PNG file's word for the program that wrote it, as it stands near the file's beginning.

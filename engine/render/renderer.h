@@ -1,9 +1,13 @@
-// Draws a FrameScene without a window: spheres and cones as impostors, deferred.
+// Draws a FrameScene without a window: spheres and cones as impostors, and meshes, deferred.
 #pragma once
 #include "gpu/device.h"
 #include "gpu/resources.h"
 #include "render/frame_scene.h"
+#include "render/gpu_frame.h"
+#include "render/layer_lists.h"
+#include "render/mesh_lists.h"
 #include "render/picture.h"
+#include "render/pipelines.h"
 
 #include <cstdint>
 #include <glm/mat4x4.hpp>
@@ -12,33 +16,43 @@
 
 namespace palpa {
 
-// Two passes. The first finds for every pixel which shape is nearest and how far; the second shades
-// each pixel that shows one: light from the camera's upper left, ambient occlusion from eight taps
-// of the distances around, a dark outline where distance breaks off, fog in the distance.
+// Two passes. The first finds for every pixel which shape or triangle is nearest and how far; the
+// second shades each pixel that shows one: light from the camera's upper left, ambient occlusion
+// from eight taps of the distances around, a dark outline where distance breaks off, fog in the
+// distance. What is translucent goes into lists of layers, a list a pixel, in the first pass, and is
+// sorted and laid over the opaque picture in the second.
 class Renderer {
 public:
     // Throws GpuError.
     explicit Renderer(GpuDevice& device);
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
-    ~Renderer();
+    ~Renderer() = default;
 
-    // Throws GpuError if the size is 0 or beyond what the device can do.
+    // Throws GpuError if the size is 0 or beyond what the device can do in one piece.
     void check_size(VkExtent2D size) const;
 
-    // Draws, waits, and brings back what is wanted of the picture. Throws GpuError if the size is 0
-    // or beyond what the device can do.
+    // Draws, waits, and brings back what is wanted of the picture, drawn in tiles where it is
+    // beyond what the device can do in one piece. Throws GpuError if the size is 0, a mesh has an
+    // index of no vertex, or there are more translucent layers than the device has room for.
     Picture draw(const FrameScene& scene, std::uint32_t width, std::uint32_t height,
                  PictureContent content = PictureContent::All);
 
-    // Records both passes, for a caller who submits them; the last frame's commands must be done.
+    // The same in tiles of `largest` pixels a side at most; `pick` then knows only the last of
+    // them.
+    Picture draw_in_tiles(const FrameScene& scene, std::uint32_t width, std::uint32_t height,
+                          std::uint32_t largest, PictureContent content = PictureContent::All);
+
+    // Records all passes, for a caller who submits them; the last frame's commands must be done.
     // What they need stays from frame to frame, until the size or the number of shapes grows.
-    // Throws like `draw`.
+    // Throws GpuError like `check_size`, and for meshes like `draw`; where there are more
+    // translucent layers than before some may be missing, which the next record makes room for.
     void record(VkCommandBuffer commands, const FrameScene& scene, VkExtent2D size);
 
     // What the recorded commands draw: an image of `size`, R8G8B8A8_UNORM, its values encoded as
-    // sRGB already, left in TRANSFER_SRC_OPTIMAL for transfers that come later in the commands. It
-    // is another image after a `record` with another size.
+    // sRGB already, times their alpha where `clear_background` is wanted, left in
+    // TRANSFER_SRC_OPTIMAL for transfers that come later in the commands. It is another image after
+    // a `record` with another size.
     VkImage colour_image() const noexcept { return targets_.colour.handle(); }
 
     // What is seen at a pixel of the last recorded frame, whose commands are done: a shape's
@@ -53,30 +67,29 @@ private:
         Framebuffer shapes, picture;
     };
 
-    void create_passes();
-    void create_pipelines();
-    VkPipeline create_pipeline(VkShaderModule vertex, VkShaderModule fragment, VkRenderPass pass,
-                               VkCompareOp compare) const;
+    void record_frame(VkCommandBuffer commands, const FrameScene& scene, GpuFrame constants);
+    Picture draw_frame(const FrameScene& scene, const GpuFrame& frame, PictureContent content);
     Targets create_targets(VkExtent2D size) const;
-    void write_descriptors() const;
     // Whether a buffer grew, so that the descriptors name one that is gone.
-    bool upload_shapes(VkCommandBuffer commands, const FrameScene& scene);
+    bool upload_shapes(VkCommandBuffer commands, const FrameScene& scene, const glm::mat4& view);
+    bool upload_meshes(VkCommandBuffer commands, VkExtent2D size);
+    void record_shapes(VkCommandBuffer commands, const FrameScene& scene) const;
+    void record_picture(VkCommandBuffer commands, const FrameScene& scene) const;
+    void record_nearest_layers(VkCommandBuffer commands) const;
+    void draw_triangles(VkCommandBuffer commands, VkPipeline pipeline,
+                        const TriangleRange& range) const;
+    bool lacks_layers() const noexcept;  // of the last picture drawn
     std::uint32_t pick_of(std::uint32_t id) const noexcept;
 
     GpuDevice& device_;
-    VkRenderPass shape_pass_ = VK_NULL_HANDLE, resolve_pass_ = VK_NULL_HANDLE;
-    VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
-    VkPipelineLayout layout_ = VK_NULL_HANDLE;
-    VkDescriptorPool descriptors_ = VK_NULL_HANDLE;
-    VkDescriptorSet set_ = VK_NULL_HANDLE;
-    VkSampler sampler_ = VK_NULL_HANDLE;
-    VkPipeline draw_spheres_ = VK_NULL_HANDLE, draw_cones_ = VK_NULL_HANDLE,
-               shade_ = VK_NULL_HANDLE, outline_ = VK_NULL_HANDLE;
+    Pipelines pipelines_;
 
     // written by every record
     Targets targets_;
-    UploadBuffer shapes_;
-    std::vector<std::uint32_t> picks_;  // of every shape: the spheres', then the cones'
+    MeshLists meshes_;
+    UploadBuffer shapes_, vertices_;
+    LayerLists layers_;
+    std::vector<std::uint32_t> picks_;  // of every shape and then every triangle, as numbered
 };
 
 // From the world to the camera, and from the camera to the picture's plane, for whoever asks where

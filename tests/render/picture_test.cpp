@@ -48,6 +48,31 @@ TEST_CASE("a smaller picture has the mean light, not the mean of its codes", "[r
     CHECK(smaller.rgba == std::vector<std::uint8_t>{188, 188, 188, 255, 80, 80, 80, 255});
 }
 
+TEST_CASE("a smaller picture weights colours by alpha", "[render][picture]") {
+    // A green that covers all beside a red that hardly does; and nothing but what is clear.
+    const Picture picture{4,
+                          2,
+                          {0, 128, 0, 255, 255, 0, 0, 51, 9, 9, 9, 0, 9, 9, 9, 0,
+                           0, 128, 0, 255, 255, 0, 0, 51, 9, 9, 9, 0, 9, 9, 9, 0},
+                          {},
+                          {}};
+
+    const Picture smaller = average_down(picture, 2);
+
+    // Of light: 51 / (255 + 51) red, 255 / (255 + 51) of green's 0.2159.
+    CHECK(smaller.rgba == std::vector<std::uint8_t>{113, 118, 0, 153, 0, 0, 0, 0});
+}
+
+TEST_CASE("colours times alpha are divided by it", "[render][picture]") {
+    // Half of the light of code 187, which is 0.497, at the alpha 128; more light than there is.
+    Picture picture{2, 2, {137, 0, 0, 128, 1, 2, 3, 255, 0, 0, 0, 0, 200, 0, 0, 10}, {}, {}};
+
+    divide_by_alpha(picture);
+
+    CHECK(picture.rgba ==
+          std::vector<std::uint8_t>{187, 0, 0, 128, 1, 2, 3, 255, 0, 0, 0, 0, 255, 0, 0, 10});
+}
+
 TEST_CASE("a picture that cannot be written is a LoadError, and leaves nothing",
           "[render][picture]") {
     const test::TemporaryFolder folder;

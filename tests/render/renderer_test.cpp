@@ -1,6 +1,7 @@
 // Facts that any right picture shows, whatever its colours: what is seen where, and how far away.
 #include "render/renderer.h"
 
+#include "tests/render/pixels.h"
 #include "tests/support/gpu.h"
 
 #include <catch2/catch.hpp>
@@ -13,22 +14,7 @@
 
 using namespace palpa;
 
-namespace {
-
-constexpr std::uint32_t width = 320, height = 240;
-
-std::size_t pixel_of(const FrameCamera& camera, const glm::vec3& point) {
-    const glm::vec3 there = project(camera, point, width, height);
-    return static_cast<std::size_t>(there.y) * width + static_cast<std::size_t>(there.x);
-}
-
-std::size_t count(const Picture& picture, std::uint32_t pick) {
-    std::size_t pixels = 0;
-    for (const std::uint32_t p : picture.picks) pixels += p == pick ? 1 : 0;
-    return pixels;
-}
-
-}  // namespace
+using test::count, test::height, test::pixel_of, test::width;
 
 TEST_CASE("a sphere is seen at its centre, as near as its front", "[render][gpu]") {
     GpuDevice device(test::validated());
@@ -224,7 +210,7 @@ TEST_CASE("a size of nothing or beyond the device is refused in a sentence", "[r
 
     CHECK_THROWS_AS(renderer.draw(scene, 0, 10), GpuError);
     CHECK_THROWS_AS(renderer.draw(scene, 10, 0), GpuError);
-    CHECK_THROWS_WITH(renderer.draw(scene, 1'000'000, 10),
+    CHECK_THROWS_WITH(renderer.check_size({1'000'000, 10}),
                       Catch::Matchers::Contains("a picture of 1000000x10; expected 1x1 to"));
     test::check_silent(device);
 }

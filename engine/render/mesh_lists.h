@@ -1,0 +1,59 @@
+// The triangles of a frame's meshes, as they are drawn: in view space, those in the picture only.
+#pragma once
+#include "render/frame_scene.h"
+#include "render/gpu_frame.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <glm/mat4x4.hpp>
+#include <span>
+#include <vector>
+
+namespace palpa {
+
+// Some of the triangles, by number.
+struct TriangleRange {
+    std::size_t first = 0, count = 0;
+    std::size_t end() const noexcept { return first + count; }
+};
+
+// Triangle k has the corners 3k to 3k + 2. Nothing is shared, so that a corner tells which triangle
+// it is of; corners by index measured the same on lavapipe.
+class MeshLists {
+public:
+    // Throws GpuError where a mesh has an index too large, or indices that make no triangles.
+    void build(const FrameScene& scene, const glm::mat4& view, const GpuFrame& frame);
+
+    std::span<const GpuVertex> vertices() const noexcept { return vertices_; }
+    std::span<const std::uint32_t> picks() const noexcept { return picks_; }  // of triangles
+
+    // Those wholly in the picture stand apart from those across its edges: see frame.glsl on
+    // `nowhere`.
+    TriangleRange opaque_inside() const noexcept { return ranges_[0]; }
+    TriangleRange opaque_across() const noexcept { return ranges_[1]; }
+    TriangleRange translucent_inside() const noexcept { return ranges_[2]; }
+    TriangleRange translucent_across() const noexcept { return ranges_[3]; }
+    bool has_opaque() const noexcept { return ranges_[0].count + ranges_[1].count > 0; }
+    bool has_translucent() const noexcept { return ranges_[2].count + ranges_[3].count > 0; }
+
+private:
+    struct Corners {
+        std::array<std::uint32_t, 3> of;  // in `placed_`
+        std::uint32_t pick;
+    };
+
+    void add_mesh(const MeshShape& mesh, const glm::mat4& view, const GpuFrame& frame);
+    void number_triangles();
+
+    // Kept from frame to frame for their memory.
+    std::vector<GpuVertex> placed_;
+    std::vector<std::uint8_t> outside_;  // of each of them: past which sides of the view
+    std::array<std::vector<Corners>, 4> kinds_;
+
+    std::vector<GpuVertex> vertices_;
+    std::vector<std::uint32_t> picks_;
+    std::array<TriangleRange, 4> ranges_{};
+};
+
+}  // namespace palpa
