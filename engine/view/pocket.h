@@ -2,6 +2,7 @@
 // hand.
 #pragma once
 #include "ecs/world.h"
+#include "molecule/atoms.h"
 #include "render/frame_scene.h"
 
 #include <cstddef>
