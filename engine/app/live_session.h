@@ -169,6 +169,7 @@ private:
 
     // The simulation's thread's own.
     ViewSettings view_;
+    FrameBuilder builder_;
     std::vector<HandPose> poses_;
     std::shared_ptr<const AtomDirectory> atoms_;
     std::uint64_t edition_ = 0;

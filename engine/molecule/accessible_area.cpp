@@ -31,12 +31,12 @@ struct Cap {
 };
 
 // False where a neighbour hides everything.
-bool find_caps(const BallGrid& grid, const Ball& ball, double probe, std::vector<Cap>& caps) {
+bool find_caps(const BallGrid& grid, const AtomBall& ball, double probe, std::vector<Cap>& caps) {
     caps.clear();
     const double radius = ball.radius + probe;
     bool is_free = true;
     grid.visit_near(ball.centre, radius + grid.largest_radius() + probe,
-                    [&](const Ball& other, double squared) {
+                    [&](const AtomBall& other, double squared) {
                         const double other_radius = other.radius + probe;
                         if (other.atom == ball.atom) return;
                         const double distance = std::sqrt(squared);
@@ -68,7 +68,7 @@ std::vector<double> find_accessible_areas(std::span<const Vec3> positions,
     const std::vector<Vec3> unit_points = spread_points(points);
     std::vector<double> areas(positions.size(), 0);
     std::vector<Cap> caps;
-    for (const Ball& ball : grid.balls()) {
+    for (const AtomBall& ball : grid.balls()) {
         if (!find_caps(grid, ball, probe, caps)) continue;
         std::size_t free = 0, last = 0;
         for (const Vec3& point : unit_points) {

@@ -12,7 +12,7 @@
 
 namespace palpa {
 
-struct Ball {
+struct AtomBall {
     Vec3 centre{0, 0, 0};  // Å
     double radius = 0;     // Å
     std::uint32_t atom = 0;
@@ -29,7 +29,7 @@ public:
     // the wanted one; far apart atoms get larger cells, so that there are not many more cells than
     // atoms.
     BallGrid(std::span<const Vec3> centres, std::span<const double> radii, double edge) {
-        std::vector<Ball> balls;
+        std::vector<AtomBall> balls;
         balls.reserve(centres.size());
         Vec3 low = Vec3::Constant(1e300), high = -low;
         for (std::uint32_t i = 0; i < centres.size(); ++i) {
@@ -51,12 +51,12 @@ public:
     }
 
     double largest_radius() const noexcept { return largest_radius_; }  // Å
-    std::span<const Ball> balls() const noexcept { return balls_; }
+    std::span<const AtomBall> balls() const noexcept { return balls_; }
 
     // Calls visit(ball) for every ball whose centre is in the box, ends included.
     template <class Visit>
     void visit_box(const Vec3& low, const Vec3& high, const Visit& visit) const {
-        any_run(low, high, [&](const Ball& ball) {
+        any_run(low, high, [&](const AtomBall& ball) {
             if ((ball.centre.array() >= low.array()).all() &&
                 (ball.centre.array() <= high.array()).all())
                 visit(ball);
@@ -68,7 +68,7 @@ public:
     template <class Visit>
     void visit_near(const Vec3& place, double distance, const Visit& visit) const {
         const Vec3 reach = Vec3::Constant(distance);
-        any_run(place - reach, place + reach, [&](const Ball& ball) {
+        any_run(place - reach, place + reach, [&](const AtomBall& ball) {
             const double squared = (ball.centre - place).squaredNorm();
             if (squared < distance * distance) visit(ball, squared);
             return false;
@@ -80,13 +80,13 @@ public:
     template <class Test>
     bool any_near(const Vec3& place, double distance, const Test& test) const {
         const Vec3 reach = Vec3::Constant(distance);
-        return any_run(place - reach, place + reach, [&](const Ball& ball) {
+        return any_run(place - reach, place + reach, [&](const AtomBall& ball) {
             return test(ball, (ball.centre - place).squaredNorm());
         });
     }
 
 private:
-    void sort(const std::vector<Ball>& balls) {
+    void sort(const std::vector<AtomBall>& balls) {
         starts_.assign(static_cast<std::size_t>(cells_[0] * cells_[1] * cells_[2]) + 1, 0);
         std::vector<std::size_t> cell_of(balls.size());
         for (std::size_t i = 0; i < balls.size(); ++i) {
@@ -128,7 +128,7 @@ private:
         return false;
     }
 
-    std::vector<Ball> balls_;
+    std::vector<AtomBall> balls_;
     std::vector<std::size_t> starts_;  // of every cell, and the end
     double edge_ = 1;                  // Å
     double largest_radius_ = 0;

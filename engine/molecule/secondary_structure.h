@@ -19,6 +19,12 @@ enum class SecondaryStructure : std::uint8_t {
     Bridge,         // B: a bridge alone
 };
 
+inline bool is_helix(SecondaryStructure structure) noexcept {
+    return structure == SecondaryStructure::AlphaHelix ||
+           structure == SecondaryStructure::ThreeTenHelix ||
+           structure == SecondaryStructure::PiHelix;
+}
+
 // Where a residue has these four atoms, Å. One that lacks an atom is left out, and the next one
 // then does not follow.
 struct BackboneResidue {

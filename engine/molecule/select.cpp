@@ -85,11 +85,16 @@ private:
             case AtomClass::Heavy:
                 return select_where([&](std::size_t i) { return is_heavy(i); });
             case AtomClass::Helix:
-                return select_structure(SecondaryStructure::Helix, node);
+                return select_structure(is_helix, node);
             case AtomClass::Strand:
-                return select_structure(SecondaryStructure::Strand, node);
+                return select_structure(
+                    [](SecondaryStructure of) { return of == SecondaryStructure::Strand; }, node);
             case AtomClass::Coil:
-                return select_structure(SecondaryStructure::Coil, node);
+                return select_structure(
+                    [](SecondaryStructure of) {
+                        return !is_helix(of) && of != SecondaryStructure::Strand;
+                    },
+                    node);
             case AtomClass::Hand:
                 break;
         }
@@ -125,12 +130,16 @@ private:
         });
     }
 
-    Atoms select_structure(SecondaryStructure structure, const SelectionNode& node) const {
+    template <class IsOf>
+    Atoms select_structure(const IsOf& is_of, const SelectionNode& node) {
         if (context_.structure.empty())
             refuse_selection(source_, node.column,
                              "the secondary structure is not known here, expected an expression "
                              "without helix, strand and coil");
-        return select_where([&](std::size_t i) { return context_.structure[i] == structure; });
+        Atoms chosen = select_kind(ResidueKind::Protein);
+        for (std::size_t i = 0; i < chosen.size(); ++i)
+            chosen[i] = chosen[i] && is_of(context_.structure[i]);
+        return chosen;
     }
 
     // ---- names and numbers

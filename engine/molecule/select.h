@@ -2,6 +2,7 @@
 // resname LIG". tools/selections.md has the language.
 #pragma once
 #include "molecule/atoms.h"
+#include "molecule/secondary_structure.h"
 
 #include <cstdint>
 #include <memory>
@@ -32,15 +33,12 @@ struct NamedRange {
     AtomRange atoms;
 };
 
-// What an atom's residue is part of.
-enum class SecondaryStructure : std::uint8_t { Other, Helix, Strand, Coil };  // other: no protein
-
 // The atoms to select from, and what expressions may say of them.
 struct SelectionContext {
     const AtomTable& atoms;
     std::span<const NamedRange> molecules;     // none: the table is one, without a name
     std::span<const std::uint32_t> hand = {};  // atoms that hands hold
-    // One entry per atom; empty where nobody has found it.
+    // Of its residue, one entry per atom; empty where nobody has found it.
     std::span<const SecondaryStructure> structure = {};
     // One entry per atom; empty where chains are told by segments: "A" or "PROA", as CHARMM-GUI
     // names them.

@@ -229,7 +229,7 @@ void check_edits(const SceneDescription& scene, Problems& problems) {
         const auto* const look = std::get_if<AppearanceEdit>(&action);
         if (look && !look->representation && !look->colouring && !look->visible) {
             problems.add(problems.place_of(key),
-                         fmt::format("'{}' changes nothing; expected representation, colouring "
+                         fmt::format("'{}' changes nothing; expected representation, colour "
                                      "or visible",
                                      key));
         }

@@ -82,15 +82,41 @@ inline constexpr std::array<std::string_view, 4> lesson_quantity_names{
     "distance_angstrom", "force_nN", "felt_N", "mode"};
 
 // In hand: the grabbed molecule as balls and sticks, all others as thin sticks without hydrogens.
-// Pocket: of the others the backbone, and thin sticks of those residues that are near to it.
-enum class Representation { BallAndStick, SpaceFilling, Licorice, InHand, Pocket };
-inline constexpr std::array<std::string_view, 5> representation_names{
-    "ball-and-stick", "space-filling", "licorice", "in-hand", "pocket"};
+// Pocket: of the others a cartoon, and thin sticks of those residues that are near to it. Cartoon:
+// ribbons of proteins and nucleic acids, all else but waters as balls and sticks. Surface: the
+// solvent-excluded one.
+enum class Representation {
+    BallAndStick,
+    SpaceFilling,
+    Licorice,
+    InHand,
+    Pocket,
+    Lines,
+    Cartoon,
+    Surface
+};
+inline constexpr std::array<std::string_view, 8> representation_names{
+    "ball-and-stick", "space-filling", "licorice", "in-hand",
+    "pocket",         "lines",         "cartoon",  "surface"};
 
 // By chain: carbons in a colour of their chain, everything else as by element. Carbons of the
-// grabbed molecule have a colour of their own either way.
-enum class Colouring { Element, Chain };
-inline constexpr std::array<std::string_view, 2> colouring_names{"element", "chain"};
+// grabbed molecule have a colour of their own in these two. The others colour whole atoms or
+// residues; view/colours.h has their scales.
+enum class Colouring {
+    Element,
+    Chain,
+    Residue,
+    Structure,
+    Charge,
+    BFactor,
+    Force,
+    Activity,
+    Potential,
+    Hydrophobicity
+};
+inline constexpr std::array<std::string_view, 10> colouring_names{
+    "element",  "chain", "residue",  "structure", "charge",
+    "b-factor", "force", "activity", "potential", "hydrophobicity"};
 
 // Which hydrogen bonds are drawn. In hand: of what hands hold with all the rest. All: also within
 // molecules.

@@ -176,6 +176,20 @@ struct LessonStepDescription {
 };
 
 // How the scene is seen at first, in a window and by `palpa render`.
+// What is drawn beside, or in the place of, how everything is.
+struct ViewLayer {
+    Representation representation = Representation::BallAndStick;
+    std::string of;                      // a selection (molecule/select.h); empty: all atoms
+    std::optional<Colouring> colouring;  // unset: as everything
+    double opacity = 1;                  // of a surface
+    TextPlace place;
+
+    friend bool operator==(const ViewLayer& a, const ViewLayer& b) {
+        return a.representation == b.representation && a.of == b.of && a.colouring == b.colouring &&
+               a.opacity == b.opacity;
+    }
+};
+
 struct ViewDescription {
     std::optional<Representation> representation;  // unset: what shows the scene best
     Colouring colouring = Colouring::Chain;
@@ -183,6 +197,8 @@ struct ViewDescription {
     std::array<double, 3> camera{0, 0, 1};  // azimuth and elevation in degrees, zoom
     std::string look_at;                    // a molecule; empty: all of them
     bool clip = false;                      // nothing in front of the grabbed molecule
+    std::vector<ViewLayer> layers{};
+    std::vector<std::string> labels{};  // selections whose residues or atoms are named
 };
 
 struct SceneDescription {

@@ -123,7 +123,7 @@ void visit_action(FieldVisitor& v, AppearanceEdit& e) {
            e.molecule);
     choose_if_set(v, {.key = "representation", .meaning = "as of [view]"}, representation_names,
                   e.representation);
-    choose_if_set(v, {.key = "colouring", .meaning = "as of [view]"}, colouring_names, e.colouring);
+    choose_if_set(v, {.key = "colour", .meaning = "as of [view]"}, colouring_names, e.colouring);
     const Field visible{.key = "visible", .meaning = "whether it is drawn"};
     if (v.is_there(visible, e.visible.has_value())) {
         if (!e.visible) e.visible.emplace();

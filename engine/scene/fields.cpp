@@ -471,6 +471,31 @@ void visit_lesson(FieldVisitor& v, std::vector<LessonStepDescription>& steps) {
     v.leave_table();
 }
 
+void visit_layers(FieldVisitor& v, std::vector<ViewLayer>& layers) {
+    const Field field{.key = "layers", .meaning = "what is drawn besides, in this order"};
+    std::size_t count = layers.size();
+    v.list_entries(field, count);
+    layers.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        ViewLayer& layer = layers[i];
+        v.enter_entry(field, i, layer.place);
+        choose(v, {.key = "representation", .meaning = "how these atoms are drawn"},
+               representation_names, layer.representation);
+        v.text({.key = "of",
+                .meaning = "which atoms, as `palpa select` takes them (tools/selections.md); "
+                           "unset: all"},
+               layer.of);
+        choose_if_set(v, {.key = "colour", .meaning = "as of [view]"}, colouring_names,
+                      layer.colouring);
+        v.real({.key = "opacity",
+                .meaning = "of a surface; 1: nothing shines through",
+                .lowest = 0.05,
+                .highest = 1},
+               layer.opacity);
+        v.leave_table();
+    }
+}
+
 void visit_view(FieldVisitor& v, ViewDescription& view) {
     v.enter_table({.key = "view", .meaning = "how the scene is seen at first"});
     choose_if_set(
@@ -478,12 +503,15 @@ void visit_view(FieldVisitor& v, ViewDescription& view) {
         {.key = "representation",
          .meaning = "how molecules are drawn; in-hand: all but the molecule in hand as thin sticks "
                     "without hydrogens; pocket: of these only residues within 4.5 Å of it, and "
-                    "backbones as tubes; unset: pocket where others would hide it, else "
+                    "a cartoon; cartoon: ribbons of proteins and nucleic acids, all else but "
+                    "waters as balls and sticks; unset: pocket where others would hide it, else "
                     "ball-and-stick"},
         representation_names, view.representation);
     choose(v,
-           {.key = "colouring",
-            .meaning = "carbons in a colour of their chain, or all atoms by element"},
+           {.key = "colour",
+            .meaning = "chain: carbons in a colour of their chain; charge: of each residue; "
+                       "activity: which joints move; potential: of the scene's charges, on "
+                       "surfaces"},
            colouring_names, view.colouring);
     choose(v,
            {.key = "hydrogen_bonds",
@@ -502,6 +530,11 @@ void visit_view(FieldVisitor& v, ViewDescription& view) {
            view.look_at);
     v.flag({.key = "clip", .meaning = "leave out what stands in front of the molecule in hand"},
            view.clip);
+    v.texts({.key = "label",
+             .meaning = "selections: their residues are named beside their atoms CA, single atoms "
+                        "beside themselves"},
+            view.labels);
+    visit_layers(v, view.layers);
     v.leave_table();
 }
 

@@ -1,45 +1,36 @@
 #include "view/build_frame.h"
 
+#include "molecule/select.h"
 #include "simulation/components.h"
 #include "simulation/held.h"
 #include "simulation/probe.h"
 #include "simulation/resources.h"
+#include "simulation/select_in_world.h"
 #include "simulation/systems/publish_contact.h"
-#include "view/elements.h"
+#include "view/atom_colours.h"
+#include "view/draw_layer.h"
 #include "view/hydrogen_bonds.h"
 #include "view/in_hand.h"
-#include "view/palette.h"
 #include "view/pocket.h"
+#include "view/residue_structure.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <map>
+#include <memory>
 #include <span>
-#include <string_view>
+#include <string>
 #include <utility>
 #include <vector>
 
 namespace palpa {
 namespace {
 
-constexpr float ball_share = 0.28F, stick_radius = 0.14F, licorice_radius = 0.28F;
-constexpr float thin_radius = 0.11F;
-
-const ElementLook& look_of(std::string_view element) {
-    const auto found = std::ranges::find(element_looks, element, &ElementLook::element);
-    return found == element_looks.end() ? other_element : *found;
-}
-
-// How an atom is drawn: as everything, or as its molecule says.
-struct AtomLook {
-    Representation representation;
-    Colouring colouring;
-    bool visible = true;
-};
-
 std::vector<AtomLook> find_looks(const World& world, const ViewSettings& settings) {
     std::vector<AtomLook> looks(world.resource<AtomTable>().size(),
-                                {settings.representation, settings.colouring});
+                                {settings.representation, settings.colouring, true});
     world.each<Molecule, Appearance>([&](Entity, const Molecule& molecule,
                                          const Appearance& appearance) {
         const AtomLook look{appearance.representation.value_or(settings.representation),
@@ -49,94 +40,46 @@ std::vector<AtomLook> find_looks(const World& world, const ViewSettings& setting
     return looks;
 }
 
-// One colour an atom.
-std::vector<glm::vec3> build_colours(const World& world, std::span<const AtomLook> looks) {
-    const AtomTable& atoms = world.resource<AtomTable>();
-    const std::vector<bool> held = find_held_atoms(world);
-    std::size_t chain = 0;
-    const AtomName* before = nullptr;  // the last that is not held
-    std::vector<glm::vec3> colours;
-    for (std::size_t i = 0; i < atoms.size(); ++i) {
-        if (!held[i]) {
-            if (before && before->segment != atoms.names[i].segment) ++chain;
-            before = &atoms.names[i];
-        }
-        const std::string_view element = element_of(atoms, i);
-        colours.push_back(look_of(element).colour);
-        if (element != "C") continue;
-        if (held[i]) {
-            colours.back() = grabbed_carbon;
-        } else if (looks[i].colouring == Colouring::Chain) {
-            colours.back() = chain_carbons[chain % chain_carbons.size()];
-        }
+std::vector<SecondaryStructure> per_atom(const AtomTable& atoms,
+                                         std::span<const ResidueSpan> residues,
+                                         std::span<const SecondaryStructure> structure) {
+    std::vector<SecondaryStructure> of_atoms(atoms.size(), SecondaryStructure::Coil);
+    for (std::size_t i = 0; i < residues.size(); ++i)
+        for (std::size_t atom = residues[i].first; atom < residues[i].end; ++atom)
+            of_atoms[atom] = structure[i];
+    return of_atoms;
+}
+
+// One an atom, by how each is to be coloured.
+std::vector<glm::vec3> find_layer_colours(const FrameParts& parts,
+                                          std::span<const AtomLook> looks) {
+    std::vector<glm::vec3> colours(looks.size());
+    std::map<Colouring, std::vector<glm::vec3>> found;
+    for (std::size_t i = 0; i < looks.size(); ++i) {
+        std::vector<glm::vec3>& of = found[looks[i].colouring];
+        if (of.empty())
+            of = find_colours(parts.world, looks[i].colouring, parts.residues, parts.structure);
+        colours[i] = of[i];
     }
     return colours;
 }
 
-// How thick an atom and the sticks at it are drawn (Å); 0: not at all.
-struct Thickness {
-    float atom = 0, stick = 0;
-};
-
-// Of others only hydrogens of hydrogen bonds are drawn where they are thin.
-Thickness thickness_of(Representation representation, std::string_view element, bool in_hand) {
-    const float size = look_of(element).radius;
-    switch (representation) {
-        case Representation::SpaceFilling:
-            return {size, 0};
-        case Representation::Licorice:
-            return {licorice_radius, licorice_radius};
-        case Representation::InHand:
-        case Representation::Pocket:
-            if (in_hand) break;
-            return element == "H" ? Thickness{} : Thickness{thin_radius, thin_radius};
-        case Representation::BallAndStick:
-            break;
-    }
-    return {ball_share * size, stick_radius};
-}
-
-// Draws the backbones of what is shown as a pocket. Which atoms of that stand for themselves; empty
-// where there is none.
-std::vector<bool> add_pockets(const World& world, std::span<const glm::vec3> colours,
-                              std::span<const AtomLook> looks, FrameScene& frame) {
-    const auto is_pocket = [](const AtomLook& look) {
-        return look.visible && look.representation == Representation::Pocket;
-    };
-    if (std::ranges::none_of(looks, is_pocket)) return {};
-    std::vector<ResidueSpan> residues = find_residues(world);
-    std::erase_if(residues,
-                  [&](const ResidueSpan& residue) { return !is_pocket(looks[residue.first]); });
-    add_backbones(world.resource<AtomTable>(), residues, colours, frame);
-    return find_pocket(world, residues);
-}
-
-// `bonded`: the hydrogens of these are drawn, whatever the representation leaves out.
-void add_shapes(const World& world, std::span<const glm::vec3> colours,
-                std::span<const AtomLook> looks, std::span<const HydrogenBond> bonded,
-                FrameScene& frame) {
-    const AtomTable& atoms = world.resource<AtomTable>();
-    const std::vector<bool> held = find_in_hand(world);
-    const std::vector<bool> stands = add_pockets(world, colours, looks, frame);
-    std::vector<bool> takes_part(atoms.size(), false);
-    for (const HydrogenBond& bond : bonded) takes_part[bond.hydrogen] = true;
-    std::vector<float> sticks;
-    for (std::size_t i = 0; i < atoms.size(); ++i) {
-        const Representation shown_as = looks[i].representation;
-        auto [atom, stick] = thickness_of(shown_as, element_of(atoms, i), held[i]);
-        if (atom == 0 && takes_part[i]) atom = stick = thin_radius;
-        const bool is_pocket = shown_as == Representation::Pocket && !held[i];
-        if (!looks[i].visible || (is_pocket && !stands[i])) atom = stick = 0;
-        sticks.push_back(stick);
-        if (atom == 0) continue;
-        frame.spheres.push_back(
-            {as_float(atoms.positions[i]), atom, colours[i], static_cast<std::uint32_t>(i)});
-    }
-    for (const auto& [a, b] : atoms.bonds) {
-        const float radius = std::min(sticks[a], sticks[b]);
-        if (radius == 0) continue;
-        frame.cones.push_back({as_float(atoms.positions[a]), as_float(atoms.positions[b]), radius,
-                               radius, colours[a], colours[b], a});
+// Atoms alone beside themselves, residues of which more is selected beside their CA, or first atom.
+void add_selection_labels(const AtomTable& atoms, std::span<const ResidueSpan> residues,
+                          const std::vector<bool>& selected, std::vector<ViewLabel>& labels) {
+    for (const ResidueSpan& residue : residues) {
+        std::vector<std::size_t> chosen;
+        for (std::size_t i = residue.first; i < residue.end; ++i)
+            if (selected[i]) chosen.push_back(i);
+        if (chosen.empty()) continue;
+        const bool is_alone = chosen.size() == 1;
+        const std::size_t atom = is_alone                      ? chosen.front()
+                                 : residue.alpha < residue.end ? residue.alpha
+                                                               : residue.first;
+        const AtomName& name = atoms.names[atom];
+        const std::string text = fmt::format("{} {}{}", name.residue, name.number,
+                                             is_alone ? " " + name.atom : std::string());
+        labels.push_back({as_float(atoms.positions[atom]), text});
     }
 }
 
@@ -170,18 +113,64 @@ glm::vec3 as_float(const Vec3& v) {
     return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
 }
 
-FrameScene build_frame(const World& world, std::span<const ContactModel> contacts,
-                       const ViewSettings& settings, std::vector<ViewLabel>* labels) {
+// What is kept between frames.
+struct FrameBuilder::Kept {
+    ResidueStructure structure;
+    std::vector<KeptLayer> layers;                  // that of everything first
+    std::map<std::string, Selection> selections{};  // by their texts
+
+    const Selection& parsed(const std::string& text, const char* source) {
+        const auto found = selections.find(text);
+        if (found != selections.end()) return found->second;
+        return selections.emplace(text, parse_selection(text, source)).first->second;
+    }
+};
+
+FrameBuilder::FrameBuilder() : kept_(std::make_unique<Kept>()) {}
+FrameBuilder::FrameBuilder(FrameBuilder&&) noexcept = default;
+FrameBuilder& FrameBuilder::operator=(FrameBuilder&&) noexcept = default;
+FrameBuilder::~FrameBuilder() = default;
+
+FrameScene FrameBuilder::build(const World& world, std::span<const ContactModel> contacts,
+                               const ViewSettings& settings, std::vector<ViewLabel>* labels) {
     FrameScene frame;
     std::vector<ViewLabel> words;
+    const AtomTable& atoms = world.resource<AtomTable>();
     const std::vector<AtomLook> looks = find_looks(world, settings);
-    const std::vector<glm::vec3> colours = build_colours(world, looks);
     std::vector<HydrogenBond> bonds = find_hydrogen_bonds(world, settings.hydrogen_bonds);
     std::erase_if(bonds, [&](const HydrogenBond& bond) {
         return !looks[bond.hydrogen].visible || !looks[bond.acceptor].visible;
     });
-    add_shapes(world, colours, looks, bonds, frame);
-    add_hydrogen_bonds(world.resource<AtomTable>(), bonds, frame, words);
+    std::vector<bool> takes_part(atoms.size(), false);
+    for (const HydrogenBond& bond : bonds) takes_part[bond.hydrogen] = true;
+    const std::vector<ResidueSpan> residues = find_residues(world);
+    const std::span<const SecondaryStructure> structure = kept_->structure.update(atoms, residues);
+    const std::vector<bool> held = find_held_atoms(world), in_hand = find_in_hand(world);
+    const FrameParts parts{world, residues, structure, held, in_hand, takes_part};
+    const auto select = [&](const std::string& text, const char* source) {
+        return select_in_world(world, kept_->parsed(text, source),
+                               per_atom(atoms, residues, structure));
+    };
+    kept_->layers.resize(1 + settings.layers.size());
+    const auto draw = [&](std::span<const AtomLook> shown, float opacity, KeptLayer& kept) {
+        draw_layer(parts, shown, find_layer_colours(parts, shown), opacity, kept, frame);
+    };
+    draw(looks, 1, kept_->layers[0]);
+    for (std::size_t i = 0; i < settings.layers.size(); ++i) {
+        const ViewLayer& layer = settings.layers[i];
+        std::vector<AtomLook> shown = looks;
+        const std::vector<bool> chosen = layer.of.empty() ? std::vector<bool>(atoms.size(), true)
+                                                          : select(layer.of, "view.layers.of");
+        for (std::size_t atom = 0; atom < shown.size(); ++atom) {
+            shown[atom].representation = layer.representation;
+            shown[atom].colouring = layer.colouring.value_or(shown[atom].colouring);
+            shown[atom].visible = shown[atom].visible && chosen[atom];
+        }
+        draw(shown, static_cast<float>(layer.opacity), kept_->layers[1 + i]);
+    }
+    add_hydrogen_bonds(atoms, bonds, frame, words);
+    for (const std::string& text : settings.labels)
+        add_selection_labels(atoms, residues, select(text, "view.label"), words);
     const std::vector<Entity> hands = find_hands(world);
     for (std::size_t i = 0; settings.force_arrow && i < contacts.size(); ++i)
         add_signs(world, hands[i], contacts[i], frame, words);
@@ -190,13 +179,23 @@ FrameScene build_frame(const World& world, std::span<const ContactModel> contact
     return frame;
 }
 
-FrameScene build_frame(const World& world, const ViewSettings& settings) {
+std::vector<ContactModel> find_contacts(const World& world) {
     std::vector<ContactModel> contacts;
     for (const Entity hand : find_hands(world)) {
         const bool holds = world.find<Grip>(hand) != nullptr;
         contacts.push_back(holds ? build_local_contact(world, hand, {}).model : ContactModel{});
     }
-    return build_frame(world, contacts, settings);
+    return contacts;
+}
+
+FrameScene build_frame(const World& world, std::span<const ContactModel> contacts,
+                       const ViewSettings& settings, std::vector<ViewLabel>* labels) {
+    return FrameBuilder().build(world, contacts, settings, labels);
+}
+
+FrameScene build_frame(const World& world, const ViewSettings& settings,
+                       std::vector<ViewLabel>* labels) {
+    return build_frame(world, find_contacts(world), settings, labels);
 }
 
 std::vector<SphereShape> shapes_of(const FrameScene& frame, const AtomRange& atoms) {

@@ -6,7 +6,9 @@
 #include "scene/description.h"
 #include "view/signs.h"
 
+#include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace palpa {
@@ -16,18 +18,45 @@ struct ViewSettings {
     Colouring colouring = Colouring::Chain;
     bool force_arrow = true;  // on the grabbed molecule; and its torque where it moves in space
     ShownBonds hydrogen_bonds = ShownBonds::InHand;
+    std::vector<ViewLayer> layers{};    // drawn besides
+    std::vector<std::string> labels{};  // selections that are named
 
     friend bool operator==(const ViewSettings&, const ViewSettings&) = default;
 };
 
-// Atoms as spheres, bonds as sticks, in Å as they stand, each molecule as the settings say or as
-// its Appearance does, and the signs of view/signs.h for what hands hold, with the
-// force of `contacts`, of the hands in their order; `labels` are
-// the words beside these, for whoever can write. The camera is the caller's (view/orbit_camera.h).
+// Builds one frame after another, and keeps what hardly changes between them: secondary structure,
+// ribbons, surfaces, and what selections mean. One for each view of a world; any world may follow
+// another.
+class FrameBuilder {
+public:
+    FrameBuilder();
+    FrameBuilder(FrameBuilder&&) noexcept;
+    FrameBuilder& operator=(FrameBuilder&&) noexcept;
+    ~FrameBuilder();
+
+    // Atoms as spheres, bonds as sticks, ribbons and surfaces as meshes, in Å as they stand, each
+    // molecule as the settings say or as its Appearance does, the settings' layers besides, and the
+    // signs of view/signs.h for what hands hold, with the force of `contacts`, of the hands in
+    // their order; `labels` are the words beside these, for whoever can write. The camera is the
+    // caller's (view/orbit_camera.h). Throws LoadError for a layer's or label's selection that is
+    // none, or names what is not there.
+    FrameScene build(const World& world, std::span<const ContactModel> contacts,
+                     const ViewSettings& settings, std::vector<ViewLabel>* labels = nullptr);
+
+private:
+    struct Kept;
+    std::unique_ptr<Kept> kept_;
+};
+
+// A frame alone.
 FrameScene build_frame(const World& world, std::span<const ContactModel> contacts,
                        const ViewSettings& settings, std::vector<ViewLabel>* labels = nullptr);
 // The same with the forces as they are now, for which the pairs are summed again.
-FrameScene build_frame(const World& world, const ViewSettings& settings);
+FrameScene build_frame(const World& world, const ViewSettings& settings,
+                       std::vector<ViewLabel>* labels = nullptr);
+
+// The contacts of all hands, with the forces as they are now.
+std::vector<ContactModel> find_contacts(const World& world);
 
 // The atoms of a range among a frame's spheres.
 std::vector<SphereShape> shapes_of(const FrameScene& frame, const AtomRange& atoms);

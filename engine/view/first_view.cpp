@@ -17,7 +17,9 @@ ViewSettings first_settings(const ViewDescription& view, const World& world) {
     return {.representation = view.representation.value_or(hides ? Representation::Pocket
                                                                  : Representation::BallAndStick),
             .colouring = view.colouring,
-            .hydrogen_bonds = view.hydrogen_bonds};
+            .hydrogen_bonds = view.hydrogen_bonds,
+            .layers = view.layers,
+            .labels = view.labels};
 }
 
 AtomRange framed_atoms(const ViewDescription& view, const World& world) {

@@ -191,10 +191,10 @@ TEST_CASE("what is in the hand, chains and the secondary structure come from out
           "[molecule][selection]") {
     const AtomTable atoms = test::one_of_each();
     const std::vector<std::uint32_t> hand{5, 40};
-    std::vector<SecondaryStructure> structure(atoms.size(), SecondaryStructure::Other);
-    structure[2] = SecondaryStructure::Helix;
+    // Of the first protein residues; what is no protein is never coil.
+    std::vector<SecondaryStructure> structure(atoms.size(), SecondaryStructure::Coil);
+    structure[2] = SecondaryStructure::PiHelix;
     structure[3] = SecondaryStructure::Strand;
-    structure[4] = SecondaryStructure::Coil;
     std::vector<std::string> chains(atoms.size(), "A");
     chains[0] = "B";
     const SelectionContext context{atoms, {}, hand, structure, chains};
@@ -202,7 +202,8 @@ TEST_CASE("what is in the hand, chains and the secondary structure come from out
     CHECK(chosen(context, "hand") == Numbers{5, 40});
     CHECK(chosen({atoms, {}}, "hand").empty());
     CHECK(chosen(context, "helix") == Numbers{2});
-    CHECK(chosen(context, "strand or coil") == Numbers{3, 4});
+    CHECK(chosen(context, "strand or helix") == Numbers{2, 3});
+    CHECK(chosen(context, "coil") == chosen(context, "protein and not index 2:3"));
     CHECK(chosen(context, "sheet") == Numbers{3});
     CHECK(chosen(context, "chain B") == Numbers{0});
 }

@@ -94,7 +94,7 @@ const std::vector<Form> forms{
      MobilityEdit{"moved", Motion::Free, Shape::Flexible}},
     {R"(mobility = { molecule = "moved", shape = "rigid" })",
      MobilityEdit{"moved", {}, Shape::Rigid}},
-    {R"(appearance = { molecule = "moved", representation = "licorice", colouring = "element", )"
+    {R"(appearance = { molecule = "moved", representation = "licorice", colour = "element", )"
      R"(visible = false })",
      AppearanceEdit{"moved", Representation::Licorice, Colouring::Element, false}},
     {R"(appearance = { molecule = "moved", visible = true })",
@@ -289,7 +289,7 @@ TEST_CASE("what an edit cannot mean is told where it stands", "[scene][edits][er
         {"at_s = 1\nmobility = { molecule = \"a\", motion = \"fee\" }", 18, 39,
          "did you mean 'free'?"},
         {"at_s = 1\nappearance = { molecule = \"a\" }", 18, 14,
-         "changes nothing; expected representation, colouring or visible"},
+         "changes nothing; expected representation, colour or visible"},
         {"at_s = 1\nappearance = { molecule = \"a\", visible = 1 }", 18, 42,
          "expected true or false"},
         {"at_s = 1\ncoupling = { mod = 3 }", 18, 14,

@@ -704,7 +704,7 @@ TEST_CASE("the view table says how a scene is seen at first, without it the prog
     const ViewDescription view = parse_scene(base + R"(
 [view]
 representation = "space-filling"
-colouring = "element"
+colour = "element"
 hydrogen_bonds = "all"
 camera = [-40, 12.5, 2]
 look_at = "moved"
@@ -730,7 +730,7 @@ TEST_CASE("what [view] cannot mean is refused where it stands", "[scene][errors]
     const auto row = GENERATE(values<Row>({
         {"representation = \"liquorice\"", 18, "did you mean 'licorice'?"},
         {"representation = true", 18, "expected one of ball-and-stick, space-filling"},
-        {"colouring = \"chan\"", 13, "did you mean 'chain'?"},
+        {"colour = \"chan\"", 13, "did you mean 'chain'?"},
         {"camera = [0, 10]", 10, "expected three numbers from -360 to 360"},
         {"camera = [0, 91, 1]", 10,
          "'view.camera' is [0, 91, 1]; expected [azimuth, elevation, zoom]: degrees, the second "

@@ -170,7 +170,7 @@ TEST_CASE("edits and a second hand are part of the hash, each of their keys",
         "[[edits]]\nat_s = 1\nmobility = { molecule = \"a\", shape = \"rigid\" }\n",
         "[[edits]]\nat_s = 1\nappearance = { molecule = \"a\", visible = true }\n",
         "[[edits]]\nat_s = 1\nappearance = { molecule = \"a\", visible = false }\n",
-        "[[edits]]\nat_s = 1\nappearance = { molecule = \"a\", colouring = \"chain\" }\n",
+        "[[edits]]\nat_s = 1\nappearance = { molecule = \"a\", colour = \"chain\" }\n",
         "[[edits]]\nat_s = 1\nappearance = { molecule = \"a\", representation = \"licorice\" }\n",
         "[[edits]]\nat_s = 1\ncoupling = { mode = 3 }\n",
         "[[edits]]\nat_s = 1\ncoupling = { mode = 3, clamp_N = 2 }\n"};

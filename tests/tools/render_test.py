@@ -105,14 +105,14 @@ class Render(unittest.TestCase):
         plain = self.draw()
         for key, value, *option in (("representation", "licorice", "--representation", "licorice"),
                                     ("representation", "space-filling", "--as", "space-filling"),
-                                    ("colouring", "element", "--colouring", "element"),
+                                    ("colour", "element", "--colour", "element"),
                                     ("camera", "[-50, 30, 1.5]", "--camera=-50,30,1.5"),
                                     ("look_at", "fixed", "--look-at", "fixed")):
             with self.subTest(key=key):
                 said = self.draw("--set", f"view.{key}={value}")
                 self.assertEqual(said, self.draw(*option))
                 # Two waters have no carbon, so their colours are those of the elements either way.
-                self.assertEqual(said == plain, key == "colouring")
+                self.assertEqual(said == plain, key == "colour")
                 self.assertEqual(said, self.draw("--set", f"view.{key}={value}", *option))
 
     def test_clip_leaves_out_what_is_in_front(self):

@@ -32,7 +32,7 @@ TEST_CASE("a scene without [view] is shown whole, few atoms as balls and sticks"
 
 TEST_CASE("a scene's [view] says how it is shown at first", "[view][first-view]") {
     const SceneDescription scene =
-        test::water_scene({"view.representation=licorice", "view.colouring=element",
+        test::water_scene({"view.representation=licorice", "view.colour=element",
                            "view.camera=[90, 30, 2]", "view.look_at=fixed"});
     World world = load_world(scene);
 

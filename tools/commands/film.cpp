@@ -28,11 +28,12 @@ int make_film(SceneDescription scene, World& world, const ViewSettings& view,
     const auto most =
         static_cast<std::size_t>(std::ceil(options.film_seconds * options.film_fps - 1e-9));
     std::optional<OrbitCamera> camera;
+    FrameBuilder builder;
     std::size_t due = 0;
     const auto draw = [&] {
         const double now_s = static_cast<double>(due++) / options.film_fps;
         if (now_s < options.time_s - 1e-9 || film.frame_count() >= most) return;
-        FrameScene frame = build_frame(world, view);
+        FrameScene frame = builder.build(world, find_contacts(world), view);
         if (!camera) {
             camera = first_camera(scene.view, frame, framed_atoms(scene.view, world),
                                   aspect_of(options.width, options.height));

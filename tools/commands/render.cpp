@@ -5,6 +5,7 @@
 #include "devices/emulated_omni.h"
 #include "experiments/emulated_hand.h"
 #include "formats/crd.h"
+#include "molecule/select.h"
 #include "render/film.h"
 #include "render/picture.h"
 #include "scene/read_scene.h"
@@ -24,21 +25,61 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <string_view>
 #include <system_error>
 
 namespace palpa {
 namespace {
 
+// A --representation is of everything, or of what the --of behind it selects, and is a layer then;
+// --colour and --opacity are of the layer before them, or of everything.
+void apply_looks(const std::vector<RenderOptions::Said>& said, ViewDescription& view) {
+    std::optional<ViewLayer> layer;  // begun; one without `of` is everything
+    const auto finish = [&] {
+        if (!layer) return;
+        if (layer->of.empty()) {
+            view.representation = layer->representation;
+            view.colouring = layer->colouring.value_or(view.colouring);
+        }
+        if (!layer->of.empty() || layer->opacity < 1) view.layers.push_back(*layer);
+        layer.reset();
+    };
+    for (const auto& [option, value] : said) {
+        if (option == "--representation") {
+            finish();
+            layer.emplace().representation =
+                static_cast<Representation>(choice_called(option, value, representation_names));
+        } else if (option == "--of") {
+            if (!layer)
+                throw LoadError({"--of " + value}, "expected --representation NAME before it");
+            (void)parse_selection(value, "--of");
+            layer->of = value;
+        } else if (option == "--colour") {
+            const auto colouring =
+                static_cast<Colouring>(choice_called(option, value, colouring_names));
+            (layer ? layer->colouring.emplace() : view.colouring) = colouring;
+        } else {
+            const std::optional<double> opacity = find_real(value);
+            if (!layer || !opacity || !(*opacity >= 0.05 && *opacity <= 1))
+                throw LoadError({"--opacity " + value},
+                                "expected 0.05 to 1, behind --representation surface");
+            layer->opacity = *opacity;
+        }
+    }
+    finish();
+}
+
 // What the options say over the scene's [view].
 void apply_options(const RenderOptions& options, World& world, ViewDescription& view) {
-    if (!options.representation.empty()) {
-        view.representation = static_cast<Representation>(
-            choice_called("--as", options.representation, representation_names));
+    apply_looks(options.said, view);
+    for (const std::string& label : options.labels) {
+        (void)parse_selection(label, "--label");
+        view.labels.push_back(label);
     }
-    if (!options.colouring.empty()) {
-        view.colouring =
-            static_cast<Colouring>(choice_called("--colour", options.colouring, colouring_names));
+    if (!options.hydrogen_bonds.empty()) {
+        view.hydrogen_bonds = static_cast<ShownBonds>(
+            choice_called("--hydrogen-bonds", options.hydrogen_bonds, shown_bond_names));
     }
     if (!options.look_at.empty()) {
         std::vector<std::string_view> names;
@@ -139,6 +180,7 @@ int render_command(const RenderOptions& options) {
     Renderer renderer(gpu);
     const auto side = static_cast<std::uint32_t>(std::lround(std::sqrt(options.samples)));
     frame.outline = static_cast<int>(side);
+    frame.clear_background = options.transparent;
     const Picture drawn =
         renderer.draw(frame, side * options.width, side * options.height, PictureContent::Colours);
     const Picture picture = side == 1 ? drawn : average_down(drawn, side);
@@ -176,7 +218,7 @@ void FrameWriter::write(World& world) {
     std::error_code error;
     std::filesystem::create_directories(folder_, error);
     if (error) throw LoadError({folder_.string()}, "cannot be made: " + error.message());
-    FrameScene frame = build_frame(world, first_settings(view_, world));
+    FrameScene frame = builder_.build(world, find_contacts(world), first_settings(view_, world));
     if (written_ == 0) {
         camera_ =
             first_camera(view_, frame, framed_atoms(view_, world), aspect_of(width_, height_));
@@ -186,11 +228,58 @@ void FrameWriter::write(World& world) {
               renderer_.draw(frame, width_, height_, PictureContent::Colours));
 }
 
+namespace {
+
+// Options whose order counts.
+void add_look_options(CLI::App& render, RenderOptions& options) {
+    const auto add = [&](const char* names, const char* type, const std::string& meaning) {
+        return render.add_option(names, meaning)
+            ->type_name(type)
+            ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    };
+    const std::array looks{
+        add("--representation,--as", "NAME",
+            fmt::format("{}; of everything, or of what --of behind it selects, drawn besides; "
+                        "again and again",
+                        fmt::join(representation_names, ", "))),
+        add("--of", "SELECTION", "which atoms, as palpa select takes them: \"within 5 of ligand\""),
+        add("--colour", "NAME",
+            fmt::format("{}; of the --representation before it, or of everything",
+                        fmt::join(colouring_names, ", "))),
+        add("--opacity", "SHARE", "of a surface, 0.05 to 1; what is behind shines through")};
+    render.parse_complete_callback([&render, &options, looks] {
+        std::array<std::size_t, looks.size()> next{};
+        for (const CLI::Option* const option : render.parse_order()) {
+            const auto found = std::ranges::find(looks, option);
+            if (found == looks.end()) continue;
+            std::size_t& index = next[static_cast<std::size_t>(found - looks.begin())];
+            constexpr std::array<std::string_view, 4> names{"--representation", "--of", "--colour",
+                                                            "--opacity"};
+            options.said.push_back(
+                {std::string(names[static_cast<std::size_t>(found - looks.begin())]),
+                 option->results().at(index++)});
+        }
+    });
+    add("--label", "SELECTION", "names its residues, or atoms where one is selected alone");
+    render.get_option("--label")->each(
+        [&](const std::string& value) { options.labels.push_back(value); });
+    render
+        .add_option("--hydrogen-bonds", options.hydrogen_bonds,
+                    "none, in-hand (of what is in the hand) or all, as it stands alone")
+        ->expected(0, 1)
+        ->default_str("all");
+    render.add_flag("--transparent", options.transparent, "the background");
+}
+
+}  // namespace
+
 void add_render(CLI::App& program, ProgramCommand& chosen) {
     CLI::App& render = *program.add_subcommand("render", "A picture of a scene; needs no display");
     RenderOptions& options = own_options<RenderOptions>(render, chosen, render_command);
     describe(render, "Look and measure",
              {"palpa render scenes/hiv -o tunnel.png",
+              "palpa render scenes/hiv -o pocket.png --representation surface --of protein "
+              "--opacity 0.5",
               "palpa render scenes/water --film water.mp4 --seconds 4"});
     render.add_option("scene", options.scene, "scene folder or file")->required();
     render.add_option("-o,--output", options.image, "PNG file to write")->type_name("FILE.png");
@@ -212,15 +301,7 @@ void add_render(CLI::App& program, ProgramCommand& chosen) {
     add_size_option(render, "--size", options.width, options.height);
     render.add_option("--time", options.time_s, "seconds that the hand plays before")
         ->check(in_range(0.0, 1e5));
-    render
-        .add_option(
-            "--as,--representation", options.representation,
-            "ball-and-stick, space-filling, licorice, in-hand: all but the molecule in hand "
-            "thin, or pocket: of these what is near to it, and backbones; this and what "
-            "follows: unless given, as the scene's [view] says")
-        ->type_name("NAME");
-    render.add_option("--colour,--colouring", options.colouring,
-                      "chain: carbons in a colour of their chain; or element");
+    add_look_options(render, options);
     render
         .add_option("--camera", options.camera,
                     "degrees around what is framed and above it, and how many times nearer")

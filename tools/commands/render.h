@@ -28,10 +28,17 @@ struct RenderOptions {
     double time_s = 0;  // simulated, under the emulated hand, before the picture
     std::optional<std::filesystem::path> film;  // instead of the picture
     double film_seconds = 10, film_fps = 25;    // simulated; pictures in each of them
-    // Empty: as the scene's [view] says.
-    std::string representation, colouring;
-    std::string camera;   // azimuth, elevation in degrees, zoom
-    std::string look_at;  // a molecule's name
+    // As the scene's [view] says, but for these, in the order of the command line.
+    struct Said {
+        std::string option;  // "--representation", "--of", "--colour" or "--opacity"
+        std::string value;
+    };
+    std::vector<Said> said;
+    std::vector<std::string> labels;
+    std::string hydrogen_bonds;
+    bool transparent = false;  // the background
+    std::string camera;        // azimuth, elevation in degrees, zoom
+    std::string look_at;       // a molecule's name
     std::optional<bool> clips;
     std::uint32_t samples = 1;  // a pixel: 1, 4, 9 or 16
     bool overwrites = false;    // earlier files of this command
@@ -69,6 +76,7 @@ private:
     ViewDescription view_;
     GpuDevice gpu_;
     Renderer renderer_;
+    FrameBuilder builder_;
     OrbitCamera camera_;
 };
 

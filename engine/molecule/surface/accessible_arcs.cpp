@@ -16,7 +16,7 @@ struct CoveredRange {
 };
 
 // The circle in which two spheres meet; radius 0 where they do not, or hardly.
-AccessibleArc circle_between(const Ball& a, const Ball& b) {
+AccessibleArc circle_between(const AtomBall& a, const AtomBall& b) {
     AccessibleArc circle;
     const Vec3 between = b.centre - a.centre;
     const double distance = between.norm();
@@ -39,7 +39,7 @@ struct Cover {
     bool is_everything() const { return s < 0 && s * s >= a * a + b * b; }
 };
 
-Cover cover_by(const Ball& ball, const AccessibleArc& circle) {
+Cover cover_by(const AtomBall& ball, const AccessibleArc& circle) {
     const Vec3 to_ball = ball.centre - circle.centre;
     const double r = circle.radius;
     // A ball that only touches the circle, as a second one at the same place does, buries nothing.
@@ -105,28 +105,28 @@ void add_gaps(AccessibleArc circle, std::vector<CoveredRange>& covered,
 
 }  // namespace
 
-void find_accessible_arcs(const Ball& ball, std::span<const Ball> balls,
+void find_accessible_arcs(const AtomBall& ball, std::span<const AtomBall> balls,
                           std::vector<AccessibleArc>& arcs) {
-    std::vector<Ball> near;
-    for (const Ball& other : balls) {
+    std::vector<AtomBall> near;
+    for (const AtomBall& other : balls) {
         const double sum = ball.radius + other.radius;
         if (other.atom != ball.atom && (other.centre - ball.centre).squaredNorm() < sum * sum)
             near.push_back(other);
     }
     // The nearest bury most.
-    std::ranges::sort(near, {}, [&](const Ball& other) {
+    std::ranges::sort(near, {}, [&](const AtomBall& other) {
         return (other.centre - ball.centre).norm() - other.radius;
     });
     std::vector<Cover> covers;
     std::vector<CoveredRange> covered;
-    for (const Ball& other : near) {
+    for (const AtomBall& other : near) {
         if (other.atom < ball.atom) continue;
         const AccessibleArc circle = circle_between(ball, other);
         if (circle.radius == 0) continue;
         covers.clear();
         covered.clear();
         const bool is_buried = std::ranges::any_of(near,
-                                                   [&](const Ball& third) {
+                                                   [&](const AtomBall& third) {
                                                        if (third.atom == other.atom) return false;
                                                        const Cover cover = cover_by(third, circle);
                                                        if (cover.is_everything()) return true;

@@ -29,7 +29,7 @@ struct AccessibleArc {
 
 // Arcs on the sphere of a ball with those balls that come after it by number of atom. `balls` has
 // all balls whose spheres may meet it, radii with the probe's.
-void find_accessible_arcs(const Ball& ball, std::span<const Ball> balls,
+void find_accessible_arcs(const AtomBall& ball, std::span<const AtomBall> balls,
                           std::vector<AccessibleArc>& arcs);
 
 // The point of an arc that is nearest to a place, where it is closer than `distance`; updates both.

@@ -36,7 +36,7 @@ void ExcludedField::move(const BallGrid& grid, std::span<const MovedBall> moved)
         const double touch = 2 * (largest_radius_ + probe_);
         for (const Vec3& place : {ball.from, ball.to}) {
             if (!place.allFinite()) continue;
-            grid.visit_near(place, touch, [&](const Ball& other, double /*squared*/) {
+            grid.visit_near(place, touch, [&](const AtomBall& other, double /*squared*/) {
                 if (other.atom < has_arcs_.size()) has_arcs_[other.atom] = false;
             });
         }
@@ -45,19 +45,19 @@ void ExcludedField::move(const BallGrid& grid, std::span<const MovedBall> moved)
 
 bool ExcludedField::is_accessible(const Vec3& place, std::uint32_t atom) const {
     return !grid_->any_near(place, grid_->largest_radius() + probe_,
-                            [&](const Ball& ball, double squared) {
+                            [&](const AtomBall& ball, double squared) {
                                 const double r = ball.radius + probe_ - margin;
                                 return ball.atom != atom && squared < r * r;
                             });
 }
 
-const std::vector<AccessibleArc>& ExcludedField::arcs_of(const Ball& ball) {
+const std::vector<AccessibleArc>& ExcludedField::arcs_of(const AtomBall& ball) {
     std::vector<AccessibleArc>& arcs = arcs_[ball.atom];
     if (has_arcs_[ball.atom]) return arcs;
     arcs.clear();
-    std::vector<Ball> near;
+    std::vector<AtomBall> near;
     const double touch = ball.radius + grid_->largest_radius() + 2 * probe_;
-    grid_->visit_near(ball.centre, touch, [&](const Ball& other, double /*squared*/) {
+    grid_->visit_near(ball.centre, touch, [&](const AtomBall& other, double /*squared*/) {
         near.push_back({other.centre, other.radius + probe_, other.atom});
     });
     find_accessible_arcs({ball.centre, ball.radius + probe_, ball.atom}, near, arcs);
@@ -68,7 +68,7 @@ const std::vector<AccessibleArc>& ExcludedField::arcs_of(const Ball& ball) {
 ExcludedField::Deepest ExcludedField::find_deepest(const Vec3& place) const {
     Deepest deepest{-2 * spacing_, {}};
     const double far = grid_->largest_radius() + probe_ + 2 * spacing_;
-    grid_->visit_near(place, far, [&](const Ball& ball, double squared) {
+    grid_->visit_near(place, far, [&](const AtomBall& ball, double squared) {
         const double depth = ball.radius + probe_ - std::sqrt(squared);
         if (depth > deepest.depth) deepest = {depth, ball};
     });
@@ -80,7 +80,7 @@ ExcludedField::Deepest ExcludedField::find_deepest(const Vec3& place) const {
 double ExcludedField::find_free(const Vec3& place, const Deepest& deepest, Vec3& free) {
     double distance = probe_ + spacing_;
     if (deepest.depth >= distance) return distance;
-    const Ball& ball = deepest.ball;
+    const AtomBall& ball = deepest.ball;
     const Vec3 out = place - ball.centre;
     const double length = out.norm();
     const Vec3 direction = length > 0 ? Vec3(out / length) : Vec3::UnitZ();
@@ -90,7 +90,7 @@ double ExcludedField::find_free(const Vec3& place, const Deepest& deepest, Vec3&
         return deepest.depth;
     }
     const double far = grid_->largest_radius() + probe_ + distance;
-    grid_->visit_near(place, far, [&](const Ball& near, double squared) {
+    grid_->visit_near(place, far, [&](const AtomBall& near, double squared) {
         const std::vector<AccessibleArc>& arcs = arcs_of(near);
         if (arcs.empty()) return;
         if (std::abs(std::sqrt(squared) - near.radius - probe_) >= distance) return;
@@ -112,7 +112,7 @@ bool ExcludedField::sample(const BlockIndex& block, BlockSamples& samples) {
                                                       point_coordinate(block[2], z, spacing_)};
     found.deepest.fill({-spacing_, {}});
     bool has_any = false;
-    grid_->visit_box(low - far, high + far, [&](const Ball& ball) {
+    grid_->visit_box(low - far, high + far, [&](const AtomBall& ball) {
         has_any = true;
         const double edge = ball.radius + probe_;
         std::array<int, 3> first{}, last{};
@@ -170,7 +170,7 @@ void ExcludedField::set_values(const Block& found, BlockSamples& samples) {
 
 SurfacePoint ExcludedField::refine(const Vec3& near) {
     const Deepest deepest = find_deepest(near);
-    const Ball& ball = deepest.ball;
+    const AtomBall& ball = deepest.ball;
     const Vec3 out = near - ball.centre;
     const double length = out.norm();
     SurfacePoint point{near, length > 0 ? Vec3(out / length) : Vec3::UnitZ(), ball.atom};

@@ -25,7 +25,7 @@ public:
 private:
     struct Deepest {
         double depth = 0;  // within the sphere with the probe's radius, Å
-        Ball ball;
+        AtomBall ball;
     };
     struct Block;
 
@@ -33,7 +33,7 @@ private:
     Deepest find_deepest(const Vec3& place) const;
     double find_free(const Vec3& place, const Deepest& deepest, Vec3& free);
     void set_values(const Block& found, BlockSamples& samples);
-    const std::vector<AccessibleArc>& arcs_of(const Ball& ball);
+    const std::vector<AccessibleArc>& arcs_of(const AtomBall& ball);
 
     const BallGrid* grid_ = nullptr;
     double spacing_;  // Å

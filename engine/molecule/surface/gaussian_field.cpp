@@ -48,7 +48,7 @@ bool GaussianField::sample(const BlockIndex& block, BlockSamples& samples) {
     const Vec3 low = block_corner(block, spacing_);
     const Vec3 high = low + Vec3::Constant(block_cells * spacing_);
     const Vec3 margin = Vec3::Constant(reach(grid_->largest_radius()));
-    grid_->visit_box(low - margin, high + margin, [&](const Ball& ball) {
+    grid_->visit_box(low - margin, high + margin, [&](const AtomBall& ball) {
         const double k = sharpness_ / (ball.radius * ball.radius), far = reach(ball.radius);
         const Vec3& c = ball.centre;
         if (((c.array() + far) < low.array()).any() || ((c.array() - far) > high.array()).any())
@@ -82,20 +82,21 @@ SurfacePoint GaussianField::refine(const Vec3& near) {
     double sum = 0, nearest = std::numeric_limits<double>::infinity();
     Vec3 gradient = Vec3::Zero();
     SurfacePoint point{near, Vec3::UnitZ(), 0};
-    grid_->visit_near(near, reach(grid_->largest_radius()), [&](const Ball& ball, double squared) {
-        const double k = sharpness_ / (ball.radius * ball.radius);
-        const double exponent = sharpness_ - k * squared;
-        if (exponent > -largest_exponent) {
-            const double term = std::exp(static_cast<float>(exponent));
-            sum += term;
-            gradient -= 2 * k * term * (near - ball.centre);
-        }
-        const double gap = std::sqrt(squared) - ball.radius;
-        if (gap < nearest) {
-            nearest = gap;
-            point.atom = ball.atom;
-        }
-    });
+    grid_->visit_near(near, reach(grid_->largest_radius()),
+                      [&](const AtomBall& ball, double squared) {
+                          const double k = sharpness_ / (ball.radius * ball.radius);
+                          const double exponent = sharpness_ - k * squared;
+                          if (exponent > -largest_exponent) {
+                              const double term = std::exp(static_cast<float>(exponent));
+                              sum += term;
+                              gradient -= 2 * k * term * (near - ball.centre);
+                          }
+                          const double gap = std::sqrt(squared) - ball.radius;
+                          if (gap < nearest) {
+                              nearest = gap;
+                              point.atom = ball.atom;
+                          }
+                      });
     const double slope = gradient.norm();
     if (slope == 0 || sum <= 0) return point;
     point.normal = -gradient / slope;

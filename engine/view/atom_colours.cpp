@@ -1,0 +1,296 @@
+#include "view/atom_colours.h"
+
+#include "core/units.h"
+#include "molecule/hydropathy.h"
+#include "molecule/point_grid.h"
+#include "simulation/components.h"
+#include "simulation/held.h"
+#include "simulation/resources.h"
+#include "statics/torsion_state.h"
+#include "view/colour_scales.h"
+#include "view/elements.h"
+#include "view/in_hand.h"
+#include "view/palette.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numbers>
+#include <numeric>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+namespace palpa {
+namespace {
+
+using Colours = std::vector<glm::vec3>;
+
+constexpr glm::vec3 no_value{0.45F};
+
+const ElementLook& look_of(std::string_view element) {
+    const auto found = std::ranges::find(element_looks, element, &ElementLook::element);
+    return found == element_looks.end() ? other_element : *found;
+}
+
+// Carbons of what is held in their own colour, others by element or chain.
+Colours colour_elements(const World& world, bool by_chain) {
+    const AtomTable& atoms = world.resource<AtomTable>();
+    const std::vector<bool> held = find_held_atoms(world);
+    std::size_t chain = 0;
+    const AtomName* before = nullptr;  // the last that is not held
+    Colours colours;
+    for (std::size_t i = 0; i < atoms.size(); ++i) {
+        if (!held[i]) {
+            if (before && before->segment != atoms.names[i].segment) ++chain;
+            before = &atoms.names[i];
+        }
+        const std::string_view element = element_of(atoms, i);
+        colours.push_back(look_of(element).colour);
+        if (element != "C") continue;
+        if (held[i]) {
+            colours.back() = grabbed_carbon;
+        } else if (by_chain) {
+            colours.back() = chain_carbons[chain % chain_carbons.size()];
+        }
+    }
+    return colours;
+}
+
+// Indices of categorical_colour.
+struct ResidueClass {
+    std::string_view text;
+    std::size_t colour;
+    std::array<std::string_view, 12> names;
+};
+constexpr std::array residue_classes = std::to_array<ResidueClass>({
+    {"acidic", 6, {"ASP", "GLU", "ASPP", "GLUP", "ASH", "GLH"}},
+    {"basic", 5, {"ARG", "LYS", "HSP", "HIP"}},
+    {"polar", 2, {"SER", "THR", "ASN", "GLN", "HIS", "HSD", "HSE", "HID", "HIE", "CYS", "CYX"}},
+    {"aromatic", 7, {"PHE", "TYR", "TRP"}},
+    {"aliphatic", 1, {"ALA", "VAL", "LEU", "ILE", "MET", "PRO", "GLY", "MSE"}},
+    {"adenine, guanine", 3, {"ADE", "GUA", "DA", "DG", "A", "G"}},
+    {"cytosine, thymine, uracil", 4, {"CYT", "THY", "URA", "DC", "DT", "C", "U"}},
+});
+
+const ResidueClass* class_of(std::string_view residue) {
+    const auto found = std::ranges::find_if(residue_classes, [&](const ResidueClass& of) {
+        return std::ranges::find(of.names, residue) != of.names.end();
+    });
+    return found == residue_classes.end() ? nullptr : &*found;
+}
+
+constexpr std::array structure_colours = std::to_array<std::pair<glm::vec3, std::string_view>>({
+    {{0.68F, 0.06F, 0.14F}, "helix"},
+    {{0.80F, 0.52F, 0.03F}, "strand"},
+    {{0.60F, 0.62F, 0.66F}, "neither"},
+});
+
+void colour_structure(std::span<const ResidueSpan> residues,
+                      std::span<const SecondaryStructure> structure, Colours& colours) {
+    for (std::size_t i = 0; i < residues.size(); ++i) {
+        if (residues[i].alpha == residues[i].end) continue;
+        const std::size_t kind = is_helix(structure[i])                       ? 0
+                                 : structure[i] == SecondaryStructure::Strand ? 1
+                                                                              : 2;
+        std::fill(colours.begin() + static_cast<std::ptrdiff_t>(residues[i].first),
+                  colours.begin() + static_cast<std::ptrdiff_t>(residues[i].end),
+                  structure_colours[kind].first);
+    }
+}
+
+// A colour for each residue, where `colour_of` has one.
+template <class ColourOf>
+void colour_residues(std::span<const ResidueSpan> residues, Colours& colours,
+                     const ColourOf& colour_of) {
+    for (const ResidueSpan& residue : residues) {
+        const std::optional<glm::vec3> colour = colour_of(residue);
+        if (!colour) continue;
+        std::fill(colours.begin() + static_cast<std::ptrdiff_t>(residue.first),
+                  colours.begin() + static_cast<std::ptrdiff_t>(residue.end), *colour);
+    }
+}
+
+// Of each atom, between the ends.
+Colours colour_scale(std::span<const double> values, double low, double high) {
+    Colours colours;
+    for (const double value : values) {
+        const double share = high > low ? (value - low) / (high - low) : 0;
+        colours.push_back(sequential_colour(std::clamp(share, 0.0, 1.0)));
+    }
+    return colours;
+}
+
+// Those bonded to held ones over three bonds or fewer, and these.
+std::vector<bool> find_bonded(const AtomTable& atoms, std::vector<bool> held) {
+    for (int bonds = 0; bonds < 3; ++bonds) {
+        const std::vector<bool> before = held;
+        for (const auto& [a, b] : atoms.bonds) {
+            if (before[a]) held[b] = true;
+            if (before[b]) held[a] = true;
+        }
+    }
+    return held;
+}
+
+constexpr double least_push_pN = 1, most_push_pN = 1000;
+
+Colours colour_pushes(const World& world) {
+    std::vector<double> shares;
+    for (const double push : find_pushes(world)) {
+        const double pN = push * units::piconewton_per_kcal_per_mol_angstrom;
+        shares.push_back(pN > 0 ? std::log10(pN / least_push_pN) : -1);
+    }
+    return colour_scale(shares, 0, std::log10(most_push_pN / least_push_pN));
+}
+
+constexpr double most_turn_deg = 30;
+
+Colours colour_turns(const World& world) {
+    const AtomTable& atoms = world.resource<AtomTable>();
+    const TorsionState* const state = world.find_resource<TorsionState>();
+    std::vector<double> turned(atoms.size(), 0);
+    if (state) {
+        const std::vector<std::uint32_t>& body_of = model_of(world).tree.bodies.body_of;
+        for (std::size_t i = 0; i < turned.size() && i < body_of.size(); ++i) {
+            if (body_of[i] >= state->angles.size()) continue;
+            const double angle = std::remainder(state->angles[body_of[i]], 2 * std::numbers::pi);
+            turned[i] = std::abs(angle) * 180 / std::numbers::pi;
+        }
+    }
+    return colour_scale(turned, 0, most_turn_deg);
+}
+
+std::pair<double, double> find_b_factors(const AtomTable& atoms) {
+    if (atoms.b_factor.empty()) return {0, 0};
+    const auto [low, high] = std::ranges::minmax(atoms.b_factor);
+    return {low, high};
+}
+
+std::vector<LegendEntry> legend_of_scale(std::string low, std::string middle, std::string high) {
+    return {{sequential_colour(0), std::move(low)},
+            {sequential_colour(0.5), std::move(middle)},
+            {sequential_colour(1), std::move(high)}};
+}
+
+}  // namespace
+
+std::vector<double> find_pushes(const World& world) {
+    constexpr double reach = 12;  // Å
+    const AtomTable& atoms = world.resource<AtomTable>();
+    const std::vector<bool> in_hand = find_held_atoms(world);
+    const std::vector<bool> bonded = find_bonded(atoms, in_hand);
+    std::vector<std::uint32_t> held, near;
+    std::vector<Vec3> places;
+    for (std::uint32_t i = 0; i < atoms.size(); ++i) {
+        if (!in_hand[i]) continue;
+        held.push_back(i);
+        places.push_back(atoms.positions[i]);
+    }
+    std::vector<double> pushes(atoms.size(), 0);
+    if (held.empty()) return pushes;
+    const PointGrid grid(places);
+    for (std::uint32_t i = 0; i < atoms.size(); ++i)
+        if (!bonded[i] && grid.has_near(atoms.positions[i], reach)) near.push_back(i);
+    const GatheredPoints group(atoms, held), environment(atoms, near);
+    std::vector<Vec3> on_group(held.size(), Vec3::Zero()), on_near(near.size(), Vec3::Zero());
+    (void)add_pair_forces(group.view(), environment.view(), pair_rule(world), on_group, on_near);
+    for (std::size_t i = 0; i < near.size(); ++i) pushes[near[i]] = on_near[i].norm();
+    return pushes;
+}
+
+std::vector<glm::vec3> find_colours(const World& world, Colouring colouring,
+                                    std::span<const ResidueSpan> residues,
+                                    std::span<const SecondaryStructure> structure) {
+    const AtomTable& atoms = world.resource<AtomTable>();
+    Colours colours = colour_elements(world, colouring == Colouring::Chain);
+    const Colours elements = colours;
+    switch (colouring) {
+        case Colouring::Element:
+        case Colouring::Chain:
+            return colours;
+        case Colouring::Force:
+            return colour_pushes(world);
+        case Colouring::Activity:
+            return colour_turns(world);
+        case Colouring::Charge:
+        case Colouring::Potential:
+            colour_residues(residues, colours, [&](const ResidueSpan& residue) {
+                double charge = 0;
+                for (std::size_t i = residue.first; i < residue.end; ++i) charge += atoms.charge[i];
+                return std::optional(diverging_colour(charge, 1));
+            });
+            return colours;
+        case Colouring::Residue:
+            colour_residues(residues, colours, [&](const ResidueSpan& residue) {
+                const ResidueClass* const of = class_of(atoms.names[residue.first].residue);
+                return of ? std::optional(categorical_colour(of->colour)) : std::nullopt;
+            });
+            break;
+        case Colouring::Structure:
+            colour_structure(residues, structure, colours);
+            break;
+        case Colouring::Hydrophobicity:
+            colour_residues(residues, colours, [&](const ResidueSpan& residue) {
+                const auto index = find_hydropathy(atoms.names[residue.first].residue);
+                return index ? std::optional(hydropathy_colour(index)) : std::nullopt;
+            });
+            break;
+        case Colouring::BFactor:
+            if (const auto [low, high] = find_b_factors(atoms); high > low) {
+                colours = colour_scale(atoms.b_factor, low, high);
+            } else {
+                colours.assign(atoms.size(), no_value);
+            }
+            break;
+    }
+    const std::vector<bool> held = find_held_atoms(world);
+    for (std::size_t i = 0; i < atoms.size(); ++i)
+        if (held[i]) colours[i] = elements[i];
+    return colours;
+}
+
+std::vector<LegendEntry> find_legend(const World& world, Colouring colouring) {
+    std::vector<LegendEntry> legend;
+    switch (colouring) {
+        case Colouring::Element:
+        case Colouring::Chain:
+            return {};
+        case Colouring::Residue:
+            for (const ResidueClass& of : residue_classes)
+                legend.push_back({categorical_colour(of.colour), std::string(of.text)});
+            return legend;
+        case Colouring::Structure:
+            for (const auto& [colour, text] : structure_colours)
+                legend.push_back({colour, std::string(text)});
+            return legend;
+        case Colouring::Charge:
+            return {{diverging_colour(-1, 1), "-1 e, of the residue"},
+                    {diverging_colour(0, 1), "0"},
+                    {diverging_colour(1, 1), "+1 e"}};
+        case Colouring::Potential:
+            return {{potential_colour(-potential_end), fmt::format("{} kT/e", -potential_end)},
+                    {potential_colour(0), "0"},
+                    {potential_colour(potential_end), fmt::format("+{} kT/e", potential_end)}};
+        case Colouring::Hydrophobicity:
+            return {{hydropathy_colour(-4.5), "hydrophilic (Arg, -4.5)"},
+                    {hydropathy_colour(4.5), "hydrophobic (Ile, 4.5)"}};
+        case Colouring::BFactor: {
+            const auto [low, high] = find_b_factors(world.resource<AtomTable>());
+            if (!(high > low)) return {{no_value, "the files have no B-factors"}};
+            return legend_of_scale(fmt::format("B = {:.0f} Å²", low),
+                                   fmt::format("{:.0f} Å²", 0.5 * (low + high)),
+                                   fmt::format("{:.0f} Å²", high));
+        }
+        case Colouring::Force:
+            return legend_of_scale("1 pN on what is in hand, or less", "30 pN", "1 nN or more");
+        case Colouring::Activity:
+            return legend_of_scale("joint not turned", "15°", "turned by 30° or more");
+    }
+    return {};
+}
+
+}  // namespace palpa

@@ -1,0 +1,222 @@
+#include "view/draw_layer.h"
+
+#include "molecule/residue_kinds.h"
+#include "molecule/surface/potential.h"
+#include "simulation/held.h"
+#include "simulation/resources.h"
+#include "view/build_frame.h"
+#include "view/elements.h"
+#include "view/palette.h"
+#include "view/surface_shape.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <string_view>
+
+namespace palpa {
+namespace {
+
+constexpr float ball_share = 0.28F, stick_radius = 0.14F, licorice_radius = 0.28F;
+constexpr float thin_radius = 0.11F, line_radius = 0.05F;
+
+float radius_of(std::string_view element) {
+    const auto found = std::ranges::find(element_looks, element, &ElementLook::element);
+    return found == element_looks.end() ? other_element.radius : found->radius;
+}
+
+// How thick an atom and the sticks at it are drawn (Å); 0: not at all.
+struct Thickness {
+    float atom = 0, stick = 0;
+};
+
+// Of others than what is in hand only hydrogens of hydrogen bonds are drawn where they are thin.
+Thickness thickness_of(Representation representation, std::string_view element, bool in_hand) {
+    const float size = radius_of(element);
+    switch (representation) {
+        case Representation::SpaceFilling:
+            return {size, 0};
+        case Representation::Licorice:
+            return {licorice_radius, licorice_radius};
+        case Representation::Lines:
+            return {line_radius, line_radius};
+        case Representation::Surface:
+            return {};
+        case Representation::InHand:
+        case Representation::Pocket:
+            if (in_hand) break;
+            return element == "H" ? Thickness{} : Thickness{thin_radius, thin_radius};
+        case Representation::BallAndStick:
+        case Representation::Cartoon:
+            break;
+    }
+    return {ball_share * size, stick_radius};
+}
+
+bool is_ribbon(Representation representation) {
+    return representation == Representation::Cartoon || representation == Representation::Pocket;
+}
+
+// The atom that says how a residue's ribbon looks.
+std::size_t ribbon_atom(const ResidueSpan& residue) {
+    return residue.alpha < residue.end ? residue.alpha : residue.first;
+}
+
+// Draws ribbons, and returns of each residue whether it is in one.
+std::vector<bool> draw_ribbons(const FrameParts& parts, std::span<const AtomLook> looks,
+                               std::span<const glm::vec3> colours, KeptRibbons& kept,
+                               FrameScene& frame) {
+    std::vector<std::size_t> shown;
+    for (std::size_t i = 0; i < parts.residues.size(); ++i) {
+        const AtomLook& look = looks[ribbon_atom(parts.residues[i])];
+        if (look.visible && is_ribbon(look.representation)) shown.push_back(i);
+    }
+    std::vector<bool> in_ribbon(parts.residues.size(), false);
+    if (shown.empty()) return in_ribbon;
+    const AtomTable& atoms = parts.world.resource<AtomTable>();
+    constexpr double hardly = 0.02;  // Å
+    const bool is_kept =
+        kept.shown_residues == shown && std::ranges::equal(kept.colours, colours) &&
+        std::ranges::equal(kept.places, atoms.positions, [](const Vec3& a, const Vec3& b) {
+            return (a - b).squaredNorm() < hardly * hardly;
+        });
+    if (!is_kept) {
+        std::vector<ResidueSpan> residues;
+        std::vector<SecondaryStructure> structure;
+        for (const std::size_t i : shown) {
+            residues.push_back(parts.residues[i]);
+            structure.push_back(parts.structure[i]);
+        }
+        FrameScene made;
+        kept.parts = add_cartoon(parts.world, residues, structure, colours, made);
+        kept.meshes = std::move(made.meshes);
+        kept.places = atoms.positions;
+        kept.colours.assign(colours.begin(), colours.end());
+        kept.shown_residues = shown;
+    }
+    frame.meshes.insert(frame.meshes.end(), kept.meshes.begin(), kept.meshes.end());
+    for (std::size_t i = 0; i < shown.size(); ++i) in_ribbon[shown[i]] = kept.parts.shown[i];
+    return in_ribbon;
+}
+
+// Of each atom, what it is drawn as beside ribbons and surfaces.
+std::vector<Thickness> find_thickness(const FrameParts& parts, std::span<const AtomLook> looks,
+                                      const std::vector<bool>& in_ribbon) {
+    const AtomTable& atoms = parts.world.resource<AtomTable>();
+    const bool has_pocket = std::ranges::any_of(looks, [](const AtomLook& look) {
+        return look.visible && look.representation == Representation::Pocket;
+    });
+    const std::vector<bool> near =
+        has_pocket ? find_pocket(parts.world, parts.residues) : std::vector<bool>(atoms.size());
+    std::vector<Thickness> thickness(atoms.size());
+    for (std::size_t i = 0; i < parts.residues.size(); ++i) {
+        const ResidueSpan& residue = parts.residues[i];
+        const bool is_solvent = is_water(atoms.names[residue.first].residue);
+        for (std::size_t atom = residue.first; atom < residue.end; ++atom) {
+            const auto [representation, colouring, visible] = looks[atom];
+            if (!visible) continue;
+            const bool is_pocket = representation == Representation::Pocket;
+            const bool is_cartoon = representation == Representation::Cartoon;
+            const bool in_hand = is_pocket ? parts.held[atom] : parts.in_hand[atom];
+            if (!in_hand && in_ribbon[i] && (is_cartoon || (is_pocket && !near[atom]))) continue;
+            if (is_cartoon && in_ribbon[i] && !parts.held[atom]) continue;
+            if (is_cartoon && is_solvent && !in_hand) continue;
+            const std::string_view element = element_of(atoms, atom);
+            thickness[atom] = thickness_of(representation, element, in_hand);
+            if (thickness[atom].atom == 0 && parts.takes_part[atom] &&
+                representation != Representation::Surface)
+                thickness[atom] = {thin_radius, thin_radius};
+        }
+    }
+    return thickness;
+}
+
+void draw_atoms(const AtomTable& atoms, std::span<const Thickness> thickness,
+                std::span<const glm::vec3> colours, FrameScene& frame) {
+    for (std::size_t i = 0; i < atoms.size(); ++i) {
+        if (thickness[i].atom == 0) continue;
+        frame.spheres.push_back({as_float(atoms.positions[i]), thickness[i].atom, colours[i],
+                                 static_cast<std::uint32_t>(i)});
+    }
+    for (const auto& [a, b] : atoms.bonds) {
+        const float radius = std::min(thickness[a].stick, thickness[b].stick);
+        if (radius == 0) continue;
+        frame.cones.push_back({as_float(atoms.positions[a]), as_float(atoms.positions[b]), radius,
+                               radius, colours[a], colours[b], a});
+    }
+}
+
+// Waters and what hands hold have no part in a surface that does not name them alone.
+std::vector<std::uint32_t> find_surface_atoms(const FrameParts& parts,
+                                              std::span<const AtomLook> looks) {
+    const AtomTable& atoms = parts.world.resource<AtomTable>();
+    const auto is_shown = [&](std::size_t i) {
+        return looks[i].visible && looks[i].representation == Representation::Surface;
+    };
+    std::vector<std::uint32_t> all, chosen;
+    for (std::uint32_t i = 0; i < atoms.size(); ++i) {
+        if (!is_shown(i)) continue;
+        all.push_back(i);
+        if (!parts.held[i] && !is_water(atoms.names[i].residue)) chosen.push_back(i);
+    }
+    return chosen.empty() ? all : chosen;
+}
+
+void draw_surface(const FrameParts& parts, std::span<const AtomLook> looks,
+                  std::span<const glm::vec3> colours, float opacity, KeptSurface& kept,
+                  FrameScene& frame) {
+    const AtomTable& table = parts.world.resource<AtomTable>();
+    const std::vector<std::uint32_t> chosen = find_surface_atoms(parts, looks);
+    if (chosen.empty()) return;
+    const bool by_potential = looks[chosen.front()].colouring == Colouring::Potential;
+    std::vector<Vec3> places;
+    std::vector<glm::vec3> atom_colours;
+    for (const std::uint32_t atom : chosen) {
+        places.push_back(table.positions[atom]);
+        atom_colours.push_back(colours[atom]);
+    }
+    std::optional<SurfaceBudget> budget;
+    if (!kept.cache || kept.atoms != chosen) {
+        std::vector<double> radii;
+        for (const std::uint32_t atom : chosen)
+            radii.push_back(static_cast<double>(radius_of(element_of(table, atom))));
+        constexpr std::size_t many = 20000;  // atoms
+        SurfaceSettings settings;
+        settings.kind = chosen.size() > many ? SurfaceKind::Gaussian : SurfaceKind::Excluded;
+        settings.spacing = chosen.size() > many ? 2.0 : 0.9;
+        settings.tolerance = 0.05;
+        kept.cache.emplace(std::move(radii), settings);
+        kept.atoms = chosen;
+        kept.potentials.clear();
+    } else {
+        budget.emplace();
+        budget->near = held_place(parts.world, first_hand(parts.world));
+    }
+    const SurfaceUpdate update = kept.cache->update(places, budget);
+    for (const BlockIndex& block : update.changed) kept.potentials.erase(block);
+    std::vector<double> charges;
+    if (by_potential)
+        for (const std::uint32_t atom : chosen) charges.push_back(table.charge[atom]);
+    for (const auto& [index, block] : kept.cache->blocks()) {
+        if (by_potential) {
+            std::vector<float>& potentials = kept.potentials[index];
+            if (potentials.size() != block.mesh.places.size())
+                potentials = find_potentials(block.mesh, places, charges);
+            frame.meshes.push_back(shape_by_potential(block.mesh, potentials, chosen, opacity));
+        } else {
+            frame.meshes.push_back(shape_by_atom(block.mesh, atom_colours, chosen, opacity));
+        }
+    }
+}
+
+}  // namespace
+
+void draw_layer(const FrameParts& parts, std::span<const AtomLook> looks,
+                std::span<const glm::vec3> colours, float opacity, KeptLayer& kept,
+                FrameScene& frame) {
+    const std::vector<bool> in_ribbon = draw_ribbons(parts, looks, colours, kept.ribbons, frame);
+    draw_atoms(parts.world.resource<AtomTable>(), find_thickness(parts, looks, in_ribbon), colours,
+               frame);
+    draw_surface(parts, looks, colours, opacity, kept.surface, frame);
+}
+
+}  // namespace palpa
