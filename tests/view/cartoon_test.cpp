@@ -198,7 +198,7 @@ double share_inward(const MeshShape& mesh) {
             is_outward = is_outward && glm::dot(out, vertex(k).normal) >= 0;
         inward += is_outward ? 0 : 1;
     }
-    return static_cast<double>(inward) / static_cast<double>(mesh.indices.size() / 3);
+    return 3.0 * static_cast<double>(inward) / static_cast<double>(mesh.indices.size());
 }
 
 void check_sound(const Drawing& drawing) {
@@ -375,6 +375,26 @@ TEST_CASE("a ribbon is open where residues are missing, and between chains", "[v
         CHECK_FALSE(drawing.parts.shown[5]);
     }
     check_sound(drawing);
+}
+
+TEST_CASE("strands have the colours of their residues alone, to both ends", "[view][cartoon]") {
+    std::vector<Vec3> alphas;
+    for (int i = 0; i < 12; ++i) alphas.emplace_back(3.8 * i, 0, 0);
+    Drawing drawing = of_alphas(alphas, Coil);
+    std::fill_n(drawing.structure.begin() + 4, 4, Strand);
+    drawing.draw();
+
+    CHECK(count_bodies(drawing.mesh()) == 4);  // tube, shaft, head, tube
+    std::set<std::uint32_t> flat, round;
+    for (const MeshVertex& vertex : drawing.mesh().vertices) {
+        const bool is_in_strand = vertex.place.x > 3.8F * 3.51F && vertex.place.x < 3.8F * 7.49F;
+        const bool is_corner = std::abs(std::abs(vertex.place.z) - 0.25F) < 1e-3F ||
+                               std::abs(std::abs(vertex.place.y) - 0.25F) < 1e-3F;
+        if (is_in_strand) flat.insert(vertex.pick / 2);
+        if (!is_in_strand && !is_corner) round.insert(vertex.pick / 2);
+    }
+    CHECK(flat == std::set<std::uint32_t>{4, 5, 6, 7});
+    CHECK(round == std::set<std::uint32_t>{0, 1, 2, 3, 8, 9, 10, 11});
 }
 
 TEST_CASE("short strands and helices are tubes", "[view][cartoon]") {
