@@ -264,6 +264,18 @@ TEST_CASE("the protease's helix before its C terminus and its sheets are found",
     CHECK(std::ranges::count(drawing.structure, Strand) > 80);
 }
 
+TEST_CASE("a residue has a class where its backbone is complete, by CHARMM's names too",
+          "[view][cartoon]") {
+    // Of six residues all are needed for the one helix.
+    Drawing drawing = of_chain(test::build_chain(6, -57, -47));
+    const auto [name, count] = GENERATE(table<std::string, int>({{"O", 4}, {"OT1", 4}, {"X", 0}}));
+    drawing.atoms.names.back().atom = name;
+    ResidueStructure structure;
+
+    CHECK(std::ranges::count(structure.update(drawing.atoms, drawing.residues), AlphaHelix) ==
+          count);
+}
+
 TEST_CASE("a shape is picked as the atom CA that it is near to", "[view][cartoon]") {
     Drawing drawing = protease();
     drawing.draw();
