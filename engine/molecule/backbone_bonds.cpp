@@ -107,7 +107,7 @@ BackboneBonds::BackboneBonds(std::span<const BackboneResidue> residues) : donors
     };
     Cells(residues).each_pair([&](std::size_t i, std::size_t j) {
         try_bond(i, j);
-        if (j != i + 1 || !residues[j].follows) try_bond(j, i);
+        if (j != i + 1) try_bond(j, i);  // else they share a peptide bond, or j has no hydrogen
     });
 }
 

@@ -86,25 +86,29 @@ public:
         for (const Run& run : runs_) {
             parts.helices += run.kind == Kind::Helix ? 1 : 0;
             if (run.kind != Kind::Strand) continue;
-            add_rounded(done, start_of(run), mesh);
-            done = end_of(run);
+            const Reach reach = reach_of(run);
+            add_rounded({done, reach.start}, mesh);
+            done = reach.end;
             add_strand(run, mesh);
             ++parts.strands;
             ++parts.arrowheads;
         }
-        add_rounded(done, path_.end(), mesh);
+        add_rounded({done, path_.end()}, mesh);
     }
 
 private:
     glm::vec3 alpha(std::size_t i) const { return as_float(atoms_.positions[chain_.alphas[i]]); }
 
-    // A run reaches half way to the residues beside it.
-    float start_of(const Run& run) const {
-        return run.first == 0 ? 0 : static_cast<float>(run.first) - 0.5F;
-    }
-    float end_of(const Run& run) const {
-        return run.end == chain_.alphas.size() ? static_cast<float>(run.end - 1)
-                                               : static_cast<float>(run.end) - 0.5F;
+    // Of the path's parameter.
+    struct Reach {
+        float start, end;
+    };
+
+    // Half way to the residues beside it.
+    Reach reach_of(const Run& run) const {
+        const std::size_t last = chain_.alphas.size() - 1;
+        return {std::max(0.0F, static_cast<float>(run.first) - 0.5F),
+                std::min(static_cast<float>(last), static_cast<float>(run.end) - 0.5F)};
     }
 
     // Atoms CA; of strands their means with the neighbours', so that these have no pleats, of coil
@@ -197,16 +201,20 @@ private:
         }
     }
 
-    Ring ring_at(float u, float half_width, float half_thickness) const {
-        const auto nearest = static_cast<std::size_t>(std::lround(u));
-        const std::size_t atom = chain_.alphas[std::min(nearest, chain_.alphas.size() - 1)];
+    // As the nearest residue of a body looks, also where it meets another body.
+    Ring ring_at(float u, const Reach& body, float half_width, float half_thickness) const {
+        const float nearest =
+            std::clamp(std::round(u), std::ceil(body.start), std::floor(body.end));
+        const std::size_t atom = chain_.alphas[static_cast<std::size_t>(nearest)];
         return {path_.frame(u), half_width, half_thickness, colours_[atom],
                 static_cast<std::uint32_t>(atom)};
     }
 
-    // Calls with a row of parameters from one to the other, about as far apart as the detail says.
+    // Calls with parameters from its start to its end, about as far apart as the detail says, and
+    // with their share of the way.
     template <class Visit>
-    void each_step(float start, float end, Visit visit) const {
+    void each_step(const Reach& part, Visit visit) const {
+        const auto& [start, end] = part;
         const int steps = std::max(
             1, static_cast<int>(std::lround((end - start) * static_cast<float>(detail_.pieces))));
         for (int i = 0; i <= steps; ++i) {
@@ -217,21 +225,21 @@ private:
 
     // How much of a helix there is at a place: it widens within a residue, but at the chain's ends.
     float share_of_helix(const Run& helix, float u) const {
-        const float start = start_of(helix), end = end_of(helix);
-        float share = helix.first == 0 ? 1 : glm::smoothstep(start, start + 1, u);
-        if (helix.end < chain_.alphas.size()) share *= glm::smoothstep(end, end - 1, u);
+        const auto& [start, end] = reach_of(helix);
+        float share = helix.first == 0 ? 1 : glm::smoothstep(0.0F, 1.0F, u - start);
+        if (helix.end < chain_.alphas.size()) share *= glm::smoothstep(0.0F, 1.0F, end - u);
         return share;
     }
 
     // Tubes and helices: one body between two strands.
-    void add_rounded(float start, float end, MeshShape& mesh) const {
-        if (!(end > start)) return;
+    void add_rounded(const Reach& body, MeshShape& mesh) const {
+        if (!(body.end > body.start)) return;
         std::vector<Ring> rings;
         auto run = runs_.begin();
-        each_step(start, end, [&](float u, float) {
-            while (run + 1 != runs_.end() && end_of(*run) < u) ++run;
+        each_step(body, [&](float u, float) {
+            while (run + 1 != runs_.end() && reach_of(*run).end < u) ++run;
             const float share = run->kind == Kind::Helix ? share_of_helix(*run, u) : 0;
-            rings.push_back(ring_at(u, glm::mix(coil_radius, helix_half_width, share),
+            rings.push_back(ring_at(u, body, glm::mix(coil_radius, helix_half_width, share),
                                     glm::mix(coil_radius, helix_half_thickness, share)));
         });
         add_sweep(rings, CrossSection::Oval, detail_.sides, mesh);
@@ -239,15 +247,15 @@ private:
 
     // A shaft and a head, each a body.
     void add_strand(const Run& strand, MeshShape& mesh) const {
-        const float start = start_of(strand), end = end_of(strand);
-        const float neck = end - std::min(head_length, 0.6F * (end - start));
+        const Reach body = reach_of(strand);
+        const float neck = body.end - std::min(head_length, 0.6F * (body.end - body.start));
         std::vector<Ring> shaft, head;
-        each_step(start, neck, [&](float u, float) {
-            shaft.push_back(ring_at(u, strand_half_width, strand_half_thickness));
+        each_step({body.start, neck}, [&](float u, float) {
+            shaft.push_back(ring_at(u, body, strand_half_width, strand_half_thickness));
         });
-        each_step(neck, end, [&](float u, float share) {
-            head.push_back(
-                ring_at(u, glm::mix(head_half_width, coil_radius, share), strand_half_thickness));
+        each_step({neck, body.end}, [&](float u, float share) {
+            head.push_back(ring_at(u, body, glm::mix(head_half_width, coil_radius, share),
+                                   strand_half_thickness));
         });
         add_sweep(shaft, CrossSection::Box, 4, mesh);
         add_sweep(head, CrossSection::Box, 4, mesh);

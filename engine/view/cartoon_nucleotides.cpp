@@ -66,7 +66,7 @@ std::vector<glm::vec3> widened(std::vector<glm::vec3> ring) {
 }
 
 bool is_bonded(const AtomTable& atoms, const Nucleotide& a, const Nucleotide& b) {
-    return b.residue == a.residue + 1 && a.bridge && b.has_phosphate &&
+    return a.bridge && b.has_phosphate &&
            atoms.names[a.start].segment == atoms.names[b.start].segment &&
            (*a.bridge - atoms.positions[b.start]).norm() < longest_ester_bond;
 }

@@ -198,7 +198,7 @@ double share_inward(const MeshShape& mesh) {
             is_outward = is_outward && glm::dot(out, vertex(k).normal) >= 0;
         inward += is_outward ? 0 : 1;
     }
-    return static_cast<double>(inward) / static_cast<double>(mesh.indices.size() / 3);
+    return 3.0 * static_cast<double>(inward) / static_cast<double>(mesh.indices.size());
 }
 
 void check_sound(const Drawing& drawing) {
@@ -262,6 +262,18 @@ TEST_CASE("the protease's helix before its C terminus and its sheets are found",
             CHECK(drawing.structure[chain + number - 1] == Strand);
     }
     CHECK(std::ranges::count(drawing.structure, Strand) > 80);
+}
+
+TEST_CASE("a residue has a class where its backbone is complete, by CHARMM's names too",
+          "[view][cartoon]") {
+    // Of six residues all are needed for the one helix.
+    Drawing drawing = of_chain(test::build_chain(6, -57, -47));
+    const auto [name, count] = GENERATE(table<std::string, int>({{"O", 4}, {"OT1", 4}, {"X", 0}}));
+    drawing.atoms.names.back().atom = name;
+    ResidueStructure structure;
+
+    CHECK(std::ranges::count(structure.update(drawing.atoms, drawing.residues), AlphaHelix) ==
+          count);
 }
 
 TEST_CASE("a shape is picked as the atom CA that it is near to", "[view][cartoon]") {
@@ -375,6 +387,26 @@ TEST_CASE("a ribbon is open where residues are missing, and between chains", "[v
         CHECK_FALSE(drawing.parts.shown[5]);
     }
     check_sound(drawing);
+}
+
+TEST_CASE("strands have the colours of their residues alone, to both ends", "[view][cartoon]") {
+    std::vector<Vec3> alphas;
+    for (int i = 0; i < 12; ++i) alphas.emplace_back(3.8 * i, 0, 0);
+    Drawing drawing = of_alphas(alphas, Coil);
+    std::fill_n(drawing.structure.begin() + 4, 4, Strand);
+    drawing.draw();
+
+    CHECK(count_bodies(drawing.mesh()) == 4);  // tube, shaft, head, tube
+    std::set<std::uint32_t> flat, round;
+    for (const MeshVertex& vertex : drawing.mesh().vertices) {
+        const bool is_in_strand = vertex.place.x > 3.8F * 3.51F && vertex.place.x < 3.8F * 7.49F;
+        const bool is_corner = std::abs(std::abs(vertex.place.z) - 0.25F) < 1e-3F ||
+                               std::abs(std::abs(vertex.place.y) - 0.25F) < 1e-3F;
+        if (is_in_strand) flat.insert(vertex.pick / 2);
+        if (!is_in_strand && !is_corner) round.insert(vertex.pick / 2);
+    }
+    CHECK(flat == std::set<std::uint32_t>{4, 5, 6, 7});
+    CHECK(round == std::set<std::uint32_t>{0, 1, 2, 3, 8, 9, 10, 11});
 }
 
 TEST_CASE("short strands and helices are tubes", "[view][cartoon]") {
