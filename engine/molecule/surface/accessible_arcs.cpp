@@ -10,7 +10,7 @@ namespace {
 constexpr double whole_turn = 4;  // square angles
 
 // With the directions of both ends, x and y.
-struct CoveredRange {
+struct Range {
     double from = 0, to = 0;
     std::array<double, 2> first{}, last{};
 };
@@ -48,12 +48,13 @@ Cover cover_by(const AtomBall& ball, const AccessibleArc& circle) {
             (r * r + to_ball.squaredNorm() - ball.radius * ball.radius) / (2 * r) + margin};
 }
 
-// Adds what a ball covers, beginning in the first turn. False where that is all, to rounding.
-bool add_covered(const Cover& cover, std::vector<CoveredRange>& ranges) {
+// What a ball covers, beginning in the first turn. To rounding that may be nothing, and then from
+// equals to, or all, and then they are a turn apart.
+Range range_of(const Cover& cover) {
     // Both ends of the chord a x + b y = s of the unit circle.
     const double square = cover.a * cover.a + cover.b * cover.b;
     const double along = cover.s / square, across = std::sqrt(square - cover.s * cover.s) / square;
-    CoveredRange range;
+    Range range;
     range.first = {along * cover.a + across * cover.b, along * cover.b - across * cover.a};
     range.last = {along * cover.a - across * cover.b, along * cover.b + across * cover.a};
     range.from = square_angle(range.first[0], range.first[1]);
@@ -61,47 +62,63 @@ bool add_covered(const Cover& cover, std::vector<CoveredRange>& ranges) {
     if (range.to < range.from) range.to += whole_turn;
     // Less than half a circle, or more, as the chord's side says.
     const bool is_less = range.to - range.from < whole_turn / 2;
-    if (cover.s < 0) {
-        if (is_less) return false;
-    } else if (!is_less) {
-        return true;
-    }
-    ranges.push_back(range);
-    return true;
+    if (is_less && cover.s < 0) range.to = range.from + whole_turn;
+    if (!is_less && cover.s >= 0) range.to = range.from;
+    return range;
 }
 
-// What the ranges leave of a circle.
-void add_gaps(AccessibleArc circle, std::vector<CoveredRange>& covered,
-              std::vector<AccessibleArc>& arcs) {
-    if (covered.empty()) {
-        circle.to = whole_turn;
-        circle.ends.fill(circle.centre + circle.radius * circle.x);
-        arcs.push_back(circle);
-        return;
+// What is free on a circle while one ball after the other covers a part of it.
+class FreeRanges {
+public:
+    void clear() {
+        is_whole_ = true;
+        ranges_.clear();
     }
-    const auto point_at = [&](const std::array<double, 2>& direction) {
-        return Vec3(circle.centre +
-                    circle.radius * (direction[0] * circle.x + direction[1] * circle.y));
-    };
-    const auto add = [&](double from, const CoveredRange& before, double to,
-                         const CoveredRange& behind) {
-        const double shift = from < 0 ? whole_turn : 0;
-        circle.from = from + shift;
-        circle.to = to + shift;
-        circle.ends = {point_at(before.last), point_at(behind.first)};
-        arcs.push_back(circle);
-    };
-    std::ranges::sort(covered, {}, &CoveredRange::from);
-    // Ranges that pass the end of the first turn cover a part of its begin too.
-    const CoveredRange* last = &*std::ranges::max_element(covered, {}, &CoveredRange::to);
-    double reached = last->to - whole_turn;
-    for (const CoveredRange& range : covered) {
-        if (range.from > reached) add(reached, *last, range.from, range);
-        if (range.to <= reached) continue;
-        last = &range;
-        reached = range.to;
+    bool empty() const { return !is_whole_ && ranges_.empty(); }
+
+    void remove(const Range& covered) {
+        if (covered.from == covered.to) return;
+        if (is_whole_) {
+            is_whole_ = false;
+            if (covered.from + whole_turn > covered.to)
+                ranges_.push_back(
+                    {covered.to, covered.from + whole_turn, covered.last, covered.first});
+            return;
+        }
+        left_.clear();
+        for (Range range : ranges_) {
+            for (const double shift : {-whole_turn, 0.0, whole_turn}) {
+                const double from = covered.from + shift, to = covered.to + shift;
+                if (to <= range.from || from >= range.to) continue;
+                if (from > range.from)
+                    left_.push_back({range.from, from, range.first, covered.first});
+                range.from = to;
+                range.first = covered.last;
+            }
+            if (range.from < range.to) left_.push_back(range);
+        }
+        std::swap(ranges_, left_);
     }
-}
+
+    void add_arcs(AccessibleArc circle, std::vector<AccessibleArc>& arcs) const {
+        const auto add = [&](const Range& range) {
+            circle.from = range.from;
+            circle.to = range.to;
+            circle.ends = {point_at(circle, range.first), point_at(circle, range.last)};
+            arcs.push_back(circle);
+        };
+        if (is_whole_) add({0, whole_turn, {1, 0}, {1, 0}});
+        for (const Range& range : ranges_) add(range);
+    }
+
+private:
+    static Vec3 point_at(const AccessibleArc& circle, const std::array<double, 2>& direction) {
+        return circle.centre + circle.radius * (direction[0] * circle.x + direction[1] * circle.y);
+    }
+
+    bool is_whole_ = true;
+    std::vector<Range> ranges_, left_;
+};
 
 }  // namespace
 
@@ -138,6 +155,17 @@ void find_accessible_arcs(const AtomBall& ball, std::span<const AtomBall> balls,
                                    return add_covered(cover, covered);
                                });
         if (!is_buried) add_gaps(circle, covered, arcs);
+    FreeRanges free;
+    for (const Ball& other : near) {
+        free.clear();
+        for (const Ball& third : near) {
+            if (third.atom == other.atom) continue;
+            const Cover cover = cover_by(third, circle);
+            if (cover.is_nothing()) continue;
+            free.remove(cover.is_everything() ? Range{0, whole_turn, {}, {}} : range_of(cover));
+            if (free.empty()) break;
+        }
+        free.add_arcs(circle, arcs);
     }
 }
 

@@ -130,7 +130,8 @@ CellTable build_table() {
 using EdgeVertices = std::array<std::array<std::uint32_t, points_of_block>, 3>;
 
 void find_crossings(const BlockSamples& samples, LatticeSurface& surface, EdgeVertices& numbers) {
-    constexpr std::array<std::size_t, 3> step{1, block_points, block_points * block_points};
+    constexpr std::array<std::size_t, 3> step{point_index(1, 0, 0), point_index(0, 1, 0),
+                                              point_index(0, 0, 1)};
     // Vertices never lie on lattice points, where those of several edges would be one.
     constexpr float margin = 1e-3F;
     for (int z = 0; z < block_points; ++z) {

@@ -31,7 +31,7 @@ std::vector<Charge> charges_from(const Vec3& origin, std::span<const Vec3> posit
 }
 
 // sum q/r^2, or q/r.
-template <bool grows>
+template <bool Grows>
 Lanes sum_charges(const std::array<Lanes, 3>& place, std::span<const Charge> charges) {
     constexpr float closest = 0.5F;
     Lanes sum = Lanes::Zero();
@@ -39,7 +39,7 @@ Lanes sum_charges(const std::array<Lanes, 3>& place, std::span<const Charge> cha
         const Lanes squared =
             ((place[0] - c.x).square() + (place[1] - c.y).square() + (place[2] - c.z).square())
                 .max(closest * closest);
-        if constexpr (grows) {
+        if constexpr (Grows) {
             sum += c.q / squared;
         } else {
             sum += c.q / squared.sqrt();

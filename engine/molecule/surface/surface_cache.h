@@ -29,10 +29,11 @@ struct SurfaceSettings {
     double tolerance = 0;
 };
 
-// How much one update may do: the surface changes first where it is `near`.
+// How much one update may do: the surface changes first where it is `near`. A block's edge is 8
+// spacings, so that an atom reaches 8 to 27 blocks at a spacing of 1 Å, and some 60 at 0.5 Å.
 struct SurfaceBudget {
-    std::size_t blocks = 32;  // an atom reaches up to 27 at a spacing of 1 Å
-    Vec3 near{0, 0, 0};       // Å
+    std::size_t blocks = 32;
+    Vec3 near{0, 0, 0};  // Å
 };
 
 struct SurfaceUpdate {

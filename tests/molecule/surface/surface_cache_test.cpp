@@ -190,13 +190,13 @@ TEST_CASE(
     "the whole one",
     "[molecule][surface]") {
     const auto kind = GENERATE(SurfaceKind::Gaussian, SurfaceKind::Excluded);
-    const Cloud cloud = make_cloud(900, 12, 8);
+    const Cloud cloud = make_cloud(400, 8, 8);
     const SurfaceSettings settings{.kind = kind};
     SurfaceCache cache(cloud.radii, settings);
     cache.update(cloud.places);
     std::vector<Vec3> places = cloud.places;
     move_near(places, {0, 0, 0}, 100, 0.3);
-    const SurfaceBudget budget{.blocks = 30, .near = {12, 12, 12}};
+    const SurfaceBudget budget{.blocks = 30, .near = {8, 8, 8}};
 
     std::size_t calls = 0, waiting = 1;
     double nearest_waiting = 0;
@@ -240,7 +240,7 @@ TEST_CASE("atoms that never stand still near the hand do not keep far ones waiti
     while (cache.positions()[far] != places[far] && calls < 200) {
         for (std::size_t i = 0; i < places.size(); ++i)
             if ((places[i] - Vec3(9, 9, 9)).norm() < 10) places[i].x() += calls % 2 ? 0.2 : -0.2;
-        cache.update(places, SurfaceBudget{.blocks = 30, .near = {12, 12, 12}});
+        cache.update(places, SurfaceBudget{.blocks = 30, .near = {8, 8, 8}});
         ++calls;
     }
 
