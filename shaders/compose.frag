@@ -24,7 +24,7 @@ void main() {
         // Glass of one thickness: a ray that meets it aslant has a longer way, up to four times.
         float cosine = max(abs(dot(surface.normal, normalize(ray))), 0.25);
         float kept = pow(1.0 - surface.paint.a, 1.0 / cosine);
-        vec3 lit = fade(light_up(surface.paint.rgb, surface.normal, ray, 1.0), distance);
+        vec3 lit = fade(light_up(surface.paint.rgb, surface.normal, ray, 1.0, 1.0), distance);
         sum += through * (1.0 - kept) * lit;
         through *= kept;
     }

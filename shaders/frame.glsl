@@ -15,6 +15,9 @@ layout(push_constant) uniform Frame {
     uint shapes;      // how many; the triangles' numbers come after theirs
     uint layer_room;  // for how many nodes of layers.glsl
     ivec2 origin;     // of this tile in a larger picture, in pixels
+    vec4 sun;         // where the sun's camera looks, and from how far away
+    float sun_scale;  // of its projection
+    int sun_size;     // of its picture
 } frame;
 
 // In view space. A sphere is a cone without axis and height.

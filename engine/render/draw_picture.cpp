@@ -113,8 +113,8 @@ Picture Renderer::draw_frame(const FrameScene& scene, const GpuFrame& frame,
     const auto submit = [&] {
         device_.submit([&](VkCommandBuffer commands) {
             record_frame(commands, scene, frame);
-            colours.record(commands, targets_.colour.handle(), {0, 0});
-            if (seen) record_between_reads(commands, targets_.seen.handle(), {0, 0}, *seen);
+            colours.record(commands, colour_.handle(), {0, 0});
+            if (seen) record_between_reads(commands, view_.seen().handle(), {0, 0}, *seen);
             show_copies_to_host(commands);
         });
     };
@@ -138,14 +138,14 @@ Picture Renderer::draw_frame(const FrameScene& scene, const GpuFrame& frame,
 }
 
 bool Renderer::lacks_layers() const noexcept {
-    return meshes_.has_translucent() && layers_.had_too_little_room();
+    return view_.meshes().has_translucent() && layers_.had_too_little_room();
 }
 
 std::uint32_t Renderer::pick(std::uint32_t x, std::uint32_t y) {
-    if (x >= targets_.size.width || y >= targets_.size.height) return Picture::nothing_seen;
+    if (x >= view_.size().width || y >= view_.size().height) return Picture::nothing_seen;
     const Readback readback(device_, {1, 1}, sizeof(Seen));
     device_.submit([&](VkCommandBuffer commands) {
-        record_between_reads(commands, targets_.seen.handle(),
+        record_between_reads(commands, view_.seen().handle(),
                              {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)},
                              readback);
         show_copies_to_host(commands);

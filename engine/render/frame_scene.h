@@ -68,6 +68,7 @@ struct FrameScene {
     bool clear_background = false;
     int outline = 1;        // its width in pixels
     bool occlusion = true;  // crevices are darker; without, a picture costs less
+    bool shadows = false;   // of opaque things upon each other; everything is drawn once more
 };
 
 }  // namespace palpa

@@ -35,7 +35,8 @@ GpuFrame build_frame_constants(const FrameScene& scene, VkExtent2D size) {
             spheres + count_below(scene.cones),
             spheres + cones,
             0,
-            {0, 0}};
+            {0, 0},
+            {}};
 }
 
 VkExtent2D size_of(const GpuFrame& frame) {

@@ -33,6 +33,15 @@ struct GpuVertex {
     std::uint32_t paint;   // square roots of the colour, and the opacity, in 8 bits each
 };
 
+// Where the light of shadows comes from: a camera far away, whose picture has everything. In view
+// space.
+struct Sun {
+    glm::vec3 centre;   // where it looks
+    float distance;     // from there
+    float scale;        // of its projection
+    std::int32_t size;  // of its picture, in pixels either way
+};
+
 struct GpuFrame {
     glm::vec4 projection, size, fog;
     std::uint32_t spheres;
@@ -42,6 +51,7 @@ struct GpuFrame {
     std::uint32_t last_sphere_below, last_cone_below;
     std::uint32_t shapes, layer_room;
     glm::ivec2 origin;
+    Sun sun;  // where there are shadows
 };
 static_assert(sizeof(GpuFrame) <= 128, "push constants");
 

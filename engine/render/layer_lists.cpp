@@ -21,13 +21,12 @@ void record_barrier(VkCommandBuffer commands, VkPipelineStageFlags from, VkAcces
 
 }  // namespace
 
-bool LayerLists::reserve(VkExtent2D size) {
+void LayerLists::reserve(VkExtent2D size) {
     const VkDeviceSize pixels = VkDeviceSize{size.width} * size.height,
                        largest = device_->limits().maxStorageBufferRange;
     if (pixels == 0) {  // something to be named in descriptors
-        if (lists_.handle() != VK_NULL_HANDLE) return false;
-        lists_ = create_lists(word);
-        return true;
+        if (lists_.handle() == VK_NULL_HANDLE) lists_ = create_lists(word);
+        return;
     }
     heads_bytes_ = word * (1 + pixels);
     if (heads_bytes_ + node_bytes > largest) {
@@ -38,7 +37,7 @@ bool LayerLists::reserve(VkExtent2D size) {
     const auto most = static_cast<std::uint32_t>(
         std::min<VkDeviceSize>((largest - heads_bytes_) / node_bytes, UINT32_MAX / 4));
     const bool had_enough = room_ > 0 && (room_ >= drawn() || room_ >= most);
-    if (had_enough && heads_bytes_ + node_bytes * room_ <= lists_.bytes()) return false;
+    if (had_enough && heads_bytes_ + node_bytes * room_ <= lists_.bytes()) return;
     // A little more than there were: the next frame is another one.
     room_ = std::min(std::max({room_, first_room, drawn() + drawn() / 4}), most);
     lists_ = create_lists(heads_bytes_ + node_bytes * room_);
@@ -46,7 +45,6 @@ bool LayerLists::reserve(VkExtent2D size) {
         count_ = Buffer(*device_, word, VK_BUFFER_USAGE_TRANSFER_DST_BIT, BufferPlace::Readback);
         std::memset(count_.mapped().data(), 0, word);
     }
-    return true;
 }
 
 Buffer LayerLists::create_lists(VkDeviceSize bytes) const {

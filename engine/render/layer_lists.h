@@ -13,9 +13,9 @@ class LayerLists {
 public:
     explicit LayerLists(const GpuDevice& device) : device_(&device) {}
 
-    // For a picture of that size, or of none: no layers. Whether the buffer is another one now.
+    // For a picture of that size, or of none: no layers. The buffer may be another one afterwards.
     // Throws GpuError where the device cannot have one that large.
-    [[nodiscard]] bool reserve(VkExtent2D size);
+    void reserve(VkExtent2D size);
 
     // How many layers there is room for.
     std::uint32_t room() const noexcept { return room_; }

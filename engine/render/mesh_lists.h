@@ -25,7 +25,7 @@ public:
     // Throws GpuError where a mesh has an index too large, or indices that make no triangles.
     void build(const FrameScene& scene, const glm::mat4& view, const GpuFrame& frame);
 
-    std::span<const GpuVertex> vertices() const noexcept { return vertices_; }
+    const std::vector<GpuVertex>& vertices() const noexcept { return vertices_; }
     std::span<const std::uint32_t> picks() const noexcept { return picks_; }  // of triangles
 
     // Those wholly in the picture stand apart from those across its edges: see frame.glsl on

@@ -25,8 +25,9 @@ namespace {
 constexpr VkShaderStageFlags both_stages =
     VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
 
-// The bindings of the one set: storage buffers, then the image of what is seen.
-constexpr std::uint32_t storage_buffers = 3;
+// The bindings of a set: storage buffers, then the images of what is seen.
+constexpr std::uint32_t storage_buffers = 3, sampled_images = 2,
+                        bindings_in_all = storage_buffers + sampled_images;
 
 VkShaderModule create_module(VkDevice device, std::span<const std::uint32_t> code) {
     VkShaderModuleCreateInfo info{};
@@ -103,8 +104,8 @@ struct Pipelines::Kind {
     VkRenderPass pass;
     VkCompareOp compare;
     bool writes_depth;
-    bool has_vertices = false;   // of triangles; else a shader makes them up
-    bool shades_meshes = false;  // the constant 0 of resolve.frag
+    bool has_vertices = false;                        // of triangles; else a shader makes them up
+    bool shades_meshes = false, has_shadows = false;  // the constants 0 and 1 of resolve.frag
     bool writes_colour = true;
     bool blends = false;  // lays colours times their coverage over what is there
 };
@@ -113,13 +114,13 @@ Pipelines::Pipelines(const GpuDevice& device)
     : Pipelines(device.handle()) {  // from here on the destructor runs, whatever is thrown
     create_passes();
     create_layout();
-    create_set();
+    create_sets();
     create_pipelines();
 }
 
 Pipelines::~Pipelines() {
-    for (const VkPipeline pipeline :
-         {spheres, cones, triangles, layers, shade, shade_meshes, outline, compose, nearest}) {
+    for (const VkPipeline pipeline : {spheres, cones, triangles, layers, shade, shade_meshes,
+                                      shade_all, outline, compose, nearest}) {
         vkDestroyPipeline(device_, pipeline, nullptr);
     }
     vkDestroyPipelineLayout(device_, layout, nullptr);
@@ -160,7 +161,7 @@ void Pipelines::create_layout() {
         VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
     check_vulkan(vkCreateSampler(device_, &sampler, nullptr, &sampler_), "vkCreateSampler");
 
-    std::array<VkDescriptorSetLayoutBinding, storage_buffers + 1> bindings{};
+    std::array<VkDescriptorSetLayoutBinding, bindings_in_all> bindings{};
     for (std::uint32_t i = 0; i < bindings.size(); ++i) {
         bindings[i].binding = i;
         bindings[i].descriptorType = i < storage_buffers
@@ -187,12 +188,13 @@ void Pipelines::create_layout() {
                  "vkCreatePipelineLayout");
 }
 
-void Pipelines::create_set() {
-    const std::array sizes{VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, storage_buffers},
-                           VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1}};
+void Pipelines::create_sets() {
+    const std::array sizes{
+        VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 2 * storage_buffers},
+        VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 2 * sampled_images}};
     VkDescriptorPoolCreateInfo pool{};
     pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
-    pool.maxSets = 1;
+    pool.maxSets = 2;
     pool.poolSizeCount = static_cast<std::uint32_t>(sizes.size());
     pool.pPoolSizes = sizes.data();
     check_vulkan(vkCreateDescriptorPool(device_, &pool, nullptr, &descriptors_),
@@ -202,19 +204,22 @@ void Pipelines::create_set() {
     allocate.descriptorPool = descriptors_;
     allocate.descriptorSetCount = 1;
     allocate.pSetLayouts = &set_layout_;
-    check_vulkan(vkAllocateDescriptorSets(device_, &allocate, &set), "vkAllocateDescriptorSets");
+    for (VkDescriptorSet* const one : {&set, &sun_set}) {
+        check_vulkan(vkAllocateDescriptorSets(device_, &allocate, one), "vkAllocateDescriptorSets");
+    }
 }
 
-void Pipelines::write_descriptors(const FrameResources& resources) const {
+void Pipelines::write_descriptors(VkDescriptorSet written, const FrameResources& resources) const {
     const std::array buffers{resources.shapes, resources.vertices, resources.layers};
     static_assert(buffers.size() == storage_buffers);
-    const VkDescriptorImageInfo seen{sampler_, resources.seen,
-                                     VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+    const VkImageLayout readable = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+    const std::array<VkDescriptorImageInfo, sampled_images> images{
+        {{sampler_, resources.seen, readable}, {sampler_, resources.sun_seen, readable}}};
     std::array<VkDescriptorBufferInfo, storage_buffers> wholes{};
-    std::array<VkWriteDescriptorSet, storage_buffers + 1> writes{};
+    std::array<VkWriteDescriptorSet, bindings_in_all> writes{};
     for (std::uint32_t i = 0; i < writes.size(); ++i) {
         writes[i].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
-        writes[i].dstSet = set;
+        writes[i].dstSet = written;
         writes[i].dstBinding = i;
         writes[i].descriptorCount = 1;
         if (i < storage_buffers) {
@@ -223,7 +228,7 @@ void Pipelines::write_descriptors(const FrameResources& resources) const {
             writes[i].pBufferInfo = &wholes[i];
         } else {
             writes[i].descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-            writes[i].pImageInfo = &seen;
+            writes[i].pImageInfo = &images[i - storage_buffers];
         }
     }
     vkUpdateDescriptorSets(device_, static_cast<std::uint32_t>(writes.size()), writes.data(), 0,
@@ -253,6 +258,12 @@ void Pipelines::create_pipelines() {
                                     .compare = VK_COMPARE_OP_GREATER,
                                     .writes_depth = false,
                                     .shades_meshes = true});
+    shade_all = create_pipeline(resolve_vert, resolve_frag,
+                                {.pass = picture_pass,
+                                 .compare = VK_COMPARE_OP_GREATER,
+                                 .writes_depth = false,
+                                 .shades_meshes = true,
+                                 .has_shadows = true});
     outline =
         create_pipeline(resolve_vert, outline_frag, {picture_pass, VK_COMPARE_OP_EQUAL, false});
     compose = create_pipeline(resolve_vert, compose_frag,
@@ -266,9 +277,12 @@ void Pipelines::create_pipelines() {
 VkPipeline Pipelines::create_pipeline(std::span<const std::uint32_t> vertex_code,
                                       std::span<const std::uint32_t> fragment_code,
                                       const Kind& kind) const {
-    const VkBool32 shades_meshes = kind.shades_meshes ? VK_TRUE : VK_FALSE;
-    const VkSpecializationMapEntry entry{0, 0, sizeof(shades_meshes)};
-    const VkSpecializationInfo constants{1, &entry, sizeof(shades_meshes), &shades_meshes};
+    const std::array<VkBool32, 2> values{kind.shades_meshes ? VK_TRUE : VK_FALSE,
+                                         kind.has_shadows ? VK_TRUE : VK_FALSE};
+    const std::array entries{VkSpecializationMapEntry{0, 0, sizeof(VkBool32)},
+                             VkSpecializationMapEntry{1, sizeof(VkBool32), sizeof(VkBool32)}};
+    const VkSpecializationInfo constants{static_cast<std::uint32_t>(entries.size()), entries.data(),
+                                         sizeof(values), values.data()};
     std::array<VkPipelineShaderStageCreateInfo, 2> stages{};
     stages[0].sType = stages[1].sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
     stages[0].stage = VK_SHADER_STAGE_VERTEX_BIT;

@@ -6,10 +6,11 @@
 
 namespace palpa {
 
-// Storage buffers that shaders read or write, and the image of what is seen, in binding order.
+// Storage buffers that shaders read or write, and the images of what is seen, by the camera and
+// by the sun, in binding order.
 struct FrameResources {
     VkBuffer shapes = VK_NULL_HANDLE, vertices = VK_NULL_HANDLE, layers = VK_NULL_HANDLE;
-    VkImageView seen = VK_NULL_HANDLE;
+    VkImageView seen = VK_NULL_HANDLE, sun_seen = VK_NULL_HANDLE;
 };
 
 // Handles to be used, not changed.
@@ -20,10 +21,11 @@ public:
     Pipelines& operator=(const Pipelines&) = delete;
     ~Pipelines();
 
-    void write_descriptors(const FrameResources& resources) const;
+    // While no commands that read the set are under way.
+    void write_descriptors(VkDescriptorSet written, const FrameResources& resources) const;
 
     VkPipelineLayout layout = VK_NULL_HANDLE;
-    VkDescriptorSet set = VK_NULL_HANDLE;
+    VkDescriptorSet set = VK_NULL_HANDLE, sun_set = VK_NULL_HANDLE;
 
     // Into `seen` and depth: what is seen.
     VkRenderPass shape_pass = VK_NULL_HANDLE;
@@ -31,10 +33,10 @@ public:
     VkPipeline layers = VK_NULL_HANDLE;  // not into these, but into the lists of layers
 
     // Into the colours, where depth lets it. `shade_meshes` is `shade` where triangles are seen
-    // too; `compose` lays the layers over what is there.
+    // too, `shade_all` with shadows as well; `compose` lays the layers over what is there.
     VkRenderPass picture_pass = VK_NULL_HANDLE;
-    VkPipeline shade = VK_NULL_HANDLE, shade_meshes = VK_NULL_HANDLE, outline = VK_NULL_HANDLE,
-               compose = VK_NULL_HANDLE;
+    VkPipeline shade = VK_NULL_HANDLE, shade_meshes = VK_NULL_HANDLE, shade_all = VK_NULL_HANDLE,
+               outline = VK_NULL_HANDLE, compose = VK_NULL_HANDLE;
 
     // Into `seen` as it is: the nearest layer where nothing is opaque.
     VkRenderPass again_pass = VK_NULL_HANDLE;
@@ -47,7 +49,7 @@ private:
 
     void create_passes();
     void create_layout();
-    void create_set();
+    void create_sets();
     void create_pipelines();
     VkPipeline create_pipeline(std::span<const std::uint32_t> vertex_code,
                                std::span<const std::uint32_t> fragment_code,

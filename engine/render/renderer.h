@@ -5,9 +5,9 @@
 #include "render/frame_scene.h"
 #include "render/gpu_frame.h"
 #include "render/layer_lists.h"
-#include "render/mesh_lists.h"
 #include "render/picture.h"
 #include "render/pipelines.h"
+#include "render/shape_view.h"
 
 #include <cstdint>
 #include <glm/mat4x4.hpp>
@@ -19,8 +19,8 @@ namespace palpa {
 // Two passes. The first finds for every pixel which shape or triangle is nearest and how far; the
 // second shades each pixel that shows one: light from the camera's upper left, ambient occlusion
 // from eight taps of the distances around, a dark outline where distance breaks off, fog in the
-// distance. What is translucent goes into lists of layers, a list a pixel, in the first pass, and is
-// sorted and laid over the opaque picture in the second.
+// distance. What is translucent goes into lists of layers, a list a pixel, in the first pass, and
+// is sorted and laid over the opaque picture in the second.
 class Renderer {
 public:
     // Throws GpuError.
@@ -53,31 +53,21 @@ public:
     // sRGB already, times their alpha where `clear_background` is wanted, left in
     // TRANSFER_SRC_OPTIMAL for transfers that come later in the commands. It is another image after
     // a `record` with another size.
-    VkImage colour_image() const noexcept { return targets_.colour.handle(); }
+    VkImage colour_image() const noexcept { return colour_.handle(); }
 
     // What is seen at a pixel of the last recorded frame, whose commands are done: a shape's
     // `pick`, or Picture::nothing_seen, also outside of the picture.
     std::uint32_t pick(std::uint32_t x, std::uint32_t y);
 
 private:
-    // The images of one size.
-    struct Targets {
-        VkExtent2D size{0, 0};
-        Image seen, depth, colour;  // seen: which shape, and how far
-        Framebuffer shapes, picture;
-    };
-
-    void record_frame(VkCommandBuffer commands, const FrameScene& scene, GpuFrame constants);
-    Picture draw_frame(const FrameScene& scene, const GpuFrame& frame, PictureContent content);
-    Targets create_targets(VkExtent2D size) const;
-    // Whether a buffer grew, so that the descriptors name one that is gone.
-    bool upload_shapes(VkCommandBuffer commands, const FrameScene& scene, const glm::mat4& view);
-    bool upload_meshes(VkCommandBuffer commands, VkExtent2D size);
-    void record_shapes(VkCommandBuffer commands, const FrameScene& scene) const;
+    void record_frame(VkCommandBuffer commands, const FrameScene& scene, GpuFrame frame);
+    void record_sun(VkCommandBuffer commands, const FrameScene& scene, const glm::mat4& view,
+                    const GpuFrame& frame);
     void record_picture(VkCommandBuffer commands, const FrameScene& scene) const;
     void record_nearest_layers(VkCommandBuffer commands) const;
-    void draw_triangles(VkCommandBuffer commands, VkPipeline pipeline,
-                        const TriangleRange& range) const;
+    void create_picture();
+    void list_picks(const FrameScene& scene);
+    Picture draw_frame(const FrameScene& scene, const GpuFrame& frame, PictureContent content);
     bool lacks_layers() const noexcept;  // of the last picture drawn
     std::uint32_t pick_of(std::uint32_t id) const noexcept;
 
@@ -85,10 +75,10 @@ private:
     Pipelines pipelines_;
 
     // written by every record
-    Targets targets_;
-    MeshLists meshes_;
-    UploadBuffer shapes_, vertices_;
+    ShapeView view_, sun_view_;
     LayerLists layers_;
+    Image colour_;
+    Framebuffer picture_;
     std::vector<std::uint32_t> picks_;  // of every shape and then every triangle, as numbered
 };
 

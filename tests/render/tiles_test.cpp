@@ -44,6 +44,7 @@ TEST_CASE("a picture in tiles is the picture in one piece", "[render][tiles][gpu
     Renderer renderer(device);
     FrameScene scene = crowded_scene();
     scene.outline = GENERATE(1, 3);
+    scene.shadows = scene.outline == 3;
     const Picture whole = renderer.draw(scene, width, height);
 
     const Picture tiled = renderer.draw_in_tiles(scene, width, height, 200);

@@ -25,6 +25,7 @@
 #include "tools/bench/answer.h"
 #include "tools/bench/engine.h"
 #include "tools/bench/kernel.h"
+#include "tools/bench/meshes.h"
 #include "tools/bench/row.h"
 #include "tools/bench/servo.h"
 #include "tools/bench/statics.h"
@@ -205,6 +206,7 @@ int bench_command(const BenchOptions& options) {
     if (options.kernel && options.scenes.empty()) bench_gas_kernels(rows);
     if (options.servo) bench_made_up_servo(rows);
     if (options.engine) bench_engine(rows);
+    if (options.render) bench_meshes(rows);
     for (const std::filesystem::path& path : options.scenes) {
         const SceneDescription scene = read_scene(path, options.settings);
         refuse_remote_engine(scene);
