@@ -134,31 +134,13 @@ void find_accessible_arcs(const AtomBall& ball, std::span<const AtomBall> balls,
     std::ranges::sort(near, {}, [&](const AtomBall& other) {
         return (other.centre - ball.centre).norm() - other.radius;
     });
-    std::vector<Cover> covers;
-    std::vector<CoveredRange> covered;
+    FreeRanges free;
     for (const AtomBall& other : near) {
         if (other.atom < ball.atom) continue;
         const AccessibleArc circle = circle_between(ball, other);
         if (circle.radius == 0) continue;
-        covers.clear();
-        covered.clear();
-        const bool is_buried = std::ranges::any_of(near,
-                                                   [&](const AtomBall& third) {
-                                                       if (third.atom == other.atom) return false;
-                                                       const Cover cover = cover_by(third, circle);
-                                                       if (cover.is_everything()) return true;
-                                                       if (!cover.is_nothing())
-                                                           covers.push_back(cover);
-                                                       return false;
-                                                   }) ||
-                               !std::ranges::all_of(covers, [&](const Cover& cover) {
-                                   return add_covered(cover, covered);
-                               });
-        if (!is_buried) add_gaps(circle, covered, arcs);
-    FreeRanges free;
-    for (const Ball& other : near) {
         free.clear();
-        for (const Ball& third : near) {
+        for (const AtomBall& third : near) {
             if (third.atom == other.atom) continue;
             const Cover cover = cover_by(third, circle);
             if (cover.is_nothing()) continue;
