@@ -317,6 +317,12 @@ CartoonParts add_cartoon(const AtomTable& atoms, std::span<const ResidueSpan> re
     CartoonParts parts;
     parts.shown.assign(residues.size(), false);
     MeshShape mesh;
+    // About as many as there will be: growing would cost as much as the rest.
+    const auto chain_residues = static_cast<std::size_t>(std::ranges::count_if(
+        residues, [](const ResidueSpan& residue) { return residue.alpha != residue.end; }));
+    const std::size_t rings = chain_residues * static_cast<std::size_t>(fine.pieces);
+    mesh.vertices.reserve(rings * static_cast<std::size_t>(fine.sides) * 9 / 8);
+    mesh.indices.reserve(rings * static_cast<std::size_t>(fine.sides) * 6);
     add_proteins(atoms, residues, structure, colours, fine, mesh, parts);
     add_nucleic_acids(atoms, residues, colours, fine, mesh, parts);
     if (!mesh.vertices.empty()) frame.meshes.push_back(std::move(mesh));
