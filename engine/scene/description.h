@@ -179,10 +179,10 @@ struct LessonStepDescription {
 // What is drawn beside, or in the place of, how everything is.
 struct ViewLayer {
     Representation representation = Representation::BallAndStick;
-    std::string of;                      // a selection (molecule/select.h); empty: all atoms
-    std::optional<Colouring> colouring;  // unset: as everything
-    double opacity = 1;                  // of a surface
-    TextPlace place;
+    std::string of{};                      // a selection (molecule/select.h); empty: all atoms
+    std::optional<Colouring> colouring{};  // unset: as everything
+    double opacity = 1;                    // of a surface
+    TextPlace place{};
 
     friend bool operator==(const ViewLayer& a, const ViewLayer& b) {
         return a.representation == b.representation && a.of == b.of && a.colouring == b.colouring &&

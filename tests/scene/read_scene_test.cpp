@@ -730,7 +730,7 @@ TEST_CASE("what [view] cannot mean is refused where it stands", "[scene][errors]
     const auto row = GENERATE(values<Row>({
         {"representation = \"liquorice\"", 18, "did you mean 'licorice'?"},
         {"representation = true", 18, "expected one of ball-and-stick, space-filling"},
-        {"colour = \"chan\"", 13, "did you mean 'chain'?"},
+        {"colour = \"chan\"", 10, "did you mean 'chain'?"},
         {"camera = [0, 10]", 10, "expected three numbers from -360 to 360"},
         {"camera = [0, 91, 1]", 10,
          "'view.camera' is [0, 91, 1]; expected [azimuth, elevation, zoom]: degrees, the second "

@@ -79,7 +79,10 @@ TEST_CASE("odd values survive being written and read, to the last bit", "[scene]
                   ShownBonds::All,
                   {-0.1, 1.0 / 3, 0.7},
                   "x",
-                  true};
+                  true,
+                  {{Representation::Surface, "chain \"A\"", Colouring::BFactor, 0.1 + 0.2},
+                   {Representation::Lines, "", {}, 1}},
+                  {"resid 25", "name 'O5\\''"}};
     scene.period_ms = 10000;
     scene.seed = 1'000'000'000'000'000;
     scene.lesson = {{"zuerst", "two\nlines \"quoted\"", "do", LessonQuantity::Force, -0.25, {}, 0},
@@ -122,6 +125,8 @@ TEST_CASE("odd values survive being written and read, to the last bit", "[scene]
     CHECK(back.view.camera == scene.view.camera);
     CHECK(back.view.look_at == "x");
     CHECK(back.view.clip);
+    CHECK(back.view.layers == scene.view.layers);
+    CHECK(back.view.labels == scene.view.labels);
     CHECK(back.seed == scene.seed);
     REQUIRE(back.lesson.size() == 2);
     CHECK(back.lesson[0].name == "zuerst");
@@ -165,6 +170,7 @@ TEST_CASE("every field is written, under its full key", "[scene][write]") {
     scene.coupling.feel_pN = {0.1 + 0.2, 3000};
     scene.coupling.feel_within_pN = 50;
     scene.view.representation = Representation::Licorice;
+    scene.view.layers.push_back({Representation::Surface, "protein", Colouring::Potential});
     for (MoleculeDescription& molecule : scene.molecules) molecule.topology = folder / "dimer.psf";
     scene.engine.emplace().atoms = folder / "dimer.psf";
 
@@ -184,6 +190,7 @@ TEST_CASE("every field is written, under its full key", "[scene][write]") {
         if (dot == std::string::npos) continue;
         std::string table = field.key.substr(0, dot);
         if (table == "molecules.NAME") table = "molecules.fixed";
+        if (table == "view.layers") table = "[view.layers]";
         CHECK(text.find("\n[" + table + "]\n") != std::string::npos);
     }
 }

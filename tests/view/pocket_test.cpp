@@ -14,10 +14,9 @@
 #include <catch2/catch.hpp>
 #include <cstddef>
 #include <cstdint>
-#include <glm/geometric.hpp>
 #include <limits>
 #include <map>
-#include <ranges>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -65,19 +64,19 @@ TEST_CASE("a pocket is the residues with an atom within 4.5 Å of the molecule i
     CHECK((shown > 200 && shown < atoms.size() / 2));
 }
 
-TEST_CASE("what has no backbone stands for itself", "[view][pocket]") {
-    const World world = load_world(test::with_held_at(GENERATE(0, 1), test::water_scene()));
+TEST_CASE("residues are of every molecule, and waters have no CA", "[view][pocket]") {
+    World world = load_world(test::with_held_at(GENERATE(0, 1), test::water_scene()));
+    move_grabbed(world, 3);
     const std::size_t fixed = test::range_called(world, "fixed").first;
     const std::vector<ResidueSpan> residues = find_residues(world);
 
-    REQUIRE(residues.size() == 1);
-    CHECK(residues[0].first == fixed);
-    CHECK((residues[0].end == fixed + 3 && residues[0].alpha == fixed + 3));
+    REQUIRE(residues.size() == 2);
+    for (std::size_t i = 0; i < 2; ++i) {
+        CHECK(residues[i].first == 3 * i);
+        CHECK((residues[i].end == 3 * i + 3 && residues[i].alpha == residues[i].end));
+    }
     const std::vector<bool> pocket = find_pocket(world, residues);
     for (std::size_t i = 0; i < 6; ++i) CHECK(pocket[i] == (i >= fixed && i < fixed + 3));
-    FrameScene frame;
-    add_backbones(world.resource<AtomTable>(), residues, std::vector<glm::vec3>(6), frame);
-    CHECK((frame.spheres.empty() && frame.cones.empty()));
 }
 
 TEST_CASE("a residue ends where its molecule does, wherever the one in hand stands",
@@ -95,7 +94,7 @@ TEST_CASE("a residue ends where its molecule does, wherever the one in hand stan
     const std::vector<ResidueSpan> residues = find_residues(world);
     const std::vector<bool> pocket = find_pocket(world, residues);
 
-    REQUIRE(residues.size() == 2);
+    REQUIRE(residues.size() == 3);
     for (const ResidueSpan& residue : residues) {
         CHECK(residue.end == residue.first + 3);
         CHECK(residue.alpha == residue.first + 1);
@@ -103,49 +102,19 @@ TEST_CASE("a residue ends where its molecule does, wherever the one in hand stan
     for (std::size_t i = 0; i < 9; ++i) CHECK(pocket[i] == has_atom(fixed, i));
 }
 
-TEST_CASE("a backbone is one smooth tube a chain, near to its atoms CA", "[view][pocket]") {
+TEST_CASE("a pocket is a cartoon, with sticks near to what is held", "[view][pocket]") {
     const World world = protease();
     const AtomTable& atoms = world.resource<AtomTable>();
-    const std::vector<ResidueSpan> residues = find_residues(world);
-    FrameScene frame;
-    add_backbones(atoms, residues, std::vector<glm::vec3>(atoms.size()), frame);
+    const FrameScene frame = build_frame(world, {.representation = Representation::Pocket});
+    const std::vector<bool> pocket = find_pocket(world, find_residues(world));
+    const AtomRange held = held_range(world, first_hand(world));
 
-    std::size_t breaks = 0;
-    for (std::size_t i = 1; i < frame.cones.size(); ++i) {
-        const ConeShape& before = frame.cones[i - 1];
-        const ConeShape& cone = frame.cones[i];
-        CHECK(glm::distance(cone.a, cone.b) < 1);
-        if (before.b != cone.a) {
-            ++breaks;
-            CHECK(atoms.names[before.pick].segment != atoms.names[cone.pick].segment);
-            continue;
-        }
-        CHECK(glm::dot(glm::normalize(before.b - before.a), glm::normalize(cone.b - cone.a)) >
-              0.7F);
-    }
-    CHECK(breaks == 1);  // two chains
-    for (const ResidueSpan& residue : residues) {
-        const glm::vec3 alpha = as_float(atoms.positions[residue.alpha]);
-        const auto distance = [&](const ConeShape& cone) { return glm::distance(cone.a, alpha); };
-        CHECK(std::ranges::min(frame.cones | std::views::transform(distance)) < 1.2F);
-    }
-    CHECK(frame.cones.front().a == as_float(atoms.positions[residues.front().alpha]));
-}
-
-TEST_CASE("a tube is open where residues are missing", "[view][pocket]") {
-    const World world = protease();
-    std::vector<ResidueSpan> residues = find_residues(world);
-    residues.erase(residues.begin() + 40, residues.begin() + 43);
-    FrameScene frame;
-
-    add_backbones(world.resource<AtomTable>(), residues,
-                  std::vector<glm::vec3>(world.resource<AtomTable>().size()), frame);
-
-    std::size_t breaks = 0;
-    for (std::size_t i = 1; i < frame.cones.size(); ++i) {
-        breaks += frame.cones[i - 1].b != frame.cones[i].a ? 1 : 0;
-    }
-    CHECK(breaks == 2);
+    REQUIRE(frame.meshes.size() == 1);
+    std::set<std::uint32_t> ribbon;  // the atoms CA that it is picked as
+    for (const MeshVertex& vertex : frame.meshes[0].vertices) ribbon.insert(vertex.pick);
+    CHECK(ribbon.size() == 198);
+    for (const SphereShape& sphere : frame.spheres)
+        if (sphere.pick < atoms.size()) CHECK((has_atom(held, sphere.pick) || pocket[sphere.pick]));
 }
 
 TEST_CASE("drawn as a pocket, hydrogens of others are seen only in hydrogen bonds",
