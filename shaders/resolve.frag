@@ -49,7 +49,7 @@ float openness(ivec2 pixel, vec3 place, vec3 normal) {
 // How much of the light's way is free, 1 is all: what of 16 places around, in the surface's own
 // plane, the sun's camera sees nothing in front of.
 float sunlight(ivec2 pixel, vec3 place, vec3 normal) {
-    const float softness = 0.4, bias = 0.08;  // Å
+    const float softness = 0.25, bias = 0.06;  // Å
     const vec3 right = normalize(cross(vec3(0, 1, 0), light)), up = cross(light, right);
     vec3 off = place - frame.sun.xyz;
     vec3 at = vec3(dot(off, right), dot(off, up), frame.sun.w - dot(off, light));

@@ -39,10 +39,10 @@ struct MeshShape {
     // Three to a triangle, counter-clockwise as seen from outside; a triangle is picked as its
     // first.
     std::vector<std::uint32_t> indices{};
-    // Below 1 what lies behind shines through, of the 32 nearest layers at least. Seen aslant a
-    // surface is as opaque as glass of one thickness: 1 - (1 - opacity)^(1 / cosine), the cosine
-    // 0.25 at least. What is translucent has no outline and darkens no crevice, and is seen by a
-    // pick only where nothing opaque is.
+    // Below 1 what lies behind shines through; of more than 32 layers at one pixel the nearest 32
+    // are drawn. Seen aslant a surface covers more, as glass of one thickness does:
+    // 1 - (1 - opacity)^(1 / cosine), the cosine 0.25 at least. What is translucent has no outline,
+    // darkens no crevice, casts no shadow, and is picked only where nothing opaque is.
     float opacity = 1;
     // No way in from outside: what faces away is hidden, and need not be drawn.
     bool is_closed = false;
@@ -64,7 +64,8 @@ struct FrameScene {
     std::vector<MeshShape> meshes{};
     FrameCamera camera{};
     glm::vec3 background{1};
-    // Alpha 0 where nothing is, and less than 1 where only translucent things are.
+    // Instead of it alpha is 0 where nothing is, and less than 1 where only translucent things are.
+    // Fog still fades into the colour.
     bool clear_background = false;
     int outline = 1;        // its width in pixels
     bool occlusion = true;  // crevices are darker; without, a picture costs less
