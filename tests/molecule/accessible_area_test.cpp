@@ -66,14 +66,14 @@ TEST_CASE("accessible areas are those of FreeSASA", "[molecule][area]") {
 TEST_CASE("two spheres hide a cap of each other", "[molecule][area]") {
     // Zones of a sphere have the area 2 pi R height.
     const double r1 = 1.7, r2 = 1.2, d = 2.2, probe = 1.4;
-    const double R1 = r1 + probe, R2 = r2 + probe;
-    const double to_plane = (d * d + R1 * R1 - R2 * R2) / (2 * d);
+    const double R_1 = r1 + probe, R_2 = r2 + probe;
+    const double to_plane = (d * d + R_1 * R_1 - R_2 * R_2) / (2 * d);
 
     const std::vector<double> areas = find_accessible_areas(
         std::vector<Vec3>{{1, 2, 3}, {1, 2, 3 + d}}, std::vector<double>{r1, r2}, probe, 20000);
 
-    CHECK(areas[0] == Approx(2 * pi * R1 * (R1 + to_plane)).epsilon(0.001));
-    CHECK(areas[1] == Approx(2 * pi * R2 * (R2 + d - to_plane)).epsilon(0.001));
+    CHECK(areas[0] == Approx(2 * pi * R_1 * (R_1 + to_plane)).epsilon(0.001));
+    CHECK(areas[1] == Approx(2 * pi * R_2 * (R_2 + d - to_plane)).epsilon(0.001));
 }
 
 TEST_CASE("what is within another sphere or at its place has its area once", "[molecule][area]") {

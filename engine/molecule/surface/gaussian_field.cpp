@@ -78,25 +78,25 @@ bool GaussianField::sample(const BlockIndex& block, BlockSamples& samples) {
     return true;
 }
 
-SurfacePoint GaussianField::refine(const Vec3& near) {
+// The surface's point to first order; normal and atom are still those of the place asked for.
+SurfacePoint GaussianField::step_to_surface(const Vec3& from) const {
     double sum = 0, nearest = std::numeric_limits<double>::infinity();
     Vec3 gradient = Vec3::Zero();
-    SurfacePoint point{near, Vec3::UnitZ(), 0};
-    grid_->visit_near(near, reach(grid_->largest_radius()),
-                      [&](const AtomBall& ball, double squared) {
-                          const double k = sharpness_ / (ball.radius * ball.radius);
-                          const double exponent = sharpness_ - k * squared;
-                          if (exponent > -largest_exponent) {
-                              const double term = std::exp(static_cast<float>(exponent));
-                              sum += term;
-                              gradient -= 2 * k * term * (near - ball.centre);
-                          }
-                          const double gap = std::sqrt(squared) - ball.radius;
-                          if (gap < nearest) {
-                              nearest = gap;
-                              point.atom = ball.atom;
-                          }
-                      });
+    SurfacePoint point{from, Vec3::UnitZ(), 0};
+    grid_->visit_near(from, reach(grid_->largest_radius()), [&](const Ball& ball, double squared) {
+        const double k = sharpness_ / (ball.radius * ball.radius);
+        const double exponent = sharpness_ - k * squared;
+        if (exponent > -largest_exponent) {
+            const double term = std::exp(static_cast<float>(exponent));
+            sum += term;
+            gradient -= 2 * k * term * (from - ball.centre);
+        }
+        const double gap = std::sqrt(squared) - ball.radius;
+        if (gap < nearest) {
+            nearest = gap;
+            point.atom = ball.atom;
+        }
+    });
     const double slope = gradient.norm();
     if (slope == 0 || sum <= 0) return point;
     point.normal = -gradient / slope;
@@ -104,6 +104,12 @@ SurfacePoint GaussianField::refine(const Vec3& near) {
     const double most = 0.25 * spacing_;
     point.place += point.normal * std::clamp(sum * std::log(sum) / slope, -most, most);
     return point;
+}
+
+SurfacePoint GaussianField::refine(const Vec3& near) {
+    const SurfacePoint point = step_to_surface(near);
+    if ((point.place - near).norm() < 0.02 * spacing_) return point;
+    return step_to_surface(point.place);
 }
 
 }  // namespace palpa

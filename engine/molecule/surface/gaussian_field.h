@@ -19,6 +19,8 @@ public:
     SurfacePoint refine(const Vec3& near) override;
 
 private:
+    SurfacePoint step_to_surface(const Vec3& from) const;
+
     const BallGrid* grid_ = nullptr;
     double spacing_;  // Å
     double sharpness_;

@@ -9,9 +9,9 @@
 
 namespace palpa {
 
-// Water and protein between a charge and a place are a number alone. That it grows with distance
-// stands for the water that gets between: 4 r is common for proteins (E. L. Mehler, G. Eichele,
-// Biochemistry 23, 3887 (1984), fig. 1, up to some 8 Å). 80 without growth is water everywhere.
+// What is between a charge and a place weakens the potential by this factor. Growing with distance
+// it stands for the water that gets between, and charges near by tell: 4 r is a common choice. 80
+// without growth is water everywhere, and the net charge tells.
 struct Dielectric {
     double constant = 4;
     bool grows_with_distance = true;  // times the distance in Å

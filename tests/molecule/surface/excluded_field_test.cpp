@@ -32,11 +32,11 @@ SurfaceMesh surface_of(const std::vector<Vec3>& places, const std::vector<double
 // spheres; for tori what the triangle of two centres and the probe's sweeps, less the probe's part;
 // for hollows a tetrahedron less the probe's part.
 Size excluded_by_two(double r1, double r2, double distance, double p) {
-    const double R1 = r1 + p, R2 = r2 + p;
-    const double t1 = (distance * distance + R1 * R1 - R2 * R2) / (2 * distance);
-    const double t2 = distance - t1, ring = std::sqrt(R1 * R1 - t1 * t1);
-    const double solid1 = 2 * pi * (1 + t1 / R1), solid2 = 2 * pi * (1 + t2 / R2);
-    const double bend = std::atan2(t1, ring) + std::atan2(t2, ring), sines = t1 / R1 + t2 / R2;
+    const double R_1 = r1 + p, R_2 = r2 + p;
+    const double t1 = (distance * distance + R_1 * R_1 - R_2 * R_2) / (2 * distance);
+    const double t2 = distance - t1, ring = std::sqrt(R_1 * R_1 - t1 * t1);
+    const double solid1 = 2 * pi * (1 + t1 / R_1), solid2 = 2 * pi * (1 + t2 / R_2);
+    const double bend = std::atan2(t1, ring) + std::atan2(t2, ring), sines = t1 / R_1 + t2 / R_2;
     return {r1 * r1 * solid1 + r2 * r2 * solid2 + 2 * pi * p * (ring * bend - p * sines),
             (r1 * r1 * r1 * solid1 + r2 * r2 * r2 * solid2) / 3 +
                 2 * pi *

@@ -151,6 +151,60 @@ TEST_CASE("a local remake equals the whole one, vertex for vertex", "[molecule][
     CHECK(cache.update(cloud.places).changed.empty());
 }
 
+TEST_CASE("at a cloud's Gaussian surface the sum over all atoms is 1", "[molecule][surface]") {
+    const Cloud cloud = make_cloud(200, 7, 12);
+    const double sharpness = GENERATE(0.8, 1.5, 3.0);
+
+    const SurfaceMesh mesh =
+        build_surface(cloud.places, cloud.radii, {.spacing = 0.6, .sharpness = sharpness});
+
+    REQUIRE(mesh.places.size() > 500);
+    double square = 0;
+    std::size_t turned = 0;
+    for (std::size_t v = 0; v < mesh.places.size(); ++v) {
+        const Vec3 at = mesh.places[v].cast<double>();
+        double sum = 0, gap = 1e9;
+        Vec3 inward = Vec3::Zero();
+        for (std::size_t i = 0; i < cloud.places.size(); ++i) {
+            const double size = cloud.radii[i] * cloud.radii[i];
+            const Vec3 away = at - cloud.places[i];
+            const double term = std::exp(sharpness * (1 - away.squaredNorm() / size));
+            sum += term;
+            inward -= term / size * away;
+            gap = std::min(gap, away.norm() - cloud.radii[i]);
+        }
+        square += (sum - 1) * (sum - 1);
+        turned += (inward.normalized() + mesh.normals[v].cast<double>()).norm() > 0.1 ? 1 : 0;
+        const std::size_t atom = mesh.atoms[v];
+        CHECK((at - cloud.places[atom]).norm() - cloud.radii[atom] ==
+              Approx(gap).margin(0.3));  // twice a step to the surface
+    }
+    CHECK(turned < mesh.places.size() / 200);
+    // Terms below e^-7 = 0.0009 are left out, tens of them.
+    CHECK(std::sqrt(square / static_cast<double>(mesh.places.size())) < 0.02);
+}
+
+TEST_CASE("one atom's move changes all blocks that it has to", "[molecule][surface]") {
+    const auto kind = GENERATE(SurfaceKind::Gaussian, SurfaceKind::Excluded);
+    const SurfaceSettings settings{.kind = kind, .spacing = 0.6};
+    const Cloud cloud = make_cloud(120, 6, 13);
+    std::vector<Vec3> places = cloud.places;
+    SurfaceCache cache(cloud.radii, settings);
+    cache.update(places);
+    std::mt19937 engine(14);
+    std::normal_distribution<double> step(0, 0.5);
+
+    for (std::size_t atom = 0; atom < places.size(); atom += 3) {
+        places[atom] += Vec3(step(engine), step(engine), step(engine));
+        cache.update(places);
+        SurfaceCache whole(cloud.radii, settings);
+        whole.update(places);
+
+        INFO("atom " << atom);
+        CHECK(vertices_of(cache) == vertices_of(whole));
+    }
+}
+
 TEST_CASE("blocks that do not change are not told", "[molecule][surface]") {
     const Cloud cloud = make_cloud(700, 10, 6);
     SurfaceCache cache(cloud.radii, {});
