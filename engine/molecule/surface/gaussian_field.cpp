@@ -83,20 +83,21 @@ SurfacePoint GaussianField::step_to_surface(const Vec3& from) const {
     double sum = 0, nearest = std::numeric_limits<double>::infinity();
     Vec3 gradient = Vec3::Zero();
     SurfacePoint point{from, Vec3::UnitZ(), 0};
-    grid_->visit_near(from, reach(grid_->largest_radius()), [&](const Ball& ball, double squared) {
-        const double k = sharpness_ / (ball.radius * ball.radius);
-        const double exponent = sharpness_ - k * squared;
-        if (exponent > -largest_exponent) {
-            const double term = std::exp(static_cast<float>(exponent));
-            sum += term;
-            gradient -= 2 * k * term * (from - ball.centre);
-        }
-        const double gap = std::sqrt(squared) - ball.radius;
-        if (gap < nearest) {
-            nearest = gap;
-            point.atom = ball.atom;
-        }
-    });
+    grid_->visit_near(from, reach(grid_->largest_radius()),
+                      [&](const AtomBall& ball, double squared) {
+                          const double k = sharpness_ / (ball.radius * ball.radius);
+                          const double exponent = sharpness_ - k * squared;
+                          if (exponent > -largest_exponent) {
+                              const double term = std::exp(static_cast<float>(exponent));
+                              sum += term;
+                              gradient -= 2 * k * term * (from - ball.centre);
+                          }
+                          const double gap = std::sqrt(squared) - ball.radius;
+                          if (gap < nearest) {
+                              nearest = gap;
+                              point.atom = ball.atom;
+                          }
+                      });
     const double slope = gradient.norm();
     if (slope == 0 || sum <= 0) return point;
     point.normal = -gradient / slope;
