@@ -11,7 +11,9 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <optional>
+#include <span>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace palpa {
@@ -161,6 +163,21 @@ Spots find_spots(const Silhouette& silhouette, const FrameScene& frame) {
     return spots;
 }
 
+// Cuts away what a triangle's vertices say is in front; the mesh is open then.
+template <class IsHiding>
+void clip_mesh(MeshShape& mesh, const IsHiding& is_hiding) {
+    std::vector<bool> hides;
+    for (const MeshVertex& vertex : mesh.vertices) hides.push_back(is_hiding(vertex));
+    std::vector<std::uint32_t> kept;
+    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+        const auto corners = std::span(mesh.indices).subspan(i, 3);
+        if (std::ranges::any_of(corners, [&](std::uint32_t v) { return hides[v]; })) continue;
+        kept.insert(kept.end(), corners.begin(), corners.end());
+    }
+    mesh.is_closed = mesh.is_closed && kept.size() == mesh.indices.size();
+    mesh.indices = std::move(kept);
+}
+
 }  // namespace
 
 void clip_in_front(const AtomRange& held, const OrbitCamera& camera, FrameScene& frame) {
@@ -182,7 +199,7 @@ void clip_in_front(const AtomRange& held, const OrbitCamera& camera, FrameScene&
         const bool hides = is_hiding(cone.a, a) || is_hiding(cone.b, b);
         const bool is_left = !hides || (a && a->is_bonded) || (b && b->is_bonded);
         for (Spot* const end : {a, b}) {
-            if (!end) continue;  // of a backbone's tube
+            if (!end) continue;
             end->has_stick = true;
             end->keeps_stick = end->keeps_stick || is_left;
         }
@@ -193,6 +210,11 @@ void clip_in_front(const AtomRange& held, const OrbitCamera& camera, FrameScene&
         const Spot& spot = spots.at(sphere.centre);
         return spot.has_stick ? !spot.keeps_stick : spot.is_hiding;
     });
+    for (MeshShape& mesh : frame.meshes) {
+        clip_mesh(mesh, [&](const MeshVertex& vertex) {
+            return is_of_others(vertex.pick) && silhouette.is_hiding(vertex.place);
+        });
+    }
 }
 
 }  // namespace palpa

@@ -56,6 +56,20 @@ bool is_ribbon(Representation representation) {
     return representation == Representation::Cartoon || representation == Representation::Pocket;
 }
 
+// Atoms of molecules that hands hold whole, and that are small enough to be seen as balls and
+// sticks: a ligand, a peptide.
+std::vector<bool> find_small_held(const World& world) {
+    constexpr std::size_t most = 300;  // atoms
+    std::vector<bool> small(world.resource<AtomTable>().size(), false);
+    for (const Entity hand : find_hands(world)) {
+        const std::vector<std::uint32_t> held = held_atoms(world, hand);
+        const AtomRange whole = held_range(world, hand);
+        if (held.size() > most || held.size() != whole.count) continue;
+        for (const std::uint32_t atom : held) small[atom] = true;
+    }
+    return small;
+}
+
 // The atom that says how a residue's ribbon looks.
 std::size_t ribbon_atom(const ResidueSpan& residue) {
     return residue.alpha < residue.end ? residue.alpha : residue.first;
@@ -66,9 +80,13 @@ std::vector<bool> draw_ribbons(const FrameParts& parts, std::span<const AtomLook
                                std::span<const glm::vec3> colours, KeptRibbons& kept,
                                FrameScene& frame) {
     std::vector<std::size_t> shown;
+    const std::vector<bool> small = find_small_held(parts.world);
     for (std::size_t i = 0; i < parts.residues.size(); ++i) {
-        const AtomLook& look = looks[ribbon_atom(parts.residues[i])];
-        if (look.visible && is_ribbon(look.representation)) shown.push_back(i);
+        const std::size_t atom = ribbon_atom(parts.residues[i]);
+        const AtomLook& look = looks[atom];
+        if (!look.visible || !is_ribbon(look.representation)) continue;
+        if (look.representation == Representation::Pocket && small[atom]) continue;
+        shown.push_back(i);
     }
     std::vector<bool> in_ribbon(parts.residues.size(), false);
     if (shown.empty()) return in_ribbon;
@@ -107,6 +125,8 @@ std::vector<Thickness> find_thickness(const FrameParts& parts, std::span<const A
     });
     const std::vector<bool> near =
         has_pocket ? find_pocket(parts.world, parts.residues) : std::vector<bool>(atoms.size());
+    constexpr std::ptrdiff_t most_shown = 300;  // atoms
+    const auto held_count = std::ranges::count(parts.held, true);
     std::vector<Thickness> thickness(atoms.size());
     for (std::size_t i = 0; i < parts.residues.size(); ++i) {
         const ResidueSpan& residue = parts.residues[i];
@@ -116,10 +136,12 @@ std::vector<Thickness> find_thickness(const FrameParts& parts, std::span<const A
             if (!visible) continue;
             const bool is_pocket = representation == Representation::Pocket;
             const bool is_cartoon = representation == Representation::Cartoon;
-            const bool in_hand = is_pocket ? parts.held[atom] : parts.in_hand[atom];
-            if (!in_hand && in_ribbon[i] && (is_cartoon || (is_pocket && !near[atom]))) continue;
-            if (is_cartoon && in_ribbon[i] && !parts.held[atom]) continue;
-            if (is_cartoon && is_solvent && !in_hand) continue;
+            // A whole chain in the hand is a ribbon, of a residue on a spring all is shown.
+            const bool is_held = parts.held[atom] && held_count <= most_shown;
+            const bool in_hand =
+                is_pocket || is_cartoon ? is_held : static_cast<bool>(parts.in_hand[atom]);
+            if (!is_held && in_ribbon[i] && (is_cartoon || (is_pocket && !near[atom]))) continue;
+            if (is_cartoon && is_solvent && !is_held) continue;
             const std::string_view element = element_of(atoms, atom);
             thickness[atom] = thickness_of(representation, element, in_hand);
             if (thickness[atom].atom == 0 && parts.takes_part[atom] &&

@@ -13,7 +13,7 @@ namespace palpa {
 
 ViewSettings first_settings(const ViewDescription& view, const World& world) {
     constexpr std::size_t many = 300;
-    const bool hides = count_environment(world, first_hand(world)) > many;
+    const bool hides = world.resource<AtomTable>().size() > many;
     return {.representation = view.representation.value_or(hides ? Representation::Pocket
                                                                  : Representation::BallAndStick),
             .colouring = view.colouring,

