@@ -183,6 +183,23 @@ std::vector<std::uint32_t> find_surface_atoms(const FrameParts& parts,
     return chosen.empty() ? all : chosen;
 }
 
+// By chain a surface has one colour: of each residue that of its first carbon.
+std::vector<glm::vec3> find_chain_colours(const FrameParts& parts,
+                                          std::span<const std::uint32_t> chosen,
+                                          std::span<const glm::vec3> colours) {
+    const AtomTable& atoms = parts.world.resource<AtomTable>();
+    std::vector<glm::vec3> of_residues(colours.begin(), colours.end());
+    for (const ResidueSpan& residue : parts.residues) {
+        std::size_t carbon = residue.first;
+        while (carbon < residue.end && element_of(atoms, carbon) != "C") ++carbon;
+        if (carbon == residue.end) continue;
+        for (std::size_t i = residue.first; i < residue.end; ++i) of_residues[i] = colours[carbon];
+    }
+    std::vector<glm::vec3> found;
+    for (const std::uint32_t atom : chosen) found.push_back(of_residues[atom]);
+    return found;
+}
+
 void draw_surface(const FrameParts& parts, std::span<const AtomLook> looks,
                   std::span<const glm::vec3> colours, float opacity, KeptSurface& kept,
                   FrameScene& frame) {
@@ -196,6 +213,8 @@ void draw_surface(const FrameParts& parts, std::span<const AtomLook> looks,
         places.push_back(table.positions[atom]);
         atom_colours.push_back(colours[atom]);
     }
+    if (looks[chosen.front()].colouring == Colouring::Chain)
+        atom_colours = find_chain_colours(parts, chosen, colours);
     std::optional<SurfaceBudget> budget;
     if (!kept.cache || kept.atoms != chosen) {
         std::vector<double> radii;
