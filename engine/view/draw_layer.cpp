@@ -200,6 +200,16 @@ std::vector<glm::vec3> find_chain_colours(const FrameParts& parts,
     return found;
 }
 
+// The finer, the fewer atoms there are.
+SurfaceSettings surface_settings(std::size_t atoms) {
+    constexpr std::size_t few = 500, many = 20000;
+    SurfaceSettings settings;
+    settings.kind = atoms > many ? SurfaceKind::Gaussian : SurfaceKind::Excluded;
+    settings.spacing = atoms <= few ? 0.4 : atoms <= many ? 0.8 : 2;
+    settings.tolerance = 0.05;
+    return settings;
+}
+
 void draw_surface(const FrameParts& parts, std::span<const AtomLook> looks,
                   std::span<const glm::vec3> colours, float opacity, KeptSurface& kept,
                   FrameScene& frame) {
@@ -220,16 +230,12 @@ void draw_surface(const FrameParts& parts, std::span<const AtomLook> looks,
         std::vector<double> radii;
         for (const std::uint32_t atom : chosen)
             radii.push_back(static_cast<double>(radius_of(element_of(table, atom))));
-        constexpr std::size_t many = 20000;  // atoms
-        SurfaceSettings settings;
-        settings.kind = chosen.size() > many ? SurfaceKind::Gaussian : SurfaceKind::Excluded;
-        settings.spacing = chosen.size() > many ? 2.0 : 0.9;
-        settings.tolerance = 0.05;
-        kept.cache.emplace(std::move(radii), settings);
+        kept.cache.emplace(std::move(radii), surface_settings(chosen.size()));
         kept.atoms = chosen;
         kept.potentials.clear();
     } else {
-        budget.emplace();
+        constexpr std::size_t blocks = 8;  // some milliseconds
+        budget.emplace().blocks = blocks;
         budget->near = held_place(parts.world, first_hand(parts.world));
     }
     const SurfaceUpdate update = kept.cache->update(places, budget);

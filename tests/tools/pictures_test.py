@@ -11,9 +11,6 @@ import tempfile
 import unittest
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
-from read_png import read_png
-
 PROGRAM = os.environ["PALPA_PROGRAM"]
 ROOT = Path(os.environ["PALPA_ROOT"])
 sys.path.append(str(ROOT / "tests" / "support"))
@@ -21,28 +18,41 @@ from read_png import read_png  # noqa: E402
 
 PICTURES = ROOT / "tests" / "data" / "pictures"
 CAMERAS = {"water": "30,15", "hiv": "90,15"}
-LOOKS = ("ball-and-stick", "space-filling", "licorice", "in-hand", "pocket")
+LOOKS = ("ball-and-stick", "space-filling", "licorice", "in-hand", "pocket", "lines", "cartoon",
+         "surface")
+# Of the protease, as a cartoon with a surface of its pocket.
+COLOURS = ("element", "chain", "residue", "structure", "charge", "b-factor", "force", "activity",
+           "potential", "hydrophobicity")
 
 NOTABLE = 24        # levels of 255 by which a channel must be off for a pixel to count as different
 MOST_DIFFERENT = 0.02
 MOST_MEAN = 1.5     # levels, over all channels
 
 
-def draw(scene, look, image):
+def draw(scene, image, *options):
     subprocess.run([PROGRAM, "render", ROOT / "scenes" / scene, "-o", image, "--size", "192x128",
-                    "--samples", "4", "--as", look, "--camera", CAMERAS[scene]],
-                   check=True, stdout=subprocess.DEVNULL)
+                    "--samples", "4", *options], check=True, stdout=subprocess.DEVNULL)
+
+
+def pictures():
+    """Name, scene and options of each."""
+    for scene, camera in CAMERAS.items():
+        for look in LOOKS:
+            yield f"{scene}-{look}.png", scene, ("--as", look, "--camera", camera)
+    for colour in COLOURS:
+        yield (f"hiv-coloured-{colour}.png", "hiv",
+               ("--representation", "cartoon", "--colour", colour, "--representation", "surface",
+                "--of", "protein and within 8 of ligand", "--colour", colour, "--opacity", "0.5"))
 
 
 class Pictures(unittest.TestCase):
     def test_scenes_look_as_they_did(self):
         with tempfile.TemporaryDirectory() as folder:
-            for scene in CAMERAS:
-                for look in LOOKS:
-                    with self.subTest(scene=scene, look=look):
-                        image = Path(folder) / f"{scene}-{look}.png"
-                        draw(scene, look, image)
-                        self.assert_alike(image, PICTURES / image.name)
+            for name, scene, options in pictures():
+                with self.subTest(picture=name):
+                    image = Path(folder) / name
+                    draw(scene, image, *options)
+                    self.assert_alike(image, PICTURES / name)
 
     def assert_alike(self, image, golden):
         size, new = read_png(image)
@@ -62,10 +72,8 @@ class Pictures(unittest.TestCase):
 
 if __name__ == "__main__":
     if sys.argv[1:] == ["--remake"]:
-        for made_scene in CAMERAS:
-            for made_look in LOOKS:
-                picture = PICTURES / f"{made_scene}-{made_look}.png"
-                picture.unlink(missing_ok=True)
-                draw(made_scene, made_look, picture)
+        for made_name, made_scene, made_options in pictures():
+            (PICTURES / made_name).unlink(missing_ok=True)
+            draw(made_scene, PICTURES / made_name, *made_options)
     else:
         unittest.main()

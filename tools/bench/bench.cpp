@@ -11,8 +11,6 @@
 #include "experiments/rest_poses.h"
 #include "formats/psf.h"
 #include "formats/structure.h"
-#include "gpu/device.h"
-#include "render/renderer.h"
 #include "scene/read_scene.h"
 #include "session/run_headless.h"
 #include "simulation/held.h"
@@ -26,6 +24,7 @@
 #include "tools/bench/engine.h"
 #include "tools/bench/kernel.h"
 #include "tools/bench/meshes.h"
+#include "tools/bench/representations.h"
 #include "tools/bench/row.h"
 #include "tools/bench/servo.h"
 #include "tools/bench/statics.h"
@@ -33,8 +32,6 @@
 #include "tools/commands/command.h"
 #include "tools/commands/progress.h"
 #include "tools/report/answer.h"
-#include "view/build_frame.h"
-#include "view/orbit_camera.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -144,30 +141,6 @@ void bench_files(const BenchOptions& options, std::vector<BenchRow>& rows) {
     }));
 }
 
-// Whole frames, recorded, submitted and waited for; and with the colours brought back.
-void bench_render(const std::string& scene_name, const World& world, std::vector<BenchRow>& rows) {
-    constexpr int warm_up = 5, frames = 60;
-    GpuDevice gpu{GpuOptions{}};
-    Renderer renderer(gpu);
-    FrameScene frame = build_frame(world, {});
-    for (const VkExtent2D size : {VkExtent2D{640, 360}, VkExtent2D{1280, 720}}) {
-        OrbitCamera camera;
-        frame_all(camera, frame, 16.0F / 9);
-        frame.camera = frame_camera(camera, frame);
-        const auto time = [&](const char* what, const auto& draw) {
-            for (int i = 0; i < warm_up; ++i) draw();
-            rows.push_back({fmt::format("render/{}/{}x{}/ball-and-stick{}", scene_name, size.width,
-                                        size.height, what),
-                            sample(frames, 1e3, draw), "ms"});
-        };
-        time("", [&] {
-            gpu.submit([&](VkCommandBuffer commands) { renderer.record(commands, frame, size); });
-        });
-        time("/read-back",
-             [&] { renderer.draw(frame, size.width, size.height, PictureContent::Colours); });
-    }
-}
-
 void write_picture(const Answers& answers, const std::filesystem::path& path, Existing existing) {
     write_text_file(
         path,
@@ -224,7 +197,7 @@ int bench_command(const BenchOptions& options) {
             continue;
         }
         if (options.render) {
-            bench_render(name, load_world(scene, on_stage), rows);
+            bench_representations(name, load_world(scene, on_stage), rows);
             continue;
         }
         if (options.statics) {
