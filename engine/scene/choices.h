@@ -84,7 +84,7 @@ inline constexpr std::array<std::string_view, 4> lesson_quantity_names{
 // In hand: the grabbed molecule as balls and sticks, all others as thin sticks without hydrogens.
 // Pocket: of the others a cartoon, and thin sticks of those residues that are near to it. Cartoon:
 // ribbons of proteins and nucleic acids, all else but waters as balls and sticks. Surface: the
-// solvent-excluded one.
+// solvent-excluded one, beyond 2,000 atoms a Gaussian one.
 enum class Representation {
     BallAndStick,
     SpaceFilling,

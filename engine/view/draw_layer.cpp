@@ -40,6 +40,7 @@ Thickness thickness_of(Representation representation, std::string_view element, 
         case Representation::Lines:
             return {line_radius, line_radius};
         case Representation::Surface:
+            if (in_hand) break;
             return {};
         case Representation::InHand:
         case Representation::Pocket:
@@ -138,8 +139,9 @@ std::vector<Thickness> find_thickness(const FrameParts& parts, std::span<const A
             const bool is_cartoon = representation == Representation::Cartoon;
             // A whole chain in the hand is a ribbon, of a residue on a spring all is shown.
             const bool is_held = parts.held[atom] && held_count <= most_shown;
-            const bool in_hand =
-                is_pocket || is_cartoon ? is_held : static_cast<bool>(parts.in_hand[atom]);
+            const bool in_hand = representation == Representation::InHand
+                                     ? static_cast<bool>(parts.in_hand[atom])
+                                     : is_held;
             if (!is_held && in_ribbon[i] && (is_cartoon || (is_pocket && !near[atom]))) continue;
             if (is_cartoon && is_solvent && !is_held) continue;
             const std::string_view element = element_of(atoms, atom);
@@ -200,12 +202,13 @@ std::vector<glm::vec3> find_chain_colours(const FrameParts& parts,
     return found;
 }
 
-// The finer, the fewer atoms there are.
+// The finer, the fewer atoms there are; of many the solvent-excluded one would take too long to
+// follow them.
 SurfaceSettings surface_settings(std::size_t atoms) {
-    constexpr std::size_t few = 500, many = 20000;
+    constexpr std::size_t few = 500, some = 2000, many = 20000;
     SurfaceSettings settings;
-    settings.kind = atoms > many ? SurfaceKind::Gaussian : SurfaceKind::Excluded;
-    settings.spacing = atoms <= few ? 0.4 : atoms <= many ? 0.8 : 2;
+    settings.kind = atoms <= some ? SurfaceKind::Excluded : SurfaceKind::Gaussian;
+    settings.spacing = atoms <= few ? 0.4 : atoms <= some ? 0.8 : atoms <= many ? 1 : 2;
     settings.tolerance = 0.05;
     return settings;
 }
