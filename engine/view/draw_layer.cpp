@@ -76,6 +76,32 @@ std::size_t ribbon_atom(const ResidueSpan& residue) {
     return residue.alpha < residue.end ? residue.alpha : residue.first;
 }
 
+// Where residues of a chain are missing: dashes from the one atom CA to the next.
+void draw_gaps(const FrameParts& parts, std::span<const std::size_t> shown,
+               std::span<const glm::vec3> colours, FrameScene& frame) {
+    constexpr double longest_bond = 4.5, longest_gap = 40;  // Å, from CA to CA
+    constexpr float dash = 0.7F, radius = 0.12F;            // Å
+    const AtomTable& atoms = parts.world.resource<AtomTable>();
+    for (std::size_t i = 1; i < shown.size(); ++i) {
+        const ResidueSpan &before = parts.residues[shown[i - 1]], &after = parts.residues[shown[i]];
+        if (before.alpha == before.end || after.alpha == after.end || before.end != after.first ||
+            atoms.names[before.alpha].segment != atoms.names[after.alpha].segment)
+            continue;
+        const Vec3 way = atoms.positions[after.alpha] - atoms.positions[before.alpha];
+        if (way.norm() < longest_bond || way.norm() > longest_gap) continue;
+        const glm::vec3 from = as_float(atoms.positions[before.alpha]), step = as_float(way);
+        const int dashes = std::max(1, static_cast<int>(way.norm() / (2 * double{dash})));
+        for (int k = 0; k < dashes; ++k) {
+            const float begin = (static_cast<float>(k) + 0.25F) / static_cast<float>(dashes);
+            const glm::vec3 a = from + begin * step,
+                            b = a + 0.5F / static_cast<float>(dashes) * step;
+            frame.cones.push_back({a, b, radius, radius, colours[before.alpha],
+                                   colours[before.alpha],
+                                   static_cast<std::uint32_t>(before.alpha)});
+        }
+    }
+}
+
 // Draws ribbons, and returns of each residue whether it is in one.
 std::vector<bool> draw_ribbons(const FrameParts& parts, std::span<const AtomLook> looks,
                                std::span<const glm::vec3> colours, KeptRibbons& kept,
@@ -113,6 +139,7 @@ std::vector<bool> draw_ribbons(const FrameParts& parts, std::span<const AtomLook
         kept.shown_residues = shown;
     }
     frame.meshes.insert(frame.meshes.end(), kept.meshes.begin(), kept.meshes.end());
+    draw_gaps(parts, shown, colours, frame);
     for (std::size_t i = 0; i < shown.size(); ++i) in_ribbon[shown[i]] = kept.parts.shown[i];
     return in_ribbon;
 }

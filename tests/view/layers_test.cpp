@@ -1,5 +1,6 @@
 // What layers, labels and colours make of a scene.
 #include "core/load_error.h"
+#include "core/text.h"
 #include "molecule/select.h"
 #include "scene/read_scene.h"
 #include "simulation/held.h"
@@ -74,6 +75,22 @@ TEST_CASE("a cartoon shows proteins as ribbons and the rest as balls", "[view][l
     const FrameScene frame = build_frame(world, plain(Representation::Cartoon));
     REQUIRE(frame.meshes.size() == 1);
     CHECK(frame.spheres.size() == count(world, "ligand"));
+}
+
+TEST_CASE("residues that are missing leave a dashed gap", "[view][layers]") {
+    World world = protease_world();
+    const std::size_t before = build_frame(world, plain(Representation::Cartoon)).cones.size();
+    // One chain's second half 5 Å aside: its ribbon is cut between residues 50 and 51.
+    AtomTable& atoms = world.resource<AtomTable>();
+    for (std::size_t i = 0; i < atoms.size(); ++i) {
+        const auto number = find_integer(atoms.names[i].number);
+        if (atoms.names[i].segment == "A" && number && *number > 50)
+            atoms.positions[i] += Vec3(0, 0, 5);
+    }
+    const FrameScene frame = build_frame(world, plain(Representation::Cartoon));
+    CHECK(frame.cones.size() > before);
+    const ConeShape& dash = *std::ranges::find(frame.cones, 0.12F, &ConeShape::radius_a);
+    CHECK(atoms.names[dash.pick].number == "50");
 }
 
 TEST_CASE("a layer is drawn besides, and of its selection alone", "[view][layers]") {

@@ -71,10 +71,15 @@ bool GaussianField::sample(const BlockIndex& block, BlockSamples& samples) {
     if (!has_any) return false;
     // A logarithm changes more evenly between two points.
     const float least = std::exp(static_cast<float>(-2 * largest_exponent));
-    using Samples = Eigen::Array<float, Eigen::Dynamic, 1>;
-    const auto size = static_cast<Eigen::Index>(points_of_block);
-    Eigen::Map<Samples>(samples.data(), size) =
-        Eigen::Map<const Samples>(sum.data(), size).max(least).log();
+    // Whole packets: one number left over would be taken by another logarithm, and the last point
+    // of a block, a corner that others share, would differ in its last bit.
+    constexpr std::size_t widest = 16;
+    constexpr std::size_t padded = (points_of_block + widest - 1) / widest * widest;
+    Eigen::Array<float, padded, 1> logarithms;
+    logarithms.setConstant(least);
+    std::ranges::copy(sum, logarithms.begin());
+    logarithms = logarithms.max(least).log().eval();
+    std::copy_n(logarithms.begin(), points_of_block, samples.begin());
     return true;
 }
 
