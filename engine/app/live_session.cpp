@@ -480,7 +480,13 @@ void LiveSession::post_frame_if_wanted() {
         frame.hands.push_back(show_hand(world, hand, *atoms_));
         contacts.push_back(frame.hands.back().contact);
     }
-    frame.picture = builder_.build(world, contacts, view_, &frame.labels);
+    try {
+        frame.picture = builder_.build(world, contacts, view_, &frame.labels);
+    } catch (const LoadError&) {  // a layer names a molecule that an edit removed
+        view_.layers.clear();
+        view_.labels.clear();
+        frame.picture = builder_.build(world, contacts, view_, &frame.labels);
+    }
     frame.readout.holds_something = frame.hands.front().held.count > 0;
     frame.readout.contact = contacts.front();
     const AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();

@@ -9,6 +9,7 @@
 #include "experiments/emulated_hand.h"
 #include "formats/crd.h"
 #include "formats/psf.h"
+#include "prepare/phosphates.h"
 #include "prepare/region_choice.h"
 #include "prepare/residues.h"
 #include "prepare/scene_of.h"
@@ -406,6 +407,7 @@ TunedScene tune_scene(PreparedSystem& system, const std::string& grab, bool is_a
     tuning.title = title;
     tuning.topology_title = topology_title(system, title);
     tuning.text.solvent = system.solvent;
+    if (system.reduced_phosphates > 0) tuning.text.dielectric = nucleic_dielectric;
     tuning.is_turned = !is_aligned;
     tuning.may_hold_another = grab.empty();
     tuning.rest = tuning.copy.structure;

@@ -236,9 +236,11 @@ void take_reduced_phosphates(PreparedSystem& system) {
     system.report.add(
         "Solvent",
         fmt::format("{} phosphates of nucleic acids have {} e, not -1, in vacuum: for the "
-                    "counterions that are missing (--full-phosphates keeps the whole charge); "
-                    "charge of the system {:+.2f} e",
-                    system.reduced_phosphates, reduced_phosphate_charge, charge));
+                    "counterions that are missing, and the scene has a dielectric of {} "
+                    "(--full-phosphates keeps the whole charge and a dielectric of 1); charge of "
+                    "the system {:+.2f} e",
+                    system.reduced_phosphates, reduced_phosphate_charge, nucleic_dielectric,
+                    charge));
 }
 
 // The oxygens of waters of the file that are no part of the system.

@@ -1,5 +1,6 @@
 #include "prepare/scene_of.h"
 
+#include "core/units.h"
 #include "prepare/residues.h"
 #include "scene/write_scene.h"
 
@@ -142,6 +143,12 @@ std::string format_scene(const Structure& structure, std::span<const SystemSegme
     if (has_solvent) {
         scene += fmt::format("solvent = \"{}\"\n",
                              solvent_names[static_cast<std::size_t>(text.solvent)]);
+    }
+    if (text.dielectric != 1) {
+        scene += fmt::format(
+            "# A dielectric of {}, for nucleic acids without water.\n"
+            "coulomb_constant = {:.4f}\n",
+            text.dielectric, units::charmm_coulomb_constant / text.dielectric);
     }
     for (const SystemSegment& segment : segments) {
         const std::string name = in_quotes(segment.name);

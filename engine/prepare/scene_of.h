@@ -30,6 +30,7 @@ struct SceneText {
     std::string title, about, made_by;
     std::string structure = "relaxed.crd", topology = "system.psf";  // file names
     Solvent solvent = Solvent::None;
+    double dielectric = 1;                      // of vacuum, by which charges are divided
     std::vector<std::string> approximate = {};  // residues whose parameters are
     std::vector<std::string> rigid = {};        // bonds that do not turn, as [joints] names them
 };

@@ -24,6 +24,22 @@ constexpr std::size_t most_entries = 1000;  // of a folder that are looked at
 constexpr std::size_t most_named = 8;       // in a message
 constexpr const char* usual_name = "scene.toml";
 
+// Whether a command makes its files, and has not yet.
+bool is_to_be_made(const toml::table& scene, const fs::path& folder) {
+    const toml::table* const molecules = scene["molecules"].as_table();
+    if (!scene.contains("made_by") || !molecules) return false;
+    for (const auto& [name, molecule] : *molecules) {
+        const toml::table* const keys = molecule.as_table();
+        if (!keys) continue;
+        for (const char* const key : {"structure", "topology"}) {
+            const auto file = (*keys)[key].value<std::string>();
+            std::error_code error;
+            if (file && !fs::exists(folder / *file, error)) return true;
+        }
+    }
+    return false;
+}
+
 void add_scenes_of(const fs::path& folder, const std::string& prefix,
                    std::vector<SceneEntry>& scenes) {
     for (const fs::path& path : list_folder(folder, most_entries)) {
@@ -34,7 +50,7 @@ void add_scenes_of(const fs::path& folder, const std::string& prefix,
             const bool is_usual = path.filename() == usual_name;
             const std::string name = is_usual ? prefix : prefix + "/" + path.stem().string();
             scenes.push_back(
-                {name, path, table["title"].value_or(std::string()), table.contains("made_by")});
+                {name, path, table["title"].value_or(std::string()), is_to_be_made(table, folder)});
         } catch (const toml::parse_error&) {
             continue;
         } catch (const LoadError&) {

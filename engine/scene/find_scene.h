@@ -9,8 +9,9 @@ namespace palpa {
 struct SceneEntry {
     std::string name;  // relative to the folder of the list: "hiv", "hiv/flexible"
     std::filesystem::path file;
-    std::string title;     // as the file says; may be empty
-    bool is_made = false;  // by a command that the file names; its molecules may not be there yet
+    std::string title;  // as the file says; may be empty
+    bool is_to_be_made =
+        false;  // by a command that the file names: its molecules are not there yet
 };
 
 // Where the scenes are that come with the program: installed beside it, or in the source tree of a

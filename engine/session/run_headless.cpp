@@ -13,6 +13,7 @@
 #include "simulation/playback.h"
 #include "simulation/remote_engine.h"
 #include "simulation/resources.h"
+#include "simulation/select_in_world.h"
 #include "simulation/step.h"
 #include "simulation/systems/pull_by_clients.h"
 
@@ -274,6 +275,8 @@ std::vector<std::string> list_warnings(const SceneDescription& scene, const Worl
             relaxed->rms_force, relaxed->steps));
     }
     warn_of_stroke(scene, world, script, 0, warnings);
+    for (const std::string& empty : find_empty_selections(scene.view, world))
+        warnings.push_back(empty + " selects no atoms");
     if (scene.engine && scene.engine->program == EngineProgram::Unknown &&
         scene.engine->rate == 1) {
         warnings.emplace_back(

@@ -16,6 +16,7 @@
 #include "simulation/molecules.h"
 #include "simulation/probe.h"
 #include "simulation/remote_engine.h"
+#include "simulation/select_in_world.h"
 #include "simulation/solvent.h"
 #include "simulation/sources.h"
 
@@ -309,6 +310,7 @@ World load_world(const SceneDescription& scene, const StageFunction& on_stage) {
     tell(on_stage, "bringing the molecule in the hand to its start");
     start_hands(scene, world);
     set_coupling(scene.coupling, world);
+    (void)find_empty_selections(scene.view, world);  // throws for those that are none
     return world;
 }
 

@@ -3,6 +3,8 @@
 #include "simulation/components.h"
 #include "simulation/held.h"
 
+#include <fmt/format.h>
+#include <algorithm>
 #include <cstdint>
 
 namespace palpa {
@@ -19,6 +21,24 @@ std::vector<bool> select_in_world(const World& world, const Selection& selection
         held.insert(held.end(), atoms.begin(), atoms.end());
     }
     return select_atoms(selection, {world.resource<AtomTable>(), molecules, held, structure, {}});
+}
+
+std::vector<std::string> find_empty_selections(const ViewDescription& view, const World& world) {
+    // Whether there are helices is known only to who draws them.
+    const std::vector<SecondaryStructure> any(world.resource<AtomTable>().size());
+    std::vector<std::string> empty;
+    const auto look = [&](const std::string& text, const char* key) {
+        if (text.empty()) return;
+        const std::vector<bool> chosen = select_in_world(world, parse_selection(text, key), any);
+        const bool needs_structure = text.find("helix") != std::string::npos ||
+                                     text.find("strand") != std::string::npos ||
+                                     text.find("sheet") != std::string::npos;
+        if (!needs_structure && std::ranges::find(chosen, true) == chosen.end())
+            empty.push_back(fmt::format("{} = '{}'", key, text));
+    };
+    for (const ViewLayer& layer : view.layers) look(layer.of, "view.layers.of");
+    for (const std::string& label : view.labels) look(label, "view.label");
+    return empty;
 }
 
 }  // namespace palpa

@@ -72,8 +72,10 @@ constexpr std::array residue_classes = std::to_array<ResidueClass>({
     {"polar", 2, {"SER", "THR", "ASN", "GLN", "HIS", "HSD", "HSE", "HID", "HIE", "CYS", "CYX"}},
     {"aromatic", 7, {"PHE", "TYR", "TRP"}},
     {"aliphatic", 1, {"ALA", "VAL", "LEU", "ILE", "MET", "PRO", "GLY", "MSE"}},
-    {"adenine, guanine", 3, {"ADE", "GUA", "DA", "DG", "A", "G"}},
-    {"cytosine, thymine, uracil", 4, {"CYT", "THY", "URA", "DC", "DT", "C", "U"}},
+    {"adenine", 3, {"ADE", "DA", "A"}},
+    {"guanine", 4, {"GUA", "DG", "G"}},
+    {"cytosine", 5, {"CYT", "DC", "C"}},
+    {"thymine, uracil", 6, {"THY", "URA", "DT", "U"}},
 });
 
 const ResidueClass* class_of(std::string_view residue) {

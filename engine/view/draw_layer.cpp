@@ -229,6 +229,33 @@ std::vector<glm::vec3> find_chain_colours(const FrameParts& parts,
     return found;
 }
 
+struct Charges {
+    std::vector<Vec3> places;     // Å
+    std::vector<double> charges;  // e
+};
+
+// All of the scene but what hands hold; of a surface of that alone, its own.
+Charges find_charges(const FrameParts& parts, std::span<const std::uint32_t> chosen) {
+    const AtomTable& atoms = parts.world.resource<AtomTable>();
+    const bool is_of_held = std::ranges::all_of(
+        chosen, [&](std::uint32_t atom) { return static_cast<bool>(parts.held[atom]); });
+    Charges found;
+    for (std::size_t i = 0; i < atoms.size(); ++i) {
+        if (parts.held[i] != is_of_held) continue;
+        found.places.push_back(atoms.positions[i]);
+        found.charges.push_back(atoms.charge[i]);
+    }
+    return found;
+}
+
+// So far that potentials have to be summed again.
+bool have_moved(std::span<const Vec3> before, std::span<const Vec3> now) {
+    constexpr double far = 0.5;  // Å
+    return !std::ranges::equal(before, now, [](const Vec3& a, const Vec3& b) {
+        return (a - b).squaredNorm() < far * far;
+    });
+}
+
 // The finer, the fewer atoms there are; of many the solvent-excluded one would take too long to
 // follow them.
 SurfaceSettings surface_settings(std::size_t atoms) {
@@ -270,14 +297,16 @@ void draw_surface(const FrameParts& parts, std::span<const AtomLook> looks,
     }
     const SurfaceUpdate update = kept.cache->update(places, budget);
     for (const BlockIndex& block : update.changed) kept.potentials.erase(block);
-    std::vector<double> charges;
-    if (by_potential)
-        for (const std::uint32_t atom : chosen) charges.push_back(table.charge[atom]);
+    const Charges charges = by_potential ? find_charges(parts, chosen) : Charges{};
+    if (by_potential && have_moved(kept.charge_places, charges.places)) {
+        kept.potentials.clear();
+        kept.charge_places = charges.places;
+    }
     for (const auto& [index, block] : kept.cache->blocks()) {
         if (by_potential) {
             std::vector<float>& potentials = kept.potentials[index];
             if (potentials.size() != block.mesh.places.size())
-                potentials = find_potentials(block.mesh, places, charges);
+                potentials = find_potentials(block.mesh, charges.places, charges.charges);
             frame.meshes.push_back(shape_by_potential(block.mesh, potentials, chosen, opacity));
         } else {
             frame.meshes.push_back(shape_by_atom(block.mesh, atom_colours, chosen, opacity));

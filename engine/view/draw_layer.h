@@ -48,6 +48,7 @@ struct KeptSurface {
     std::vector<std::uint32_t> atoms;  // that it is of
     std::optional<SurfaceCache> cache;
     std::map<BlockIndex, std::vector<float>> potentials;  // kT/e, where they are wanted
+    std::vector<Vec3> charge_places;                      // that these are of
 };
 
 struct KeptLayer {

@@ -161,8 +161,10 @@ TunedScene find_scene(const PrepareOptions& options, const std::string& title,
                       const StageFunction& on_stage, PreparedSystem& system) {
     if (!options.makes_scene) return {};
     try {
-        return tune_scene(system, options.grab, !options.x_along.empty(),
-                          printable(options.structure.stem().string()), title, on_stage);
+        const std::string name =
+            options.title.empty() ? options.structure.stem().string() : options.title;
+        return tune_scene(system, options.grab, !options.x_along.empty(), printable(name), title,
+                          on_stage);
     } catch (const LoadError& error) {
         if (!options.grab.empty()) throw;
         system.report.warn(fmt::format("no scene is written: {}", error.what()));
@@ -334,9 +336,10 @@ void add_prepare_choices(CLI::App& prepare, PrepareOptions& options) {
                     "eef1-sb where it covers every type of atoms, else none")
         ->check(CLI::IsMember({"none", "eef1-sb", "auto"}))
         ->capture_default_str();
-    prepare.add_flag("--full-phosphates", settings.keeps_phosphate_charges,
-                     "in vacuum phosphates of nucleic acids have -0.32 e otherwise, for the "
-                     "counterions that are missing");
+    prepare.add_flag(
+        "--full-phosphates", settings.keeps_phosphate_charges,
+        "in vacuum phosphates of nucleic acids have -0.32 e otherwise, and the scene a "
+        "dielectric of 4, for counterions and water that are missing");
     prepare
         .add_option("--structural-water", options.structural_waters,
                     "CHAIN:NUMBER: a water that stays, as a part of the structure")

@@ -12,6 +12,7 @@
 #include "session/run_headless.h"
 #include "simulation/held.h"
 #include "simulation/load.h"
+#include "simulation/select_in_world.h"
 #include "tools/commands/choice.h"
 #include "tools/commands/command.h"
 #include "tools/commands/film.h"
@@ -53,6 +54,11 @@ void apply_looks(const std::vector<RenderOptions::Said>& said, ViewDescription& 
         } else if (option == "--of") {
             if (!layer)
                 throw LoadError({"--of " + value}, "expected --representation NAME before it");
+            if (!layer->of.empty())
+                throw LoadError({"--of " + value},
+                                "is a second one; expected another "
+                                "--representation before it, or 'or' between "
+                                "the two");
             (void)parse_selection(value, "--of");
             layer->of = value;
         } else if (option == "--colour") {
@@ -61,7 +67,8 @@ void apply_looks(const std::vector<RenderOptions::Said>& said, ViewDescription& 
             (layer ? layer->colouring.emplace() : view.colouring) = colouring;
         } else {
             const std::optional<double> opacity = find_real(value);
-            if (!layer || !opacity || !(*opacity >= 0.05 && *opacity <= 1))
+            if (!layer || layer->representation != Representation::Surface || !opacity ||
+                !(*opacity >= 0.05 && *opacity <= 1))
                 throw LoadError({"--opacity " + value},
                                 "expected 0.05 to 1, behind --representation surface");
             layer->opacity = *opacity;
@@ -161,6 +168,8 @@ int render_command(const RenderOptions& options) {
     const StageFunction on_stage = progress.stages();
     World world = load_world(scene, on_stage);
     apply_options(options, world, scene.view);
+    for (const std::string& empty : find_empty_selections(scene.view, world))
+        fmt::print(stderr, "palpa render: {} selects no atoms\n", empty);
     ViewSettings view = first_settings(scene.view, world);
     view.force_arrow = options.arrow;
     if (options.film) return make_film(scene, world, view, options, progress);

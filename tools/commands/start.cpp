@@ -25,7 +25,7 @@ void print_scenes(const std::optional<std::string>& last) {
     for (const fs::path& folder : own_scene_folders()) {
         for (const SceneEntry& scene : list_scenes(folder)) {
             fmt::print("  {:<16} {}{}\n", printable(scene.name), printable(scene.title),
-                       scene.is_made ? " (made on demand)" : "");
+                       scene.is_to_be_made ? " (made on demand)" : "");
         }
     }
     std::error_code error;
