@@ -67,7 +67,7 @@ TextPainter open_text_painter() {
 namespace {
 
 constexpr std::size_t most_letters = 200;
-constexpr float halo_opacity = 0.8F;
+constexpr float halo_opacity = 0.9F;
 
 template <auto free>
 struct Freed {

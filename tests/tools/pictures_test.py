@@ -30,7 +30,7 @@ MOST_MEAN = 1.5     # levels, over all channels
 
 def draw(scene, look, image):
     subprocess.run([PROGRAM, "render", ROOT / "scenes" / scene, "-o", image, "--size", "192x128",
-                    "--samples", "4", "--as", look, "--camera", CAMERAS[scene]],
+                    "--samples", "4", "--as", look, "--camera", CAMERAS[scene], "--no-words"],
                    check=True, stdout=subprocess.DEVNULL)
 
 
