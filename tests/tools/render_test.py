@@ -221,6 +221,15 @@ class Render(unittest.TestCase):
         self.assertEqual(len(list((recording / "frames").iterdir())), 2)
         self.assertEqual((recording / "frames" / "0000.png").read_bytes(), first)
 
+    def test_frames_of_a_recording_have_words(self):
+        frames = []
+        for font in ({}, {"PALPA_FONT": "/nowhere/font.ttf"}):
+            result, recording = self.run_recorded("--fps", "1", "--frame-size", "160x120", **font)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertEqual(result.stderr.count("without words"), len(font), result.stderr)
+            frames.append((recording / "frames" / "0000.png").read_bytes())
+        self.assertNotEqual(*frames)
+
     def test_without_vulkan_the_trace_is_still_written(self):
         self.run_recorded("--fps", "1", "--frame-size", "64x48")
         result, recording = self.run_recorded("--fps", "4", VK_DRIVER_FILES="/nowhere",
