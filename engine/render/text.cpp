@@ -45,10 +45,6 @@ float halo_radius(int letter_size) {
 
 int halo_width(int letter_size) { return static_cast<int>(std::ceil(halo_radius(letter_size))); }
 
-TextPainter::TextPainter(TextPainter&&) noexcept = default;
-TextPainter& TextPainter::operator=(TextPainter&&) noexcept = default;
-TextPainter::~TextPainter() = default;
-
 TextPainter open_text_painter() {
     std::string problem =
         "no font is installed; expected DejaVu Sans (Debian: fonts-dejavu-core), "
@@ -69,15 +65,15 @@ namespace {
 constexpr std::size_t most_letters = 200;
 constexpr float halo_opacity = 0.9F;
 
-template <auto free>
+template <auto Free>
 struct Freed {
     template <class Handle>
     void operator()(Handle handle) const {
-        free(handle);
+        Free(handle);
     }
 };
-template <class Handle, auto free>
-using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Freed<free>>;
+template <class Handle, auto Free>
+using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Freed<Free>>;
 using OwnedGlyph = Owned<FT_Glyph, FT_Done_Glyph>;
 
 // Of UTF-8 as printable() leaves it.
@@ -239,5 +235,9 @@ void TextPainter::draw(Picture& /*picture*/, std::string_view /*text*/, int /*le
                        int /*letter_size*/, const TextColours& /*colours*/) {}
 
 #endif
+
+TextPainter::TextPainter(TextPainter&&) noexcept = default;
+TextPainter& TextPainter::operator=(TextPainter&&) noexcept = default;
+TextPainter::~TextPainter() = default;
 
 }  // namespace palpa
