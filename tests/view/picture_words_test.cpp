@@ -36,6 +36,10 @@ bool has(const PlacedLabels& found, std::size_t label) {
     return std::ranges::find(found.placed, label, &PlacedLabel::label) != found.placed.end();
 }
 
+std::vector<std::uint8_t> white(std::size_t across, std::size_t down) {
+    return std::vector<std::uint8_t>(4 * across * down, 255);
+}
+
 // How far a place is from a box, pixels; 0 inside.
 double distance(const glm::vec3& place, const PixelBox& box) {
     const auto beyond = [](double at, double low, double high) {
@@ -129,7 +133,7 @@ TEST_CASE("a legend and a label are on the picture, each where it belongs", "[vi
     } catch (const LoadError& error) {
         return test::skip(error.what());
     }
-    Picture picture{width, height, std::vector<std::uint8_t>(4 * width * height, 255), {}, {}};
+    Picture picture{width, height, white(width, height), {}, {}};
     PictureWords words{{{{1, 1, 0}, "ASP 25"}}, {{{1, 0, 0}, "helix"}, {{0, 0, 1}, "strand"}}};
 
     const LeftOutWords left_out = write_words(words, {}, *painter, picture);
@@ -163,10 +167,10 @@ TEST_CASE("a legend and a label are on the picture, each where it belongs", "[vi
     CHECK(elsewhere == 0);
 
     // A picture too small for a legend is without, and says so.
-    Picture small{64, 24, std::vector<std::uint8_t>(4 * 64 * 24, 255), {}, {}};
+    Picture small{64, 24, white(64, 24), {}, {}};
     words.labels.clear();
     CHECK(write_words(words, {}, *painter, small).has_legend);
-    CHECK(small.rgba == std::vector<std::uint8_t>(4 * 64 * 24, 255));
+    CHECK(small.rgba == white(64, 24));
 }
 
 TEST_CASE("a view's legend has every colouring that something has, once", "[view][words]") {
