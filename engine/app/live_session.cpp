@@ -7,6 +7,7 @@
 #include "simulation/held.h"
 #include "simulation/resources.h"
 #include "view/first_view.h"
+#include "view/legend.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -471,7 +472,7 @@ void LiveSession::post_frame_if_wanted() {
         edition_ = simulation_.edition();
         atoms_ = list_atoms(world);
     }
-    LiveFrame frame{{}, {}, atoms_, {}, framed_, {}, simulation_.readout()};
+    LiveFrame frame{{}, {}, atoms_, {}, framed_, {}, {}, simulation_.readout()};
     const std::vector<Vec3>& positions = world.resource<AtomTable>().positions;
     frame.places.resize(positions.size());
     std::ranges::transform(positions, frame.places.begin(), as_float);
@@ -487,6 +488,7 @@ void LiveSession::post_frame_if_wanted() {
         view_.labels.clear();
         frame.picture = builder_.build(world, contacts, view_, &frame.labels);
     }
+    frame.legend = find_legend(world, view_);
     frame.readout.holds_something = frame.hands.front().held.count > 0;
     frame.readout.contact = contacts.front();
     const AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();

@@ -15,6 +15,7 @@
 #include "session/servo_bank.h"
 #include "session/session_recorder.h"
 #include "simulation/atom_directory.h"
+#include "view/atom_colours.h"
 #include "view/build_frame.h"
 
 #include <atomic>
@@ -56,6 +57,7 @@ struct LiveFrame {
     std::vector<glm::vec3> places;               // Å, of all atoms, drawn or not
     AtomRange framed;                            // what the first view frames; none: everything
     std::vector<ViewLabel> labels;               // of the picture
+    std::vector<LegendEntry> legend;             // of its colours
     Readout readout;                             // its contact is the first hand's
 };
 

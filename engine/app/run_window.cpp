@@ -231,13 +231,14 @@ void Sandbox::draw() {
         draw_study_panel(*options_.study);
     } else if (has_frame_) {
         const bool is_news = SteadyClock::now() < notice_until_;
-        overlay_.draw(frame_.readout,
-                      {session_.servo_health(), hand().device->spec().name, g.device.name(),
-                       last_frame_ms_, scale_.value(), hand().is_led(), holding_,
-                       is_news ? notice_ : std::string(hand().device->status()),
-                       can_choose_device() ? devices_.offers : std::vector<DeviceOffer>(),
-                       devices_.current, speaker_.has_value(), hover_, session_.recorded_s()},
-                      commands, actions);
+        overlay_.draw(
+            frame_.readout,
+            {session_.servo_health(), hand().device->spec().name, g.device.name(), last_frame_ms_,
+             scale_.value(), hand().is_led(), holding_,
+             is_news ? notice_ : std::string(hand().device->status()),
+             can_choose_device() ? devices_.offers : std::vector<DeviceOffer>(), devices_.current,
+             speaker_.has_value(), hover_, session_.recorded_s(), frame_.legend},
+            commands, actions);
     }
     std::optional<AddEdit> wanted;
     if (has_frame_) wanted = add_panel_.draw(*frame_.atoms);

@@ -45,6 +45,28 @@ std::string software_chunk() {
 
 }  // namespace
 
+PixelBox common(const PixelBox& a, const PixelBox& b) noexcept {
+    return {std::max(a.left, b.left), std::max(a.top, b.top), std::min(a.right, b.right),
+            std::min(a.bottom, b.bottom)};
+}
+
+std::uint8_t srgb_code(float light) { return encode(std::clamp(light, 0.0F, 1.0F)); }
+
+void lay_over(Picture& picture, int x, int y, const PixelColour& colour, float opacity) {
+    if (!(opacity > 0)) return;
+    std::uint8_t* const pixel =
+        &picture
+             .rgba[4 * (static_cast<std::size_t>(y) * picture.width + static_cast<std::size_t>(x))];
+    const float behind = (1 - opacity) * static_cast<float>(pixel[3]) / 255;
+    const float alpha = opacity + behind;
+    for (std::size_t c = 0; c < 3; ++c) {
+        const float mixed =
+            opacity * static_cast<float>(colour[c]) + behind * static_cast<float>(pixel[c]);
+        pixel[c] = static_cast<std::uint8_t>(std::lround(mixed / alpha));
+    }
+    pixel[3] = static_cast<std::uint8_t>(std::lround(255 * alpha));
+}
+
 void divide_by_alpha(Picture& picture) {
     for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
         const std::uint8_t alpha = picture.rgba[i + 3];

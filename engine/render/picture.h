@@ -2,6 +2,7 @@
 #pragma once
 #include "core/files.h"
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <string_view>
@@ -18,6 +19,28 @@ struct Picture {
 
     static constexpr std::uint32_t nothing_seen = UINT32_MAX;
 };
+
+// A rectangle of a picture's pixels, without those at `right` and `bottom`.
+struct PixelBox {
+    int left = 0, top = 0, right = 0, bottom = 0;
+
+    int width() const noexcept { return right - left; }
+    int height() const noexcept { return bottom - top; }
+    bool is_empty() const noexcept { return width() <= 0 || height() <= 0; }
+    bool contains(int x, int y) const noexcept {
+        return x >= left && x < right && y >= top && y < bottom;
+    }
+};
+PixelBox common(const PixelBox& a, const PixelBox& b) noexcept;
+
+using PixelColour = std::array<std::uint8_t, 3>;  // sRGB
+
+// sRGB of linear light from 0 to 1; beyond, of the nearer end.
+std::uint8_t srgb_code(float light);
+
+// Colour over one pixel of the picture, `opacity` from 0 to 1, mixed as sRGB, as programs that draw
+// letters do. What is clear gets as opaque as that.
+void lay_over(Picture& picture, int x, int y, const PixelColour& colour, float opacity);
 
 // What is wanted of a picture: the colours cost the least.
 enum class PictureContent { Colours, All };

@@ -1,5 +1,6 @@
 #include "ui/backend.h"
 
+#include "render/font_files.h"
 #include "ui/layout.h"
 
 #include <imgui.h>
@@ -8,29 +9,18 @@
 #include <imgui_internal.h>
 #include <cmath>
 #include <filesystem>
-#include <system_error>
 
 namespace palpa {
 namespace {
 
-// Where systems keep a font that can be read; the library's own bitmap font is the last resort.
-constexpr const char* font_files[] = {
-    "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
-    "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf",
-    "C:\\Windows\\Fonts\\segoeui.ttf",
-    "/System/Library/Fonts/Helvetica.ttc",
-};
-
+// The library's own bitmap font is the last resort.
 void add_font(float text_pixels) {
     // Latin, Greek, sub- and superscripts, arrows, mathematics: what formulas need.
     static constexpr ImWchar ranges[] = {0x20,   0xFF,   0x370,  0x3FF,  0x2010, 0x2027, 0x2070,
                                          0x209F, 0x2190, 0x21FF, 0x2200, 0x22FF, 0};
     ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
-    for (const char* const file : font_files) {
-        std::error_code error;
-        if (!std::filesystem::is_regular_file(file, error)) continue;
-        if (atlas.AddFontFromFileTTF(file, text_pixels, nullptr, ranges)) return;
-    }
+    for (const std::filesystem::path& file : list_font_files())
+        if (atlas.AddFontFromFileTTF(file.string().c_str(), text_pixels, nullptr, ranges)) return;
     atlas.AddFontDefault();
 }
 

@@ -7,6 +7,7 @@
 #include "simulation/held.h"
 #include "simulation/load.h"
 #include "ui/layout.h"
+#include "ui/legend_panel.h"
 #include "ui/playback_panel.h"
 
 #include <fmt/format.h>
@@ -28,6 +29,7 @@ namespace {
 
 constexpr ImU32 task_colour = IM_COL32(20, 90, 190, 255);
 constexpr ImU32 done_colour = IM_COL32(20, 130, 70, 255);
+constexpr const char* lesson_panel = "Lesson";
 constexpr double least_overtravel_m = 0.5e-3;  // at the wall, that counts
 
 // Keys and what they do, twice beside each other.
@@ -251,9 +253,21 @@ void Overlay::draw(const Readout& readout, const OverlayStatus& status,
     } else if (shows_lesson_ && !lesson_.steps().empty()) {
         draw_lesson();
     }
+    if (shows_overlays_) draw_legend_panel(status.legend, legend_area());
     draw_warnings(readout, status);
     if (status.recorded_s) draw_recording(*status.recorded_s);
     if (shows_help_) draw_help();
+}
+
+// Above what stands below the picture, however high that is.
+ScreenArea Overlay::legend_area() const {
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    ScreenArea area = free_area(screen.x, screen.y);
+    for (const char* const name : {lesson_panel, playback_panel}) {
+        const ImGuiWindow* const panel = ImGui::FindWindowByName(name);
+        if (panel && panel->Active) area.bottom = std::min(area.bottom, panel->Pos.y);
+    }
+    return area;
 }
 
 bool Overlay::close_something() {
@@ -273,7 +287,7 @@ void Overlay::draw_lesson() {
                             ImGuiCond_Always, {0.5F, 1});
     ImGui::SetNextWindowSizeConstraints({width, 0}, {width, 0.6F * screen.y});
     ImGui::SetNextWindowSize({width, 0});
-    ImGui::Begin("Lesson", nullptr, fixed_panel);
+    ImGui::Begin(lesson_panel, nullptr, fixed_panel);
     const std::size_t count = lesson_.steps().size();
     if (lesson_.is_done()) {
         ImGui::TextWrapped("All %d steps are done. L hides this.", static_cast<int>(count));

@@ -7,6 +7,7 @@
 #include "ui/layout.h"
 #include "ui/plot.h"
 #include "ui/shortcuts.h"
+#include "view/atom_colours.h"
 
 #include <optional>
 #include <string>
@@ -36,6 +37,7 @@ struct OverlayStatus {
     bool sounds = false;               // the force is played as a tone
     std::string hover;                 // what the mouse rests on, and what a click would take
     std::optional<double> recorded_s;  // of a recording that is under way
+    std::vector<LegendEntry> legend;   // of the picture's colours
 };
 
 class Overlay {
@@ -97,6 +99,7 @@ private:
     void draw_lesson();
     void draw_lesson_step(std::size_t count);
     void draw_warnings(const Readout& readout, const OverlayStatus& status);
+    ScreenArea legend_area() const;
     void draw_recording(double seconds) const;
     void draw_help();
 

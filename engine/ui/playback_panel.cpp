@@ -31,7 +31,7 @@ void draw_playback_panel(const PlaybackState& state, const ScreenArea& area,
         std::min(std::max(area.width() - 2 * panel_edge(), scaled(260)), scaled(620));
     ImGui::SetNextWindowPos({0.5F * (area.left + area.right), bottom}, ImGuiCond_Always, {0.5F, 1});
     ImGui::SetNextWindowSize({width, 0});
-    ImGui::Begin("Trajectory", nullptr, fixed_panel);
+    ImGui::Begin(playback_panel, nullptr, fixed_panel);
     if (ImGui::Button(state.is_paused ? "Play (T)" : "Stop here (T)"))
         commands.emplace_back(play_or_pause(state));
     tip("T. A frame is frozen while it stands: the hand feels the forces in it, and moves what it "

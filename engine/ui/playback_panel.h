@@ -7,6 +7,8 @@
 
 namespace palpa {
 
+inline constexpr const char* playback_panel = "Trajectory";  // its title
+
 // Describes it to the overlay library, in the middle of `area`: play and pause, which frame, how
 // fast. What the person asks for is appended.
 void draw_playback_panel(const PlaybackState& state, const ScreenArea& area,

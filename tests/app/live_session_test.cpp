@@ -225,6 +225,18 @@ Vec3 place_of(const LiveFrame& frame, const std::string& molecule) {
 
 }  // namespace
 
+TEST_CASE("a frame has the legend of the colours that it shows", "[app][threads]") {
+    Live live;
+    REQUIRE(live.wait_until([](const LiveFrame& frame) { return !frame.picture.spheres.empty(); }));
+    CHECK(live.frame.legend.empty());  // elements and chains are seen without
+
+    live.session.send(ViewSettings{.colouring = Colouring::Charge});
+    REQUIRE(live.wait_until([](const LiveFrame& frame) { return !frame.legend.empty(); }));
+    CHECK(live.frame.legend.front().text.find("-1 e") == 0);
+    live.session.send(ViewSettings{.colouring = Colouring::Element});
+    CHECK(live.wait_until([](const LiveFrame& frame) { return frame.legend.empty(); }));
+}
+
 TEST_CASE("another molecule is taken while a force is felt, which glides, and it follows",
           "[app][threads]") {
     test::VirtualClock clock;

@@ -21,7 +21,8 @@ class Film(unittest.TestCase):
 
     def render(self, *arguments, code=0, **environment):
         clean = {key: value for key, value in os.environ.items() if key not in ("DISPLAY", "WAYLAND_DISPLAY")}
-        result = subprocess.run([PROGRAM, "render", WATER, "--size", "64x48", *map(str, arguments)],
+        size = () if "--size" in arguments else ("--size", "64x48")
+        result = subprocess.run([PROGRAM, "render", WATER, *size, *map(str, arguments)],
                                 capture_output=True, text=True, env={**clean, **environment})
         self.assertEqual(result.returncode, code, result.stderr + result.stdout)
         return result
@@ -66,6 +67,21 @@ class Film(unittest.TestCase):
         self.render("-o", self.tmp / "start.png")
         first, = self.frames.iterdir()
         self.assertNotEqual(first.read_bytes(), (self.tmp / "start.png").read_bytes())
+
+    def test_the_pictures_of_a_film_have_words(self):
+        def frames(*more, **environment):
+            result = self.render("--film", self.film, "--seconds", 0.2, "--fps", 10, "--size", "160x120", "--overwrite",
+                                 *more, PATH=str(self.tmp), code=1, **environment)
+            return [path.read_bytes() for path in sorted(self.frames.iterdir())], result.stderr
+
+        worded, said = frames()
+        bare, _ = frames("--no-words")
+        self.assertEqual(said, "")
+        self.assertEqual([a == b for a, b in zip(worded, bare)], [False, False])
+        unfonted, said = frames(PALPA_FONT="/nowhere/font.ttf")
+        self.assertEqual(unfonted, bare)
+        self.assertEqual(said.count("without words"), 1, said)
+        self.assertEqual(len(said.splitlines()), 1, said)
 
     def test_nothing_is_overwritten_unless_asked_and_ours(self):
         self.film.write_bytes(b"somebody's")

@@ -31,7 +31,7 @@ MOST_MEAN = 1.5     # levels, over all channels
 
 def draw(scene, image, *options):
     subprocess.run([PROGRAM, "render", ROOT / "scenes" / scene, "-o", image, "--size", "192x128",
-                    "--samples", "4", *options], check=True, stdout=subprocess.DEVNULL)
+                    "--samples", "4", "--no-words", *options], check=True, stdout=subprocess.DEVNULL)
 
 
 def pictures():

@@ -2,9 +2,13 @@
 import os
 import struct
 import subprocess
+import sys
 import tempfile
 import unittest
 from pathlib import Path
+
+sys.path.append(str(Path(__file__).resolve().parents[1] / "support"))
+from read_png import read_png  # noqa: E402
 
 PROGRAM = os.environ["PALPA_PROGRAM"]
 WATER = Path(os.environ["PALPA_ROOT"]) / "scenes" / "water"
@@ -115,6 +119,78 @@ class Render(unittest.TestCase):
                 self.assertEqual(said == plain, key == "colour")
                 self.assertEqual(said, self.draw("--set", f"view.{key}={value}", *option))
 
+    WORDS = ("--hydrogen-bonds", "none", "--no-arrow", "--colour", "element", "--camera", "0,0")
+
+    def pixels(self, *arguments, size="320x240", **environment):
+        result = self.render("-o", self.image, "--size", size, *self.WORDS, *arguments, **environment)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        (self.width, _), data = read_png(self.image)
+        return data, result.stderr
+
+    def differing(self, one, other):
+        """Pixels, as (x, y), that two pictures of the same size have otherwise."""
+        return [(i // 4 % self.width, i // 4 // self.width)
+                for i in range(0, len(one), 4) if one[i:i + 4] != other[i:i + 4]]
+
+    def test_a_label_stands_beside_what_it_names(self):
+        named = ("--label", "name OH2 and segment FIX")
+        result = subprocess.run([PROGRAM, "select", WATER, named[1]], capture_output=True, text=True)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        plain, _ = self.pixels()
+        worded, said = self.pixels(*named)
+        self.assertEqual(said, "")
+        written = self.differing(plain, worded)
+        self.assertGreater(len(written), 200)
+        xs, ys = zip(*written)
+        # Of 12 pixels a letter: some ten letters in one line, with the halo.
+        self.assertLess(max(ys) - min(ys), 24)
+        self.assertLess(max(xs) - min(xs), 140)
+        self.assertGreater(max(xs) - min(xs), 40)
+        dark = sum(max(worded[4 * (y * self.width + x):][:3]) < 64 for x, y in written)
+        light = sum(min(worded[4 * (y * self.width + x):][:3]) > 192 for x, y in written)
+        self.assertGreater(dark, 50)
+        self.assertGreater(light + dark, len(written) / 3)
+        # Without words the label is none, and with twice the pixels it is twice as large.
+        self.assertEqual(self.pixels(*named, "--no-words")[0], plain)
+        large_plain, _ = self.pixels(size="1440x1080")
+        large = self.differing(large_plain, self.pixels(*named, size="1440x1080")[0])
+        large_height = max(y for _, y in large) - min(y for _, y in large)
+        self.assertAlmostEqual(large_height / (max(ys) - min(ys)), 2, delta=0.35)
+
+    def test_words_are_drawn_after_samples_are_averaged(self):
+        named = ("--label", "name OH2 and segment FIX")
+        bare, worded, bare_16, worded_16 = (
+            self.pixels(*more)[0] for more in ((), named, ("--samples", 16), (*named, "--samples", 16)))
+        white = b"\xff" * 4
+        on_white = [i for i in range(0, len(bare), 4) if bare[i:i + 4] == white == bare_16[i:i + 4]]
+        written = [i for i in on_white if worded[i:i + 4] != white]
+        self.assertGreater(len(written), 40)
+        self.assertTrue(all(worded[i:i + 4] == worded_16[i:i + 4] for i in on_white))
+
+    def test_colours_that_need_it_have_a_legend_in_the_corner(self):
+        plain, _ = self.pixels("--colour", "charge", "--no-words")
+        legend = self.differing(plain, self.pixels("--colour", "charge")[0])
+        self.assertGreater(len(legend), 300)
+        self.assertLess(max(x for x, _ in legend), 200)
+        self.assertGreater(min(y for _, y in legend), 120)
+        # Of its colour at -1 e, 0 and 1 e only the middle is white.
+        self.assertEqual(self.pixels("--no-words"), self.pixels())  # elements are known without
+
+    def test_without_a_font_there_is_a_warning_and_a_picture(self):
+        named = ("--label", "name OH2")
+        plain, _ = self.pixels("--no-words", *named)
+        for font in ("/nowhere/font.ttf", str(WATER / "scene.toml")):
+            with self.subTest(font=font):
+                bare, said = self.pixels(*named, PALPA_FONT=font)
+                self.assertEqual(bare, plain)
+                self.assertEqual(said.count("without words"), 1, said)
+                self.assertEqual(len(said.strip().splitlines()), 1, said)
+                self.assertEqual(self.pixels(*named, "--no-words", PALPA_FONT=font), (plain, ""))
+
+    def test_labels_without_room_are_counted(self):
+        _, said = self.pixels("--label", "name OH2", size="48x12")  # a line is higher than that
+        self.assertRegex(said, r"^note: \d+ of \d+ labels found no room")
+
     def test_clip_leaves_out_what_is_in_front(self):
         # From the left the fixed water stands before the moved one.
         view = ("--camera=-90,0", "--as", "space-filling", "--set", "hand.start_angstrom=3")
@@ -144,6 +220,15 @@ class Render(unittest.TestCase):
         self.assertEqual(again.returncode, 0, again.stderr)
         self.assertEqual(len(list((recording / "frames").iterdir())), 2)
         self.assertEqual((recording / "frames" / "0000.png").read_bytes(), first)
+
+    def test_frames_of_a_recording_have_words(self):
+        frames = []
+        for font in ({}, {"PALPA_FONT": "/nowhere/font.ttf"}):
+            result, recording = self.run_recorded("--fps", "1", "--frame-size", "160x120", **font)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertEqual(result.stderr.count("without words"), len(font), result.stderr)
+            frames.append((recording / "frames" / "0000.png").read_bytes())
+        self.assertNotEqual(*frames)
 
     def test_without_vulkan_the_trace_is_still_written(self):
         self.run_recorded("--fps", "1", "--frame-size", "64x48")

@@ -68,7 +68,8 @@ class Scripts(unittest.TestCase):
         names = {"CLI11": "cli11", "Eigen3": "eigen3", "fmt": "fmt", "Catch2": "catch2",
                  "nlohmann_json": "nlohmann-json", "tomlplusplus": "tomlplusplus",
                  "glm": "glm", "hwy": "highway", "PNG": "libpng", "Vulkan": "vulkan",
-                 "glfw3": "glfw3", "SDL2": "sdl2", "ZLIB": "zlib", "hidapi": "hidapi", "imgui": "imgui"}
+                 "glfw3": "glfw3", "SDL2": "sdl2", "ZLIB": "zlib", "hidapi": "hidapi", "imgui": "imgui",
+                 "Freetype": "freetype"}
         self.assertIn('"builtin-baseline"', vcpkg)
         for package in found - {"Threads", "Python3", "PkgConfig"}:
             self.assertIn(f'"{names[package]}"', vcpkg)

@@ -191,6 +191,33 @@ TEST_CASE("nothing is cut off, and the picture's middle is covered by no panel",
     }
 }
 
+TEST_CASE("the legend of colours stands above what is below the picture", "[ui][overlay]") {
+    const auto size = GENERATE(ImVec2(900, 600), ImVec2(1280, 720), ImVec2(1920, 1080));
+    const bool plays = GENERATE(false, true);
+    INFO(size.x << " x " << size.y << (plays ? ", plays" : ""));
+    Screen screen;
+    ImGui::GetIO().DisplaySize = size;
+    screen.status.legend = {{{1, 0, 0}, "helix"}, {{0, 0, 1}, "strand"}};
+    if (plays) screen.readout.playback = PlaybackState{.frames = 100};
+    for (int i = 0; i < 4; ++i) screen.frame();
+
+    const ImGuiWindow* const legend = ImGui::FindWindowByName("##legend");
+    const ImGuiWindow* const below = ImGui::FindWindowByName(plays ? "Trajectory" : "Lesson");
+    REQUIRE(legend);
+    REQUIRE(below);
+    REQUIRE(below->Active);
+    const ImRect box = legend->Rect();
+    CHECK(box.Max.y <= below->Pos.y);
+    CHECK(box.Max.y >= below->Pos.y - 0.2F * size.y);
+    const ScreenArea free = screen.overlay.free_area(size.x, size.y);
+    CHECK(box.Min.x >= free.left);
+    CHECK(box.Max.x <= 0.5F * (free.left + free.right));
+
+    screen.overlay.perform(Action::ToggleOverlay, screen.commands);
+    screen.frame();
+    CHECK_FALSE(legend->Active);
+}
+
 TEST_CASE("the help breaks its lines where a screen is narrow, and keys only where they must",
           "[ui][overlay]") {
     struct Row {

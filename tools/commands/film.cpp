@@ -7,6 +7,8 @@
 #include "render/film.h"
 #include "render/renderer.h"
 #include "session/run_headless.h"
+#include "tools/commands/print_run.h"
+#include "tools/commands/worded_picture.h"
 #include "view/first_view.h"
 
 #include <fmt/format.h>
@@ -21,8 +23,13 @@ int make_film(SceneDescription scene, World& world, const ViewSettings& view,
               const RenderOptions& options, ProgressLine& progress) {
     GpuDevice gpu{GpuOptions{}};
     Renderer renderer(gpu);
-    const auto side = static_cast<std::uint32_t>(std::lround(std::sqrt(options.samples)));
-    renderer.check_size({side * options.width, side * options.height});
+    const PictureSize size{options.width, options.height, options.samples};
+    std::vector<std::string> warnings;
+    std::optional<TextPainter> painter;
+    if (options.words) painter = open_words(warnings);
+    progress.wipe();
+    print_warnings(warnings);
+    renderer.check_size(size.drawn());
     Film film({*options.film, options.film_fps, options.overwrites});
 
     const auto most =
@@ -33,16 +40,13 @@ int make_film(SceneDescription scene, World& world, const ViewSettings& view,
     const auto draw = [&] {
         const double now_s = static_cast<double>(due++) / options.film_fps;
         if (now_s < options.time_s - 1e-9 || film.frame_count() >= most) return;
-        FrameScene frame = builder.build(world, find_contacts(world), view);
+        WordedFrame frame = build_worded_frame(builder, world, view);
         if (!camera) {
-            camera = first_camera(scene.view, frame, framed_atoms(scene.view, world),
+            camera = first_camera(scene.view, frame.scene, framed_atoms(scene.view, world),
                                   aspect_of(options.width, options.height));
         }
-        finish_frame(scene.view, world, *camera, frame);
-        frame.outline = static_cast<int>(side);
-        const Picture drawn = renderer.draw(frame, side * options.width, side * options.height,
-                                            PictureContent::Colours);
-        film.add(side == 1 ? drawn : average_down(drawn, side));
+        finish_frame(scene.view, world, *camera, frame.scene);
+        film.add(draw_worded(renderer, size, frame, painter));
     };
     scene.seconds = options.time_s + options.film_seconds;
     EmulatedOmni device(build_emulated_omni(scene, world));

@@ -291,4 +291,10 @@ void print_summary(const SceneDescription& scene, const Summary& s) {
                s.step_p99_us, s.steps);
 }
 
+void print_warnings(std::span<const std::string> warnings) {
+    for (const std::string& warning : warnings) {
+        fmt::print(stderr, "warning: {}\n", printable(warning));
+    }
+}
+
 }  // namespace palpa

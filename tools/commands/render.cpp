@@ -16,7 +16,9 @@
 #include "tools/commands/choice.h"
 #include "tools/commands/command.h"
 #include "tools/commands/film.h"
+#include "tools/commands/print_run.h"
 #include "tools/commands/progress.h"
+#include "tools/commands/worded_picture.h"
 #include "view/clip.h"
 #include "view/first_view.h"
 #include "view/hydrogen_bonds.h"
@@ -29,6 +31,7 @@
 #include <optional>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 namespace palpa {
 namespace {
@@ -179,22 +182,26 @@ int render_command(const RenderOptions& options) {
         run_headless(scene, world, device, {}, nullptr, progress.shares("playing"));
     }
     tell(on_stage, "drawing");
-    FrameScene frame = build_frame(world, view);
+    FrameBuilder builder;
+    WordedFrame frame = build_worded_frame(builder, world, view);
     const float aspect = aspect_of(options.width, options.height);
     const OrbitCamera camera =
-        first_camera(scene.view, frame, framed_atoms(scene.view, world), aspect);
-    finish_frame(scene.view, world, camera, frame);
+        first_camera(scene.view, frame.scene, framed_atoms(scene.view, world), aspect);
+    finish_frame(scene.view, world, camera, frame.scene);
 
     GpuDevice gpu{GpuOptions{}};
     Renderer renderer(gpu);
-    const auto side = static_cast<std::uint32_t>(std::lround(std::sqrt(options.samples)));
-    frame.outline = static_cast<int>(side);
-    frame.clear_background = options.transparent;
-    const Picture drawn =
-        renderer.draw(frame, side * options.width, side * options.height, PictureContent::Colours);
-    const Picture picture = side == 1 ? drawn : average_down(drawn, side);
+    std::vector<std::string> warnings;
+    std::optional<TextPainter> painter;
+    if (options.words) painter = open_words(warnings);
+    frame.scene.clear_background = options.transparent;
+    LeftOutWords left_out;
+    const Picture picture = draw_worded(renderer, {options.width, options.height, options.samples},
+                                        frame, painter, &left_out);
     write_png(options.image, picture, existing);
     progress.wipe();
+    print_warnings(warnings);
+    print_left_out(left_out, frame.words);
     fmt::print("{}: {}x{} on {}\n", options.image.string(), picture.width, picture.height,
                gpu.name());
     if (options.coordinates) {
@@ -213,13 +220,15 @@ int render_command(const RenderOptions& options) {
 }
 
 FrameWriter::FrameWriter(const std::filesystem::path& folder, std::uint32_t width,
-                         std::uint32_t height, const ViewDescription& view)
+                         std::uint32_t height, const ViewDescription& view,
+                         std::optional<TextPainter> painter)
     : folder_(folder),
       width_(width),
       height_(height),
       view_(view),
       gpu_(GpuOptions{}),
-      renderer_(gpu_) {
+      renderer_(gpu_),
+      painter_(std::move(painter)) {
     renderer_.check_size({width, height});
 }
 
@@ -227,14 +236,14 @@ void FrameWriter::write(World& world) {
     std::error_code error;
     std::filesystem::create_directories(folder_, error);
     if (error) throw LoadError({folder_.string()}, "cannot be made: " + error.message());
-    FrameScene frame = builder_.build(world, find_contacts(world), first_settings(view_, world));
+    WordedFrame frame = build_worded_frame(builder_, world, first_settings(view_, world));
     if (written_ == 0) {
-        camera_ =
-            first_camera(view_, frame, framed_atoms(view_, world), aspect_of(width_, height_));
+        camera_ = first_camera(view_, frame.scene, framed_atoms(view_, world),
+                               aspect_of(width_, height_));
     }
-    finish_frame(view_, world, camera_, frame);
+    finish_frame(view_, world, camera_, frame.scene);
     write_png(folder_ / fmt::format("{:04}.png", written_++),
-              renderer_.draw(frame, width_, height_, PictureContent::Colours));
+              draw_worded(renderer_, {width_, height_}, frame, painter_));
 }
 
 namespace {
@@ -324,6 +333,8 @@ void add_render(CLI::App& program, ProgramCommand& chosen) {
     render.add_option("--samples", options.samples, "averaged for a pixel: 1, 4, 9 or 16")
         ->check(CLI::IsMember({1, 4, 9, 16}));
     add_negation(render, "--no-arrow", options.arrow, "without the force on the molecule");
+    add_negation(render, "--no-words", options.words,
+                 "without labels, lengths, forces and the legend of colours");
     add_set_option(render, options.settings);
 }
 

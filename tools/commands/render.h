@@ -3,6 +3,7 @@
 #include "ecs/world.h"
 #include "gpu/device.h"
 #include "render/renderer.h"
+#include "render/text.h"
 #include "view/build_frame.h"
 #include "view/orbit_camera.h"
 
@@ -43,6 +44,7 @@ struct RenderOptions {
     std::uint32_t samples = 1;  // a pixel: 1, 4, 9 or 16
     bool overwrites = false;    // earlier files of this command
     bool arrow = true;
+    bool words = true;
 };
 
 // Throws LoadError or GpuError. Returns the exit code.
@@ -60,12 +62,13 @@ void finish_frame(const ViewDescription& view, const World& world, const OrbitCa
 // Of a picture of this size.
 float aspect_of(std::uint32_t width, std::uint32_t height);
 
-// frames/0000.png and on in a recording, all from where the scene is seen at first.
+// frames/0000.png and on in a recording, all from where the scene is seen at first; with words
+// where there is a painter.
 class FrameWriter {
 public:
     // Throws GpuError where nothing can draw, or nothing of that size.
     FrameWriter(const std::filesystem::path& folder, std::uint32_t width, std::uint32_t height,
-                const ViewDescription& view);
+                const ViewDescription& view, std::optional<TextPainter> painter);
 
     // Throws GpuError, or LoadError where it cannot be written.
     void write(World& world);
@@ -78,6 +81,7 @@ private:
     Renderer renderer_;
     FrameBuilder builder_;
     OrbitCamera camera_;
+    std::optional<TextPainter> painter_;
 };
 
 }  // namespace palpa

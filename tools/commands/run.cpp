@@ -22,6 +22,7 @@
 #include "tools/commands/print_run.h"
 #include "tools/commands/progress.h"
 #include "tools/commands/render.h"
+#include "tools/commands/worded_picture.h"
 
 #include <fmt/format.h>
 #include <cstddef>
@@ -139,17 +140,15 @@ std::unique_ptr<FrameWriter> open_frames(const RunOptions& options, const ViewDe
                                          std::vector<std::string>& warnings) {
     if (!options.record || options.frames_per_second <= 0) return nullptr;
     try {
-        return std::make_unique<FrameWriter>(*options.record / "frames", options.frame_width,
-                                             options.frame_height, view);
+        std::vector<std::string> lacking;
+        auto writer =
+            std::make_unique<FrameWriter>(*options.record / "frames", options.frame_width,
+                                          options.frame_height, view, open_words(lacking));
+        warnings.insert(warnings.end(), lacking.begin(), lacking.end());
+        return writer;
     } catch (const GpuError& error) {
         warnings.push_back(fmt::format("no frames are drawn: {}", error.what()));
         return nullptr;
-    }
-}
-
-void print_warnings(std::span<const std::string> warnings) {
-    for (const std::string& warning : warnings) {
-        fmt::print(stderr, "warning: {}\n", printable(warning));
     }
 }
 
