@@ -262,8 +262,13 @@ std::vector<LegendEntry> find_legend(const World& world, Colouring colouring) {
         case Colouring::Chain:
             return {};
         case Colouring::Residue:
-            for (const ResidueClass& of : residue_classes)
-                legend.push_back({categorical_colour(of.colour), std::string(of.text)});
+            for (const ResidueClass& of : residue_classes) {
+                const auto is_of_it = [&](const AtomName& name) {
+                    return class_of(name.residue) == &of;
+                };
+                if (std::ranges::any_of(world.resource<AtomTable>().names, is_of_it))
+                    legend.push_back({categorical_colour(of.colour), std::string(of.text)});
+            }
             return legend;
         case Colouring::Structure:
             for (const auto& [colour, text] : structure_colours)

@@ -163,7 +163,7 @@ int render_command(const RenderOptions& options) {
             : Existing::Refuse;
     const std::int64_t pixels = std::int64_t{options.width} * options.height * options.samples;
     if (pixels > most_pixels) {
-        throw LoadError({"--samples"},
+        throw LoadError({options.samples > 1 ? "--samples" : "--size"},
                         fmt::format("{} pixels in all; expected {} at most", pixels, most_pixels));
     }
     if (!options.camera.empty()) (void)read_camera(options.camera);  // before anything is loaded
