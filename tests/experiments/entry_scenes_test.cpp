@@ -27,6 +27,6 @@ TEST_CASE("each scene of an entry runs for a second and is felt", "[session][ent
     CHECK(std::ranges::all_of(end, [](const Vec3& place) { return place.allFinite(); }));
     // The hand has moved by then, and what it holds with it.
     CHECK(end != start);
-    CHECK(summary.largest_felt_N > 0.05);
+    CHECK(summary.largest_felt_N > 0.01);  // the stroke has begun half a second before
     CHECK(summary.largest_felt_N < 3.3);
 }
