@@ -113,10 +113,14 @@ std::string format_joints(const std::vector<std::string>& rigid, const SceneTuni
     return text.empty() ? text : "\n[joints]\n" + text;
 }
 
-// So that what is in the hand is seen: of some hundred atoms one sees all.
-std::string format_view(std::size_t atoms) {
-    constexpr std::size_t most_all_seen = 400;
-    return atoms <= most_all_seen ? "" : "\n[view]\nrepresentation = \"pocket\"\n";
+// So that what is in the hand is seen: of some hundred atoms one sees all, and nothing stands
+// before a ligand.
+std::string format_view(std::size_t atoms, const HandChoice& hand) {
+    constexpr std::size_t most_all_seen = 400, most_in_pocket = 300;
+    if (atoms <= most_all_seen) return "";
+    const bool is_in_pocket = hand.atom.empty() && hand.held.size() <= most_in_pocket;
+    return fmt::format("\n[view]\nrepresentation = \"pocket\"\n{}",
+                       is_in_pocket ? "clip = true\n" : "");
 }
 
 std::string format_coupling(const SceneTuning& tuning) {
@@ -172,7 +176,7 @@ std::string format_scene(const Structure& structure, std::span<const SystemSegme
     if (!hand.atom.empty()) scene += fmt::format("atom = {}\n", in_quotes(hand.atom));
     scene += fmt::format("\n[hand]\nstroke = \"lead\"\npath = [{}]\n", format_path(way));
     scene += format_coupling(tuning);
-    scene += format_view(structure.names.size());
+    scene += format_view(structure.names.size(), hand);
     scene += fmt::format("\n[run]\n{}period_ms = {}\nseconds = 10\n",
                          format_note(tuning.period_note), tuning.period_ms);
     return scene;

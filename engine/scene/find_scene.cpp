@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t most_entries = 1000;  // of a folder that are looked at
-constexpr std::size_t most_named = 8;       // in a message
+constexpr std::size_t most_named = 20;      // in a message
 constexpr const char* usual_name = "scene.toml";
 
 // Whether a command makes its files, and has not yet.

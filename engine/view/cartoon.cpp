@@ -2,6 +2,7 @@
 
 #include "view/build_frame.h"
 #include "view/cartoon_nucleotides.h"
+#include "view/residue_structure.h"
 #include "view/ribbon_path.h"
 #include "view/sweep.h"
 
@@ -270,9 +271,9 @@ private:
 };
 
 std::size_t find_oxygen(const AtomTable& atoms, const ResidueSpan& residue) {
-    for (std::size_t i = residue.first; i < residue.end; ++i)
-        if (atoms.names[i].atom == "O") return i;
-    return SIZE_MAX;
+    std::size_t oxygen = find_atom(atoms, residue, "O");
+    if (oxygen == residue.end) oxygen = find_atom(atoms, residue, "OT1");
+    return oxygen == residue.end ? SIZE_MAX : oxygen;
 }
 
 bool is_next(const AtomTable& atoms, const ResidueSpan& a, const ResidueSpan& b) {

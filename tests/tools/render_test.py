@@ -245,7 +245,7 @@ class Render(unittest.TestCase):
             with self.subTest(size=size):
                 self.assert_bad_input(self.render("-o", self.image, "--size", size), "is no size")
         self.assert_bad_input(self.render("-o", self.image, "--size", "99999x99999"),
-                              "pixels in all")
+                              "has more than")
 
     def test_what_cannot_be_drawn_or_written(self):
         self.assert_bad_input(self.render("-o", self.image, "--as", "liquorice"),
