@@ -658,7 +658,7 @@ class Session(unittest.TestCase):
             self.quit(display)  # as saved again: nothing to ask
         self.assertIn('mode = "2"', saved.read_text())
         self.assertIn('representation = "space-filling"', saved.read_text())
-        self.assertIn('colour = "element"', saved.read_text())
+        self.assertIn('colour = "residue"', saved.read_text())
         self.assertFalse((scene / "scene-3.toml").exists())
         for options in ((saved, "--check"), (saved, "--headless", "--seconds", "0.1")):
             result = subprocess.run([PROGRAM, "run", *options], capture_output=True, text=True)
