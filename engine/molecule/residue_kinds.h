@@ -23,7 +23,7 @@ enum class ResidueKind : std::uint8_t {
 // By its name in the PDB, in CHARMM or in other programs.
 bool is_water(std::string_view residue) noexcept;
 
-// Of each residue, a range of the table. By its atoms where these tell: a water is an oxygen with
+// Of each residue, a range of the table. By its atoms where these decide: a water is an oxygen with
 // two hydrogens, an amino acid has N, CA and C, a nucleotide a ribose and a bond to the next
 // nucleotide. Else by its name: of the PDB (molecule/components.h) and of CHARMM36.
 std::vector<ResidueKind> find_residue_kinds(const AtomTable& atoms,

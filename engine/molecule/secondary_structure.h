@@ -25,7 +25,7 @@ inline bool is_helix(SecondaryStructure structure) noexcept {
            structure == SecondaryStructure::PiHelix;
 }
 
-// Where a residue has these four atoms, Å. One that lacks an atom is left out, and the next one
+// Where a residue has these four atoms, Å. One that lacks an atom is omitted, and the next one
 // then does not follow.
 struct BackboneResidue {
     Vec3 n, alpha, c, o;

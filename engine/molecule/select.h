@@ -40,7 +40,7 @@ struct SelectionContext {
     std::span<const std::uint32_t> hand = {};  // atoms that hands hold
     // Of its residue, one entry per atom; empty where nobody has found it.
     std::span<const SecondaryStructure> structure = {};
-    // One entry per atom; empty where chains are told by segments: "A" or "PROA", as CHARMM-GUI
+    // One entry per atom; empty where segments name the chains: "A" or "PROA", as CHARMM-GUI
     // names them.
     std::span<const std::string> chains = {};
 };

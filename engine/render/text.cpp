@@ -111,7 +111,7 @@ struct Coverage {
     }
 };
 
-// The glyph is used up. One that FreeType cannot draw is left out.
+// The glyph is used up. One that FreeType cannot draw is omitted.
 void add_glyph(OwnedGlyph glyph, int left, int baseline, Coverage& coverage) {
     FT_Glyph drawn = glyph.release();
     const bool fails = FT_Glyph_To_Bitmap(&drawn, FT_RENDER_MODE_NORMAL, nullptr, 1) != 0;

@@ -1,4 +1,4 @@
-// Colours that stand for numbers, and colours that tell many things apart. Linear RGB.
+// Colours that stand for numbers, and colours that distinguish many things. Linear RGB.
 #pragma once
 #include <array>
 #include <cstddef>

@@ -20,7 +20,7 @@ ResidueKind kind_of(const std::string& residue, std::initializer_list<const char
 
 }  // namespace
 
-TEST_CASE("residues are what their atoms are, and their names where these do not tell",
+TEST_CASE("residues are what their atoms are, and their names where these do not decide",
           "[molecule][residue]") {
     CHECK(kind_of("HOH", {"O"}) == ResidueKind::Water);
     CHECK(kind_of("OPC", {"O", "H1", "H2"}) == ResidueKind::Water);

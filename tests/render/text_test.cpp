@@ -115,7 +115,7 @@ TEST_CASE("letters are as large as asked", "[render][text]") {
     CHECK(text_size_for(64) == 12);
 }
 
-TEST_CASE("letters beyond ASCII are one letter each, and bytes that are no text are told",
+TEST_CASE("letters beyond ASCII are one letter each, and bytes that are no text are reported",
           "[render][text]") {
     std::optional<TextPainter> painter = find_painter();
     if (!painter) return;
@@ -186,7 +186,7 @@ TEST_CASE("a colour over a pixel is mixed by its opacity", "[render][picture]") 
     CHECK(srgb_code(2) == 255);
 }
 
-TEST_CASE("a font that is none is told", "[render][text]") {
+TEST_CASE("a font that is none is reported", "[render][text]") {
     CHECK_THROWS_AS(TextPainter(test::in_project("README.md")), LoadError);
     CHECK_THROWS_AS(TextPainter("/nowhere/font.ttf"), LoadError);
 }

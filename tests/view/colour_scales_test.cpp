@@ -48,7 +48,7 @@ TEST_CASE("away from 0 a potential's colour is darker and darker for every kind 
                 last = now;
             }
         }
-        // Equal amounts of either sign are told apart.
+        // Equal amounts of either sign differ.
         for (double potential = 1; potential <= 5; potential += 1)
             CHECK(test::colour_difference(vision, doubles_of(potential_colour(potential)),
                                           doubles_of(potential_colour(-potential))) > 15);

@@ -31,8 +31,8 @@ public:
     // How far from its centre a ball of this radius has an influence on the surface, Å.
     virtual double reach(double radius) const noexcept = 0;
 
-    // The balls as they now stand; those that moved since the last call are told. The grid is kept
-    // by the caller.
+    // The balls as they now stand; `moved` lists those that moved since the last call. The grid is
+    // kept by the caller.
     virtual void move(const BallGrid& grid, std::span<const MovedBall> moved) = 0;
 
     // At every point of a block. False, with `samples` untouched, where no ball has an influence.

@@ -71,8 +71,8 @@ bool GaussianField::sample(const BlockIndex& block, BlockSamples& samples) {
     if (!has_any) return false;
     // A logarithm changes more evenly between two points.
     const float least = std::exp(static_cast<float>(-2 * largest_exponent));
-    // Whole packets: one number left over would be taken by another logarithm, and the last point
-    // of a block, a corner that others share, would differ in its last bit.
+    // Whole packets: a single remaining number would be taken by another logarithm, and the last
+    // point of a block, a corner that others share, would differ in its last bit.
     constexpr std::size_t widest = 16;
     constexpr std::size_t padded = (points_of_block + widest - 1) / widest * widest;
     Eigen::Array<float, padded, 1> logarithms;

@@ -6,7 +6,7 @@ namespace palpa {
 
 // Where sum_i exp(-sharpness (|p - c_i|^2/R_i^2 - 1)) is 1: a lone atom's sphere has its own
 // radius; beside each other atoms flow together, the more the lower the sharpness is (J. F. Blinn,
-// ACM Trans. Graph. 1, 235 (1982), whose blobbiness is -sharpness). Terms below e^-7 are left out.
+// ACM Trans. Graph. 1, 235 (1982), whose blobbiness is -sharpness). Terms below e^-7 are omitted.
 // The field is the sum's logarithm.
 class GaussianField : public SurfaceField {
 public:

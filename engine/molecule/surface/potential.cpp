@@ -18,7 +18,7 @@ struct Charge {
     float x, y, z, q;
 };
 
-// Relative to a place near by, so that single precision has digits left. Those of 0 are left out.
+// Relative to a place near by, so that single precision has digits left. Those of 0 are omitted.
 std::vector<Charge> charges_from(const Vec3& origin, std::span<const Vec3> positions,
                                  std::span<const double> charges) {
     std::vector<Charge> list;

@@ -10,8 +10,8 @@
 namespace palpa {
 
 // What is between a charge and a place weakens the potential by this factor. Growing with distance
-// it stands for the water that gets between, and charges near by tell: 4 r is a common choice. 80
-// without growth is water everywhere, and the net charge tells.
+// it stands for the water that gets between, and charges near by count more: 4 r is a common
+// choice. 80 without growth is water everywhere, and the net charge tells.
 struct Dielectric {
     double constant = 4;
     bool grows_with_distance = true;  // times the distance in Å

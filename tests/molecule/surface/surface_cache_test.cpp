@@ -180,7 +180,7 @@ TEST_CASE("at a cloud's Gaussian surface the sum over all atoms is 1", "[molecul
               Approx(gap).margin(0.3));  // twice a step to the surface
     }
     CHECK(turned < mesh.places.size() / 200);
-    // Terms below e^-7 = 0.0009 are left out, tens of them.
+    // Tens of terms below e^-7 = 0.0009 are omitted.
     CHECK(std::sqrt(square / static_cast<double>(mesh.places.size())) < 0.02);
 }
 
@@ -205,7 +205,7 @@ TEST_CASE("one atom's move changes all blocks that it has to", "[molecule][surfa
     }
 }
 
-TEST_CASE("blocks that do not change are not told", "[molecule][surface]") {
+TEST_CASE("blocks that do not change are not listed", "[molecule][surface]") {
     const Cloud cloud = make_cloud(700, 10, 6);
     SurfaceCache cache(cloud.radii, {});
     cache.update(cloud.places);
@@ -215,10 +215,10 @@ TEST_CASE("blocks that do not change are not told", "[molecule][surface]") {
     move_near(places, {-8, -8, -8}, 4, 0.3);
     const SurfaceUpdate update = cache.update(places);
 
-    const std::set<BlockIndex> told(update.changed.begin(), update.changed.end());
-    REQUIRE(!told.empty());
+    const std::set<BlockIndex> listed(update.changed.begin(), update.changed.end());
+    REQUIRE(!listed.empty());
     for (const auto& [index, block] : before) {
-        if (told.contains(index)) continue;
+        if (listed.contains(index)) continue;
         REQUIRE(cache.blocks().contains(index));
         CHECK(cache.blocks().at(index).mesh.places == block.mesh.places);
         CHECK(cache.blocks().at(index).mesh.normals == block.mesh.normals);
