@@ -307,7 +307,7 @@ void add_proteins(const AtomTable& atoms, std::span<const ResidueSpan> residues,
 CartoonDetail cartoon_detail(std::size_t residues) noexcept {
     if (residues <= 1000) return {8, 12};
     if (residues <= 4000) return {6, 10};
-    return {4, 8};
+    return {3, 6};
 }
 
 CartoonParts add_cartoon(const AtomTable& atoms, std::span<const ResidueSpan> residues,
