@@ -31,11 +31,6 @@ using Colours = std::vector<glm::vec3>;
 
 constexpr glm::vec3 no_value{0.45F};
 
-const ElementLook& look_of(std::string_view element) {
-    const auto found = std::ranges::find(element_looks, element, &ElementLook::element);
-    return found == element_looks.end() ? other_element : *found;
-}
-
 // Carbons of what is held in their own colour, others by element or chain.
 Colours colour_elements(const World& world, bool by_chain) {
     const AtomTable& atoms = world.resource<AtomTable>();
@@ -208,16 +203,16 @@ std::vector<glm::vec3> find_colours(const World& world, Colouring colouring,
                                     std::span<const ResidueSpan> residues,
                                     std::span<const SecondaryStructure> structure) {
     const AtomTable& atoms = world.resource<AtomTable>();
+    if (colouring == Colouring::Force) return colour_pushes(world);
+    if (colouring == Colouring::Activity) return colour_turns(world);
     Colours colours = colour_elements(world, colouring == Colouring::Chain);
     const Colours elements = colours;
     switch (colouring) {
         case Colouring::Element:
         case Colouring::Chain:
-            return colours;
         case Colouring::Force:
-            return colour_pushes(world);
         case Colouring::Activity:
-            return colour_turns(world);
+            return colours;
         case Colouring::Charge:
         case Colouring::Potential:
             colour_residues(residues, colours, [&](const ResidueSpan& residue) {

@@ -113,7 +113,7 @@ glm::vec3 as_float(const Vec3& v) {
     return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
 }
 
-// What is kept between frames.
+// The caches of FrameBuilder.
 struct FrameBuilder::Kept {
     ResidueStructure structure;
     std::vector<KeptLayer> layers;                  // that of everything first

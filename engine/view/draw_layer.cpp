@@ -19,11 +19,6 @@ namespace {
 constexpr float ball_share = 0.28F, stick_radius = 0.14F, licorice_radius = 0.28F;
 constexpr float thin_radius = 0.11F, line_radius = 0.05F;
 
-float radius_of(std::string_view element) {
-    const auto found = std::ranges::find(element_looks, element, &ElementLook::element);
-    return found == element_looks.end() ? other_element.radius : found->radius;
-}
-
 // How thick an atom and the sticks at it are drawn (Å); 0: not at all.
 struct Thickness {
     float atom = 0, stick = 0;
@@ -31,7 +26,7 @@ struct Thickness {
 
 // Of others than what is in hand only hydrogens of hydrogen bonds are drawn where they are thin.
 Thickness thickness_of(Representation representation, std::string_view element, bool in_hand) {
-    const float size = radius_of(element);
+    const float size = look_of(element).radius;
     switch (representation) {
         case Representation::SpaceFilling:
             return {size, 0};
@@ -286,7 +281,7 @@ void draw_surface(const FrameParts& parts, std::span<const AtomLook> looks,
     if (!kept.cache || kept.atoms != chosen) {
         std::vector<double> radii;
         for (const std::uint32_t atom : chosen)
-            radii.push_back(static_cast<double>(radius_of(element_of(table, atom))));
+            radii.push_back(static_cast<double>(look_of(element_of(table, atom)).radius));
         kept.cache.emplace(std::move(radii), surface_settings(chosen.size()));
         kept.atoms = chosen;
         kept.potentials.clear();

@@ -25,6 +25,12 @@ inline constexpr std::array element_looks = std::to_array<ElementLook>({
 });
 inline constexpr ElementLook other_element{"", 1.70F, {0.104F, 0.009F, 0.009F}};
 
+inline const ElementLook& look_of(std::string_view element) noexcept {
+    for (const ElementLook& look : element_looks)
+        if (look.element == element) return look;
+    return other_element;
+}
+
 // Of carbons: the grabbed molecule's, and the chains' in turn.
 inline constexpr glm::vec3 grabbed_carbon{0.095F, 0.681F, 0.238F};
 inline constexpr std::array chain_carbons = std::to_array<glm::vec3>({{0.474F, 0.616F, 0.830F},

@@ -99,7 +99,7 @@ void RibbonPath::turn(std::span<const glm::vec3> aside) {
     }
 }
 
-// What is left to turn is shared out over the guides between.
+// The remaining twist is spread evenly over the guides between.
 void RibbonPath::turn_gap(std::size_t before, std::size_t behind) {
     glm::vec3 carried = asides_[behind];
     for (std::size_t i = behind - 1; i > before; --i) {
