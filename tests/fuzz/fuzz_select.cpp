@@ -23,7 +23,8 @@ Chosen select(const std::string& text) {
     static const AtomTable atoms = test::one_of_each();
     static const std::vector<NamedRange> molecules{{"a", {0, 20}}, {"b c", {20, 24}}};
     static const std::vector<std::uint32_t> hand{3, 40};
-    static const std::vector<SecondaryStructure> structure(atoms.size(), SecondaryStructure::Helix);
+    static const std::vector<SecondaryStructure> structure(atoms.size(),
+                                                           SecondaryStructure::AlphaHelix);
     return test::or_refused([&] {
         return select_atoms(parse_selection(text), {atoms, molecules, hand, structure, {}});
     });
