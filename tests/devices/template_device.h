@@ -1,4 +1,4 @@
-// A device to begin with (devices/README.md): copy it to devices/NAME.{h,cpp}, and put what talks
+// A device to begin with (devices/adding.md): copy it to devices/NAME.{h,cpp}, and put what talks
 // to the hardware in the place of TemplateWire. It passes the conformance tests as it stands.
 #pragma once
 #include "core/mailbox.h"
