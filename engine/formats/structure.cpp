@@ -14,6 +14,9 @@
 namespace palpa {
 
 Structure read_structure(const std::filesystem::path& path) {
+    if (std::filesystem::is_directory(path)) {
+        throw LoadError({path.string()}, "is a folder; expected a structure file in it");
+    }
     std::string ending = upper_case(path.extension().string());
     if (ending == ".GZ") ending = upper_case(path.stem().extension().string());
     if (ending == ".PDB" || ending == ".ENT") return read_pdb(path);

@@ -23,6 +23,12 @@ double mean_penalty(const ApproximateLigand& ligand) {
     return ligand.types.empty() ? 0 : sum / static_cast<double>(ligand.types.size());
 }
 
+double highest_type_penalty(const ApproximateLigand& ligand) {
+    double highest = 0;
+    for (const TypeChoice& choice : ligand.types) highest = std::max(highest, choice.penalty);
+    return highest;
+}
+
 double highest_penalty(const ApproximateLigand& ligand) {
     double highest = 0;
     for (const Analogy& analogy : ligand.analogies) highest = std::max(highest, analogy.penalty);
@@ -116,11 +122,12 @@ std::string format_stream(const ApproximateLigand& ligand, const ForceField& for
 
 std::vector<std::string> describe(const ApproximateLigand& ligand) {
     std::vector<std::string> lines;
-    lines.push_back(fmt::format(
-        "{}: {} atoms, charge {:+d} e; bonds from {}; mean penalty of types {:.1f}; {} parameters "
-        "by analogy, highest penalty {:.0f}",
-        ligand.name, ligand.graph.size(), total_charge(ligand.graph), ligand.source,
-        mean_penalty(ligand), ligand.analogies.size(), highest_penalty(ligand)));
+    lines.push_back(
+        fmt::format("{}: {} atoms, charge {:+d} e; bonds from {}; penalty of types {:.1f} in the "
+                    "mean, {:.0f} at most; {} parameters by analogy, {:.0f} at most",
+                    ligand.name, ligand.graph.size(), total_charge(ligand.graph), ligand.source,
+                    mean_penalty(ligand), highest_type_penalty(ligand), ligand.analogies.size(),
+                    highest_penalty(ligand)));
     for (const std::string& note : ligand.notes) lines.push_back(ligand.name + ": " + note);
     for (const auto& [a, b] : ligand.doubtful_turns) {
         lines.push_back(fmt::format("{}: the barrier about {}-{} is a guess", ligand.name,

@@ -153,8 +153,8 @@ HandChoice choose_by_name(const Structure& structure, std::span<const SystemSegm
     std::vector<std::string> names;
     for (const SystemSegment& segment : segments) names.push_back(segment.name);
     throw LoadError({structure.file},
-                    fmt::format("--grab {}: expected SEGMENT:RESIDUE, or one of several segments "
-                                "(here: {})",
+                    fmt::format("--grab {}: no such segment or residue; expected SEGMENT:RESIDUE, "
+                                "or one of several segments (here: {})",
                                 grab, fmt::join(names, ", ")));
 }
 

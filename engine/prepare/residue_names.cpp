@@ -506,10 +506,10 @@ private:
         const std::string files = is_covered
                                       ? fmt::format("add {} with --toppar", found->table->files)
                                       : std::string("give the file that has it with --toppar");
-        return fmt::format(
-            "{}{}, leave it out with --without {}, or take a ligand approximately "
-            "with --approximate-ligands",
-            as, files, name);
+        const std::string without = fmt::format("leave it out with --without {}", name);
+        if (settings_.approximates_ligands) return fmt::format("{}{}, or {}", as, files, without);
+        return fmt::format("{}{}, {}, or take a ligand approximately with --approximate-ligands",
+                           as, files, without);
     }
 
     const ForceField& force_field_;

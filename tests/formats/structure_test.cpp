@@ -128,6 +128,9 @@ TEST_CASE("a structure file of another name is refused", "[formats][structure]")
     CHECK_THAT(load_error_of([] { read_structure("a"); }), Catch::StartsWith("a: '' is no ending"));
     CHECK_THAT(load_error_of([] { read_structure("a.gz"); }), Catch::Contains("'.gz' is no"));
     CHECK(load_error_of([] { read_structure("none.pdb"); }) == "none.pdb: no such file");
+    const test::TemporaryFolder folder;
+    CHECK_THAT(load_error_of([&] { read_structure(folder.path()); }),
+               Catch::EndsWith(": is a folder; expected a structure file in it"));
 }
 
 TEST_CASE("the PDB files of the shared data hold what is told of them", "[formats][structure]") {

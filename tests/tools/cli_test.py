@@ -186,6 +186,8 @@ class Cli(unittest.TestCase):
                                 (["run"], "palpa run: scene is required; 'palpa' alone lists"),
                                 (["run", WATER, "--speed", "3"], "palpa run: no option '--speed'"),
                                 (["run", WATER, WATER], "is one argument too many"),
+                                (["prepare", "a.pdb", "-o", "x", "--model", "two"],
+                                 "--model: 'two' is no number"),
                                 (["prepare", "--without", "MK1", "1abc.pdb", "--toppar", "a.rtf", "-o",
                                   "x"],
                                  "structure is required; it stands before options"),

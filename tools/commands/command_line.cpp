@@ -216,6 +216,14 @@ std::string scene_hint(const std::string& typed) {
     }
 }
 
+// The library's "Could not convert: --model = x".
+std::string explain_conversion(const std::string& what) {
+    const std::size_t colon = what.find(": "), equals = what.find(" = ");
+    if (colon == std::string::npos || equals == std::string::npos || equals < colon) return what;
+    return fmt::format("{}: '{}' is no number", what.substr(colon + 2, equals - colon - 2),
+                       printable(what.substr(equals + 3)));
+}
+
 std::string explain_extras(const CLI::App& program, const CLI::App& command) {
     std::vector<std::string> extras = program.remaining(true);
     const std::string extra =
@@ -311,6 +319,7 @@ std::string explain(const CLI::ParseError& error, const CLI::App& program,
         what.ends_with(" missing") && dynamic_cast<const CLI::ArgumentMismatch*>(&error)) {
         what = fmt::format("no value for {}", what.substr(0, colon));
     }
+    if (dynamic_cast<const CLI::ConversionError*>(&error)) what = explain_conversion(what);
     if (dynamic_cast<const CLI::ExtrasError*>(&error)) {
         what = explain_extras(program, *program.get_subcommand(command));
     }
