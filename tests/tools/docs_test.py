@@ -1,0 +1,129 @@
+"""The pages' commands are commands of the program: their options and scenes exist, and those of
+READMEs that take a few seconds and need neither a window nor a device are run as they stand."""
+import functools
+import os
+import pathlib
+import re
+import shlex
+import subprocess
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(os.environ["PALPA_ROOT"])
+PROGRAM = os.environ["PALPA_PROGRAM"]
+PAGES = [page for page in sorted(ROOT.glob("**/*.md"))
+         if page.relative_to(ROOT).parts[0] not in ("build", "recordings")]
+# Inputs of these are made by a script from an entry of the PDB.
+NOT_MADE = ("scenes/groel",)
+
+
+@functools.lru_cache(maxsize=None)
+def help_of(command):
+    return subprocess.run([PROGRAM, command, "--help"], capture_output=True, text=True,
+                          check=False).stdout
+
+
+@functools.lru_cache(maxsize=None)
+def commands():
+    listed = subprocess.run([PROGRAM, "--help"], capture_output=True, text=True, check=True).stdout
+    return set(re.findall(r"^  ([a-z-]+)(?:  |$)", listed, re.M)) | {"help"}
+
+
+def fenced(text):
+    """The lines of fenced blocks; those that end in a backslash with the next."""
+    for block in re.findall(r"^```[^\n]*\n(.*?)^```", text, re.M | re.S):
+        yield from re.sub(r"\\\n\s*", "", block).splitlines()
+
+
+def inline(text):
+    return re.findall(r"(?<!`)`([^`]+)`(?!`)", re.sub(r"^```.*?^```", "", text, flags=re.M | re.S))
+
+
+def palpa_arguments(line):
+    """Those of `palpa ...` or `tools/run ...`; nothing for any other line."""
+    line = re.sub(r"^(\w+=\S+ )+", "", " ".join(line.split()))
+    started = re.match(r"(?:build/release/bin/)?palpa (.*)|tools/run ?(.*)", line)
+    if not started:
+        return None
+    if started[1] is not None:
+        return split(started[1])
+    rest = split(started[2])
+    if rest and "--headless" in rest and "--record" not in rest:  # as the script does
+        rest += ["--record", "recordings/" + pathlib.Path(rest[0]).name, "--overwrite"]
+    return ["run", *rest]
+
+
+def split(text):
+    # Some in the text are cut off, with an open quotation mark.
+    try:
+        return shlex.split(text, comments=True)
+    except ValueError:
+        return text.split()
+
+
+def is_runnable(line, arguments):
+    """Takes seconds, and needs neither a window nor a device nor what stands for something else."""
+    if "# long" in line or any(scene in line for scene in NOT_MADE) or re.search(r"\[--|[A-Z]{4,}|\.\.\.", line):
+        return False
+    return arguments[:1] == ["render"] or "--headless" in arguments or "--check" in arguments
+
+
+class Pages(unittest.TestCase):
+    def each_command(self):
+        for page in PAGES:
+            text = page.read_text()
+            for line in [*fenced(text), *inline(text)]:
+                arguments = palpa_arguments(line)
+                if arguments:
+                    yield page.relative_to(ROOT), line, arguments
+
+    def test_options_are_the_programs(self):
+        seen = 0
+        for page, line, arguments in self.each_command():
+            command = arguments[0]
+            if not re.fullmatch(r"[a-z-]+", command) or command.startswith("-"):
+                continue
+            with self.subTest(page=str(page), line=line):
+                is_scene = (ROOT / "scenes" / command).is_dir()
+                self.assertTrue(command in commands() or is_scene, command)
+                known = set(re.findall(r"--[a-z][a-z-]*", help_of(command)))
+                for argument in arguments[1:]:
+                    option = re.match(r"\[?(--[a-z][a-z-]*)", argument)
+                    if option and not is_scene:
+                        self.assertIn(option[1], known | {"--help"})
+                        seen += 1
+        self.assertGreater(seen, 150)
+
+    def test_scenes_are_there(self):
+        for page, line, arguments in self.each_command():
+            for argument in arguments:
+                if re.match(r"scenes/[\w/.-]+$", argument) and not argument.endswith(
+                        (".png", ".crd", ".psf", ".csv")):
+                    with self.subTest(page=str(page), line=line):
+                        self.assertTrue((ROOT / argument).exists(), argument)
+
+    def test_short_commands_of_readmes_run(self):
+        ran = 0
+        for page in PAGES:
+            if page.name == "README.md" and "tests" not in page.parts:
+                with tempfile.TemporaryDirectory() as folder:
+                    (pathlib.Path(folder) / "scenes").symlink_to(ROOT / "scenes")
+                    ran += self.run_short_commands(page, folder)
+        self.assertGreater(ran, 6)
+
+    def run_short_commands(self, page, folder):
+        ran = 0
+        for line in fenced(page.read_text()):
+            arguments = palpa_arguments(line)
+            if not arguments or not is_runnable(line, arguments):
+                continue
+            ran += 1
+            with self.subTest(page=str(page.relative_to(ROOT)), line=line):
+                result = subprocess.run([PROGRAM, *arguments], cwd=folder, check=False,
+                                        capture_output=True, text=True, timeout=300)
+                self.assertEqual(result.returncode, 0, result.stderr[-500:])
+        return ran
+
+
+if __name__ == "__main__":
+    unittest.main()
