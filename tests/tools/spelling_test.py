@@ -1,0 +1,51 @@
+"""Spelling: of all pages by aspell, of all text by codespell, beside the words of tests/tools/words."""
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import unittest
+
+ROOT = pathlib.Path(os.environ["PALPA_ROOT"])
+WORDS = ROOT / "tests" / "tools" / "words"
+TEXT = {".md", ".h", ".cpp", ".py", ".toml", ".txt", ".vert", ".frag", ".comp", ".glsl", ""}
+
+
+def text_files():
+    for folder in ("engine", "devices", "scenes", "shaders", "tests", "tools"):
+        for file in sorted((ROOT / folder).rglob("*")):
+            inside = file.relative_to(ROOT).parts
+            if file.is_file() and file.suffix in TEXT and "data" not in inside and \
+                    "corpus" not in inside and "__pycache__" not in inside:
+                yield file
+    yield ROOT / "README.md"
+
+
+def prose(page):
+    """Without blocks of code, code in a line and where links lead."""
+    text = re.sub(r"^```.*?^```", "", page, flags=re.M | re.S)
+    return re.sub(r"\]\([^)]*\)|`[^`]*`|<[^>]*>", " ", text)
+
+
+class Spelling(unittest.TestCase):
+    @unittest.skipUnless(shutil.which("codespell"), "codespell is not installed")
+    def test_no_word_is_misspelled(self):
+        result = subprocess.run(["codespell", "-q", "3", "-I", str(WORDS / "not-misspelled.txt"),
+                                 *map(str, text_files())],
+                                capture_output=True, text=True, check=False)
+        self.assertEqual(result.stdout, "")
+
+    @unittest.skipUnless(shutil.which("aspell"), "aspell is not installed")
+    def test_pages_have_known_words(self):
+        known = set((WORDS / "terms.txt").read_text().split())
+        for page in [file for file in text_files() if file.suffix == ".md"]:
+            result = subprocess.run(["aspell", "list", "-l", "en_GB", "--ignore=2",
+                                     "--encoding=utf-8"], input=prose(page.read_text()),
+                                    capture_output=True, text=True, check=True)
+            unknown = {re.sub(r"['’]s$", "", word) for word in result.stdout.split()} - known
+            with self.subTest(page=str(page.relative_to(ROOT))):
+                self.assertEqual(sorted(unknown), [])
+
+
+if __name__ == "__main__":
+    unittest.main()
