@@ -203,12 +203,12 @@ ForceJoystickProtocol::Loaded ForceJoystickProtocol::load(HidLine& line,
     for (int i = 0; i < attempts; ++i) {
         const int size = line.read_feature(index.report, report);
         if (size < 0) return Loaded::No;
-        const HidBytes told =
+        const HidBytes answer =
             HidBytes(report).first(std::min(report.size(), static_cast<std::size_t>(size)));
-        const std::optional<std::int64_t> said = read_field(told, status);
+        const std::optional<std::int64_t> said = read_field(answer, status);
         if (said == number_of(descriptor_, status, load_full)) return Loaded::Full;
         if (said != number_of(descriptor_, status, load_success)) continue;
-        block = read_field(told, index).value_or(0);
+        block = read_field(answer, index).value_or(0);
         return block > 0 ? Loaded::Yes : Loaded::No;
     }
     return Loaded::No;

@@ -27,7 +27,7 @@ namespace palpa {
 
 class ForceJoystickProtocol final : public HidProtocol {
 public:
-    // From the middle of the stick's way to its end, at the grip; assumed: no device tells.
+    // From the middle of the stick's way to its end, at the grip; assumed: no device says.
     static constexpr double half_travel_m = 0.050;
     // At the largest magnitude; assumed likewise.
     static constexpr double peak_newton = HidDevice::full_newton;
@@ -57,7 +57,7 @@ private:
         int index;             // of the handle's axes
         double sign;           // of the stick's on it
         std::int64_t block = 0;
-        std::optional<std::int64_t> magnitude = 0;  // that it was told
+        std::optional<std::int64_t> magnitude = 0;  // that it was sent
         std::vector<std::uint8_t> report = {};      // that sets the magnitude
     };
     enum class Loaded { Yes, Full, No };

@@ -35,7 +35,7 @@ struct HidField {
     std::uint32_t bits = 0;   // of one value, 1 to 32
     std::uint32_t count = 1;  // of values; 1 unless it is an array
     std::int64_t logical_min = 0, logical_max = 0;
-    std::int64_t physical_min = 0, physical_max = 0;  // the logical ones where none are told
+    std::int64_t physical_min = 0, physical_max = 0;  // the logical ones where none are given
     std::uint32_t unit = 0;                           // in nibbles, HID 1.11, 6.2.2.7
     std::int32_t unit_exponent = 0;                   // of ten
     bool is_array = false;  // a value is the number of one of the usages, from logical_min

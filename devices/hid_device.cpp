@@ -282,7 +282,7 @@ void HidDevice::play(const HidOutput& output) noexcept {
         protocol_->forget();
         has_played_ = false;
         written_ = now;
-        // The next read tells that it is gone; a motor must not keep its force until then. At the
+        // The next read says that it is gone; a motor must not keep its force until then. At the
         // end there is no next one.
         if (has_motors() && !is_closing_) lose();
         return;

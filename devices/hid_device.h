@@ -32,7 +32,7 @@ namespace palpa {
 struct HidInput {
     HandRate rate;
     std::uint32_t buttons = 0;
-    std::optional<Vec3> place_m;  // of the handle, where it is sensed and was told
+    std::optional<Vec3> place_m;  // of the handle, where it is sensed and was reported
 };
 
 // What the device shall do about it: 0 nothing, 255 all it can.
@@ -71,7 +71,7 @@ public:
     // Behind the last report, before the line is closed.
     virtual void end(HidLine& /*line*/) noexcept {}
 
-    // Changes of `input` what the report tells; false, and nothing changed, where it is none that
+    // Changes of `input` what the report says; false, and nothing changed, where it is none that
     // is known.
     virtual bool decode(HidBytes report, HidInput& input) noexcept = 0;
 
@@ -157,7 +157,7 @@ private:
     Mailbox<HidOutput> outputs_;
     mutable Mailbox<HandRate> views_;
     std::atomic<bool> is_plugged_{true}, is_meant_{true}, moves_view_{false}, is_closing_{false};
-    std::atomic<bool> is_placed_{false};  // it has told where its handle is
+    std::atomic<bool> is_placed_{false};  // it has reported where its handle is
     std::atomic<std::uint64_t> reports_{0}, understood_{0};
 
     // its own thread

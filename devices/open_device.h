@@ -14,11 +14,11 @@ struct DeviceMaker {
     bool is_emulated = false;    // always there, and its time is the servo's
     bool is_led = false;         // by the window's mouse and keys, where there is one
     bool needs_window = false;   // nobody leads it without one
-    std::string_view file = {};  // of one that plays it, as --device NAME:FILE is told; else empty
+    std::string_view file = {};  // of one that plays it, as --device NAME:FILE gives it; else empty
     // A quick look whether it is plugged in; null where that is not to be seen.
     bool (*is_there)(const DeviceRequest& request) = nullptr;
     // Looks at every layer in order and opens the device if it can. Plays no force. Never throws
-    // because something is missing: that is told in the checks.
+    // because something is missing: the checks say so.
     OpenedDevice (*open)(const DeviceRequest& request) = nullptr;
 };
 

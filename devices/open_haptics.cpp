@@ -461,7 +461,7 @@ OpenedDevice open_haptics(const OpenHapticsSettings& settings, const DeviceReque
     std::vector<DeviceCheck>& checks = opened.checks;
     const hd::LibrarySearch search = hd::find_library(settings.library);
     const bool is_whole = search.is_found && search.missing.empty();
-    // The reason is the last check; that the device was seen is told before it.
+    // The reason is the last check; that the device was seen stands before it.
     if (!is_whole) check_system(request.system_root, checks);
     checks.push_back(check_library(search));
     if (!search.is_found) return opened;

@@ -15,7 +15,7 @@ inline constexpr std::array<std::string_view, 2> operator_manner_names{"naive", 
 
 struct OperatorSettings {
     OperatorManner manner = OperatorManner::Naive;
-    bool has_force = true;             // false: only the picture tells
+    bool has_force = true;             // false: only the picture says
     double threshold_newton = 0.075;   // weaker forces are not noticed
     double approach_m_per_s = 0.045;   // of the hand, while the molecules are apart
     double guess_angstrom = 2.77;      // where it believes the place to be, by the picture

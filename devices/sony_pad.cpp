@@ -26,8 +26,8 @@ std::uint32_t crc_of(std::uint8_t kind, HidBytes bytes) noexcept {
 
 bool has_sound_crc(HidBytes report) noexcept {
     const HidBytes end = report.last(crc_bytes);
-    const std::uint32_t told = end[0] | end[1] << 8 | end[2] << 16 | std::uint32_t{end[3]} << 24;
-    return told == crc_of(crc_in, report.first(report.size() - crc_bytes));
+    const std::uint32_t given = end[0] | end[1] << 8 | end[2] << 16 | std::uint32_t{end[3]} << 24;
+    return given == crc_of(crc_in, report.first(report.size() - crc_bytes));
 }
 
 void seal(std::span<std::uint8_t> report) noexcept {

@@ -32,6 +32,7 @@ void add_commands(CLI::App& program, palpa::ProgramCommand& chosen) {
     palpa::add_prepare(program, chosen);
     palpa::add_force_field(program, chosen);
     palpa::add_relax(program, chosen);
+    palpa::add_scene(program, chosen);
     palpa::add_render(program, chosen);
     palpa::add_export(program, chosen);
     palpa::add_select(program, chosen);

@@ -1,4 +1,4 @@
-// Rigid bodies joined by torsions: what is left of molecules when all but some bonds are rigid.
+// Rigid bodies joined by torsions: what remains of molecules when all but some bonds are rigid.
 #pragma once
 #include "assembly/joints.h"
 
@@ -13,7 +13,7 @@ namespace palpa {
 
 inline constexpr std::uint32_t no_body = std::numeric_limits<std::uint32_t>::max();
 
-// A body and the joint by which it hangs on its parent: both go by one number. The base of a
+// A body and the joint by which it is attached to its parent: both go by one number. The base of a
 // molecule has no joint; six degrees of freedom carry it.
 struct Body {
     std::uint32_t parent = no_body;

@@ -20,7 +20,7 @@ struct Cluster {
     double mass;           // amu
     Mat3 inverse_inertia;  // about the centre, 1/(amu Å^2)
     double spread;         // as in BodyState
-    Vec3 joint_point;      // of the joint by which it hangs on its parent, Å
+    Vec3 joint_point;      // of the joint by which it is attached to its parent, Å
     Vec3 joint_axis;       // length 1
 };
 

@@ -175,7 +175,7 @@ std::size_t smallest_ring(const Neighbours& neighbours, std::array<std::uint32_t
 struct Bonds {
     std::vector<std::optional<BondMotion>> asked;  // by an override
     std::vector<std::uint8_t> is_cut;
-    std::vector<std::uint8_t> is_bridge;  // of what is left
+    std::vector<std::uint8_t> is_bridge;  // of the rest
 };
 
 std::string bond_name(const Connectivity& connectivity, std::array<std::uint32_t, 2> bond) {

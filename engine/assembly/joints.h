@@ -1,4 +1,4 @@
-// Which bonds of a molecule turn: rules of chemistry, told from masses and bonds alone.
+// Which bonds of a molecule turn: rules of chemistry, from masses and bonds alone.
 #pragma once
 #include "molecule/connectivity.h"
 
@@ -51,7 +51,7 @@ struct Joints {
     std::vector<std::array<std::uint32_t, 2>> springs;
 };
 
-// Elements are told by mass. Bond orders are told by the number of neighbours: a carbon with three
+// Elements follow from masses, bond orders from the number of neighbours: a carbon with three
 // is planar; whether a chain's bond between two planar atoms is double follows from how many of
 // them want a partner on one side of it. That is blind to odd charges (a pyridinium beside a biaryl
 // bond): such a bond needs an override. Throws LoadError naming every override that cannot be met.

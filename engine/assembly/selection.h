@@ -19,7 +19,7 @@ enum class SelectionShape : std::uint8_t {
     Single,
 };
 
-// Where to stop: when that many degrees of freedom are chosen, or when what is left is no more than
+// Where to stop: when that many degrees of freedom are chosen, or when the rest is no more than
 // that. A joint is one; a base is those that its guide leaves, six if free, all or none of them.
 struct SelectionLimits {
     SelectionShape shape = SelectionShape::Region;

@@ -110,7 +110,7 @@ private:
         for (std::size_t i = 0; i < Size; ++i) indices[i] = topology_.type[atoms[i]];
         const auto [entry, is_new] = known.try_emplace(indices, nullptr);
         if (!is_new) return entry->second;
-        // An unknown type has been told.
+        // An unknown type has been reported.
         if (!std::all_of(indices.begin(), indices.end(),
                          [&](std::uint32_t type) { return type_is_known_[type]; })) {
             return nullptr;

@@ -78,7 +78,7 @@ void check_kind(const Statements& statements) {
 void check_different(std::span<const std::filesystem::path> files) {
     for (std::size_t i = 0; i < files.size(); ++i) {
         for (std::size_t j = 0; j < i; ++j) {
-            std::error_code none_such;  // told when the file is read
+            std::error_code none_such;  // reported when the file is read
             if (std::filesystem::equivalent(files[i], files[j], none_such)) {
                 throw LoadError({files[i].string()}, "given twice; expected each file once");
             }

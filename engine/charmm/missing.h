@@ -1,4 +1,4 @@
-// Everything that an input lacks, gathered before it is told.
+// Everything that an input lacks, gathered before it is reported.
 #pragma once
 #include "charmm/force_field.h"
 #include "core/load_error.h"

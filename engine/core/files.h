@@ -60,7 +60,7 @@ public:
     NewFile& operator=(const NewFile&) = delete;
 
     void write(std::string_view text);
-    void close();  // tells what the system could not write
+    void close();  // says what the system could not write
 
 private:
     std::filesystem::path path_;

@@ -29,7 +29,7 @@ private:
 
 struct Interrupted {};
 
-// What a shell is told of a program that a signal ended, or else `code`.
+// What a shell learns of a program that a signal ended, or else `code`.
 inline int exit_code_after(int code) noexcept {
     return noted_interrupt() == 0 ? code : 128 + noted_interrupt();
 }

@@ -40,7 +40,7 @@ std::string_view find_near_name(std::string_view name, std::span<const std::stri
 // "; did you mean 'near'?" or nothing.
 std::string near_name_hint(std::string_view name, std::span<const std::string_view> names);
 
-// 64-bit FNV-1a: tells two texts apart, is no protection against anyone.
+// 64-bit FNV-1a: distinguishes two texts, is no protection against anyone.
 std::uint64_t content_hash(std::string_view text, std::uint64_t seed = 0xcbf29ce484222325) noexcept;
 
 }  // namespace palpa

@@ -139,7 +139,7 @@ private:
 
 }  // namespace
 
-bool meets_bars(const ClosedPathResult& r, bool turned) noexcept {
+bool meets_limits(const ClosedPathResult& r, bool turned) noexcept {
     // Beyond these limits there is no continuous law but that nothing is generated.
     const double extra = r.was_limited ? r.extra_joule() : std::abs(r.extra_joule());
     const bool keeps_energy = turned || extra <= most_extra_J;

@@ -47,7 +47,7 @@ struct ClosedPathResult {
 inline constexpr double most_extra_J = 1e-3, most_drift_angstrom = 0.1, near_angstrom = 6,
                         most_closed_path_ripple_N = 0.02, most_felt_share = 1.1;
 
-bool meets_bars(const ClosedPathResult& result, bool turned) noexcept;
+bool meets_limits(const ClosedPathResult& result, bool turned) noexcept;
 
 // Whether the scene has such paths and a continuous law, and no setting replaces them. Throws
 // LoadError.

@@ -31,7 +31,7 @@ public:
     CouplingMode mode() const noexcept;
     // Where the molecule is to begin now, Å.
     double start_angstrom() const;
-    // What the person is told.
+    // What the person reads.
     std::string text() const;
 
     // Agrees, has practised enough, goes on, is there. In the first second of a trial it is taken

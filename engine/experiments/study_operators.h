@@ -53,7 +53,7 @@ SceneDescription read_study_scene(const StudyOptions& options,
 // The place that is to be found, Å.
 double find_rest(const SceneDescription& scene, const World& world);
 double find_rest(const StudyOptions& options);
-// Who is further in than this (Å) went through: no hand tells the forces there from each other.
+// Who is further in than this (Å) went through: no hand can distinguish the forces there.
 double find_wall(const World& world, double outermost);
 // The force that was searched, from 3 nN of repulsion outward, for figures; and its columns.
 inline constexpr std::string_view line_names = "distance_angstrom,force_nN\n";

@@ -176,7 +176,7 @@ bool UnbindingResult::is_back() const noexcept {
     return is_out() && summary.unbinding.value_or(UnbindingPath{}).last_rmsd <= 1.5;
 }
 
-bool UnbindingResult::meets_bars() const noexcept {
+bool UnbindingResult::meets_limits() const noexcept {
     return ripple_N.value_or(0) <= most_unbinding_ripple_N && cut_share == 0 &&
            summary.steps_not_finite == 0 && !summary.stopped && !summary.went_through &&
            (is_out() || !is_to_leave);

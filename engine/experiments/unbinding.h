@@ -56,7 +56,7 @@ struct UnbindingResult {
     bool is_to_leave = false;
     // Ripple, nothing cut at 3 nN or less, finite, none through, and out where it is to leave. Bars
     // of guarded coupling.
-    bool meets_bars() const noexcept;
+    bool meets_limits() const noexcept;
     bool is_guarded() const noexcept;
 };
 

@@ -30,7 +30,7 @@ std::vector<std::uint32_t> order_bodies(std::span<const std::uint32_t> parents) 
         std::ranges::stable_sort(children[b], {}, [&](std::uint32_t c) { return behind[c]; });
         if (parents[b] == no_number) waiting.push_back(b);
     }
-    // Backwards: a body, then what hangs on it, those that most hang on last.
+    // Backwards: a body, then what is attached to it, those to which most are attached last.
     while (!waiting.empty()) {
         const std::uint32_t body = waiting.back();
         waiting.pop_back();
@@ -109,7 +109,7 @@ void add_panels(HessianPlan& plan) {
     }
 }
 
-// Of what hangs on a body the first panel with a piece decides.
+// Of what is attached to a body the first panel with a piece decides.
 void find_first_blocks(const BodyTreeView& tree, HessianPlan& plan) {
     for (HessianColumn& column : plan.columns) column.first_block = no_number;
     const auto lower = [](std::uint32_t& at, std::uint32_t to) { at = std::min(at, to); };

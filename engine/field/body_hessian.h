@@ -30,7 +30,7 @@ inline constexpr std::size_t hessian_numbers = 27;  // of a block: see HessianBl
 inline constexpr std::size_t hessian_block = 8;     // motions beside each other
 inline constexpr std::uint32_t no_number = std::numeric_limits<std::uint32_t>::max();
 
-// Bodies and their atoms. A body comes after the one that it hangs on.
+// Bodies and their atoms. A body comes after the one that it is attached to.
 struct BodyTreeView {
     std::span<const std::uint32_t> parents;     // of each body; no_number where there is none
     std::span<const std::uint32_t> first_atom;  // of body b: atoms[first_atom[b]] and on
@@ -57,8 +57,8 @@ struct HessianBlock {
     std::array<LaneDoubles, 6> shifts;
 };
 
-// Where the sum over what hangs on a body stands, and where it is added next: the same slot where
-// it is handed on to the parent, no_number where there is none.
+// Where the sum over what is attached to a body stands, and where it is added next: the same slot
+// where it is handed on to the parent, no_number where there is none.
 struct HessianStep {
     std::uint32_t slot = 0, to = no_number;
 };
@@ -69,7 +69,7 @@ struct HessianColumn {
     std::uint32_t first_atom = 0, end_atom = 0;      // in HessianPlan::atoms
     std::uint32_t first_motion = 0, end_motion = 0;  // in HessianPlan::motions
     HessianStep step;
-    bool is_leaf = false;           // nothing hangs on it
+    bool is_leaf = false;           // nothing is attached to it
     std::uint32_t first_block = 0;  // of motions that its rows have to do with
 };
 

@@ -1,5 +1,5 @@
 // Cholesky's factor of a symmetric matrix, in double, as fast as the processor at hand can, and
-// where a matrix has none, a direction that tells why.
+// where a matrix has none, a direction that says why.
 #pragma once
 #include <Eigen/Core>
 #include <array>

@@ -287,7 +287,7 @@ private:
         }
     }
 
-    // By row; in a row clusters rise, as they were found. `slots` tells the end of each row.
+    // By row; in a row clusters rise, as they were found. `slots` says the end of each row.
     void sort_found() {
         std::sort(memory_.touched.begin(), memory_.touched.end());
         std::size_t end = 0;

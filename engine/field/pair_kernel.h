@@ -39,7 +39,7 @@ struct PairParameters {
 };
 
 // The atoms of a cluster as the kernel wants them. A coordinate is high + low: high a multiple of
-// 2^-10 Å, so that differences of two are exact, and low what is left; so a pair's distance keeps
+// 2^-10 Å, so that differences of two are exact, and low the rest; so a pair's distance keeps
 // the precision of the distance, not that of the extent.
 struct alignas(64) ClusterAtoms {
     using Column = std::array<float, cluster_size>;

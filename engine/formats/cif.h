@@ -1,4 +1,4 @@
-// The grammar of CIF files, gemmi's: what a text holds, told piece by piece.
+// The grammar of CIF files, gemmi's: what a text holds, piece by piece.
 #pragma once
 #include <cstddef>
 #include <string>

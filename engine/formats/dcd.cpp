@@ -223,7 +223,7 @@ private:
         if (offset_of(frames_) != source_.size()) notes_.push_back(cut_off_note(frames_));
         if (told_frames_ != 0 && static_cast<std::uint64_t>(told_frames_) != frames_) {
             notes_.push_back(
-                fmt::format("tells of {} frames and holds {}: the file may have been "
+                fmt::format("has {} frames by its header and holds {}: the file may have been "
                             "cut off, or its writer interrupted",
                             told_frames_, frames_));
         }

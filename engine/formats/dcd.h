@@ -22,7 +22,7 @@ namespace palpa {
 // The cell is a, gamma, b, beta, alpha, c. Angles are cosines if all are within ±1 (NAMD), or else
 // degrees; CHARMM, which writes its version as more than 24, has a symmetric matrix by its lower
 // triangle instead. A cell that is none of these counts as no box. Time steps are in AKMA units.
-// Frames are those that the file holds; where the header tells another number, a note says so.
+// Frames are those that the file holds; where the header has another number, a note says so.
 // Throws LoadError: no DCD, velocities (VELD), records of other lengths, 8-byte marks, charges.
 std::unique_ptr<Trajectory> open_dcd(ByteSource source);
 

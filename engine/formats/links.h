@@ -11,7 +11,7 @@
 
 namespace palpa {
 
-// What a line that begins with LINK or SSBOND says; nothing where it does not parse, or tells of a
+// What a line that begins with LINK or SSBOND says; nothing where it does not parse, or names a
 // copy by symmetry. It is a hint: whoever takes it looks at the atoms.
 std::optional<StructureLink> find_pdb_link(std::string_view line, std::size_t number);
 

@@ -71,7 +71,7 @@ static_assert(column_names.size() == LabelNumber + 1);
 constexpr std::string_view category = "_ATOM_SITE.";
 constexpr std::string_view dictionary_category = "_CHEM_COMP_ATOM.";
 
-// Takes the atoms out of what the grammar tells.
+// Takes the atoms out of what the grammar finds.
 class AtomSites final : public CifListener {
 public:
     AtomSites(const std::string& file, std::size_t atoms) : file_(file), builder_(file, atoms) {}
@@ -112,7 +112,7 @@ public:
         }
         if (builder_.atom_count() == 0 && dictionary_line_ != 0) {
             fail({{}, dictionary_line_, 0},
-                 "no structure but a dictionary: _chem_comp_atom tells a residue's ideal geometry; "
+                 "no structure but a dictionary: _chem_comp_atom holds a residue's ideal geometry; "
                  "expected atoms in _atom_site");
         }
         builder_.end_chain();
@@ -334,7 +334,7 @@ std::string element_of(const Structure& structure, std::size_t atom) {
     if (element.empty()) {
         const std::size_t line = structure.lines.empty() ? 0 : structure.lines[atom];
         throw LoadError({structure.file, line},
-                        fmt::format("the name of {} tells no element, which a CIF file needs",
+                        fmt::format("the name of {} gives no element, which a CIF file needs",
                                     to_string(name)));
     }
     return element;

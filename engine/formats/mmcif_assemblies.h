@@ -16,7 +16,7 @@
 
 namespace palpa {
 
-// Gathers the assemblies of one file: _pdbx_struct_assembly_gen tells which chains (label_asym_id)
+// Gathers the assemblies of one file: _pdbx_struct_assembly_gen says which chains (label_asym_id)
 // are copied by which operators, _pdbx_struct_oper_list the operators. Expressions are "1", "1,2",
 // "1-60", "P" and products of such lists, "(1-3)(4,5)". Every call throws LoadError with the line
 // of what is wrong. The tokens must live until `move_into` has been called.

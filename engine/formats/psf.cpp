@@ -22,7 +22,7 @@
 namespace palpa {
 namespace {
 
-// What every file has, in the order in which a missing one is told.
+// What every file has, in the order in which a missing one is reported.
 constexpr std::array required_sections = std::to_array<std::string_view>(
     {"NATOM", "NBOND", "NTHETA", "NPHI", "NIMPHI", "NDON", "NACC", "NNB", "NGRP"});
 constexpr std::array known_flags =

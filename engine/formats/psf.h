@@ -8,9 +8,9 @@
 
 namespace palpa {
 
-// The first line tells the dialect: EXT (wider columns), CMAP (cross-terms at the end), XPLOR or
+// The first line names the dialect: EXT (wider columns), CMAP (cross-terms at the end), XPLOR or
 // NAMD (types by name; without either CHARMM writes them as numbers, and both are taken), CHEQ (two
-// more numbers an atom). Fields are told apart by the blanks between them. Donors, acceptors,
+// more numbers an atom). Fields are separated by the blanks between them. Donors, acceptors,
 // groups and explicit exclusions are checked and left out; lone pairs and polarisable atoms are
 // refused. Throws LoadError with the line of what is wrong: a number that does not parse, an index
 // of no atom, a count that is not met, a section that is missing or comes twice, two atoms of one

@@ -1,4 +1,4 @@
-// Structure files of every kind, told apart by their names.
+// Structure files of every kind, recognised by their names.
 #pragma once
 #include "molecule/atoms.h"
 

@@ -89,7 +89,7 @@ void StructureBuilder::add_atom(AtomName name, const Vec3& position, AtomRecord 
         record.element = find_element_of_name(name.atom, name.residue);
         record.element_guessed = true;
         if (record.element.empty()) {
-            throw LoadError(place, fmt::format("atom {} has no element, and its name tells none; "
+            throw LoadError(place, fmt::format("atom {} has no element, and its name gives none; "
                                                "expected a symbol such as C",
                                                describe(name, record)));
         }

@@ -164,7 +164,7 @@ private:
         if (atoms < 1) fail(fmt::format("has {} atoms; expected 1 or more", atoms));
         head.atoms = static_cast<std::size_t>(atoms);
         head.step = integer(trr_step_at);
-        // The first block that is there tells how wide a number is; the others have to agree.
+        // The first block that is there says how wide a number is; the others have to agree.
         const std::uint64_t count = 3 * static_cast<std::uint64_t>(atoms);
         const std::array<std::pair<Block, std::uint64_t>, 6> blocks{{{Box, 9},
                                                                      {Virial, 9},

@@ -286,7 +286,7 @@ private:
     BitWriter bits_;
     std::size_t next_ = 0;  // atom
     std::int32_t small_ = 0;
-    std::size_t last_count_ = most_small + 1;  // the first group tells its own
+    std::size_t last_count_ = most_small + 1;  // the first group says its own
 };
 
 }  // namespace

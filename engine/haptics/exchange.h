@@ -10,7 +10,7 @@
 
 namespace palpa {
 
-// What the servo tells the simulation, every tick.
+// What the servo sends to the simulation, every tick.
 struct HandPose {
     double time_s = 0;
     // Handle travel so far, but for what was travelled clutched, or under motors that were too warm

@@ -59,8 +59,9 @@ struct ConstantForceLaw {
 // continuous.
 class PerceptualForceLaw {
 public:
-    // By default what can be told from nothing is what eq. 3 calls near (F_off); a hand on eq. 2
-    // hardly goes above 3 nN. Between, the attraction of two waters (0.32 nN) feels like 1.1 N.
+    // By default what a hand can distinguish from no force is what eq. 3 calls near (F_off); a hand
+    // on eq. 2 hardly goes above 3 nN. Between, the attraction of two waters (0.32 nN) feels
+    // like 1.1 N.
     struct Parameters {
         double F_lo = 20e-12;    // N
         double F_hi = 3e-9;      // N, > 2 F_lo

@@ -30,7 +30,8 @@ struct RelaxedStiffness {
     Vec3 gone_angstrom = Vec3::Zero();
 };
 
-// What the simulation tells the servo, every step, of the molecule in the hand. SI but for places.
+// What the simulation sends to the servo, every step, of the molecule in the hand. SI but for
+// places.
 struct ContactModel {
     double time_s = 0;  // of the hand pose that it answers
     MoleculePose molecule;

@@ -117,7 +117,7 @@ void update_stale(const SafetySettings& settings, SafetyState& state, const Safe
     if (state.faded > 1 - rounding_s || input.model_age_s > dead_s - rounding_s) state.faded = 1;
 }
 
-// What motors say that are warmer than the heat of our own forces tells.
+// What motors report that are warmer than our own forces explain.
 void update_cool_down(const SafetySettings& settings, SafetyState& state, DeviceTrouble trouble,
                       double elapsed_s) noexcept {
     const bool is_warm = trouble == DeviceTrouble::WarmMotors;

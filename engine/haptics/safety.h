@@ -102,7 +102,7 @@ enum class SafetyStage {
 // What happened and what the user can do; empty for None.
 std::string_view words(SafetyStage stage) noexcept;
 
-// What one tick tells the guard.
+// What one tick reports to the guard.
 struct SafetyInput {
     Vec3 wanted_newton = Vec3::Zero();
     DeviceReading reading;

@@ -13,7 +13,7 @@
 
 namespace palpa {
 
-// How many of the wire's units are one kcal/mol, and one kcal/mol/Å: no handshake tells. Lengths
+// How many of the wire's units are one kcal/mol, and one kcal/mol/Å; no handshake says so. Lengths
 // are Å everywhere.
 struct ImdUnits {
     double energy = 1;
@@ -36,7 +36,7 @@ inline constexpr ImdUnits imd_units_of_version_3{.energy = kilojoule_per_kcal,
 // Those of NAMD for version 2.
 ImdUnits imd_units_of(int version) noexcept;
 
-// What an engine tells of one step: energies in kcal/mol, the box and coordinates in Å, velocities
+// What an engine says of one step: energies in kcal/mol, the box and coordinates in Å, velocities
 // in Å/ps, forces in kcal/mol/Å. Empty, or without a value, is what it did not send.
 struct ImdFrame {
     std::optional<ImdTime> time;

@@ -110,7 +110,7 @@ inline constexpr float imd_strongest_pull = 1e6F;
 // come, whatever a header promises.
 class ImdDecoder {
 public:
-    // Of what an engine sends; its handshake tells version and byte order.
+    // Of what an engine sends; its handshake says version and byte order.
     static ImdDecoder of_engine(const ImdLimits& limits);
     // Of what a client sends to an engine of `version` 2 or 3 and that byte order, with
     // `limits.atoms` atoms.

@@ -366,7 +366,7 @@ std::string format_input(const RunSystem& system, const RunOptions& options, con
     if (has_maps) text += "fix maps all cmap system.cmap\nfix_modify maps energy yes\n";
     text += fmt::format("read_data system.data{}\n", has_maps ? " fix maps crossterm CMAP" : "");
     text += format_pair_numbers(system, kinds);
-    // In vacuum all others; LAMMPS has room for 2000 unless told.
+    // In vacuum all others; LAMMPS has room for 2000 unless set otherwise.
     const std::size_t neighbours = std::max<std::size_t>(2000, system.positions.size());
     text += fmt::format(
         "\nneighbor 2.0 bin\nneigh_modify every 1 delay 0 check yes one {} page {}\ntimestep "

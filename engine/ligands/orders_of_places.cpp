@@ -78,7 +78,7 @@ public:
         }
     }
 
-    // What is plain first: C=O, S=O and P=O; then rings; then chains with what is left.
+    // What is plain first: C=O, S=O and P=O; then rings; then chains with the rest.
     void guess() {
         valence_.resize(graph_.size());
         for (std::uint32_t i = 0; i < graph_.size(); ++i) valence_[i] = open_at(i);

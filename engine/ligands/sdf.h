@@ -9,7 +9,7 @@
 
 namespace palpa {
 
-// A molecule as a file tells it.
+// A molecule as a file has it.
 struct LigandFile {
     MoleculeGraph graph;          // hydrogens only where the file has them
     bool names_atoms = false;     // MOL2

@@ -1,4 +1,4 @@
-// What a structure's atoms are and which of them are bonded, as a PSF file tells it.
+// What a structure's atoms are and which of them are bonded, as a PSF file has it.
 #pragma once
 #include "molecule/atoms.h"
 

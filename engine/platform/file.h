@@ -39,7 +39,7 @@ public:
     // How many bytes came, at most the span's; 0 at the end.
     std::size_t read(std::span<char> into, std::error_code& error) const noexcept;
     void write(std::string_view text, std::error_code& error) const noexcept;
-    // Afterwards it is not open; `error` tells what the system could not write.
+    // Afterwards it is not open; `error` says what the system could not write.
     void close(std::error_code& error) noexcept;
 
 private:

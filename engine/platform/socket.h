@@ -28,7 +28,7 @@ public:
     }
     ~Socket() { close(); }
 
-    // Begins to connect; wait_for_sockets tells when there is room to write, and find_error then
+    // Begins to connect; wait_for_sockets says when there is room to write, and find_error then
     // whether it worked. `address` is of numbers (IPv4, IPv6) or "localhost": names are not looked
     // up, which could take seconds. Not open where `error` is set.
     static Socket connect(const std::string& address, std::uint16_t port, std::error_code& error);
@@ -61,7 +61,7 @@ private:
 struct AwaitedSocket {
     const Socket* socket = nullptr;
     bool for_room = false;
-    // The answer. After an error both are set: the next call tells it.
+    // The answer. After an error both are set: the next call says it.
     bool has_input = false;
     bool has_room = false;
 };

@@ -100,7 +100,7 @@ const Assembly& assembly_of(const Structure& structure, int number) {
     if (found) return *found;
     if (structure.assemblies.empty()) {
         throw LoadError({structure.file},
-                        fmt::format("no assembly {}: the file tells of none (REMARK 350 or "
+                        fmt::format("no assembly {}: the file has none (REMARK 350 or "
                                     "_pdbx_struct_assembly_gen)",
                                     number));
     }

@@ -96,8 +96,8 @@ private:
             const auto found = wanted.elements.find(structure_.names[i].atom);
             std::string& element = structure_.records[i].element;
             if (found == wanted.elements.end() || found->second.empty()) continue;
-            const std::string told = element == "D" ? "H" : element;
-            if (!told.empty() && told != found->second) ++corrected_elements_;
+            const std::string read = element == "D" ? "H" : element;
+            if (!read.empty() && read != found->second) ++corrected_elements_;
             element = found->second;
         }
     }

@@ -35,8 +35,9 @@ std::string element_of(const ForceField& force_field, const ResidueAtom& atom,
 
 // For each atom of `given` one of `wanted`, each at most once: of the same element, bonded where
 // `given` is bonded, and apart where it is apart. `wanted` may have more atoms. Of several ways,
-// one that keeps names where it can; atoms that only their hydrogens or their handedness tells
-// apart may be exchanged. Nothing where there is no way, or none within 200,000 attempts.
+// one that keeps names where it can; atoms that only their hydrogens or their handedness
+// distinguish apart may be exchanged. Nothing where there is no way, or none within 200,000
+// attempts.
 std::optional<std::vector<std::uint32_t>> match_by_bonds(const BondedAtoms& given,
                                                          const BondedAtoms& wanted);
 

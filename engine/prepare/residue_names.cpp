@@ -492,8 +492,8 @@ private:
     std::string meaning_of(const std::string& name) const {
         if (const auto found = find_component(name)) return std::string(found->component->meaning);
         if (const auto only = crystal_only(name); !only.empty()) return std::string(only);
-        const auto told = structure_.component_names.find(name);
-        return told == structure_.component_names.end() ? std::string() : printable(told->second);
+        const auto named = structure_.component_names.find(name);
+        return named == structure_.component_names.end() ? std::string() : printable(named->second);
     }
 
     std::string advice_for(const std::string& name) const {

@@ -72,7 +72,7 @@ WantedAtoms WantedAtomsFinder::find(const AtomName& name, bool is_first, bool is
 void WantedAtomsFinder::apply(const std::string& patch, std::size_t place,
                               WantedAtoms& wanted) const {
     const auto found = force_field_.patches.find(patch);
-    if (found == force_field_.patches.end()) return;  // completing the atoms tells
+    if (found == force_field_.patches.end()) return;  // completing the atoms says
     for (const std::string& deleted : found->second.deleted_atoms) {
         if (const auto name = own_name(deleted, place)) wanted.elements.erase(*name);
     }

@@ -18,7 +18,7 @@ struct TriangleRange {
     std::size_t end() const noexcept { return first + count; }
 };
 
-// Triangle k has the corners 3k to 3k + 2. Nothing is shared, so that a corner tells which triangle
+// Triangle k has the corners 3k to 3k + 2. Nothing is shared, so that a corner says which triangle
 // it is of; corners by index measured the same on lavapipe.
 class MeshLists {
 public:

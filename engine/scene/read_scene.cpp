@@ -443,7 +443,7 @@ private:
         std::string path;  // "molecules.fixed."
         TextPlace place;
         std::vector<std::string> known;  // keys that were asked for
-        bool missing;                    // told already
+        bool missing;                    // reported already
         std::string lacks = {};  // message, unless a key is unknown, which was meant for what lacks
     };
 
@@ -499,7 +499,7 @@ private:
         return node;
     }
 
-    // The node of a field that is no table; tells of a required one that is not there.
+    // The node of a field that is no table; names a required one that is not there.
     const toml::node* find_value(const Field& field) {
         const toml::node* const node = find(field);
         const Level& level = levels_.back();
@@ -540,7 +540,7 @@ private:
         problem(node, fmt::format("'{}' names no file: {} is not there; expected a file beside the "
                                   "scene{}",
                                   full_key(field.key), value.generic_string(),
-                                  is_made_ ? ", whose made_by tells how it is made" : ""));
+                                  is_made_ ? ", whose made_by says how it is made" : ""));
         return false;
     }
 

@@ -1,4 +1,4 @@
-// What may be asked of a running scene, and what it tells of itself.
+// What may be asked of a running scene, and what it says of itself.
 #pragma once
 #include "haptics/exchange.h"
 #include "scene/description.h"
@@ -42,7 +42,7 @@ inline EditDescription edit_now(EditAction action) {
     return {0, 0, std::move(action), {"not done"}};
 }
 
-// What a running scene tells, all of one moment between two steps.
+// What a running scene says, all of one moment between two steps.
 struct Readout {
     ContactModel contact;
     std::uint64_t steps = 0;

@@ -27,7 +27,7 @@ constexpr double fastest_hand_m_per_s = 3;
 double handle_travel(const SceneDescription& scene, const World& world, Entity hand, double near,
                      double far) {
     const ServoSettings servo = build_servo_settings(scene, world);
-    // Where A_d does not vary one step tells all, and a look at a large molecule takes
+    // Where A_d does not vary one step is enough, and a look at a large molecule takes
     // milliseconds.
     const bool constant = !servo.guarded && std::holds_alternative<ConstantDisplacementLaw>(
                                                 world.resource<Coupling>().laws.displacement);

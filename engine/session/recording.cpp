@@ -250,7 +250,7 @@ std::vector<fs::path> list_recorded(const fs::path& folder) {
             name.size() >= 4 && name.find_first_not_of("0123456789") == std::string::npos;
         if (is_numbered && has_mark(file, picture_mark)) files.push_back(file);
     }
-    files.push_back(folder / "session.toml");  // last, since it tells of the others
+    files.push_back(folder / "session.toml");  // last, since it names the others
     return files;
 }
 

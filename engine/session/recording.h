@@ -89,7 +89,7 @@ public:
     // Of the run's world, where one runs in the recorder's own thread (run_headless).
     void sample(const World& world, double time_s, std::uint64_t edition);
 
-    // Writes what is left of the trace, and the summary.
+    // Writes the rest of the trace, and the summary.
     void finish(const Summary& summary);
 
 private:

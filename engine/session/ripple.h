@@ -1,4 +1,4 @@
-// How much a signal shakes: what is left of it above 3 Hz, and how fast.
+// How much a signal shakes: what remains of it above 3 Hz, and how fast.
 #pragma once
 #include <optional>
 #include <span>

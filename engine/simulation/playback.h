@@ -26,7 +26,7 @@ struct Playback {
     double frames_per_s = usual_frames_per_s;
     bool is_paused = false;
     std::optional<std::size_t> shown{};  // nothing: to be put in the atom table anew
-    std::optional<double> time_ps{};     // of the frame, where the file tells
+    std::optional<double> time_ps{};     // of the frame, where the file says
     std::string problem{};               // why it stands still, though not paused; else empty
     std::string damage{};                // of the frame that was due, until others are asked for
 };
@@ -66,7 +66,7 @@ void start_playback(World& world, const std::filesystem::path& file,
 void order_playback(World& world, const PlaybackOrder& order);
 std::optional<PlaybackState> find_playback(const World& world);
 
-// What is wrong with the file that is played, as far as opening it tells, a sentence each: that it
+// What is wrong with the file that is played, as far as opening it says, a sentence each: that it
 // was cut off, above all. Nothing where nothing is played.
 std::vector<std::string> list_playback_notes(const World& world);
 

@@ -24,8 +24,8 @@ bool moves_in_space(const World& world, Entity hand = {}) noexcept;
 Vec3 grabbed_place(const World& world, Entity hand = {}) noexcept;
 
 // Puts the grabbed molecule's reference atom at that place (Å) from its counterpart's, turned about
-// it as told or as it is, or at that distance (Å) along its line; and tells the distance, wherever
-// beside the line it is. What moves by itself is not turned.
+// it as given or as it is, or at that distance (Å) along its line; and reports the distance,
+// wherever beside the line it is. What moves by itself is not turned.
 void place_grabbed(World& world, const MoleculePose& pose, Entity hand = {}) noexcept;
 void place_grabbed(World& world, const Vec3& place, Entity hand = {}) noexcept;
 void move_grabbed(World& world, double distance, Entity hand = {}) noexcept;

@@ -12,14 +12,14 @@ struct RelaxReport {
     double energy_before = 0, energy_after = 0;  // kcal/mol
     double displacement = 0;                     // Å, of the centre
     double angle = 0;                            // rad, turned about the centre
-    double force = 0;                            // kcal/mol/Å, norm of what is left
-    double torque = 0;                           // kcal/mol, about the centre, of what is left
+    double force = 0;                            // kcal/mol/Å, norm of the residual
+    double torque = 0;                           // kcal/mol, about the centre, of the residual
     int evaluations = 0;                         // of the pair field
 };
 
 // Moves `positions`, the group's, as one body downhill until the norm of its force, and that of its
 // torque divided by its radius of gyration, are below `force_tolerance` (kcal/mol/Å), or nothing
-// gets better any more: the report tells. Quasi-Newton steps (BFGS) on place and turn about
+// gets better any more: the report says. Quasi-Newton steps (BFGS) on place and turn about
 // `centre`, none of which moves a point by more than 0.1 Å; every step lowers the energy. The same
 // input gives the same pose, always. Of `group` everything but the positions is used.
 RelaxReport relax_rigid(std::span<Vec3> positions, const Vec3& centre, FieldPoints group,

@@ -104,7 +104,7 @@ struct AdaptiveState {
     // Where the scene says how exact forces must be, and what finds out.
     std::optional<AccuracyController> accuracy;
     // Before a step: what was rendered to the first hand where it now is, kcal/mol/Å; nothing: what
-    // the step itself tells.
+    // the step itself says.
     std::optional<Vec3> rendered;
     std::size_t choose_every = 0;  // steps, as the scene says
     // How much each joint counts for what it moves; empty where all do alike. And whether what is

@@ -28,7 +28,7 @@ public:
     // The tone fades first, a tenth of a second.
     ~Speaker();
 
-    // From now on, until the next one. One that is not renewed for a second, since nobody tells the
+    // From now on, until the next one. One that is not renewed for a second, since nobody says the
     // force any more, fades.
     void play(const Tone& tone) noexcept { tones_.post(tone); }
 

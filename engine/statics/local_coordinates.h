@@ -54,7 +54,7 @@ struct LocalCoordinates {
     std::span<const CarriedCoordinate> of(std::size_t body) const noexcept {
         return std::span(carried).subspan(first[body], first[body + 1] - first[body]);
     }
-    // Whether `other` is the body itself or hangs on it.
+    // Whether `other` is the body itself or is attached to it.
     bool carries(std::uint32_t body, std::uint32_t other) const noexcept {
         return entered[body] <= entered[other] && entered[other] < left[body];
     }

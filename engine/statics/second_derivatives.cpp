@@ -10,7 +10,7 @@
 namespace palpa {
 namespace {
 
-// Where a body hangs on its parent; of a base, its pivot.
+// Where a body is attached to its parent; of a base, its pivot.
 Vec3 point_of(const TorsionModel& model, const TorsionState& state, std::uint32_t body) noexcept {
     if (model.tree.bodies.is_base(body)) return state.pivots[model.tree.molecule_of[body]];
     return state.positions[model.tree.bodies.bodies[body].axis[1]];

@@ -74,7 +74,7 @@ void guide_pivots(const TorsionModel& model, const TorsionState& state,
                   AssemblyState& assembly) noexcept;
 
 // Fast pairs round the energy, the sum of terms of some magnitude; of a change that is smaller than
-// that, the work of the forces along the move, as `find_work()` has it, tells.
+// that, the work of the forces along the move, as `find_work()` has it, says.
 template <class FindWork>
 bool is_energy_lower(const ForceSettings& settings, double magnitude, double change,
                      const FindWork& find_work) noexcept {

@@ -17,7 +17,7 @@ struct TermStep {
 };
 
 // Of terms of one kind: the bodies that change term t stand in [first[t], first[t + 1]), a parent
-// before what hangs on it.
+// before what is attached to it.
 struct TermPaths {
     std::vector<std::size_t> first;
     std::vector<TermStep> steps;

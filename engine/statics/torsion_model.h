@@ -15,8 +15,8 @@ namespace palpa {
 
 // What the base of a molecule may do.
 enum class BaseFreedom : std::uint8_t {
-    Held,     // nothing but what it is told: a fixed molecule, or one guided in all six
-    Turning,  // turn about its pivot, whose place is told: guided by the hand
+    Held,     // only as it is set: a fixed molecule, or one guided in all six
+    Turning,  // turn about its pivot, whose place is set: guided by the hand
     Free,     // all six
 };
 

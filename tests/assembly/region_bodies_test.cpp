@@ -1,4 +1,4 @@
-// Where chains are cut that leave a region, and what is left of bodies of few atoms.
+// Where chains are cut that leave a region, and what remains of bodies of few atoms.
 #include "assembly/region_bodies.h"
 
 #include <algorithm>
@@ -30,7 +30,7 @@ Bonds cuts_of(const Connectivity& connectivity, const std::vector<std::uint8_t>&
 
 }  // namespace
 
-TEST_CASE("a piece of chain in a region hangs on the atom before it, and is cut behind",
+TEST_CASE("a piece of chain in a region is attached to the atom before it, and is cut behind",
           "[assembly][region]") {
     Connectivity row = build_row(10);
     CHECK(cuts_of(row, {0, 0, 0, 1, 1, 1, 0, 0, 0, 0}) == Bonds{{5, 6}});

@@ -120,7 +120,7 @@ TEST_CASE("writing makes a file, then replaces it, and leaves nothing else", "[c
     CHECK(files_in(folder.path()) == 1);
 }
 
-TEST_CASE("a failed write tells why, harms nothing and leaves nothing behind", "[core][files]") {
+TEST_CASE("a failed write says why, harms nothing and leaves nothing behind", "[core][files]") {
     const test::TemporaryFolder folder;
 
     SECTION("into a folder that is not there") {

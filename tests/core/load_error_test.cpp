@@ -16,7 +16,7 @@ TEST_CASE("a place is written as file, line and column, as far as they are known
     CHECK(to_string(TextPlace{"scene.toml", 0, 7}) == "scene.toml");
 }
 
-TEST_CASE("a load error tells its place before its message", "[core][load_error]") {
+TEST_CASE("a load error says its place before its message", "[core][load_error]") {
     const LoadError error({"water.str", 3, 0}, "no {} here");
 
     const std::runtime_error& as_any_handler_sees_it = error;

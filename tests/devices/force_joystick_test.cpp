@@ -210,7 +210,7 @@ TEST_CASE("without the window's focus the clutch holds the molecule, and there i
     CHECK_FALSE(is_pressed(device.read().buttons, Button::Clutch));
 }
 
-TEST_CASE("a report that tells something else moves nothing", "[devices][hid][joystick]") {
+TEST_CASE("a report that says something else moves nothing", "[devices][hid][joystick]") {
     test::HidBus bus;
     const int number = bus.plug(test::force_joystick_hid());
     const OpenedDevice opened = open_stick();

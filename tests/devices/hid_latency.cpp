@@ -1,4 +1,4 @@
-// What palpa devices --latency tells of devices on hidapi: the real libhidapi, threads, mailboxes
+// What palpa devices --latency says of devices on hidapi: the real libhidapi, threads, mailboxes
 // and servo, on devices that umockdev shows it. Started as 'umockdev-wrapper hid_latency
 // [REPORTS]'.
 #include "devices/force_joystick.h"

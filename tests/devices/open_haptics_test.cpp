@@ -82,7 +82,7 @@ struct StubbedOmni {
 
 }  // namespace
 
-TEST_CASE("limits are those that the library tells", "[devices][open-haptics]") {
+TEST_CASE("limits are those that the library says", "[devices][open-haptics]") {
     StubbedOmni omni;
     const DeviceSpec& spec = omni.device().spec();
 

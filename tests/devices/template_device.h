@@ -24,7 +24,7 @@ struct TemplateWire {
 class TemplateDevice final : public Device {
 public:
     explicit TemplateDevice(TemplateWire& wire) : wire_(wire) {
-        // As the hardware tells it, or its maker: then the header says where.
+        // As the hardware says it, or its maker: then the header says where.
         spec_.name = "template";
         spec_.peak_force_newton = 3;
         spec_.half_workspace_m = Vec3(0.08, 0.06, 0.04);

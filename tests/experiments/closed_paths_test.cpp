@@ -1,4 +1,4 @@
-// The first of the closed paths that `palpa closed-paths` plays, and that its bars can be missed.
+// The first of the closed paths that `palpa closed-paths` plays, and that its limits can be missed.
 #include "experiments/closed_paths.h"
 #include "tests/support/paths.h"
 
@@ -32,7 +32,7 @@ TEST_CASE("closed paths in space do the work of the continuous law and end where
         const ClosedPathResult& r = results[i];
         INFO(shape << " " << i << ": " << r.extra_joule() << " J, " << r.drift_angstrom << " A, "
                    << r.ripple_N << " N, " << r.felt_share);
-        CHECK(meets_bars(r, false));
+        CHECK(meets_limits(r, false));
     }
 }
 
@@ -44,7 +44,7 @@ TEST_CASE("what is felt strongly keeps its energy too, at the thermal limit as w
          play_closed_paths(closed_paths(20, {"coupling.feel_pN=[50, 400]"}), {})) {
         INFO(r.extra_joule() << " J, " << r.drift_angstrom << " A, " << r.clipped_mm << " mm");
         limited += r.was_limited ? 1 : 0;
-        CHECK(meets_bars(r, false));
+        CHECK(meets_limits(r, false));
     }
     CHECK(limited > 2);
     CHECK(limited < 15);
@@ -62,7 +62,7 @@ TEST_CASE("the thermal limit generates nothing on closed paths", "[experiments][
         INFO(r.extra_joule() << " J, " << r.ripple_N << " N, " << r.drift_angstrom << " A");
         CHECK(r.was_limited);
         CHECK(std::abs(r.extra_joule()) < 1e-3);
-        CHECK(meets_bars(r, false));
+        CHECK(meets_limits(r, false));
     }
 }
 
@@ -84,15 +84,15 @@ TEST_CASE("ways on which the handle turns end without a ripple and under the cap
     options.turn = true;
 
     for (const ClosedPathResult& result : play_closed_paths(options, {}))
-        CHECK(meets_bars(result, true));
+        CHECK(meets_limits(result, true));
 }
 
-TEST_CASE("positions read in steps of 1 mm miss the bars of closed paths",
+TEST_CASE("positions read in steps of 1 mm miss the limits of closed paths",
           "[experiments][coupling]") {
     std::size_t missed = 0;
     for (const ClosedPathResult& result :
          play_closed_paths(closed_paths(40, {"device.encoder_step_mm=1"}), {}))
-        missed += meets_bars(result, false) ? 0 : 1;
+        missed += meets_limits(result, false) ? 0 : 1;
 
     CHECK(missed > 20);
 }

@@ -1,4 +1,4 @@
-// The first of the scenarios that `palpa scenarios` plays, and that its bars can be missed.
+// The first of the scenarios that `palpa scenarios` plays, and that its limits can be missed.
 #include "experiments/scenarios.h"
 #include "tests/support/paths.h"
 
@@ -28,7 +28,7 @@ TEST_CASE("500 random hands on two waters: no energy from nothing, no vibration,
     }
 }
 
-TEST_CASE("the paper's coupling misses the bars of the scenarios", "[experiments][coupling]") {
+TEST_CASE("the paper's coupling misses the limits of the scenarios", "[experiments][coupling]") {
     const std::vector<ScenarioResult> results =
         play_scenarios({.scene = two_waters, .settings = {"coupling.mode=2"}, .count = 20}, {});
 

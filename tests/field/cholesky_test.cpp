@@ -57,7 +57,7 @@ TEST_CASE("a Cholesky factor solves, whatever the size", "[field][cholesky]") {
     use_processor_kind(list_processor_kinds().front());
 }
 
-TEST_CASE("where there is no Cholesky factor a direction of negative curvature tells why",
+TEST_CASE("where there is no Cholesky factor a direction of negative curvature says why",
           "[field][cholesky]") {
     for (const Eigen::Index at : {0, 5, 30, 99}) {
         INFO("at " << at);

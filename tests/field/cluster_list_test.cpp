@@ -197,7 +197,7 @@ void check_pairs(const ClusterList& list, const std::vector<Vec3>& places) {
     }
 }
 
-// Tiles in order, even in number, what is left of each cluster's room at its end.
+// Tiles in order, even in number, the rest of each cluster's room at its end.
 void check_layout(const ClusterList& list) {
     REQUIRE(list.first_plain.size() == list.clusters() + 1);
     REQUIRE(list.first_masked.size() == list.clusters() + 1);

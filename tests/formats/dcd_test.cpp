@@ -297,8 +297,8 @@ TEST_CASE("a DCD file cut anywhere is noted, and its whole frames are read", "[f
         const std::string error = load_error_of([&] {
             const auto cut = open_dcd_bytes(whole.substr(0, length));
             REQUIRE(cut->frame_count() == 1);
-            REQUIRE_FALSE(cut->notes().empty());  // the header tells of two
-            REQUIRE_THAT(cut->notes().back(), Contains("tells of 2 frames and holds 1"));
+            REQUIRE_FALSE(cut->notes().empty());  // the header says of two
+            REQUIRE_THAT(cut->notes().back(), Contains("has 2 frames by its header and holds 1"));
             REQUIRE(test::positions_of(*cut, 0) == test::positions_of(*all, 0));
             ++noted;
         });
@@ -373,8 +373,9 @@ TEST_CASE("what is wrong with a DCD file is reported", "[formats][dcd]") {
                Contains("frame 2: atom 3 has the coordinate inf"));
     hand.control[1] = 7;
     CHECK(open_dcd_bytes(hand.head() + frames)->notes() ==
-          std::vector<std::string>{"tells of 7 frames and holds 2: the file may have been cut off, "
-                                   "or its writer interrupted"});
+          std::vector<std::string>{
+              "has 7 frames by its header and holds 2: the file may have been cut off, "
+              "or its writer interrupted"});
 }
 
 TEST_CASE("what cannot be written to a DCD file is told", "[formats][dcd]") {

@@ -358,7 +358,7 @@ TEST_CASE("what cannot be written to an mmCIF file is told", "[formats][mmcif]")
     CHECK_THAT(error_with({"A", "ALA", "1AB", "CA"}),
                Contains("'1AB'") && Contains("no residue number"));
     CHECK_THAT(error_with({"A", "ALA", "", "CA"}), Contains("no residue number"));
-    CHECK_THAT(error_with({"A", "ALA", "1", "1"}), Contains("tells no element"));
+    CHECK_THAT(error_with({"A", "ALA", "1", "1"}), Contains("gives no element"));
 }
 
 // By the PDBx/mmCIF dictionary: a loop, and the same as single values.

@@ -32,7 +32,7 @@ constexpr std::string_view one_atom_cif =
 constexpr std::string_view crd =
     "    1\n    1    1 ALA  C      1.00000   2.00000   3.00000 A    1      0.00000\n";
 
-// What README.md of the shared data tells, and `grep -c` of chains and columns.
+// What README.md of the shared data says, and `grep -c` of chains and columns.
 struct Expected {
     const char* file;
     std::size_t atoms;

@@ -32,7 +32,7 @@ std::unique_ptr<Trajectory> open_cif_bytes(std::string bytes) {
     return open_mmcif_models(ByteSource(std::move(bytes), "w.cif"));
 }
 
-// Typed by hand after the format 3.3; times as GROMACS tells them.
+// Typed by hand after the format 3.3; times as GROMACS says them.
 const std::string two_models =
     "CRYST1   20.000   30.000   40.000  90.00  90.00  90.00 P 1           1\n"
     "TITLE     water t=   2.50000 step= 5\n"

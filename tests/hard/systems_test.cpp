@@ -172,7 +172,7 @@ TEST_CASE("a ring of disulphides stays a ring", "[hard]") {
     const test::FlexibleCase c = test::disulphide_ring(units);
     const TorsionModel model = test::model_of(c, {freedom});
     const std::vector<std::array<std::uint32_t, 2>>& springs = model.tree.bodies.springs;
-    // One of them opens the ring; the others hold what is left together.
+    // One of them opens the ring; the others hold the rest together.
     REQUIRE(springs.size() == 1);
     REQUIRE(model.bases.size() == 1);
 

@@ -298,7 +298,7 @@ TEST_CASE("assemblies that are not there, or not of this world, are refused",
     const auto error = [&](int number) {
         return load_error_of([&] { build_assembly(structure, number, report); });
     };
-    CHECK_THAT(error(1), Contains("small.pdb: no assembly 1: the file tells of none"));
+    CHECK_THAT(error(1), Contains("small.pdb: no assembly 1: the file has none"));
     structure.operators = {{"7", diagonal(1, 1, -1), Vec3::Zero(), 41}, identity};
     structure.assemblies = {{"1", {{"A,", {{0}}}}}, {"PAU", {}}, {"3", {{"X,", {{1}}}}}};
     CHECK_THAT(error(2), Contains("no assembly 2 (only 1, PAU, 3)"));

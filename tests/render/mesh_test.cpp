@@ -128,7 +128,7 @@ TEST_CASE("colours between corners are as perspective has them", "[render][mesh]
     for (const float z : {2.0F, 0.0F, -3.0F, -6.0F}) {
         const std::size_t at = pixel_of(scene.camera, {0, -1, z});
         const double light = test::decoded(picture.rgba[4 * at] / 255.0);
-        const double depth = picture.depth[at];  // tells which place this pixel shows
+        const double depth = picture.depth[at];  // says which place this pixel shows
         const double share = (8 - (10 - depth)) / 16;
         const double lit = 0.35 + 0.65 * 0.6 / std::sqrt(0.4 * 0.4 + 0.6 * 0.6 + 0.7 * 0.7);
         CHECK(light == Approx(0.5 * share * lit).margin(0.01));

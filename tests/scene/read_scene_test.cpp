@@ -267,7 +267,7 @@ TEST_CASE("a file that a scene names must be there", "[scene][errors]") {
         replaced(base, "[force_field]", "made_by = \"tools/make_it\"\n[force_field]");
     CHECK_THAT(error_of(replaced(made, "tip3p.str", "tip4p.str")),
                Contains("tip4p.str is not there; expected a file beside the scene, whose made_by "
-                        "tells how it is made") &&
+                        "says how it is made") &&
                    !Contains("make_it"));
     // A folder is no file.
     CHECK_THAT(error_of(replaced(base, "dimer.crd", "../water")), StartsWith(at(5, 13)));

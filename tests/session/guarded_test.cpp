@@ -1,5 +1,6 @@
 // What guarded coupling must keep to on the dimer: six hands, four periods, with the device's
-// friction and without. Each bar and its number come from a study of this loop in another program.
+// friction and without. Each limit and its number come from a study of this loop in another
+// program.
 #include "simulation/held.h"
 #include "simulation/load.h"
 #include "simulation/step.h"

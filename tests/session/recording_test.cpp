@@ -87,7 +87,7 @@ TEST_CASE("the trace has the columns that scripts rely on, in SI where the name 
     CHECK(lines[100].starts_with("0.099,"));
 }
 
-TEST_CASE("the summary tells scene, settings and results", "[session][recording]") {
+TEST_CASE("the summary says scene, settings and results", "[session][recording]") {
     const test::TemporaryFolder folder;
     record(water, folder.path(), {"mode=3", "seconds=0.5", "seed=7"});
 
@@ -371,7 +371,7 @@ TEST_CASE("the trace of two hands is that of the first and the second's own colu
     CHECK(row.size() == 2 * by_column(alone[0], alone[4]).size() - 2);
 }
 
-TEST_CASE("the summary tells of a second hand under its own key, and only where there is one",
+TEST_CASE("the summary names a second hand under its own key, and only where there is one",
           "[session][recording]") {
     Summary summary;
     summary.largest_felt_N = 1;

@@ -88,7 +88,7 @@ TEST_CASE("fast pairs on TL-3 are those in double, in contact, through atoms and
     CHECK(different >= 40);  // else double was compared with double
 }
 
-TEST_CASE("a step tells what fast pairs say, or those in double where the scene wants them",
+TEST_CASE("a step says what fast pairs say, or those in double where the scene wants them",
           "[simulation][hiv][fast-pairs]") {
     const bool is_fast = GENERATE(true, false);
     const std::string mode = GENERATE("guarded", "4");

@@ -162,7 +162,7 @@ inline void run_unsteady(std::uint64_t ticks, const DueFunction& draw, const Ser
 }
 
 // The dimer with its fixed water on a spring (N/m) along x, at rest on it after every step. A rigid
-// one hangs on an infinite spring.
+// one is attached to an infinite spring.
 class SprungDimer {
 public:
     SprungDimer(const SceneDescription& scene, double spring_N_per_m)

@@ -181,6 +181,25 @@ class Cli(unittest.TestCase):
                 self.assertEqual(result.returncode, 0)
                 self.assertTrue(result.stdout.strip())
 
+    def test_keys_of_scenes_are_explained(self):
+        keys = self.palpa("run", "--keys").stdout
+        for arguments in (["scene", "coupling.mode"], ["scene", "--help", "coupling.mode"],
+                          ["help", "scene", "coupling.mode"], ["help", "coupling.mode"]):
+            with self.subTest(arguments=arguments):
+                result = self.palpa(*arguments)
+                self.assertEqual(result.returncode, 0, result.stderr)
+                name, meaning, value = result.stdout.splitlines()
+                self.assertEqual(name, "coupling.mode")
+                row = next(row for row in keys.splitlines() if row.startswith("| `coupling.mode` |"))
+                self.assertIn(f"| {meaning.strip()} |", row)
+                self.assertIn(value.split(": ", 1)[1].split("; unless given")[0], row)
+        view = self.palpa("scene", "view").stdout
+        self.assertEqual(re.findall(r"^view\.\S+$", view, re.M),
+                         re.findall(r"^\| `(view\.\S+)`", keys, re.M))
+        wrong = self.palpa("scene", "coupling.mod")
+        self.assertEqual(wrong.returncode, 2)
+        self.assertIn("no key or table 'coupling.mod'; did you mean 'coupling.mode'?", wrong.stderr)
+
     def test_wrong_usage_is_bad_input(self):
         for arguments, said in ((["fly"], "palpa: no command 'fly'"),
                                 (["run"], "palpa run: scene is required; 'palpa' alone lists"),

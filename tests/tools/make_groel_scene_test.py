@@ -22,7 +22,7 @@ FILES = ("structures/1aon.pdb.gz", "charmm/top_all36_prot.rtf", "charmm/par_all3
          "charmm/top_all36_cgenff.rtf", "charmm/par_all36_cgenff.prm",
          "charmm/toppar_water_ions.str")
 
-# Writes what it was asked for; relax tells that it did not come to rest, or what it is told to.
+# Writes what it was asked for; relax says that it did not come to rest, or what it is told to.
 STAND_IN = """#!/bin/sh
 command=$1
 while [ "$1" != -o ]; do shift; done
@@ -105,7 +105,7 @@ class MakeGroelScene(unittest.TestCase):
     def test_the_scene_without_its_inputs_says_where_to_look(self):
         shutil.copy(ROOT / "scenes" / "groel" / "scene.toml", self.folder)
         result = run(PROGRAM, "run", "--check", self.folder)
-        self.refused(result, "is not there", "whose made_by tells")
+        self.refused(result, "is not there", "whose made_by says")
 
 
 if __name__ == "__main__":

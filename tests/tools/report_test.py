@@ -1,4 +1,4 @@
-"""palpa report from outside: one page that holds all it needs, every section, and no missed bar."""
+"""palpa report from outside: one page that holds all it needs, every section, and no missed limit."""
 import os
 import re
 import subprocess

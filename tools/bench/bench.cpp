@@ -44,7 +44,7 @@
 namespace palpa {
 namespace {
 
-// What a step tells of the force with what the first hand holds at `distance` along its line; of
+// What a step says of the force with what the first hand holds at `distance` along its line; of
 // what moves by itself, what rigid molecules would feel there. kcal/mol/Å.
 double find_step_force(World& world, double distance) {
     if (is_mobile(grip_of(world, first_hand(world))))

@@ -1,4 +1,4 @@
-// Times joint accelerations of a tree with Simbody and with the assembly tree, by turns, and tells
+// Times joint accelerations of a tree with Simbody and with the assembly tree, by turns, and says
 // how far apart they are. Compiled and fed by tools/scripts/compare_simbody.
 #include "tools/bench/compare_simbody.h"
 #include "assembly/passes.h"

@@ -134,9 +134,9 @@ void bench_factor(const std::string& name, const AtRest& rest, std::vector<Bench
     }
     row.error = solve.error = left.norm() / mixed.norm();
     row.error_unit = solve.error_unit = "relative";
-    row.reference = fmt::format("what is left, {} tries, shift {:.2g} kcal/mol/Å^2", factor.tries,
-                                factor.shift);
-    solve.reference = fmt::format("what is left, {} columns", mixed.cols());
+    row.reference =
+        fmt::format("residual, {} tries, shift {:.2g} kcal/mol/Å^2", factor.tries, factor.shift);
+    solve.reference = fmt::format("residual, {} columns", mixed.cols());
     rows.push_back(row);
     rows.push_back(solve);
 }

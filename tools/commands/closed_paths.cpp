@@ -1,5 +1,5 @@
-// palpa closed-paths: random closed paths of the hand in space; those that miss a bar, and a table
-// of all.
+// palpa closed-paths: random closed paths of the hand in space; those that miss a limit, and a
+// table of all.
 #include "experiments/closed_paths.h"
 
 #include "tools/commands/command.h"
@@ -70,7 +70,7 @@ std::string format_spread(std::vector<double> values) {
 struct Row {
     const char* what;
     double scale;
-    std::string bar;
+    std::string limit;
     bool (*counts)(const ClosedPathResult&);
     double (*value)(const ClosedPathResult&);
 };
@@ -112,17 +112,17 @@ void print_table(const std::vector<ClosedPathResult>& all, bool turned) {
          [](const ClosedPathResult& r) { return r.largest_N; }},
     });
     fmt::print(
-        "| what | paths | median | 90 % | most | bar |\n| --- | --- | --- | --- | --- | --- |\n");
+        "| what | paths | median | 90 % | most | limit |\n| --- | --- | --- | --- | --- | --- |\n");
     for (const Row& row : rows) {
         std::vector<double> values;
         for (const ClosedPathResult& result : all)
             if (row.counts(result)) values.push_back(row.scale * row.value(result));
         fmt::print("| {} | {} | {} | {} |\n", row.what, values.size(), format_spread(values),
-                   row.bar);
+                   row.limit);
     }
 }
 
-// The exit code: 1 where a bar is missed.
+// The exit code: 1 where a limit is missed.
 int run_closed_paths(const ClosedPathCommand& command) {
     const ClosedPathOptions& options = command.paths;
     check_closed_paths(options);
@@ -132,7 +132,7 @@ int run_closed_paths(const ClosedPathCommand& command) {
     const std::vector<ClosedPathResult> results =
         play_closed_paths(options, [&](std::size_t number, const ClosedPathResult& r) {
             if (number % 20 == 0) count.show(fmt::format("{} of {}", number, last));
-            if (meets_bars(r, options.turn) || command.json) return;
+            if (meets_limits(r, options.turn) || command.json) return;
             fmt::print(
                 "path {}: {:+.5f} J of work, the law's {:+.5f}; drift {:.3f} Å, out to {:.2f} Å; "
                 "ripple {:.3f} N; felt {:.2f} of the cap{}\n  palpa run --headless {} --set "
@@ -143,7 +143,7 @@ int run_closed_paths(const ClosedPathCommand& command) {
         });
     count.wipe();
     const auto failed = static_cast<std::size_t>(std::ranges::count_if(
-        results, [&](const ClosedPathResult& r) { return !meets_bars(r, options.turn); }));
+        results, [&](const ClosedPathResult& r) { return !meets_limits(r, options.turn); }));
     if (command.json) {
         nlohmann::ordered_json report{
             {"count", results.size()}, {"seed", options.seed}, {"failed", failed}};
@@ -151,7 +151,7 @@ int run_closed_paths(const ClosedPathCommand& command) {
             report["loops"].push_back(as_json(options.first + i, results[i]));
         fmt::print("{}\n", report.dump(2));
     } else {
-        fmt::print("{} closed paths, {} missed a bar\n\n", results.size(), failed);
+        fmt::print("{} closed paths, {} missed a limit\n\n", results.size(), failed);
         print_table(results, options.turn);
     }
     return failed == 0 ? 0 : 1;

@@ -24,6 +24,7 @@ void add_devices(CLI::App& program, ProgramCommand& chosen);
 void add_prepare(CLI::App& program, ProgramCommand& chosen);
 void add_force_field(CLI::App& program, ProgramCommand& chosen);
 void add_relax(CLI::App& program, ProgramCommand& chosen);
+void add_scene(CLI::App& program, ProgramCommand& chosen);
 void add_render(CLI::App& program, ProgramCommand& chosen);
 void add_export(CLI::App& program, ProgramCommand& chosen);
 void add_select(CLI::App& program, ProgramCommand& chosen);

@@ -331,6 +331,14 @@ std::string explain(const CLI::ParseError& error, const CLI::App& program,
 }
 
 std::vector<std::string> expand_help(std::vector<std::string> arguments) {
+    if (arguments.size() > 2 && arguments[0] == "scene" && arguments[1] == "--help") {
+        arguments.erase(arguments.begin() + 1);
+    } else if (arguments.size() > 2 && arguments[0] == "help" && arguments[1] == "scene") {
+        arguments.erase(arguments.begin());
+    } else if (arguments.size() > 1 && arguments[0] == "help" &&
+               arguments[1].find('.') != std::string::npos) {
+        arguments[0] = "scene";
+    }
     if (arguments.empty() || arguments[0] != "help") return arguments;
     arguments.erase(arguments.begin());
     if (arguments.empty() || !arguments.back().starts_with("-")) arguments.emplace_back("--help");

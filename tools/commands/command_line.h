@@ -31,7 +31,8 @@ std::optional<std::string> explain_command(const CLI::App& program, const std::s
 std::string explain(const CLI::ParseError& error, const CLI::App& program,
                     const std::string& command);
 
-// "palpa help run" as "palpa run --help".
+// "palpa help run" as "palpa run --help"; "palpa scene --help KEY", "palpa help scene KEY" and
+// "palpa help TABLE.KEY" as "palpa scene KEY".
 std::vector<std::string> expand_help(std::vector<std::string> arguments);
 
 // "palpa prepare --toppar A B x.pdb" as "palpa prepare x.pdb --toppar A B": an option that takes

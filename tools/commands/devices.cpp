@@ -244,7 +244,7 @@ void print_device_list() {
                    opened.device ? "found: " + opened.device->spec().name
                                  : fmt::format("not found: {}: {}", last.layer, last.found));
     }
-    fmt::print("'palpa devices' tells more\n");
+    fmt::print("'palpa devices' says more\n");
 }
 
 void add_devices(CLI::App& program, ProgramCommand& chosen) {

@@ -11,7 +11,7 @@
 namespace palpa {
 
 // Writes to standard error where that is a terminal and somebody wants it; never into a file or a
-// pipe. The line is wiped when this goes, so make it before what it tells of.
+// pipe. The line is wiped when this goes, so make it before what it reports on.
 class ProgressLine {
 public:
     explicit ProgressLine(bool is_wanted = true);
@@ -21,7 +21,7 @@ public:
 
     // Empty where nothing is shown. This must outlive it.
     StageFunction stages();
-    // The same of one stage, told only its share.
+    // The same of one stage, given only its share.
     std::function<void(double share)> shares(std::string stage);
 
     // Before anything else is printed.

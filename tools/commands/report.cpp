@@ -7,7 +7,7 @@ namespace palpa {
 
 void add_report(CLI::App& program, ProgramCommand& chosen) {
     CLI::App& report = *program.add_subcommand(
-        "report", "The paper's figures, the acceptance bars and more, computed anew: one page");
+        "report", "The paper's figures, the acceptance limits and more, computed anew: one page");
     ReportOptions& options = own_options<ReportOptions>(report, chosen, report_command);
     describe(report, "Experiments", {"palpa report -o report.html"});
     report.add_option("-o,--output", options.output, "page to write, report.html unless given");

@@ -38,7 +38,7 @@ struct RunOptions {
     std::optional<std::filesystem::path> last_shot;  // of the window, which then closes
     double last_shot_s = 5;
     std::uint64_t lose_device_at = 0;
-    bool validation = false;  // of all that Vulkan is told
+    bool validation = false;  // of all calls of Vulkan
     ServeChoice serve;
 };
 

@@ -1,5 +1,5 @@
-// palpa scenarios: random hands and devices on a scene of one axis; those that miss a bar, and the
-// worst.
+// palpa scenarios: random hands and devices on a scene of one axis; those that miss a limit, and
+// the worst.
 #include "experiments/scenarios.h"
 
 #include "tools/commands/command.h"
@@ -31,7 +31,7 @@ nlohmann::ordered_json as_json(std::size_t number, const ScenarioResult& result)
             {"settings", result.settings}};
 }
 
-// The exit code: 1 where a bar is missed.
+// The exit code: 1 where a limit is missed.
 int run_scenarios(const ScenarioCommand& command) {
     const ScenarioOptions& options = command.scenarios;
     check_scenarios(options);
@@ -70,8 +70,8 @@ int run_scenarios(const ScenarioCommand& command) {
         fmt::print("{}\n", report.dump(2));
     } else {
         fmt::print(
-            "{} scenarios, {} missed a bar\n  generated   {:+.5f} J at most (bar {})\n"
-            "  ripple      {:.4f} N at most (bar {})\n  molecule    {:.3f} Å at the closest\n"
+            "{} scenarios, {} missed a limit\n  generated   {:+.5f} J at most (limit {})\n"
+            "  ripple      {:.4f} N at most (limit {})\n  molecule    {:.3f} Å at the closest\n"
             "  clamped     in {}\n",
             results.size(), failed, generated, most_generated_J, ripple, most_ripple_N, closest,
             clamped);

@@ -59,7 +59,7 @@ void check_same_study(const std::filesystem::path& file, const nlohmann::ordered
     }
     const auto before = nlohmann::json::parse(read_text_file(file), nullptr, false);
     if (!before.is_object())
-        throw LoadError({file.string()}, "tells no settings of a study; expected another folder");
+        throw LoadError({file.string()}, "has no settings of a study; expected another folder");
     const auto was = [&](const std::string& key) { return before.value(key, nlohmann::json()); };
     for (const auto& [key, value] : now.items()) {
         // Settings may be the scene's own.

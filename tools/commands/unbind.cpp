@@ -37,7 +37,7 @@ nlohmann::ordered_json as_json(const UnbindingResult& r) {
                                 {"clutches", r.clutches},
                                 {"step_median_us", r.summary.step_median_us},
                                 {"wall_s", r.wall_s},
-                                {"meets_bars", r.meets_bars()},
+                                {"meets_limits", r.meets_limits()},
                                 {"out", r.is_out()},
                                 {"back", r.is_back()},
                                 {"settings", r.settings}};
@@ -84,7 +84,7 @@ void print_row(const UnbindingResult& r) {
     std::fflush(stdout);
 }
 
-// The exit code: 1 where a guarded one misses a bar.
+// The exit code: 1 where a guarded one misses a limit.
 int run_unbind(const UnbindCommand& command) {
     const UnbindingOptions& options = command.unbinding;
     const std::vector<std::vector<std::string>> choices = list_unbindings(options);
@@ -101,7 +101,7 @@ int run_unbind(const UnbindCommand& command) {
     const auto out = count([](const UnbindingResult& r) { return r.is_out(); });
     const auto back = count([](const UnbindingResult& r) { return r.is_back(); });
     const auto missed =
-        count([&](const UnbindingResult& r) { return is_guarded(r) && !r.meets_bars(); });
+        count([&](const UnbindingResult& r) { return is_guarded(r) && !r.meets_limits(); });
     if (command.json) {
         nlohmann::ordered_json report{
             {"count", results.size()}, {"out", out}, {"back", back}, {"missed", missed}};
@@ -109,12 +109,12 @@ int run_unbind(const UnbindCommand& command) {
         fmt::print("{}\n", report.dump(2));
     } else {
         fmt::print(
-            "\n{} of {} out, {} back; {} of {} guarded ones missed a bar (ripple {} N, nothing "
+            "\n{} of {} out, {} back; {} of {} guarded ones missed a limit (ripple {} N, nothing "
             "cut at 3 nN or less, finite, none through, out where the stroke leads 10 Å and all "
             "moves)\n",
             out, results.size(), back, missed, count(is_guarded), most_unbinding_ripple_N);
         for (const UnbindingResult& r : results) {
-            if (!is_guarded(r) || r.meets_bars()) continue;
+            if (!is_guarded(r) || r.meets_limits()) continue;
             fmt::print("palpa run --headless {} --set \"{}\"\n", options.scene.string(),
                        fmt::join(r.settings, "\" --set \""));
         }

@@ -1,9 +1,9 @@
-// The bars that guarded coupling is held to on two waters, and what this run measured.
+// The limits that guarded coupling is held to on two waters, and what this run measured.
 #include "experiments/axis_run.h"
 #include "scene/read_scene.h"
 #include "simulation/load.h"
 #include "simulation/probe.h"
-#include "tools/report/bars.h"
+#include "tools/report/criteria.h"
 #include "tools/report/sections.h"
 
 #include <fmt/format.h>
@@ -16,11 +16,11 @@
 namespace palpa {
 namespace {
 
-using Row = BarRow;
+using Row = CriterionRow;
 
 constexpr std::array<std::string_view, 5> holding{"light", "slack", "medium", "firm", "firm-grip"};
 
-// Hands, periods and frictions of the bars; where time is short, those that shake soonest.
+// Hands, periods and frictions of the limits; where time is short, those that shake soonest.
 struct Conditions {
     std::vector<std::string_view> hands{"none", "light", "slack", "medium", "firm", "firm-grip"};
     std::vector<std::string_view> hands_that_move{holding.begin(), holding.end()};
@@ -233,8 +233,8 @@ ReportSection report_acceptance(const ReportOptions& options) {
     const World world = load_world(scene);
     const double rest = equilibrium_distance(world).value_or(0);
     std::vector<Row> rows;
-    add_dimer_bars(world, rest, rows);
-    add_law_bars(rows);
+    add_dimer_limits(world, rest, rows);
+    add_law_limits(rows);
     report_progress("holds");
     add_instability(options, rest, rows);
     add_holds(options, rest, rows);
@@ -244,21 +244,21 @@ ReportSection report_acceptance(const ReportOptions& options) {
     add_walls(options, rest, rows);
     add_drift(options, rows);
     report_progress("random scenarios and closed paths");
-    add_random_bars(options, rows);
+    add_random_limits(options, rows);
 
-    ReportSection section{"acceptance", "Acceptance: bar and measured value"};
+    ReportSection section{"acceptance", "Acceptance: limit and measured value"};
     section.shows =
         "What guarded coupling is held to, and the worst that this run found: hands from none to "
         "firm with a grip, with and without the device's friction of 0.26 N, periods of 1 to 83 "
         "ms.";
-    std::vector<std::vector<std::string>> table{{"test", "bar", "measured", ""}};
+    std::vector<std::vector<std::string>> table{{"test", "limit", "measured", ""}};
     for (const Row& row : rows) {
-        table.push_back({row.test, row.bar, row.measured,
+        table.push_back({row.test, row.limit, row.measured,
                          row.is_met ? "met" : "<span class=\"missed\">missed</span>"});
-        section.meets_bars = section.meets_bars && row.is_met;
+        section.meets_limits = section.meets_limits && row.is_met;
     }
     section.body = format_table(table);
-    section.differs = "The paper has no such bars.";
+    section.differs = "The paper has no such limits.";
     section.command = fmt::format(
         "ctest --preset release -R guarded; palpa scenarios {0} --count {1} --seed {3}; palpa "
         "closed-paths "

@@ -60,7 +60,7 @@ ReportSection report_hard(const ReportOptions& options) {
         const bool is_met = std::isfinite(p.energy_J) && std::isfinite(p.last_angstrom) &&
                             force <= 3 + 1e-9 && p.ripple_N < 0.02 &&
                             p.stage < SafetyStage::NotFinite;
-        section.meets_bars = section.meets_bars && is_met;
+        section.meets_limits = section.meets_limits && is_met;
         table.push_back(
             {what, fmt::format("{:.2f}", force), fmt::format("{:.2f}", p.closest_angstrom),
              fmt::format("{:.2f}", p.last_angstrom), fmt::format("{:+.2f}", p.energy_J * 1e3),

@@ -16,7 +16,7 @@ struct ReportSection {
     std::string body = {};     // HTML: figures and tables
     std::string differs = {};  // from the paper
     std::string command = {};  // that repeats the numbers
-    bool meets_bars = true;
+    bool meets_limits = true;
     double seconds = 0;  // it took
 };
 

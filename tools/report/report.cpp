@@ -10,7 +10,7 @@
 #include "simulation/probe.h"
 #include "tools/bench/bench.h"
 #include "tools/bench/row.h"
-#include "tools/report/bars.h"
+#include "tools/report/criteria.h"
 #include "tools/report/sections.h"
 
 #include <fmt/chrono.h>
@@ -66,7 +66,7 @@ Existing check(const ReportOptions& options) {
     const SceneDescription scene = read_scene(options.scene, options.settings);
     if (scene.coupling.mode != CouplingMode::Guarded) {
         throw LoadError(scene.place_of("coupling.mode"),
-                        "the bars of a report are guarded coupling's; expected coupling.mode = "
+                        "the limits of a report are guarded coupling's; expected coupling.mode = "
                         "\"guarded\"");
     }
     const World world = load_world(scene);
@@ -110,8 +110,8 @@ int report_command(const ReportOptions& options) {
         sections.push_back(std::move(section));
     }
     write_text_file(options.output, format_page(list_facts(options, total), sections), existing);
-    const bool is_met = std::ranges::all_of(sections, &ReportSection::meets_bars);
-    fmt::print("written: {}{}\n", options.output.string(), is_met ? "" : "; a bar is missed");
+    const bool is_met = std::ranges::all_of(sections, &ReportSection::meets_limits);
+    fmt::print("written: {}{}\n", options.output.string(), is_met ? "" : "; a limit is missed");
     return is_met ? 0 : 1;
 }
 

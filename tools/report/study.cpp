@@ -121,9 +121,10 @@ std::string hold_against_mode_4(const std::vector<StudyRow>& rows, bool& is_met)
     const double later_s = guarded.time_s.mean - constant.time_s.mean;
     is_met = ratio <= 1.0 / 3 && later_s <= 2 && guarded.finished_share == 1;
     return fmt::format(
-        "<p>Guarded against mode 4: {:.2f} of the distance (bar 1/3), {:+.1f} s (bar +2 s), {:.0f} "
+        "<p>Guarded against mode 4: {:.2f} of the distance (limit 1/3), {:+.1f} s (limit +2 s), "
+        "{:.0f} "
         "% "
-        "finished (bar all): {}.</p>\n",
+        "finished (limit all): {}.</p>\n",
         ratio, later_s, 100 * guarded.finished_share,
         is_met ? "met" : "<span class=\"missed\">missed</span>");
 }
@@ -171,7 +172,7 @@ ReportSection report_figures_7_and_8(const ReportOptions& options) {
                         format_bars("time", rows, &StudyRow::time_s, 1) + bars,
                     caption) +
         draw_figure_8(study, results, 1) + format_table(table) +
-        hold_against_mode_4(rows, section.meets_bars);
+        hold_against_mode_4(rows, section.meets_limits);
     section.differs =
         "The paper asked five people three times. Operators here follow a rule and a threshold of "
         "force: compare ratios of modes, not distances; mode 5 is a guess of the size that "

@@ -160,7 +160,7 @@ void Socket::close() noexcept {
     if (is_open()) ::closesocket(socket_of(std::exchange(handle_, none)));
 }
 
-// By select: WSAPoll of older systems never tells that a connection was refused.
+// By select: WSAPoll of older systems never says that a connection was refused.
 void wait_for_sockets(std::span<AwaitedSocket> sockets, int at_most_ms) {
     const int wait_ms = std::max(at_most_ms, 0);
     if (sockets.empty()) {

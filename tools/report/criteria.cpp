@@ -1,4 +1,4 @@
-#include "tools/report/bars.h"
+#include "tools/report/criteria.h"
 
 #include "core/units.h"
 #include "experiments/scenarios.h"
@@ -13,7 +13,7 @@
 
 namespace palpa {
 
-void add_dimer_bars(const World& world, double rest, std::vector<BarRow>& rows) {
+void add_dimer_limits(const World& world, double rest, std::vector<CriterionRow>& rows) {
     constexpr double nN = units::newton_per_kcal_per_mol_angstrom * 1e9;
     double deepest = 0, most = 0;
     for (int i = 0; i <= 4000; ++i) {
@@ -23,10 +23,10 @@ void add_dimer_bars(const World& world, double rest, std::vector<BarRow>& rows) 
     }
     const double k = force_along_line_at(world, rest).stiffness *
                      units::newton_per_metre_per_kcal_per_mol_angstrom2;
-    const auto near = [&](const char* name, const char* unit, double value, double bar,
+    const auto near = [&](const char* name, const char* unit, double value, double limit,
                           double give) {
-        rows.push_back({name, fmt::format("{} ± {} {}", bar, give, unit),
-                        fmt::format("{:.4g} {}", value, unit), std::abs(value - bar) <= give});
+        rows.push_back({name, fmt::format("{} ± {} {}", limit, give, unit),
+                        fmt::format("{:.4g} {}", value, unit), std::abs(value - limit) <= give});
     };
     near("Two waters: deepest energy", "kcal/mol", deepest, -6.594, 0.005);
     near("Two waters: distance of rest", "Å", rest, 2.767, 0.002);
@@ -34,12 +34,12 @@ void add_dimer_bars(const World& world, double rest, std::vector<BarRow>& rows) 
     near("Two waters: strongest attraction", "nN", -most, 0.322, 0.002);
 }
 
-void add_law_bars(std::vector<BarRow>& rows) {
+void add_law_limits(std::vector<CriterionRow>& rows) {
     const PrintedForceLaw law({});
     const PrintedDisplacementLaw gain({});
-    const auto digits = [&](const char* name, double value, double bar) {
-        rows.push_back({name, fmt::format("{:.7g}", bar), fmt::format("{:.7g}", value),
-                        std::abs(value / bar - 1) < 1e-6});
+    const auto digits = [&](const char* name, double value, double limit) {
+        rows.push_back({name, fmt::format("{:.7g}", limit), fmt::format("{:.7g}", value),
+                        std::abs(value / limit - 1) < 1e-6});
     };
     digits("Eq. 2: slope at 0", law.slope(0), 5.508036e9);
     digits("Eq. 2: slope at F_0", law.slope(1.5e-9), 4.528171e8);
@@ -66,7 +66,7 @@ std::optional<ClosedPathOptions> find_closed_paths(const ReportOptions& options)
                              .seed = options.seed};
 }
 
-void add_random_bars(const ReportOptions& options, std::vector<BarRow>& rows) {
+void add_random_limits(const ReportOptions& options, std::vector<CriterionRow>& rows) {
     ScenarioOptions scenarios{.scene = options.scene,
                               .settings = options.settings,
                               .count = static_cast<std::size_t>(options.quick ? 20 : 500),
@@ -91,7 +91,7 @@ void add_random_bars(const ReportOptions& options, std::vector<BarRow>& rows) {
             drift = std::max(drift, r.drift_angstrom);
     }
     const auto missed = std::ranges::count_if(
-        closed, [](const ClosedPathResult& r) { return !meets_bars(r, false); });
+        closed, [](const ClosedPathResult& r) { return !meets_limits(r, false); });
     rows.push_back(
         {fmt::format("{} closed paths in space", closed.size()),
          "1 mJ and, near, 0.1 Å from the continuous law",

@@ -1,4 +1,4 @@
-// Bars of a report that need no stroke of their own, and how a bar is printed.
+// Limits of a report that need no stroke of their own, and how a limit is printed.
 #pragma once
 #include "ecs/world.h"
 #include "experiments/closed_paths.h"
@@ -10,21 +10,21 @@
 
 namespace palpa {
 
-struct BarRow {
-    std::string test, bar, measured;  // HTML
+struct CriterionRow {
+    std::string test, limit, measured;  // HTML
     bool is_met = false;
 };
 
 // What two waters do to each other; `rest` in Å.
-void add_dimer_bars(const World& world, double rest, std::vector<BarRow>& rows);
+void add_dimer_limits(const World& world, double rest, std::vector<CriterionRow>& rows);
 
 // Equations 2 and 3.
-void add_law_bars(std::vector<BarRow>& rows);
+void add_law_limits(std::vector<CriterionRow>& rows);
 
 // The closed paths in space of a report; nothing where no space.toml lies beside its scene.
 std::optional<ClosedPathOptions> find_closed_paths(const ReportOptions& options);
 
 // Random hands and devices on the scene's line, and, where it lies beside it, in space.toml.
-void add_random_bars(const ReportOptions& options, std::vector<BarRow>& rows);
+void add_random_limits(const ReportOptions& options, std::vector<CriterionRow>& rows);
 
 }  // namespace palpa
