@@ -2,6 +2,7 @@
 #pragma once
 #include "gpu/device.h"
 #include "gpu/resources.h"
+#include "render/drawn_shapes.h"
 #include "render/frame_scene.h"
 #include "render/gpu_frame.h"
 #include "render/layer_lists.h"
@@ -66,7 +67,7 @@ private:
     void record_picture(VkCommandBuffer commands, const FrameScene& scene) const;
     void record_nearest_layers(VkCommandBuffer commands) const;
     void create_picture();
-    void list_picks(const FrameScene& scene);
+    void list_picks(const std::vector<SphereShape>& spheres, const std::vector<ConeShape>& cones);
     Picture draw_frame(const FrameScene& scene, const GpuFrame& frame, PictureContent content);
     bool lacks_layers() const noexcept;  // of the last picture drawn
     std::uint32_t pick_of(std::uint32_t id) const noexcept;
@@ -77,6 +78,7 @@ private:
     // written by every record
     ShapeView view_, sun_view_;
     LayerLists layers_;
+    DrawnShapes drawn_;
     Image colour_;
     Framebuffer picture_;
     std::vector<std::uint32_t> picks_;  // of every shape and then every triangle, as numbered
