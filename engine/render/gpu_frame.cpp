@@ -7,7 +7,7 @@
 namespace palpa {
 namespace {
 
-constexpr std::int32_t occlusion_taps = 8;  // all of the shader's
+constexpr std::int32_t fine_spirals = 6;  // of taps of ambient occlusion
 
 template <class Shapes>
 std::uint32_t count_below(const Shapes& shapes) {
@@ -26,7 +26,7 @@ GpuFrame build_frame_constants(const FrameScene& scene, VkExtent2D size) {
                          {scene.background, camera.fog_length > 0 ? 1 / camera.fog_length : 0},
                          0,
                          scene.outline,
-                         scene.occlusion ? occlusion_taps : 0,
+                         scene.occlusion ? (scene.is_fine ? fine_spirals : 1) : 0,
                          camera.fog_from,
                          camera.centre,
                          0,

@@ -46,7 +46,7 @@ struct Sun {
 struct GpuFrame {
     glm::vec4 projection, size, fog;
     std::uint32_t spheres;
-    std::int32_t outline, taps;
+    std::int32_t outline, spirals;
     float fog_from;
     glm::vec2 centre;
     std::uint32_t last_sphere_below, last_cone_below;

@@ -19,9 +19,9 @@ namespace palpa {
 
 // Two passes. The first finds for every pixel which shape or triangle is nearest and how far; the
 // second shades each pixel that shows one: light from the camera's upper left, ambient occlusion
-// from eight taps of the distances around, a dark outline where distance breaks off, fog in the
-// distance. What is translucent goes into lists of layers, a list a pixel, in the first pass, and
-// is sorted and laid over the opaque picture in the second.
+// from eight taps of the distances around or more, a dark outline where distance breaks off, fog in
+// the distance. What is translucent goes into lists of layers, a list a pixel, in the first pass,
+// and is sorted and laid over the opaque picture in the second.
 class Renderer {
 public:
     // Throws GpuError.
