@@ -7,7 +7,7 @@ layout(push_constant) uniform Frame {
     vec4 fog;         // the background's colour, and the inverse of the fog's length
     uint spheres;     // how many of the shapes are spheres; the cones stand behind them
     int outline;      // its width in pixels
-    int taps;         // of ambient occlusion, 8 or none
+    int spirals;      // of eight taps each of ambient occlusion, or none
     float fog_from;   // distance from the camera
     vec2 centre;      // where the camera's axis is seen, to the right and up, in halves of the picture
     uint last_sphere_below;  // numbers, from 1: what comes after them, of its kind, is on top

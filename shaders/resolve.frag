@@ -25,25 +25,29 @@ float turn_of(ivec2 pixel) {
     return fract(52.9829189 * fract(dot(place, vec2(0.06711056, 0.00583715))));
 }
 
-// How open the surroundings are, 1 is open: from eight taps, two rounds of a spiral, that each pixel
-// turns by another angle.
+// How open the surroundings are, 1 is open: from eight taps, two turns of a spiral, that each pixel
+// turns by another angle; or from several such spirals between each other.
 const vec2 spiral[8] = vec2[](vec2(0.25, 0.0), vec2(0.354, 0.354), vec2(0.0, 0.75),
                               vec2(-0.707, 0.707), vec2(-0.25, 0.0), vec2(-0.354, -0.354),
                               vec2(0.0, -0.75), vec2(0.707, -0.707));
 float openness(ivec2 pixel, vec3 place, vec3 normal) {
     const float reach = 2.5;  // Å
     float pixels = clamp(reach * frame.projection.y * 0.5 * frame.size.y / -place.z, 2.0, 64.0);
-    float turn = turn_of(pixel);
-    vec2 x = pixels * vec2(cos(0.785398 * turn), sin(0.785398 * turn)), y = vec2(-x.y, x.x);
-    float shut = 0.0;
-    for (int tap = 0; tap < frame.taps; ++tap) {
-        ivec2 there = clamp(pixel + ivec2(spiral[tap].x * x + spiral[tap].y * y), ivec2(0), last);
-        vec3 to = ray_at(vec2(there) + 0.5) * distance_at(there) - place;
-        float d2 = max(dot(to, to), 1e-8), inverse = inversesqrt(d2);
-        float above = max(dot(to, normal) * inverse - 0.1, 0.0);
-        shut += above * clamp(1.0 - d2 * inverse / (2.0 * reach), 0.0, 1.0);
+    float turn = turn_of(pixel), shut = 0.0;
+    for (int round = 0; round < frame.spirals; ++round) {
+        float share = (turn + float(round)) / float(frame.spirals), angle = 0.785398 * share;
+        float size = pixels * (1.0 - 0.25 * float(round) / float(frame.spirals));
+        vec2 x = size * vec2(cos(angle), sin(angle)), y = vec2(-x.y, x.x);
+        for (int tap = 0; tap < 8; ++tap) {
+            vec2 aside = spiral[tap].x * x + spiral[tap].y * y;
+            ivec2 there = clamp(pixel + ivec2(aside), ivec2(0), last);
+            vec3 to = ray_at(vec2(there) + 0.5) * distance_at(there) - place;
+            float d2 = max(dot(to, to), 1e-8), inverse = inversesqrt(d2);
+            float above = max(dot(to, normal) * inverse - 0.1, 0.0);
+            shut += above * clamp(1.0 - d2 * inverse / (2.0 * reach), 0.0, 1.0);
+        }
     }
-    return clamp(1.0 - shut / 4.0, 0.0, 1.0);
+    return clamp(1.0 - shut / (4.0 * float(max(frame.spirals, 1))), 0.0, 1.0);
 }
 
 // How much of the light's way is free, 1 is all: what of 16 places around, in the surface's own

@@ -218,7 +218,9 @@ void Sandbox::compose_picture() {
     shown_.camera = frame_camera(camera_, shown_);
     shown_.camera.centre = free_centre();
     shown_.background = background;
-    shown_.occlusion = scale_.has_effects();
+    shown_.is_coarse = true;
+    shown_.occlusion = shown_.occlusion && scale_.has_effects();
+    shown_.shadows = shown_.shadows && scale_.has_effects();
 }
 
 void Sandbox::draw() {

@@ -69,7 +69,10 @@ struct FrameScene {
     bool clear_background = false;
     int outline = 1;        // its width in pixels
     bool occlusion = true;  // crevices are darker; without, a picture costs less
-    bool shadows = false;   // of opaque things upon each other; everything is drawn once more
+    bool is_fine = false;   // crevices without grain, for pictures that have the time
+    // Of very many shapes smaller than a pixel not all are drawn (render/drawn_shapes.h).
+    bool is_coarse = false;
+    bool shadows = false;  // of opaque things upon each other; everything is drawn once more
 };
 
 }  // namespace palpa

@@ -7,7 +7,7 @@
 namespace palpa {
 namespace {
 
-constexpr std::int32_t occlusion_taps = 8;  // all of the shader's
+constexpr std::int32_t fine_spirals = 6;  // of taps of ambient occlusion
 
 template <class Shapes>
 std::uint32_t count_below(const Shapes& shapes) {
@@ -21,22 +21,30 @@ GpuFrame build_frame_constants(const FrameScene& scene, VkExtent2D size) {
     const FrameCamera& camera = scene.camera;
     const auto width = static_cast<float>(size.width), height = static_cast<float>(size.height);
     const float y_scale = 1 / std::tan(camera.vertical_angle / 2);
-    const auto spheres = static_cast<std::uint32_t>(scene.spheres.size()),
-               cones = static_cast<std::uint32_t>(scene.cones.size());
-    return {{y_scale * height / width, y_scale, camera.near, camera.far},
-            {width, height, 1 / width, 1 / height},
-            {scene.background, camera.fog_length > 0 ? 1 / camera.fog_length : 0},
-            spheres,
-            scene.outline,
-            scene.occlusion ? occlusion_taps : 0,
-            camera.fog_from,
-            camera.centre,
-            count_below(scene.spheres),
-            spheres + count_below(scene.cones),
-            spheres + cones,
-            0,
-            {0, 0},
-            {}};
+    const GpuFrame frame{{y_scale * height / width, y_scale, camera.near, camera.far},
+                         {width, height, 1 / width, 1 / height},
+                         {scene.background, camera.fog_length > 0 ? 1 / camera.fog_length : 0},
+                         0,
+                         scene.outline,
+                         scene.occlusion ? (scene.is_fine ? fine_spirals : 1) : 0,
+                         camera.fog_from,
+                         camera.centre,
+                         0,
+                         0,
+                         0,
+                         0,
+                         {0, 0},
+                         {}};
+    return count_shapes(frame, scene.spheres, scene.cones);
+}
+
+GpuFrame count_shapes(GpuFrame frame, const std::vector<SphereShape>& spheres,
+                      const std::vector<ConeShape>& cones) {
+    frame.spheres = static_cast<std::uint32_t>(spheres.size());
+    frame.shapes = static_cast<std::uint32_t>(spheres.size() + cones.size());
+    frame.last_sphere_below = count_below(spheres);
+    frame.last_cone_below = frame.spheres + count_below(cones);
+    return frame;
 }
 
 VkExtent2D size_of(const GpuFrame& frame) {

@@ -8,6 +8,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <vector>
 
 namespace palpa {
 
@@ -45,7 +46,7 @@ struct Sun {
 struct GpuFrame {
     glm::vec4 projection, size, fog;
     std::uint32_t spheres;
-    std::int32_t outline, taps;
+    std::int32_t outline, spirals;
     float fog_from;
     glm::vec2 centre;
     std::uint32_t last_sphere_below, last_cone_below;
@@ -57,6 +58,10 @@ static_assert(sizeof(GpuFrame) <= 128, "push constants");
 
 // Shapes are numbered from 1: spheres, then cones, those on top last of their kind; then triangles.
 GpuFrame build_frame_constants(const FrameScene& scene, VkExtent2D size);
+
+// The same with the numbers of these shapes.
+GpuFrame count_shapes(GpuFrame frame, const std::vector<SphereShape>& spheres,
+                      const std::vector<ConeShape>& cones);
 
 VkExtent2D size_of(const GpuFrame& frame);
 

@@ -71,12 +71,13 @@ bool faces_away(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
 
 }  // namespace
 
-void MeshLists::build(const FrameScene& scene, const glm::mat4& view, const GpuFrame& frame) {
-    for (std::size_t i = 0; i < scene.meshes.size(); ++i) check_mesh(scene.meshes[i], i);
+void MeshLists::build(const std::vector<MeshShape>& meshes, const glm::mat4& view,
+                      const GpuFrame& frame) {
+    for (std::size_t i = 0; i < meshes.size(); ++i) check_mesh(meshes[i], i);
     placed_.clear();
     outside_.clear();
     for (std::vector<Corners>& kind : kinds_) kind.clear();
-    for (const MeshShape& mesh : scene.meshes) {
+    for (const MeshShape& mesh : meshes) {
         if (mesh.opacity > 0) add_mesh(mesh, view, frame);
     }
     number_triangles();

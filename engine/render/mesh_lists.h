@@ -23,7 +23,7 @@ struct TriangleRange {
 class MeshLists {
 public:
     // Throws GpuError where a mesh has an index too large, or indices that make no triangles.
-    void build(const FrameScene& scene, const glm::mat4& view, const GpuFrame& frame);
+    void build(const std::vector<MeshShape>& meshes, const glm::mat4& view, const GpuFrame& frame);
 
     const std::vector<GpuVertex>& vertices() const noexcept { return vertices_; }
     std::span<const std::uint32_t> picks() const noexcept { return picks_; }  // of triangles

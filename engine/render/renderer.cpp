@@ -39,7 +39,8 @@ void Renderer::create_picture() {
     picture_ = Framebuffer(device_, pipelines_.picture_pass, views, size);
 }
 
-void Renderer::list_picks(const FrameScene& scene) {
+void Renderer::list_picks(const std::vector<SphereShape>& spheres,
+                          const std::vector<ConeShape>& cones) {
     picks_.clear();
     const auto list = [&](const auto& shapes) {
         for (const bool is_on_top : {false, true}) {
@@ -48,8 +49,8 @@ void Renderer::list_picks(const FrameScene& scene) {
             }
         }
     };
-    list(scene.spheres);
-    list(scene.cones);
+    list(spheres);
+    list(cones);
     picks_.insert(picks_.end(), view_.meshes().picks().begin(), view_.meshes().picks().end());
 }
 
@@ -67,13 +68,20 @@ void Renderer::record(VkCommandBuffer commands, const FrameScene& scene, VkExten
 }
 
 void Renderer::record_frame(VkCommandBuffer commands, const FrameScene& scene, GpuFrame frame) {
+    constexpr std::size_t many = 20'000;  // to look at each costs less than to draw some of them
     const glm::mat4 view = view_matrix(scene.camera);
+    const bool leaves_out =  // what is hidden may still cast shadows
+        !scene.shadows && scene.spheres.size() + scene.cones.size() > many;
+    if (leaves_out) drawn_.choose(scene, view, frame);
+    const std::vector<SphereShape>& spheres = leaves_out ? drawn_.spheres() : scene.spheres;
+    const std::vector<ConeShape>& cones = leaves_out ? drawn_.cones() : scene.cones;
+    frame = count_shapes(frame, spheres, cones);
     const VkExtent2D before = view_.size();
-    view_.upload(commands, scene, view, frame);
+    view_.upload(commands, scene.meshes, spheres, cones, view, frame);
     if (before.width != view_.size().width || before.height != view_.size().height) {
         create_picture();
     }
-    list_picks(scene);
+    list_picks(spheres, cones);
     const bool has_layers = view_.meshes().has_translucent();
     layers_.reserve(has_layers ? view_.size() : VkExtent2D{0, 0});
     frame.layer_room = layers_.room();
@@ -87,7 +95,7 @@ void Renderer::record_frame(VkCommandBuffer commands, const FrameScene& scene, G
         {view_.shapes(), view_.vertices(), layers_.handle(), view_.seen().view(), sun_seen.view()});
     if (has_layers) layers_.record_clear(commands);
     view_.begin(commands, pipelines_.set, frame);
-    view_.draw_opaque(commands, scene.spheres.size(), scene.cones.size());
+    view_.draw_opaque(commands, spheres.size(), cones.size());
     view_.draw_layers(commands);  // last, when depth has all that hides them
     vkCmdEndRenderPass(commands);
     if (has_layers) layers_.record_drawn(commands);
@@ -99,7 +107,8 @@ void Renderer::record_frame(VkCommandBuffer commands, const FrameScene& scene, G
 void Renderer::record_sun(VkCommandBuffer commands, const FrameScene& scene, const glm::mat4& view,
                           const GpuFrame& frame) {
     const GpuFrame from_sun = build_sun_frame(frame);
-    sun_view_.upload(commands, scene, sun_matrix(frame.sun) * view, from_sun);
+    sun_view_.upload(commands, scene.meshes, scene.spheres, scene.cones,
+                     sun_matrix(frame.sun) * view, from_sun);
     pipelines_.write_descriptors(pipelines_.sun_set,
                                  {sun_view_.shapes(), sun_view_.vertices(), layers_.handle(),
                                   sun_view_.seen().view(), sun_view_.seen().view()});

@@ -2,6 +2,7 @@
 #pragma once
 #include "gpu/device.h"
 #include "gpu/resources.h"
+#include "render/drawn_shapes.h"
 #include "render/frame_scene.h"
 #include "render/gpu_frame.h"
 #include "render/layer_lists.h"
@@ -18,9 +19,9 @@ namespace palpa {
 
 // Two passes. The first finds for every pixel which shape or triangle is nearest and how far; the
 // second shades each pixel that shows one: light from the camera's upper left, ambient occlusion
-// from eight taps of the distances around, a dark outline where distance breaks off, fog in the
-// distance. What is translucent goes into lists of layers, a list a pixel, in the first pass, and
-// is sorted and laid over the opaque picture in the second.
+// from eight taps of the distances around or more, a dark outline where distance breaks off, fog in
+// the distance. What is translucent goes into lists of layers, a list a pixel, in the first pass,
+// and is sorted and laid over the opaque picture in the second.
 class Renderer {
 public:
     // Throws GpuError.
@@ -66,7 +67,7 @@ private:
     void record_picture(VkCommandBuffer commands, const FrameScene& scene) const;
     void record_nearest_layers(VkCommandBuffer commands) const;
     void create_picture();
-    void list_picks(const FrameScene& scene);
+    void list_picks(const std::vector<SphereShape>& spheres, const std::vector<ConeShape>& cones);
     Picture draw_frame(const FrameScene& scene, const GpuFrame& frame, PictureContent content);
     bool lacks_layers() const noexcept;  // of the last picture drawn
     std::uint32_t pick_of(std::uint32_t id) const noexcept;
@@ -77,6 +78,7 @@ private:
     // written by every record
     ShapeView view_, sun_view_;
     LayerLists layers_;
+    DrawnShapes drawn_;
     Image colour_;
     Framebuffer picture_;
     std::vector<std::uint32_t> picks_;  // of every shape and then every triangle, as numbered

@@ -44,12 +44,13 @@ ShapeView::ShapeView(const GpuDevice& device, const Pipelines& pipelines)
       shapes_(device, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT),
       vertices_(device, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT) {}
 
-void ShapeView::upload(VkCommandBuffer commands, const FrameScene& scene, const glm::mat4& view,
-                       const GpuFrame& frame) {
-    meshes_.build(scene, view, frame);
+void ShapeView::upload(VkCommandBuffer commands, const std::vector<MeshShape>& meshes,
+                       const std::vector<SphereShape>& spheres, const std::vector<ConeShape>& cones,
+                       const glm::mat4& view, const GpuFrame& frame) {
+    meshes_.build(meshes, view, frame);
     const VkExtent2D size = size_of(frame);
     if (size.width != size_.width || size.height != size_.height) create_images(size);
-    upload_shapes(commands, scene, view);
+    upload_shapes(commands, spheres, cones, view);
     write_buffer(commands, vertices_, meshes_.vertices());
 }
 
@@ -65,9 +66,9 @@ void ShapeView::create_images(VkExtent2D size) {
     size_ = size;
 }
 
-void ShapeView::upload_shapes(VkCommandBuffer commands, const FrameScene& scene,
-                              const glm::mat4& view) {
-    const std::size_t count = scene.spheres.size() + scene.cones.size();
+void ShapeView::upload_shapes(VkCommandBuffer commands, const std::vector<SphereShape>& spheres,
+                              const std::vector<ConeShape>& cones, const glm::mat4& view) {
+    const std::size_t count = spheres.size() + cones.size();
     (void)shapes_.reserve(count * sizeof(GpuShape));
     std::byte* place = shapes_.mapped().data();
     const auto add = [&](const auto& shape) {
@@ -76,12 +77,12 @@ void ShapeView::upload_shapes(VkCommandBuffer commands, const FrameScene& scene,
         place += sizeof(built);
     };
     for (const bool is_on_top : {false, true}) {
-        for (const SphereShape& sphere : scene.spheres) {
+        for (const SphereShape& sphere : spheres) {
             if (sphere.is_on_top == is_on_top) add(sphere);
         }
     }
     for (const bool is_on_top : {false, true}) {
-        for (const ConeShape& cone : scene.cones) {
+        for (const ConeShape& cone : cones) {
             if (cone.is_on_top == is_on_top) add(cone);
         }
     }

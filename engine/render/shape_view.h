@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <glm/mat4x4.hpp>
 #include <span>
+#include <vector>
 
 namespace palpa {
 
@@ -19,8 +20,9 @@ public:
 
     // Builds everything for the frame, and records what brings it to the device. Buffers and images
     // may be others afterwards. Throws GpuError for a bad mesh.
-    void upload(VkCommandBuffer commands, const FrameScene& scene, const glm::mat4& view,
-                const GpuFrame& frame);
+    void upload(VkCommandBuffer commands, const std::vector<MeshShape>& meshes,
+                const std::vector<SphereShape>& spheres, const std::vector<ConeShape>& cones,
+                const glm::mat4& view, const GpuFrame& frame);
 
     // Begins the first pass with descriptors of this view, whose frame the following commands have
     // too; within it, that many of the spheres and cones, and opaque triangles, are drawn.
@@ -38,7 +40,8 @@ public:
 
 private:
     void create_images(VkExtent2D size);
-    void upload_shapes(VkCommandBuffer commands, const FrameScene& scene, const glm::mat4& view);
+    void upload_shapes(VkCommandBuffer commands, const std::vector<SphereShape>& spheres,
+                       const std::vector<ConeShape>& cones, const glm::mat4& view);
     void draw_triangles(VkCommandBuffer commands, VkPipeline pipeline,
                         const TriangleRange& range) const;
 

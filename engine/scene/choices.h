@@ -112,15 +112,24 @@ enum class Colouring {
     Force,
     Activity,
     Potential,
-    Hydrophobicity
+    Hydrophobicity,
+    Error
 };
-inline constexpr std::array<std::string_view, 10> colouring_names{
-    "element",  "chain", "residue",  "structure", "charge",
-    "b-factor", "force", "activity", "potential", "hydrophobicity"};
+inline constexpr std::array<std::string_view, 11> colouring_names{
+    "element", "chain",    "residue",   "structure",      "charge", "b-factor",
+    "force",   "activity", "potential", "hydrophobicity", "error"};
 
 // Which hydrogen bonds are drawn. In hand: of what hands hold with all the rest. All: also within
 // molecules.
 enum class ShownBonds { None, InHand, All };
 inline constexpr std::array<std::string_view, 3> shown_bond_names{"none", "in-hand", "all"};
+
+// Which hydrogens are drawn. Polar: those bonded to nitrogen, oxygen or sulphur.
+enum class ShownHydrogens { All, Polar, None };
+inline constexpr std::array<std::string_view, 3> shown_hydrogen_names{"all", "polar", "none"};
+
+// Shadows of opaque things upon each other.
+enum class Shadows { None, Soft };
+inline constexpr std::array<std::string_view, 2> shadow_names{"none", "soft"};
 
 }  // namespace palpa

@@ -199,6 +199,10 @@ struct ViewDescription {
     bool clip = false;                      // nothing in front of the grabbed molecule
     std::vector<ViewLayer> layers{};
     std::vector<std::string> labels{};  // selections whose residues or atoms are named
+    ShownHydrogens hydrogens = ShownHydrogens::All;
+    Shadows shadows = Shadows::None;
+    bool occlusion = true;     // crevices are darker
+    std::int64_t outline = 1;  // pixels
 };
 
 struct SceneDescription {

@@ -510,7 +510,8 @@ void visit_view(FieldVisitor& v, ViewDescription& view) {
     choose(v,
            {.key = "colour",
             .meaning = "chain: carbons in a colour of their chain; charge: of each residue; "
-                       "activity: which joints move; potential: of the scene's charges, on "
+                       "activity: which joints answer, and by how much; "
+                       "error: of their angles; potential: of the scene's charges, on "
                        "surfaces"},
            colouring_names, view.colouring);
     choose(v,
@@ -518,6 +519,20 @@ void visit_view(FieldVisitor& v, ViewDescription& view) {
             .meaning = "which are drawn as dashes; in-hand: between the molecule in hand and all "
                        "others; all: also within molecules"},
            shown_bond_names, view.hydrogen_bonds);
+    choose(v,
+           {.key = "hydrogens",
+            .meaning = "which are drawn as balls and sticks, licorice, lines or filling space; "
+                       "polar: bonded to N, O or S; besides always those of hydrogen bonds that "
+                       "are drawn"},
+           shown_hydrogen_names, view.hydrogens);
+    choose(v, {.key = "shadows", .meaning = "of things upon each other"}, shadow_names,
+           view.shadows);
+    v.flag({.key = "occlusion", .meaning = "crevices are darker"}, view.occlusion);
+    v.integer({.key = "outline",
+               .meaning = "width in pixels of the dark outline of what stands in front",
+               .lowest = 0,
+               .highest = 8},
+              view.outline);
     v.triple(
         {.key = "camera",
          .meaning = "[azimuth, elevation, zoom]: degrees around what is looked at and above it, "

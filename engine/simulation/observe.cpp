@@ -39,7 +39,7 @@ void find_error(World& world) {
                             nullptr};
     }
     const Renewal rest =
-        make_renewal(model, estimate->settings, {world.resource<TorsionState>(), 0, 0, {}, {}},
+        make_renewal(model, estimate->settings, {world.resource<TorsionState>(), 0, 0, {}, {}, {}},
                      *estimate->memory);
     if (!rest.linear) return;
     const AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();

@@ -72,6 +72,7 @@ Renewal make_renewal(const TorsionModel& model, const SecondOrderSettings& setti
                      RenewalRequest request, RenewalMemory& memory) {
     Renewal renewal;
     const std::vector<Vec3> before = request.state.positions;
+    const std::vector<double> angles = request.state.angles;
     renewal.relaxed = relax_fully(model, settings, request.state, memory);
     renewal.farthest_atom = find_farthest(before, request.state.positions);
     if (renewal.relaxed.end == RelaxEnd::NotFinite || !std::isfinite(request.state.energy()))
@@ -87,6 +88,8 @@ Renewal make_renewal(const TorsionModel& model, const SecondOrderSettings& setti
         renewal.model_error = find_largest_force(
             memory.lineariser.held.hands, request.at_rest - linear->gradient.tail(linear->hands()));
         renewal.error_age = request.age;
+        for (std::size_t i = 0; i < request.left.size(); ++i)
+            renewal.joint_errors.push_back(request.state.angles[i] - angles[i] - request.left[i]);
     }
     memory.last = linear;
     renewal.linear = std::move(linear);

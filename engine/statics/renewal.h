@@ -57,6 +57,9 @@ struct SecondOrderSettings : LineariseSettings {
 double find_farthest_way(std::span<const HandHold> hands, const Eigen::VectorXd& coordinates);
 double find_largest_force(std::span<const HandHold> hands, const Eigen::VectorXd& gradient);
 
+// Errors are counted as of this age at least where their growth is found.
+inline constexpr double least_error_age = 0.3;
+
 // What renewals use again from one to the next. They read nothing else that changes, so a thread of
 // its own may make them.
 struct RenewalMemory {
@@ -73,6 +76,8 @@ struct RenewalRequest {
     // Gradient at the hands by the old model, and what it would be if that model were at rest;
     // empty where there is none.
     Eigen::VectorXd felt, at_rest;
+    // What that model had yet to turn each body's joint before it was at rest, rad; empty too.
+    std::vector<double> left;
 };
 
 // A model linearised at a relaxed state.
@@ -84,6 +89,9 @@ struct [[nodiscard]] Renewal {
     // that is the model's own, not what it had yet to relax; and the old model's age.
     std::optional<double> error;
     double model_error = 0, error_age = 0;
+    // The model's own error of each body's joint, rad: by how much the relaxation turned it beyond
+    // what the model had yet to turn it. Empty where there was none.
+    std::vector<double> joint_errors;
 };
 
 // Relaxes the state while its hands stay, and linearises there.

@@ -1,5 +1,7 @@
 #include "statics/second_order_step.h"
 
+#include "statics/joint_answers.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -168,24 +170,13 @@ bool is_finite(const SecondOrderStatics& statics) {
     return std::isfinite(statics.value.energy) && statics.value.gradient.allFinite();
 }
 
-// How far the state is from the point of linearisation, in units of the region in which the model
-// holds.
-double find_relative_age(const TorsionModel& model, const SecondOrderSettings& settings,
-                         const TorsionState& state, const SecondOrderStatics& statics) {
-    const LinearisedModel& linear = *statics.linear;
-    return std::max(
-        find_farthest_way(statics.renewals.lineariser.held.hands, statics.at.tail(linear.hands())) /
-            settings.renew_hand,
-        find_largest_move(model.mobile_atoms, linear.at.positions, state.positions) /
-            settings.renew_atom);
-}
-
 RenewalRequest request_renewal(const TorsionModel& model, const SecondOrderSettings& settings,
                                const TorsionState& state, const SecondOrderStatics& statics) {
-    RenewalRequest request{state, statics.near_reach, 0, {}, {}};
+    RenewalRequest request{state, statics.near_reach, 0, {}, {}, {}};
     if (!statics.linear) return request;
     request.age = find_relative_age(model, settings, state, statics);
     const LinearisedModel& linear = *statics.linear;
+    request.left = find_unrelaxed_turns(model, statics);
     request.felt = statics.value.gradient.tail(linear.hands());
     request.at_rest =
         request.felt + linear.answer().transpose() * statics.value.gradient.head(linear.mobile());
@@ -202,9 +193,10 @@ void choose_reach(const SecondOrderSettings& settings, SecondOrderStatics& stati
     if (age > late) reach = std::min(reach, std::max(reach - change, settings.nearest_reach));
 }
 
-void adopt_renewal(const SecondOrderSettings& settings, const Renewal& renewal,
-                   SecondOrderStatics& statics) {
+void adopt_renewal(const TorsionModel& model, const SecondOrderSettings& settings,
+                   const Renewal& renewal, SecondOrderStatics& statics) {
     if (!renewal.linear) return;
+    note_joint_answers(model, settings, renewal, statics);
     statics.linear = renewal.linear;
     statics.near = renewal.linear->near;
     statics.at = Eigen::VectorXd::Zero(renewal.linear->gradient.size());
@@ -217,8 +209,7 @@ void adopt_renewal(const SecondOrderSettings& settings, const Renewal& renewal,
     constexpr double at_rest = 0.002;  // Å
     statics.is_at_rest = renewal.relaxed.largest_move < at_rest;
     if (renewal.error) {
-        constexpr double least_age = 0.3;
-        const double age = std::max(renewal.error_age, least_age);
+        const double age = std::max(renewal.error_age, least_error_age);
         const double growth = renewal.model_error / (age * age);
         statics.error_growth =
             statics.error_growth > 0 ? 0.5 * (statics.error_growth + growth) : growth;
@@ -303,7 +294,7 @@ private:
         if (released > report_.released) report_.farthest_relaxed = renewal.farthest_atom;
         report_.released += released;
         if (renewal.error) report_.renewal_error = renewal.error;
-        adopt_renewal(settings_, renewal, statics_);
+        adopt_renewal(model_, settings_, renewal, statics_);
         if (report_.is_finite) place();
         return report_.is_finite;
     }
@@ -482,7 +473,7 @@ void start_second_order(const TorsionModel& model, const SecondOrderSettings& se
                         const TorsionState& state, SecondOrderStatics& statics) {
     SecondOrderSettings as_it_is = settings;
     as_it_is.least_relaxation = as_it_is.most_relaxation = 0;
-    adopt_renewal(settings,
+    adopt_renewal(model, settings,
                   make_renewal(model, as_it_is, request_renewal(model, settings, state, statics),
                                statics.renewals),
                   statics);
@@ -507,8 +498,18 @@ Renewal adopt_pending(const TorsionModel& model, const SecondOrderSettings& sett
     make_pending(model, settings, statics);
     Renewal renewal = std::move(*statics.pending->made);
     statics.pending.reset();
-    adopt_renewal(settings, renewal, statics);
+    adopt_renewal(model, settings, renewal, statics);
     return renewal;
+}
+
+double find_relative_age(const TorsionModel& model, const SecondOrderSettings& settings,
+                         const TorsionState& state, const SecondOrderStatics& statics) {
+    const LinearisedModel& linear = *statics.linear;
+    return std::max(
+        find_farthest_way(statics.renewals.lineariser.held.hands, statics.at.tail(linear.hands())) /
+            settings.renew_hand,
+        find_largest_move(model.mobile_atoms, linear.at.positions, state.positions) /
+            settings.renew_atom);
 }
 
 Vec6 find_hand_pull(const SecondOrderStatics& statics, std::size_t hand) noexcept {

@@ -72,6 +72,12 @@ struct SecondOrderStatics {
     ModelValue trial_value;
     std::vector<Vec3> start;  // memory: where the step began
 
+    // For whoever shows them (statics/joint_answers.h); no step reads them. One of each body's
+    // joint: by how much it was beyond first order where the last model ended whose hands had
+    // moved, rad; and the errors of models at renewals, rad per squared age. Empty before the first
+    // renewal.
+    std::vector<double> beyond_before, joint_error_growth;
+
     std::size_t renewed = 0, discarded = 0;  // renewals; strides that were repeated
     std::size_t model_evaluations = 0;
 };
@@ -102,6 +108,11 @@ void make_pending(const TorsionModel& model, const SecondOrderSettings& settings
 // follows from there to where they are, by strides. One that is not finite changes nothing.
 Renewal adopt_pending(const TorsionModel& model, const SecondOrderSettings& settings,
                       SecondOrderStatics& statics);
+
+// How far the state is from the point of linearisation, in units of the region in which the model
+// holds.
+double find_relative_age(const TorsionModel& model, const SecondOrderSettings& settings,
+                         const TorsionState& state, const SecondOrderStatics& statics);
 
 // Torque about the point that a hand moves, zero where it does not turn it, and force, of the model
 // on what the hand moves after a step; kcal/mol and kcal/mol/Å.

@@ -6,6 +6,7 @@
 #include "simulation/components.h"
 #include "simulation/held.h"
 #include "simulation/resources.h"
+#include "statics/joint_answers.h"
 #include "statics/torsion_state.h"
 #include "view/colour_scales.h"
 #include "view/elements.h"
@@ -144,21 +145,74 @@ Colours colour_pushes(const World& world) {
     return colour_scale(shares, 0, std::log10(most_push_pN / least_push_pN));
 }
 
+constexpr double degrees = 180 / std::numbers::pi;
 constexpr double most_turn_deg = 30;
+constexpr double least_answer_deg = 0.001, most_answer_deg = 1;  // logarithmic
+
+// What activity shows of a world.
+enum class ShownActivity { Turned, Active, BeyondFirstOrder };
+
+ShownActivity shown_activity(const World& world) {
+    if (world.find_resource<AdaptiveState>()) return ShownActivity::Active;
+    if (world.find_resource<SecondOrder>()) return ShownActivity::BeyondFirstOrder;
+    return ShownActivity::Turned;
+}
+
+// Of each atom what its body has; 0 of those that are in none.
+template <class Value>
+std::vector<double> of_atoms(const World& world, std::span<const Value> of_bodies) {
+    std::vector<double> values(world.resource<AtomTable>().size(), 0);
+    const std::vector<std::uint32_t>& body_of = model_of(world).tree.bodies.body_of;
+    for (std::uint32_t atom = 0; atom < body_of.size(); ++atom) {
+        if (body_of[atom] < of_bodies.size())
+            values[model_atoms_of(world).number_in_table(atom)] = of_bodies[body_of[atom]];
+    }
+    return values;
+}
 
 Colours colour_turns(const World& world) {
-    const AtomTable& atoms = world.resource<AtomTable>();
     const TorsionState* const state = world.find_resource<TorsionState>();
-    std::vector<double> turned(atoms.size(), 0);
+    std::vector<double> turned_deg;
     if (state) {
-        const std::vector<std::uint32_t>& body_of = model_of(world).tree.bodies.body_of;
-        for (std::size_t i = 0; i < turned.size() && i < body_of.size(); ++i) {
-            if (body_of[i] >= state->angles.size()) continue;
-            const double angle = std::remainder(state->angles[body_of[i]], 2 * std::numbers::pi);
-            turned[i] = std::abs(angle) * 180 / std::numbers::pi;
-        }
+        for (const double angle : state->angles)
+            turned_deg.push_back(degrees * std::abs(std::remainder(angle, 2 * std::numbers::pi)));
     }
-    return colour_scale(turned, 0, most_turn_deg);
+    return colour_scale(of_atoms<double>(world, turned_deg), 0, most_turn_deg);
+}
+
+// Of each atom, by the size of its joint's angle (rad).
+Colours colour_answers(const World& world, std::span<const double> angles) {
+    std::vector<double> shares;
+    for (const double angle : of_atoms(world, angles)) {
+        const double deg = degrees * std::abs(angle);
+        shares.push_back(deg > 0 ? std::log10(deg / least_answer_deg) : -1);
+    }
+    return colour_scale(shares, 0, std::log10(most_answer_deg / least_answer_deg));
+}
+
+Colours colour_activity(const World& world) {
+    switch (shown_activity(world)) {
+        case ShownActivity::BeyondFirstOrder:
+            return colour_answers(
+                world, find_beyond_first_order(model_of(world),
+                                               world.find_resource<SecondOrder>()->statics));
+        case ShownActivity::Active:
+            return colour_scale(
+                of_atoms<std::uint8_t>(
+                    world, world.find_resource<AdaptiveState>()->statics.selection.is_active),
+                0, 1);
+        case ShownActivity::Turned:
+            break;
+    }
+    return colour_turns(world);
+}
+
+Colours colour_errors(const World& world) {
+    const SecondOrder* const second = world.find_resource<SecondOrder>();
+    if (!second) return Colours(world.resource<AtomTable>().size(), no_value);
+    return colour_answers(world,
+                          estimate_joint_errors(model_of(world), second->settings,
+                                                world.resource<TorsionState>(), second->statics));
 }
 
 std::pair<double, double> find_b_factors(const AtomTable& atoms) {
@@ -204,7 +258,8 @@ std::vector<glm::vec3> find_colours(const World& world, Colouring colouring,
                                     std::span<const SecondaryStructure> structure) {
     const AtomTable& atoms = world.resource<AtomTable>();
     if (colouring == Colouring::Force) return colour_pushes(world);
-    if (colouring == Colouring::Activity) return colour_turns(world);
+    if (colouring == Colouring::Activity) return colour_activity(world);
+    if (colouring == Colouring::Error) return colour_errors(world);
     Colours colours = colour_elements(world, colouring == Colouring::Chain);
     const Colours elements = colours;
     switch (colouring) {
@@ -212,6 +267,7 @@ std::vector<glm::vec3> find_colours(const World& world, Colouring colouring,
         case Colouring::Chain:
         case Colouring::Force:
         case Colouring::Activity:
+        case Colouring::Error:
             return colours;
         case Colouring::Charge:
         case Colouring::Potential:
@@ -290,7 +346,21 @@ std::vector<LegendEntry> find_legend(const World& world, Colouring colouring) {
         case Colouring::Force:
             return legend_of_scale("1 pN on what is in hand, or less", "30 pN", "1 nN or more");
         case Colouring::Activity:
+            switch (shown_activity(world)) {
+                case ShownActivity::BeyondFirstOrder:
+                    return legend_of_scale("joint 0.001° beyond first order, or less", "0.03°",
+                                           "1° or more");
+                case ShownActivity::Active:
+                    return {{sequential_colour(0), "joint or base at rest"},
+                            {sequential_colour(1), "active now"}};
+                case ShownActivity::Turned:
+                    break;
+            }
             return legend_of_scale("joint not turned", "15°", "turned by 30° or more");
+        case Colouring::Error:
+            if (!world.find_resource<SecondOrder>())
+                return {{no_value, "no estimate: not of second order"}};
+            return legend_of_scale("joint wrong by 0.001°, or less", "0.03°", "1° or more");
     }
     return {};
 }

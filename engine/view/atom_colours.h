@@ -19,10 +19,15 @@ namespace palpa {
 //   charge: of the residue, from -1 e (red) to 1 e (blue)
 //   b-factor: from the lowest to the highest of the table
 //   force: what each atom does to what is in the first hand, from 1 pN to 1 nN, logarithmic
-//   activity: by how much its joint has turned since the scene's files, from 0 to 30°
+//   activity: where everything follows by second order, by how much its joint differs from the
+//     linear answer to the hands' move since the last linearisation, from 0.001° to 1°,
+//     logarithmic; where few joints are active, whether its joint or base is; else by how much its
+//     joint has turned since the scene's files, from 0 to 30°
+//   error: by second order, of its joint's angle against complete relaxation, as estimated
+//     (statics/joint_answers.h), from 0.001° to 1°, logarithmic; grey without an estimate
 //   potential: on surfaces (view/surface_shape.h), atoms as by charge
 //   hydrophobicity: of the residue (molecule/hydropathy.h)
-// The atoms in hands have their elements' colours, but for charge, force and activity.
+// The atoms in hands have their elements' colours, but for charge, force, activity and error.
 std::vector<glm::vec3> find_colours(const World& world, Colouring colouring,
                                     std::span<const ResidueSpan> residues,
                                     std::span<const SecondaryStructure> structure);

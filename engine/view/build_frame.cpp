@@ -16,6 +16,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -54,9 +55,9 @@ std::vector<SecondaryStructure> per_atom(const AtomTable& atoms,
 std::vector<glm::vec3> find_layer_colours(const FrameParts& parts,
                                           std::span<const AtomLook> looks) {
     std::vector<glm::vec3> colours(looks.size());
-    std::map<Colouring, std::vector<glm::vec3>> found;
+    std::array<std::vector<glm::vec3>, colouring_names.size()> found;
     for (std::size_t i = 0; i < looks.size(); ++i) {
-        std::vector<glm::vec3>& of = found[looks[i].colouring];
+        std::vector<glm::vec3>& of = found[static_cast<std::size_t>(looks[i].colouring)];
         if (of.empty())
             of = find_colours(parts.world, looks[i].colouring, parts.residues, parts.structure);
         colours[i] = of[i];
@@ -134,6 +135,9 @@ FrameBuilder::~FrameBuilder() = default;
 FrameScene FrameBuilder::build(const World& world, std::span<const ContactModel> contacts,
                                const ViewSettings& settings, std::vector<ViewLabel>* labels) {
     FrameScene frame;
+    frame.shadows = settings.shadows != Shadows::None;
+    frame.occlusion = settings.occlusion;
+    frame.outline = settings.outline;
     std::vector<ViewLabel> words;
     const AtomTable& atoms = world.resource<AtomTable>();
     const std::vector<AtomLook> looks = find_looks(world, settings);
@@ -146,7 +150,8 @@ FrameScene FrameBuilder::build(const World& world, std::span<const ContactModel>
     const std::vector<ResidueSpan> residues = find_residues(world);
     const std::span<const SecondaryStructure> structure = kept_->structure.update(atoms, residues);
     const std::vector<bool> held = find_held_atoms(world), in_hand = find_in_hand(world);
-    const FrameParts parts{world, residues, structure, held, in_hand, takes_part};
+    const FrameParts parts{world,   residues,   structure,         held,
+                           in_hand, takes_part, settings.hydrogens};
     const auto select = [&](const std::string& text, const char* source) {
         return select_in_world(world, kept_->parsed(text, source),
                                per_atom(atoms, residues, structure));

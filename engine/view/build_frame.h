@@ -20,6 +20,10 @@ struct ViewSettings {
     ShownBonds hydrogen_bonds = ShownBonds::InHand;
     std::vector<ViewLayer> layers{};    // drawn besides
     std::vector<std::string> labels{};  // selections that are named
+    ShownHydrogens hydrogens = ShownHydrogens::All;
+    Shadows shadows = Shadows::None;
+    bool occlusion = true;
+    int outline = 1;  // pixels
 
     friend bool operator==(const ViewSettings&, const ViewSettings&) = default;
 };

@@ -318,6 +318,7 @@ CartoonParts add_cartoon(const AtomTable& atoms, std::span<const ResidueSpan> re
     CartoonParts parts;
     parts.shown.assign(residues.size(), false);
     MeshShape mesh;
+    mesh.is_closed = true;  // every body of it is
     // About as many as there will be: growing would cost as much as the rest.
     const auto chain_residues = static_cast<std::size_t>(std::ranges::count_if(
         residues, [](const ResidueSpan& residue) { return residue.alpha != residue.end; }));

@@ -48,6 +48,42 @@ Thickness thickness_of(Representation representation, std::string_view element, 
     return {ball_share * size, stick_radius};
 }
 
+// Whether the choice of hydrogens is for it; the others have rules of their own.
+bool chooses_hydrogens(Representation representation) {
+    switch (representation) {
+        case Representation::BallAndStick:
+        case Representation::SpaceFilling:
+        case Representation::Licorice:
+        case Representation::Lines:
+        case Representation::Cartoon:
+            return true;
+        case Representation::InHand:
+        case Representation::Pocket:
+        case Representation::Surface:
+            break;
+    }
+    return false;
+}
+
+// Hydrogens that the choice leaves out, but for those of hydrogen bonds.
+std::vector<bool> find_left_out(const FrameParts& parts) {
+    const AtomTable& atoms = parts.world.resource<AtomTable>();
+    std::vector<bool> left_out(atoms.size(), false);
+    if (parts.hydrogens == ShownHydrogens::All) return left_out;
+    for (std::size_t i = 0; i < atoms.size(); ++i)
+        left_out[i] = element_of(atoms, i) == "H" && !parts.takes_part[i];
+    if (parts.hydrogens == ShownHydrogens::None) return left_out;
+    const auto is_polar = [&](std::size_t atom) {
+        const std::string_view element = element_of(atoms, atom);
+        return element == "N" || element == "O" || element == "S";
+    };
+    for (const auto& [a, b] : atoms.bonds) {
+        if (is_polar(a)) left_out[b] = false;
+        if (is_polar(b)) left_out[a] = false;
+    }
+    return left_out;
+}
+
 bool is_ribbon(Representation representation) {
     return representation == Representation::Cartoon || representation == Representation::Pocket;
 }
@@ -148,6 +184,7 @@ std::vector<Thickness> find_thickness(const FrameParts& parts, std::span<const A
     });
     const std::vector<bool> near =
         has_pocket ? find_pocket(parts.world, parts.residues) : std::vector<bool>(atoms.size());
+    const std::vector<bool> left_out = find_left_out(parts);
     constexpr std::ptrdiff_t most_shown = 300;  // atoms
     const auto held_count = std::ranges::count(parts.held, true);
     std::vector<Thickness> thickness(atoms.size());
@@ -166,6 +203,7 @@ std::vector<Thickness> find_thickness(const FrameParts& parts, std::span<const A
                                      : is_held;
             if (!is_held && in_ribbon[i] && (is_cartoon || (is_pocket && !near[atom]))) continue;
             if (is_cartoon && is_solvent && !is_held) continue;
+            if (left_out[atom] && chooses_hydrogens(representation)) continue;
             const std::string_view element = element_of(atoms, atom);
             thickness[atom] = thickness_of(representation, element, in_hand);
             if (thickness[atom].atom == 0 && parts.takes_part[atom] &&
@@ -178,6 +216,11 @@ std::vector<Thickness> find_thickness(const FrameParts& parts, std::span<const A
 
 void draw_atoms(const AtomTable& atoms, std::span<const Thickness> thickness,
                 std::span<const glm::vec3> colours, FrameScene& frame) {
+    const auto count = static_cast<std::size_t>(
+        std::ranges::count_if(thickness, [](const Thickness& one) { return one.atom > 0; }));
+    frame.spheres.reserve(frame.spheres.size() + count);
+    if (std::ranges::any_of(thickness, [](const Thickness& one) { return one.stick > 0; }))
+        frame.cones.reserve(frame.cones.size() + count);  // about a bond an atom
     for (std::size_t i = 0; i < atoms.size(); ++i) {
         if (thickness[i].atom == 0) continue;
         frame.spheres.push_back({as_float(atoms.positions[i]), thickness[i].atom, colours[i],

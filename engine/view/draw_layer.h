@@ -32,6 +32,7 @@ struct FrameParts {
     const std::vector<bool>& held;                  // atoms that hands hold
     const std::vector<bool>& in_hand;               // with the whole molecule of the first hand
     const std::vector<bool>& takes_part;            // hydrogens of hydrogen bonds that are drawn
+    ShownHydrogens hydrogens = ShownHydrogens::All;
 };
 
 // The ribbons of a layer as they were last made.

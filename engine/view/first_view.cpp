@@ -19,7 +19,11 @@ ViewSettings first_settings(const ViewDescription& view, const World& world) {
             .colouring = view.colouring,
             .hydrogen_bonds = view.hydrogen_bonds,
             .layers = view.layers,
-            .labels = view.labels};
+            .labels = view.labels,
+            .hydrogens = view.hydrogens,
+            .shadows = view.shadows,
+            .occlusion = view.occlusion,
+            .outline = static_cast<int>(view.outline)};
 }
 
 AtomRange framed_atoms(const ViewDescription& view, const World& world) {

@@ -30,20 +30,34 @@ struct Role {
     bool accepts = false;
 };
 
-std::vector<Role> find_roles(const AtomTable& atoms) {
+// Of those that are asked for.
+std::vector<Role> find_roles(const AtomTable& atoms, const std::vector<bool>& is_asked) {
     std::vector<Role> roles(atoms.size());
     std::vector<std::size_t> bonds(atoms.size(), 0);
     for (const auto& [a, b] : atoms.bonds) {
+        if (!is_asked[a] && !is_asked[b]) continue;
         ++bonds[a];
         ++bonds[b];
         if (element_of(atoms, a) == "H" && is_polar(element_of(atoms, b))) roles[a].donor = b;
         if (element_of(atoms, b) == "H" && is_polar(element_of(atoms, a))) roles[b].donor = a;
     }
     for (std::size_t i = 0; i < atoms.size(); ++i) {
+        if (!is_asked[i]) continue;
         const std::string_view element = element_of(atoms, i);
         roles[i].accepts = is_polar(element) && !(element == "N" && bonds[i] >= bonds_without_pair);
     }
     return roles;
+}
+
+// What may take part in hydrogen bonds of what is held: that, and all that is near enough.
+std::vector<bool> find_near(const AtomTable& atoms, const std::vector<bool>& held) {
+    Eigen::AlignedBox3d box;
+    for (std::size_t i = 0; i < atoms.size(); ++i)
+        if (held[i]) box.extend(atoms.positions[i]);
+    std::vector<bool> near(atoms.size());
+    for (std::size_t i = 0; i < atoms.size(); ++i)
+        near[i] = box.squaredExteriorDistance(atoms.positions[i]) <= longest * longest;
+    return near;
 }
 
 }  // namespace
@@ -52,8 +66,9 @@ std::vector<HydrogenBond> find_hydrogen_bonds(const World& world, ShownBonds whi
     if (which == ShownBonds::None) return {};
     const bool all = which == ShownBonds::All;
     const AtomTable& atoms = world.resource<AtomTable>();
-    const std::vector<Role> roles = find_roles(atoms);
     const std::vector<bool> held = find_in_hand(world);
+    const std::vector<Role> roles =
+        find_roles(atoms, all ? std::vector<bool>(atoms.size(), true) : find_near(atoms, held));
     const auto takes_part = [&](std::size_t i) {
         return roles[i].accepts || roles[i].donor != no_donor;
     };

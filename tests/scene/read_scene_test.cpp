@@ -700,6 +700,10 @@ TEST_CASE("the view table says how a scene is seen at first, without it the prog
     CHECK(unset.camera == std::array<double, 3>{0, 0, 1});
     CHECK(unset.look_at.empty());
     CHECK_FALSE(unset.clip);
+    CHECK(unset.hydrogens == ShownHydrogens::All);
+    CHECK(unset.shadows == Shadows::None);
+    CHECK(unset.occlusion);
+    CHECK(unset.outline == 1);
 
     const ViewDescription view = parse_scene(base + R"(
 [view]
@@ -709,12 +713,20 @@ hydrogen_bonds = "all"
 camera = [-40, 12.5, 2]
 look_at = "moved"
 clip = true
+hydrogens = "polar"
+shadows = "soft"
+occlusion = false
+outline = 0
 )",
                                              file)
                                      .view;
     CHECK(view.representation == Representation::SpaceFilling);
     CHECK(view.colouring == Colouring::Element);
     CHECK(view.hydrogen_bonds == ShownBonds::All);
+    CHECK(view.hydrogens == ShownHydrogens::Polar);
+    CHECK(view.shadows == Shadows::Soft);
+    CHECK_FALSE(view.occlusion);
+    CHECK(view.outline == 0);
     CHECK(view.camera == std::array<double, 3>{-40, 12.5, 2});
     CHECK(view.look_at == "moved");
     CHECK(view.clip);

@@ -1,12 +1,15 @@
 #include "view/cartoon.h"
 
 #include "formats/crd.h"
+#include "render/renderer.h"
 #include "scene/read_scene.h"
 #include "simulation/load.h"
 #include "simulation/resources.h"
+#include "tests/support/gpu.h"
 #include "tests/support/ideal_chain.h"
 #include "tests/support/paths.h"
 #include "view/build_frame.h"
+#include "view/orbit_camera.h"
 #include "view/residue_structure.h"
 
 #include <algorithm>
@@ -552,4 +555,31 @@ TEST_CASE("large systems are drawn coarser", "[view][cartoon]") {
     drawing.detail = cartoon_detail(8000);
     drawing.draw();
     CHECK(drawing.mesh().vertices.size() < fine / 2);
+}
+
+TEST_CASE("the far side of a cartoon is hidden, and need not be drawn", "[view][cartoon][gpu]") {
+    GpuDevice device(test::validated());
+    Renderer renderer(device);
+    Drawing drawing = protease();
+    drawing.detail = GENERATE(CartoonDetail{8, 12}, CartoonDetail{3, 6});
+    drawing.draw();
+    FrameScene& frame = drawing.frame;
+    REQUIRE(frame.meshes[0].is_closed);
+    OrbitCamera camera;
+    orbit(camera, GENERATE(0.3F, 1.8F), 0.4F);
+    frame_all(camera, frame, 1);
+    frame.camera = frame_camera(camera, frame);
+
+    const Picture less = renderer.draw(frame, 400, 400);
+    frame.meshes[0].is_closed = false;
+    const Picture all = renderer.draw(frame, 400, 400);
+
+    std::size_t shown = 0, others = 0;
+    for (std::size_t i = 0; i < all.picks.size(); ++i) {
+        shown += all.picks[i] != Picture::nothing_seen ? 1 : 0;
+        others += all.picks[i] != less.picks[i] ? 1 : 0;
+    }
+    CHECK(shown > 20'000);
+    CHECK(others < shown / 500);
+    test::check_silent(device);
 }

@@ -24,6 +24,7 @@
 #include "tools/bench/engine.h"
 #include "tools/bench/kernel.h"
 #include "tools/bench/meshes.h"
+#include "tools/bench/repeat_world.h"
 #include "tools/bench/representations.h"
 #include "tools/bench/row.h"
 #include "tools/bench/servo.h"
@@ -197,7 +198,12 @@ int bench_command(const BenchOptions& options) {
             continue;
         }
         if (options.render) {
-            bench_representations(name, load_world(scene, on_stage), rows);
+            World world = load_world(scene, on_stage);
+            if (options.atoms == 0) {
+                bench_representations(name, std::move(world), rows);
+            } else {
+                bench_large_pictures(name, repeat_world(std::move(world), options.atoms), rows);
+            }
             continue;
         }
         if (options.statics) {

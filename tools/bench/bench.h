@@ -16,6 +16,7 @@ struct BenchOptions {
     std::vector<std::filesystem::path> toppar;      // and of these CHARMM files, together
     std::vector<std::string> settings;
     bool render = false;    // pictures, instead of loading and steps
+    std::size_t atoms = 0;  // that scenes are repeated to for pictures; 0: as they are
     bool kernel = false;    // the kernels of pairs alone, likewise; needs no scene
     bool tree = false;      // passes over the assembly trees, likewise
     bool statics = false;   // ways to rest of flexible scenes, likewise

@@ -80,4 +80,39 @@ void bench_representations(const std::string& scene_name, World world,
     }
 }
 
+void bench_large_pictures(const std::string& scene_name, World world, std::vector<BenchRow>& rows) {
+    constexpr int warm_up = 2, frames = 9;
+    constexpr VkExtent2D size{1280, 720};
+    GpuDevice gpu{GpuOptions{}};
+    Renderer renderer(gpu);
+    for (const Representation representation :
+         {Representation::BallAndStick, Representation::SpaceFilling, Representation::Lines,
+          Representation::Cartoon}) {
+        const ViewSettings settings = settings_of(representation);
+        FrameBuilder builder;
+        FrameScene frame = builder.build(world, {}, settings);
+        OrbitCamera camera;
+        frame_all(camera, frame, 16.0F / 9);
+        frame.camera = frame_camera(camera, frame);
+        frame.is_coarse = true;  // as in the window
+        const auto build = [&] { (void)builder.build(world, {}, settings); };
+        const auto draw = [&] {
+            gpu.submit([&](VkCommandBuffer commands) { renderer.record(commands, frame, size); });
+        };
+        const auto time = [&](const char* what, const auto& work) {
+            for (int i = 0; i < warm_up; ++i) work();
+            const auto look = representation_names[static_cast<std::size_t>(representation)];
+            rows.push_back({fmt::format("large/{}/atoms={}/{}/{}", scene_name,
+                                        world.resource<AtomTable>().size(), look, what),
+                            sample(frames, 1e3, work), "ms"});
+        };
+        time("build", build);
+        time("draw", draw);
+        time("frame", [&] {
+            build();
+            draw();
+        });
+    }
+}
+
 }  // namespace palpa

@@ -13,4 +13,8 @@ namespace palpa {
 // the colours brought back. All with marks: hydrogen bonds and the force on what is in hand.
 void bench_representations(const std::string& scene_name, World world, std::vector<BenchRow>& rows);
 
+// Of a large world: balls and sticks, spheres, lines and a cartoon at 1280x720, `large/` before the
+// names: the time to build a frame where nothing has moved, to draw it, and both.
+void bench_large_pictures(const std::string& scene_name, World world, std::vector<BenchRow>& rows);
+
 }  // namespace palpa

@@ -115,6 +115,10 @@ void add_bench(CLI::App& program, ProgramCommand& chosen) {
                      "CHARMM topology and parameter files: time the reading of all together");
     bench.add_flag("--render", options.render, "time pictures instead of steps");
     bench
+        .add_option("--atoms", options.atoms,
+                    "with --render: repeat each scene until it has so many, 500000 say")
+        ->check(in_range(1, 2'000'000));
+    bench
         .add_flag("--kernel", options.kernel,
                   "time the kernels of pairs alone, of all atoms of a scene's topology file; of a "
                   "made-up gas without a scene")

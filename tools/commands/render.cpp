@@ -91,6 +91,16 @@ void apply_options(const RenderOptions& options, World& world, ViewDescription& 
         view.hydrogen_bonds = static_cast<ShownBonds>(
             choice_called("--hydrogen-bonds", options.hydrogen_bonds, shown_bond_names));
     }
+    if (!options.hydrogens.empty()) {
+        view.hydrogens = static_cast<ShownHydrogens>(
+            choice_called("--hydrogens", options.hydrogens, shown_hydrogen_names));
+    }
+    if (!options.shadows.empty()) {
+        view.shadows =
+            static_cast<Shadows>(choice_called("--shadows", options.shadows, shadow_names));
+    }
+    view.occlusion = options.has_occlusion.value_or(view.occlusion);
+    view.outline = options.outline.value_or(static_cast<int>(view.outline));
     if (!options.look_at.empty()) {
         std::vector<std::string_view> names;
         world.each<Molecule>(
@@ -195,6 +205,7 @@ int render_command(const RenderOptions& options) {
     std::optional<TextPainter> painter;
     if (options.words) painter = open_words(warnings);
     frame.scene.clear_background = options.transparent;
+    frame.scene.is_fine = true;
     LeftOutWords left_out;
     const Picture picture = draw_worded(renderer, {options.width, options.height, options.samples},
                                         frame, painter, &left_out);
@@ -286,6 +297,16 @@ void add_look_options(CLI::App& render, RenderOptions& options) {
                     "none, in-hand (of what is in the hand) or all, as it stands alone")
         ->expected(0, 1)
         ->default_str("all");
+    render.add_option(
+        "--hydrogens", options.hydrogens,
+        fmt::format("{}; polar: bonded to N, O or S", fmt::join(shown_hydrogen_names, ", ")));
+    render.add_option("--shadows", options.shadows,
+                      fmt::format("{}; of things upon each other", fmt::join(shadow_names, ", ")));
+    render.add_flag_callback(
+        "--no-occlusion", [&options] { options.has_occlusion = false; },
+        "crevices are as light as the rest");
+    render.add_option("--outline", options.outline, "its width in pixels, 1 unless given")
+        ->check(in_range(0, 8));
     render.add_flag("--transparent", options.transparent, "the background");
 }
 

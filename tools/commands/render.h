@@ -36,7 +36,9 @@ struct RenderOptions {
     };
     std::vector<Said> said;
     std::vector<std::string> labels;
-    std::string hydrogen_bonds;
+    std::string hydrogen_bonds, hydrogens, shadows;
+    std::optional<bool> has_occlusion;
+    std::optional<int> outline;
     bool transparent = false;  // the background
     std::string camera;        // azimuth, elevation in degrees, zoom
     std::string look_at;       // a molecule's name

@@ -32,7 +32,7 @@ std::uint32_t PictureSize::side() const {
 
 Picture draw_worded(Renderer& renderer, const PictureSize& size, WordedFrame& frame,
                     std::optional<TextPainter>& painter, LeftOutWords* left_out) {
-    frame.scene.outline = static_cast<int>(size.side());
+    frame.scene.outline *= static_cast<int>(size.side());
     const auto [width, height] = size.drawn();
     const Picture drawn = renderer.draw(frame.scene, width, height, PictureContent::Colours);
     Picture picture = size.side() == 1 ? drawn : average_down(drawn, size.side());
