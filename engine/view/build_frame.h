@@ -20,6 +20,7 @@ struct ViewSettings {
     ShownBonds hydrogen_bonds = ShownBonds::InHand;
     std::vector<ViewLayer> layers{};    // drawn besides
     std::vector<std::string> labels{};  // selections that are named
+    std::vector<std::string> hidden{};  // selections that layers alone draw
 
     friend bool operator==(const ViewSettings&, const ViewSettings&) = default;
 };
