@@ -41,6 +41,8 @@ inline constexpr std::array chain_carbons = std::to_array<glm::vec3>({{0.474F, 0
 // What is no atom: force and torque, where the hand wants the molecule, hydrogen bonds.
 inline constexpr glm::vec3 force_colour{0.849F, 0.232F, 0.002F};
 inline constexpr glm::vec3 wish_colour{0.162F, 0.002F, 0.256F};
+// Over what a person has selected.
+inline constexpr glm::vec3 selected_colour{0.88F, 0.01F, 0.48F};
 inline constexpr glm::vec3 hydrogen_bond_colour{0.035F, 0.123F, 0.147F};
 
 }  // namespace palpa
