@@ -184,7 +184,7 @@ std::vector<bool> find_in_box(const FrameScene& frame, std::span<const glm::vec3
 void highlight(const AtomDirectory& directory, std::span<const glm::vec3> places,
                const std::vector<bool>& chosen, FrameScene& frame) {
     if (chosen.size() != places.size() || directory.names.size() != places.size()) return;
-    constexpr float share = 0.75F, dot_radius = 0.35F;  // Å
+    constexpr float share = 0.75F, thicker = 1.3F, dot_radius = 0.35F;  // Å
     const auto tint = [&](glm::vec3& colour) { colour = glm::mix(colour, selected_colour, share); };
     // Of each atom: whether its residue has one that is chosen; and whether one of it is shown.
     std::vector<ResidueAtoms> residues;
@@ -202,12 +202,17 @@ void highlight(const AtomDirectory& directory, std::span<const glm::vec3> places
         if (pick < places.size()) is_shown[residue_of[pick]] = true;
         return pick < places.size();
     };
-    for (SphereShape& sphere : frame.spheres)
-        if (show(sphere.pick) && chosen[sphere.pick]) tint(sphere.colour);
+    for (SphereShape& sphere : frame.spheres) {
+        if (!show(sphere.pick) || !chosen[sphere.pick]) continue;
+        tint(sphere.colour);
+        sphere.radius *= thicker;
+    }
     for (ConeShape& cone : frame.cones) {
         if (!show(cone.pick) || !chosen[cone.pick]) continue;
         tint(cone.colour_a);
         tint(cone.colour_b);
+        cone.radius_a *= thicker;
+        cone.radius_b *= thicker;
     }
     for (MeshShape& mesh : frame.meshes)
         for (MeshVertex& vertex : mesh.vertices)

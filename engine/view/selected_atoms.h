@@ -42,8 +42,8 @@ struct PictureBox {
 std::vector<bool> find_in_box(const FrameScene& frame, std::span<const glm::vec3> places,
                               const PictureBox& box, std::uint32_t width, std::uint32_t height);
 
-// Tints what the frame shows of these atoms, and of ribbons the residues that have some; those of
-// residues that are not shown become dots.
+// Tints what the frame shows of these atoms, and makes it thicker; of ribbons and surfaces tints
+// the residues that have some. Those of residues that are not shown become dots.
 void highlight(const AtomDirectory& directory, std::span<const glm::vec3> places,
                const std::vector<bool>& chosen, FrameScene& frame);
 
