@@ -6,6 +6,7 @@
 #include "session/run_headless.h"
 #include "simulation/held.h"
 #include "simulation/resources.h"
+#include "simulation/select_in_world.h"
 #include "view/first_view.h"
 #include "view/legend.h"
 
@@ -80,6 +81,22 @@ LiveHand show_hand(const World& world, Entity hand, const AtomDirectory& atoms) 
     const bool holds = world.find<Grip>(hand) != nullptr;
     return {held_range(world, hand), holds ? held_place(world, hand) : Vec3(Vec3::Zero()),
             find_held_address(world, hand, atoms), contact_of(world, hand).answer.model};
+}
+
+// Layers, labels and what is hidden that cannot be evaluated in this world.
+void drop_wrong_selections(const World& world, ViewSettings& view) {
+    const std::vector<SecondaryStructure> any(world.resource<AtomTable>().size());
+    const auto is_wrong = [&](const std::string& text) {
+        try {
+            if (!text.empty()) (void)select_in_world(world, parse_selection(text), any);
+            return false;
+        } catch (const LoadError&) {
+            return true;
+        }
+    };
+    std::erase_if(view.layers, [&](const ViewLayer& layer) { return is_wrong(layer.of); });
+    std::erase_if(view.labels, is_wrong);
+    std::erase_if(view.hidden, is_wrong);
 }
 
 }  // namespace
@@ -484,8 +501,7 @@ void LiveSession::post_frame_if_wanted() {
     try {
         frame.picture = builder_.build(world, contacts, view_, &frame.labels);
     } catch (const LoadError&) {  // a layer names a molecule that an edit removed
-        view_.layers.clear();
-        view_.labels.clear();
+        drop_wrong_selections(world, view_);
         frame.picture = builder_.build(world, contacts, view_, &frame.labels);
     }
     frame.legend = find_legend(world, view_);

@@ -6,6 +6,7 @@
 #include "platform/thread.h"
 #include "render/picture.h"
 #include "session/run_headless.h"
+#include "ui/caption.h"
 #include "ui/study_panel.h"
 #include "ui/view_labels.h"
 #include "view/build_frame.h"
@@ -77,7 +78,11 @@ Sandbox::Sandbox(const SceneDescription& scene, Device& device, const WindowOpti
       saved_(overlay_.settings()),
       first_(scene.view),
       view_(options.view),
+      sent_(options.view),
       clips_(scene.view.clip),
+      saved_views_(scene.view.saved),
+      written_views_(scene.view.saved),
+      written_additions_(overlay_.additions()),
       add_panel_(scene.file.parent_path()) {
     std::error_code error;
     if (!std::filesystem::is_directory(options.screenshots, error)) {
@@ -157,6 +162,10 @@ void Sandbox::frame() {
         tell_what_was_edited();
         if (session_.recorded_s()) tell_recording_notes();
     }
+    select_anew();
+    follow_lesson();
+    follow_tour();
+    send_view();
     tell_of_film();
     if (const std::vector<std::string> notes = session_.take_server_notes(); !notes.empty())
         notice(fmt::format("{}", fmt::join(notes, "\n")));
@@ -207,11 +216,13 @@ VkExtent2D Sandbox::picture_size() const {
 }
 
 void Sandbox::compose_picture() {
-    if (has_frame_ && first_picture_.spheres.empty()) {
+    if (has_frame_ && !std::exchange(has_first_picture_, has_frame_)) {
         first_picture_ = frame_.picture;
         show_first_view();
     }
+    fly();
     shown_ = frame_.picture;
+    if (!selected_.empty()) highlight(*frame_.atoms, frame_.places, selected_, shown_);
     if (clips_ && has_frame_ && in_hand().held.count > 0)
         clip_in_front(in_hand().held, camera_, shown_);
     show_wish();
@@ -233,18 +244,21 @@ void Sandbox::draw() {
         draw_study_panel(*options_.study);
     } else if (has_frame_) {
         const bool is_news = SteadyClock::now() < notice_until_;
-        overlay_.draw(
-            frame_.readout,
-            {session_.servo_health(), hand().device->spec().name, g.device.name(), last_frame_ms_,
-             scale_.value(), hand().is_led(), holding_,
-             is_news ? notice_ : std::string(hand().device->status()),
-             can_choose_device() ? devices_.offers : std::vector<DeviceOffer>(), devices_.current,
-             speaker_.has_value(), hover_, session_.recorded_s(), frame_.legend},
-            commands, actions);
+        overlay_.draw(frame_.readout,
+                      {session_.servo_health(), hand().device->spec().name, g.device.name(),
+                       last_frame_ms_, scale_.value(), hand().is_led(), holding_,
+                       is_news ? notice_ : std::string(hand().device->status()),
+                       can_choose_device() ? devices_.offers : std::vector<DeviceOffer>(),
+                       devices_.current, speaker_.has_value(), hover_, session_.recorded_s(),
+                       frame_.legend, selection_panel_.is_open()},
+                      commands, actions);
+        draw_selection();
     }
     std::optional<AddEdit> wanted;
     if (has_frame_) wanted = add_panel_.draw(*frame_.atoms);
     const Answer* const answer = question_ ? draw_question(*question_) : nullptr;
+    if (tour_ && at_view_ && !options_.study)
+        draw_caption(saved_views_[*at_view_].name, free_area());
     compose_picture();  // now that the panels are laid out, and it is known what they leave free
     if (!options_.study) draw_view_labels(frame_.labels, shown_.camera);
     g.ui.end();

@@ -11,10 +11,13 @@
 #include "ui/add_panel.h"
 #include "ui/backend.h"
 #include "ui/question.h"
+#include "ui/selection_panel.h"
 #include "view/orbit_camera.h"
+#include "view/selected_atoms.h"
 #include "window/window.h"
 
 #include <chrono>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -78,9 +81,33 @@ private:
     ScreenArea free_area() const;
     glm::vec2 free_centre() const;
     Room free_room() const;
+    glm::vec2 target_pixel() const;
     void compose_picture();
     void look_at_grabbed_or_all();
     void show_as(const ViewSettings& view);
+    void send_view();
+    // sandbox_selection.cpp
+    void open_selection();
+    void select(const std::string& expression);
+    void select_anew();
+    bool end_selection();
+    void draw_selection();
+    bool draw_box(const Input& input);
+    void pin(std::uint32_t atom);
+    void look_at_selected_or_ligand();
+    // sandbox_saved_views.cpp
+    void go_to(std::size_t number);
+    void go_to_next_view();
+    void add_view();
+    void begin_or_end_tour();
+    bool end_tour();
+    void follow_tour();
+    void follow_lesson();
+    const std::vector<bool>& find_framed(const std::string& selection);
+    void fly_to(const OrbitCamera& camera);
+    void fly();
+    bool is_saved() const;
+    void note_saved();
     template <typename Value>
     void choose_next(Value ViewSettings::* choice, std::span<const std::string_view> names,
                      std::string_view said);
@@ -171,15 +198,40 @@ private:
     LiveFrame frame_;
     bool has_frame_ = false;
     const ViewDescription first_;
-    FrameScene first_picture_;  // empty until there is one
+    FrameScene first_picture_;
+    bool has_first_picture_ = false;
     OrbitCamera camera_;
-    ViewSettings view_;
-    bool clips_;  // what hides the molecule in hand is left out
+    ViewSettings view_;  // but for layers, names and what is hidden: those are the overlay's
+    ViewSettings sent_;  // to the session, with these
+    bool clips_;         // what hides the molecule in hand is left out
     bool looks_at_grabbed_ = false;
     FrameScene shown_;  // the frame's picture, and what the window puts in it
     SteadyClock::time_point last_input_ = SteadyClock::now();
     VkExtent2D drawn_size_{};  // of the last picture
     bool holding_ = false;
+    SelectionPanel selection_panel_;
+    SelectionStatus selection_;
+    std::vector<bool> selected_;  // atoms; none: nothing is selected
+    struct Box {
+        PictureBox corners;
+        bool adds = false;  // to what is selected
+    };
+    std::optional<Box> box_;                            // that is drawn with the mouse
+    std::shared_ptr<const AtomDirectory> known_atoms_;  // as looked at last
+    std::vector<std::string> own_molecules_;            // of the scene, without what was added
+    std::vector<SavedView> saved_views_;
+    std::vector<SavedView> written_views_;             // as the scene's file has them
+    ViewAdditions written_additions_;                  // the same
+    std::optional<std::size_t> at_view_;               // of the saved ones, that was gone to last
+    std::map<std::string, std::vector<bool>> framed_;  // atoms, by selections
+    std::vector<bool> framed_now_;                     // by one that depends on the moment
+    std::optional<std::size_t> lesson_step_;           // that was shown last
+    struct Flight {
+        OrbitCamera from, to;
+        SteadyClock::time_point begin;
+    };
+    std::optional<Flight> flight_;                 // of the camera
+    std::optional<SteadyClock::time_point> tour_;  // goes on then
     // What a click would take, once it is known to be no double click.
     struct Wanted {
         std::string address;

@@ -54,7 +54,7 @@ bool Sandbox::save_scene() {
     if (!options_.save) return false;
     try {
         const std::string file = options_.save(overlay_.settings(), describe_view());
-        saved_ = overlay_.settings();
+        note_saved();
         notice(fmt::format("saved {}", file), first_notice_s);
         return true;
     } catch (const LoadError& error) {
@@ -64,11 +64,11 @@ bool Sandbox::save_scene() {
 }
 
 void Sandbox::ask_to_quit() {
-    if (options_.study || !options_.save || overlay_.settings() == saved_) {
+    if (options_.study || !options_.save || is_saved()) {
         quitting_ = true;
         return;
     }
-    question_ = {"The settings were changed and are not saved.",
+    question_ = {"The settings, or what is added to the view, were changed and are not saved.",
                  {{Key::S, "Save and quit (S)", [this] { quitting_ = save_scene(); }},
                   {Key::Q, "Quit without saving (Q)", [this] { quitting_ = true; }},
                   {Key::Escape, "Stay (Esc)"}}};
@@ -159,6 +159,21 @@ void Sandbox::perform(Action action) {
         case Action::FirstView:
             show_first_view();
             break;
+        case Action::Select:
+            open_selection();
+            break;
+        case Action::FocusSelected:
+            look_at_selected_or_ligand();
+            break;
+        case Action::NextView:
+            go_to_next_view();
+            break;
+        case Action::AddView:
+            add_view();
+            break;
+        case Action::Tour:
+            begin_or_end_tour();
+            break;
         case Action::NextDevice:
             choose_next_device();
             break;
@@ -196,7 +211,8 @@ void Sandbox::perform(Action action) {
             change_text_scale(1);
             break;
         case Action::Quit:
-            if (options_.study || !overlay_.close_something()) ask_to_quit();
+            if (options_.study || (!overlay_.close_something() && !end_tour() && !end_selection()))
+                ask_to_quit();
             break;
         default:
             break;

@@ -66,9 +66,12 @@ std::optional<std::uint32_t> Sandbox::find_atom(double x, double y) {
 
 // A click takes what is there, unless another one follows that makes both a double click.
 void Sandbox::click(const MouseClick& click) {
-    if (click.is_second || options_.study || graphics_->ui.covers(click.x, click.y)) return;
+    const bool pins = click.is_right || click.alt;
+    if ((click.is_second && !pins) || options_.study || graphics_->ui.covers(click.x, click.y))
+        return;
     const std::optional<std::uint32_t> atom = find_atom(click.x, click.y);
     if (!atom) return;
+    if (pins) return pin(*atom);
     const AtomScope scope = click.control ? AtomScope::Atom
                             : click.shift ? AtomScope::Residue
                                           : AtomScope::Molecule;
@@ -158,7 +161,7 @@ void Sandbox::tell_what_was_edited() {
 
 void Sandbox::tell_what_is_held() {
     if (held_address_ == in_hand().held_address) return;
-    const bool is_first = held_address_.empty() && first_picture_.spheres.empty();
+    const bool is_first = held_address_.empty() && !has_first_picture_;
     held_address_ = in_hand().held_address;
     if (is_first || held_address_.empty()) return;
     notice(fmt::format("in hand: {}; Ctrl+Z undoes, G lets go", held_address_));
@@ -193,6 +196,7 @@ std::string Sandbox::describe_atom(std::uint32_t atom) const {
     add("click", AtomScope::Molecule, "");
     add("Shift+click", AtomScope::Residue, " by a spring");
     add("Ctrl+click", AtomScope::Atom, " by a spring");
+    text += "\nAlt+click or right click names it";
     return text;
 }
 

@@ -52,10 +52,11 @@ void Sandbox::take_input() {
     const bool is_on_panel = is_dragging || !input.clicked.empty()
                                  ? drags_panel_
                                  : graphics_->ui.covers(input.mouse_x, input.mouse_y);
+    const bool draws_box = draw_box(input);
     if (holding_) {
         // What the mouse did since the last look was done without the key, where that is new.
         if (held_before) move_hand(input);
-    } else if (!is_on_panel && !is_asked()) {
+    } else if (!is_on_panel && !is_asked() && !draws_box) {
         move_camera(input);
         if (input.double_clicked) look_at_pixel(input.mouse_x, input.mouse_y);
     }
@@ -71,12 +72,20 @@ void Sandbox::move_camera(const Input& input) {
     const auto dx = static_cast<float>(input.mouse_dx), dy = static_cast<float>(input.mouse_dy);
     const bool shifts = input.is_down(MouseButton::Right) || input.is_down(MouseButton::Middle) ||
                         (input.is_down(MouseButton::Left) && input.shift);
+    const bool is_moved = input.is_down(MouseButton::Left) || shifts;
+    if ((is_moved && (dx != 0 || dy != 0)) || input.wheel != 0) {
+        flight_.reset();
+        tour_.reset();
+    }
     if (shifts) {
         pan(camera_, dx, dy, static_cast<float>(window_.size().height));
     } else if (input.is_down(MouseButton::Left)) {
         orbit(camera_, -radians_per_pixel * dx, radians_per_pixel * dy);
     }
-    if (input.wheel != 0) zoom(camera_, std::pow(zoom_per_notch, static_cast<float>(input.wheel)));
+    if (input.wheel == 0) return;
+    const glm::vec2 off = glm::vec2(input.mouse_x, input.mouse_y) - target_pixel();
+    zoom_at(camera_, std::pow(zoom_per_notch, static_cast<float>(input.wheel)), off.x, off.y,
+            static_cast<float>(window_.size().height));
 }
 
 // Without focus its sticks are meant for others.

@@ -34,8 +34,17 @@ Room Sandbox::free_room() const {
     return {area.width() / height, area.height() / height};
 }
 
-// As it was when the window opened, wherever the molecules are now.
+// Where the target is seen.
+glm::vec2 Sandbox::target_pixel() const {
+    const ScreenArea area = free_area();
+    return {0.5F * (area.left + area.right), 0.5F * (area.top + area.bottom)};
+}
+
+// As it was when the window opened, wherever the molecules are now; what was added stays.
 void Sandbox::show_first_view() {
+    flight_.reset();
+    tour_.reset();
+    at_view_.reset();
     camera_ = first_camera(first_, first_picture_, frame_.framed, free_room());
     clips_ = first_.clip;
     looks_at_grabbed_ = false;
@@ -43,11 +52,13 @@ void Sandbox::show_first_view() {
 }
 
 void Sandbox::look_at_all() {
+    flight_.reset();
     frame_all(camera_, frame_.picture, free_room());
     clips_ = looks_at_grabbed_ = false;
 }
 
 void Sandbox::look_at_grabbed() {
+    flight_.reset();
     frame_shapes(camera_, shapes_of(frame_.picture, in_hand().held), free_room());
     zoom(camera_, surroundings);
     clips_ = looks_at_grabbed_ = true;
@@ -65,16 +76,29 @@ void Sandbox::look_at_grabbed_or_all() {
     }
 }
 
-void Sandbox::show_as(const ViewSettings& view) {
-    if (view_ == view) return;
-    view_ = view;
-    session_.send(view_);
+void Sandbox::show_as(const ViewSettings& view) { view_ = view; }
+
+// With what was added, and the layers of the saved view that is shown.
+void Sandbox::send_view() {
+    ViewSettings wanted = view_;
+    const ViewAdditions& additions = overlay_.additions();
+    wanted.layers = additions.layers;
+    wanted.labels = additions.labels;
+    wanted.hidden = additions.hidden;
+    if (at_view_) {
+        const std::vector<ViewLayer>& layers = saved_views_[*at_view_].layers;
+        wanted.layers.insert(wanted.layers.end(), layers.begin(), layers.end());
+    }
+    if (wanted == sent_) return;
+    sent_ = wanted;
+    session_.send(sent_);
 }
 
 void Sandbox::look_at_pixel(double x, double y) {
     const std::optional<std::uint32_t> atom = find_atom(x, y);
     for (const SphereShape& sphere : frame_.picture.spheres) {
         if (sphere.pick != atom) continue;
+        flight_.reset();
         camera_.target = sphere.centre;
         return;
     }
@@ -89,6 +113,18 @@ ViewDescription Sandbox::describe_view() const {
     }
     view.camera = describe_camera(camera_, first_, first_picture_, frame_.framed, free_room());
     view.clip = clips_;
+    const ViewAdditions& additions = overlay_.additions();
+    view.layers = additions.layers;
+    view.labels = additions.labels;
+    view.hidden = additions.hidden;
+    view.saved = saved_views_;
+    // The scene's file knows no molecules that were added.
+    const auto is_lost = [&](const std::string& text) {
+        return !text.empty() && !names_only(text, own_molecules_);
+    };
+    std::erase_if(view.layers, [&](const ViewLayer& layer) { return is_lost(layer.of); });
+    std::erase_if(view.labels, is_lost);
+    std::erase_if(view.hidden, is_lost);
     return view;
 }
 

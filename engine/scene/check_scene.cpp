@@ -180,14 +180,42 @@ void check_engine(const EngineDescription& engine, Problems& problems) {
     }
 }
 
+void check_camera(const std::string& key, const std::array<double, 3>& camera, Problems& problems) {
+    const auto [azimuth, elevation, zoom] = camera;
+    if (std::abs(elevation) <= 90 && zoom >= 0.01 && zoom <= 100) return;
+    problems.add(problems.place_of(key),
+                 fmt::format("'{}' is [{}, {}, {}]; expected [azimuth, elevation, zoom]: "
+                             "degrees, the second from -90 to 90, and a factor from 0.01 to 100",
+                             key, azimuth, elevation, zoom));
+}
+
+void check_saved_views(const SceneDescription& scene, Problems& problems) {
+    std::vector<std::string_view> names;
+    for (const SavedView& saved : scene.view.saved) {
+        const std::string key = fmt::format("view.saved[{}]", names.size() + 1);
+        check_camera(key + ".camera", saved.camera, problems);
+        if (std::ranges::find(names, saved.name) != names.end()) {
+            problems.add(problems.place_of(key + ".name"),
+                         fmt::format("'{}.name' is \"{}\", as that of a view before; expected a "
+                                     "name of its own",
+                                     key, saved.name));
+        }
+        names.emplace_back(saved.name);
+    }
+    for (const LessonStepDescription& step : scene.lesson) {
+        if (step.view.empty() || std::ranges::find(names, step.view) != names.end()) continue;
+        const std::string key = fmt::format("lesson.{}.view", step.name);
+        problems.add(problems.place_of(key),
+                     fmt::format("'{}' is \"{}\"; expected a saved view: {}", key, step.view,
+                                 names.empty() ? "[[view.saved]] has none"
+                                               : fmt::format("{}", fmt::join(names, ", "))));
+    }
+}
+
 void check_view(const ViewDescription& view, const SceneDescription& scene, Problems& problems) {
     find_named(scene, problems, "view.look_at", view.look_at);
-    const auto [azimuth, elevation, zoom] = view.camera;
-    if (std::abs(elevation) <= 90 && zoom >= 0.01 && zoom <= 100) return;
-    problems.add(problems.place_of("view.camera"),
-                 fmt::format("'view.camera' is [{}, {}, {}]; expected [azimuth, elevation, zoom]: "
-                             "degrees, the second from -90 to 90, and a factor from 0.01 to 100",
-                             azimuth, elevation, zoom));
+    check_camera("view.camera", view.camera, problems);
+    check_saved_views(scene, problems);
 }
 
 }  // namespace

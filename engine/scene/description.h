@@ -172,7 +172,8 @@ struct LessonStepDescription {
     std::string name, text, task;
     LessonQuantity quantity = LessonQuantity::Distance;
     std::optional<double> at_least, at_most;
-    double for_s = 0;  // without a break
+    double for_s = 0;    // without a break
+    std::string view{};  // a saved view that is shown as the step begins; empty: none
 };
 
 // How the scene is seen at first, in a window and by `palpa render`.
@@ -190,6 +191,22 @@ struct ViewLayer {
     }
 };
 
+// A view to come back to.
+struct SavedView {
+    std::string name;
+    std::array<double, 3> camera{0, 0, 1};  // azimuth and elevation in degrees, zoom
+    std::string look_at{};                  // a selection; empty: all atoms
+    std::array<double, 3> shift{};          // Å, from the middle of it to what is looked at
+    std::optional<Representation> representation{};  // unset: as the scene's
+    std::vector<ViewLayer> layers{};                 // while it is shown, beside the scene's
+    TextPlace place{};
+
+    friend bool operator==(const SavedView& a, const SavedView& b) {
+        return a.name == b.name && a.camera == b.camera && a.look_at == b.look_at &&
+               a.shift == b.shift && a.representation == b.representation && a.layers == b.layers;
+    }
+};
+
 struct ViewDescription {
     std::optional<Representation> representation;  // unset: what shows the scene best
     Colouring colouring = Colouring::Chain;
@@ -203,6 +220,8 @@ struct ViewDescription {
     Shadows shadows = Shadows::None;
     bool occlusion = true;     // crevices are darker
     std::int64_t outline = 1;  // pixels
+    std::vector<std::string> hidden{};  // selections that are drawn only by layers
+    std::vector<SavedView> saved{};     // in the order of the file
 };
 
 struct SceneDescription {

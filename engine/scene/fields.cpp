@@ -455,6 +455,9 @@ void visit_lesson_step(FieldVisitor& v, LessonStepDescription& s) {
             .lowest = 0,
             .highest = 1e3},
            s.for_s);
+    v.text({.key = "view",
+            .meaning = "name of a saved view that is shown as the step begins; unset: none"},
+           s.view);
     v.leave_table();
 }
 
@@ -492,6 +495,38 @@ void visit_layers(FieldVisitor& v, std::vector<ViewLayer>& layers) {
                 .lowest = 0.05,
                 .highest = 1},
                layer.opacity);
+        v.leave_table();
+    }
+}
+
+void visit_saved_views(FieldVisitor& v, std::vector<SavedView>& views) {
+    const Field field{.key = "saved", .meaning = "views to come back to, in this order"};
+    std::size_t count = views.size();
+    v.list_entries(field, count);
+    views.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        SavedView& saved = views[i];
+        v.enter_entry(field, i, saved.place);
+        v.text(
+            {.key = "name", .meaning = "by which lessons and `--view` call it", .required = true},
+            saved.name);
+        v.triple({.key = "camera",
+                  .meaning = "as `view.camera`, around what `look_at` selects",
+                  .lowest = -360,
+                  .highest = 360},
+                 saved.camera);
+        v.text({.key = "look_at", .meaning = "a selection that the picture frames; unset: all"},
+               saved.look_at);
+        v.triple({.key = "shift",
+                  .meaning = "Å along x, y and z: what is in the middle of the picture, from the "
+                             "middle of what is framed",
+                  .lowest = -1e4,
+                  .highest = 1e4},
+                 saved.shift);
+        choose_if_set(
+            v, {.key = "representation", .meaning = "as `view.representation`; unset: that one"},
+            representation_names, saved.representation);
+        visit_layers(v, saved.layers);  // last: they have tables of their own
         v.leave_table();
     }
 }
@@ -549,7 +584,9 @@ void visit_view(FieldVisitor& v, ViewDescription& view) {
              .meaning = "selections: their residues are named beside their atoms CA, single atoms "
                         "beside themselves"},
             view.labels);
+    v.texts({.key = "hide", .meaning = "selections that nothing but layers draws"}, view.hidden);
     visit_layers(v, view.layers);
+    visit_saved_views(v, view.saved);
     v.leave_table();
 }
 

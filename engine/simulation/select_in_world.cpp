@@ -38,6 +38,11 @@ std::vector<std::string> find_empty_selections(const ViewDescription& view, cons
     };
     for (const ViewLayer& layer : view.layers) look(layer.of, "view.layers.of");
     for (const std::string& label : view.labels) look(label, "view.label");
+    for (const std::string& hidden : view.hidden) look(hidden, "view.hide");
+    for (const SavedView& saved : view.saved) {
+        look(saved.look_at, "view.saved.look_at");
+        for (const ViewLayer& layer : saved.layers) look(layer.of, "view.saved.layers.of");
+    }
     return empty;
 }
 

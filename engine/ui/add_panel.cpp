@@ -3,6 +3,7 @@
 #include "core/text.h"
 #include "molecule/residue_kinds.h"
 #include "ui/layout.h"
+#include "ui/text_field.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -24,20 +25,6 @@ std::string in_lower_case(std::string_view text) {
     for (char& letter : lower)
         letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
     return lower;
-}
-
-// A text of any length; whether it was changed.
-bool type_text(const char* id, const char* hint, std::string& text) {
-    const auto grow = [](ImGuiInputTextCallbackData* data) {
-        if (data->EventFlag != ImGuiInputTextFlags_CallbackResize) return 0;
-        std::string& grown = *static_cast<std::string*>(data->UserData);
-        grown.resize(static_cast<std::size_t>(data->BufTextLen));
-        data->Buf = grown.data();
-        return 0;
-    };
-    ImGui::SetNextItemWidth(-1);
-    return ImGui::InputTextWithHint(id, hint, text.data(), text.capacity() + 1,
-                                    ImGuiInputTextFlags_CallbackResize, grow, &text);
 }
 
 // What a name of a molecule may be made of, and still be typed everywhere.

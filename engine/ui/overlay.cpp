@@ -9,6 +9,7 @@
 #include "ui/layout.h"
 #include "ui/legend_panel.h"
 #include "ui/playback_panel.h"
+#include "ui/selection_panel.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -83,6 +84,7 @@ Overlay::Overlay(const SceneDescription& scene)
     : scene_(scene),
       settings_{scene.coupling, scene.period_ms},
       before_edit_(settings_),
+      additions_(additions_of(scene.view)),
       has_flexible_(std::any_of(
           scene.molecules.begin(), scene.molecules.end(),
           [](const MoleculeDescription& molecule) { return molecule.shape == Shape::Flexible; })),
@@ -146,11 +148,13 @@ void Overlay::set_mode(CouplingMode mode, std::vector<Command>& commands) {
 bool Overlay::perform(Action action, std::vector<Command>& commands) {
     const auto go_back = [&](auto& from, auto& to, const EditAction& edit) {
         if (from.empty()) return;
-        const std::optional<LiveSettings> settings = from.back();
+        const UndoStep step = from.back();
         from.pop_back();
-        if (settings) {
+        if (const auto* const settings = std::get_if<LiveSettings>(&step)) {
             to.emplace_back(settings_);
             change_settings(*settings, commands);
+        } else if (const auto* const additions = std::get_if<ViewAdditions>(&step)) {
+            to.emplace_back(std::exchange(additions_, *additions));
         } else {
             to.emplace_back();
             commands.emplace_back(edit_now(edit));
@@ -166,8 +170,8 @@ bool Overlay::perform(Action action, std::vector<Command>& commands) {
             commands.emplace_back(StepOnce{});
             return true;
         case Action::Reset:  // which knows no edits
-            std::erase(undo_, std::nullopt);
-            std::erase(redo_, std::nullopt);
+            std::erase(undo_, UndoStep());
+            std::erase(redo_, UndoStep());
             commands.emplace_back(Reset{});
             return true;
         case Action::Mode1:
@@ -208,9 +212,15 @@ void Overlay::note_edit() {
     redo_.clear();
 }
 
+void Overlay::set_additions(ViewAdditions additions) {
+    if (additions_ == additions) return;
+    undo_.emplace_back(std::exchange(additions_, std::move(additions)));
+    redo_.clear();
+}
+
 void Overlay::forget_refused(const Readout& readout) {
     for (; refused_edits_ < readout.refused_edits; ++refused_edits_) {
-        const auto last = std::find(undo_.rbegin(), undo_.rend(), std::nullopt);
+        const auto last = std::find(undo_.rbegin(), undo_.rend(), UndoStep());
         if (last != undo_.rend()) undo_.erase(std::next(last).base());
     }
 }
@@ -247,7 +257,9 @@ void Overlay::draw(const Readout& readout, const OverlayStatus& status,
         draw_right_panel(commands);
         if (!status.hover.empty()) ImGui::SetTooltip("%s", status.hover.c_str());
     }
-    if (readout.playback) {  // in the lesson's place
+    if (status.selects) {
+        // The window has its panel there.
+    } else if (readout.playback) {  // in the lesson's place
         const ImVec2 screen = ImGui::GetIO().DisplaySize;
         draw_playback_panel(*readout.playback, free_area(screen.x, screen.y), commands);
     } else if (shows_lesson_ && !lesson_.steps().empty()) {
@@ -263,7 +275,7 @@ void Overlay::draw(const Readout& readout, const OverlayStatus& status,
 ScreenArea Overlay::legend_area() const {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     ScreenArea area = free_area(screen.x, screen.y);
-    for (const char* const name : {lesson_panel, playback_panel}) {
+    for (const char* const name : {lesson_panel, playback_panel, selection_panel}) {
         const ImGuiWindow* const panel = ImGui::FindWindowByName(name);
         if (panel && panel->Active) area.bottom = std::min(area.bottom, panel->Pos.y);
     }

@@ -7,11 +7,13 @@
 #include "ui/layout.h"
 #include "ui/plot.h"
 #include "ui/shortcuts.h"
+#include "ui/view_additions.h"
 #include "view/atom_colours.h"
 
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace palpa {
@@ -38,6 +40,7 @@ struct OverlayStatus {
     std::string hover;                 // what the mouse rests on, and what a click would take
     std::optional<double> recorded_s;  // of a recording that is under way
     std::vector<LegendEntry> legend;   // of the picture's colours
+    bool selects = false;              // the panel of selections is in the lesson's place
 };
 
 class Overlay {
@@ -57,6 +60,10 @@ public:
     // An edit was sent, the next to be undone; one that turns out refused is forgotten again.
     void note_edit();
 
+    // What is added to the picture: a change is a step that can be undone.
+    void set_additions(ViewAdditions additions);
+    const ViewAdditions& additions() const noexcept { return additions_; }
+
     // The name of the device that the person has chosen since the last call.
     std::optional<std::string> take_device() { return std::exchange(device_, std::nullopt); }
 
@@ -74,6 +81,7 @@ public:
 
     const LiveSettings& settings() const noexcept { return settings_; }
     const Lesson& lesson() const noexcept { return lesson_; }
+    bool shows_lesson() const noexcept { return shows_lesson_; }
 
 private:
     void draw_scene(const Readout& readout, const OverlayStatus& status,
@@ -116,8 +124,13 @@ private:
 
     SceneDescription scene_;
     LiveSettings settings_, before_edit_;
-    // Settings to go back to; nothing: an edit, whose way back the session knows.
-    std::vector<std::optional<LiveSettings>> undo_, redo_;
+    struct EditStep {
+        friend bool operator==(const EditStep&, const EditStep&) = default;
+    };
+    // What to go back to: of an edit the session knows it.
+    using UndoStep = std::variant<EditStep, LiveSettings, ViewAdditions>;
+    std::vector<UndoStep> undo_, redo_;
+    ViewAdditions additions_;
     std::uint64_t refused_edits_ = 0;
     bool has_flexible_;           // molecules
     double stiffness_limit_ = 0;  // N/m that this hand keeps calm at the present period

@@ -160,7 +160,13 @@ FrameScene FrameBuilder::build(const World& world, std::span<const ContactModel>
     const auto draw = [&](std::span<const AtomLook> shown, float opacity, KeptLayer& kept) {
         draw_layer(parts, shown, find_layer_colours(parts, shown), opacity, kept, frame);
     };
-    draw(looks, 1, kept_->layers[0]);
+    std::vector<AtomLook> not_hidden = looks;
+    for (const std::string& text : settings.hidden) {
+        const std::vector<bool> hidden = select(text, "view.hide");
+        for (std::size_t i = 0; i < looks.size(); ++i)
+            if (hidden[i]) not_hidden[i].visible = false;
+    }
+    draw(not_hidden, 1, kept_->layers[0]);
     for (std::size_t i = 0; i < settings.layers.size(); ++i) {
         const ViewLayer& layer = settings.layers[i];
         std::vector<AtomLook> shown = looks;

@@ -24,6 +24,7 @@ struct ViewSettings {
     Shadows shadows = Shadows::None;
     bool occlusion = true;
     int outline = 1;  // pixels
+    std::vector<std::string> hidden{};  // selections that layers alone draw
 
     friend bool operator==(const ViewSettings&, const ViewSettings&) = default;
 };

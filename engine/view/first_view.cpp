@@ -23,7 +23,8 @@ ViewSettings first_settings(const ViewDescription& view, const World& world) {
             .hydrogens = view.hydrogens,
             .shadows = view.shadows,
             .occlusion = view.occlusion,
-            .outline = static_cast<int>(view.outline)};
+            .outline = static_cast<int>(view.outline),
+            .hidden = view.hidden};
 }
 
 AtomRange framed_atoms(const ViewDescription& view, const World& world) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <numbers>
 #include <vector>
 
 namespace palpa {
@@ -54,6 +55,30 @@ void pan(OrbitCamera& camera, float right, float down, float height) {
 
 void zoom(OrbitCamera& camera, float factor) {
     camera.distance = std::clamp(camera.distance * factor, nearest_view, farthest_view);
+}
+
+void zoom_at(OrbitCamera& camera, float factor, float right, float down, float height) {
+    const float scale = angstrom_per_pixel(camera, camera.target, height);
+    const glm::vec3 off = scale * (right * rightward(camera) - down * upward(camera));
+    const float before = camera.distance;
+    zoom(camera, factor);
+    camera.target += (1 - camera.distance / before) * off;
+}
+
+OrbitCamera between(const OrbitCamera& from, const OrbitCamera& to, float share) {
+    constexpr float turn = 2 * std::numbers::pi_v<float>;
+    OrbitCamera camera;
+    camera.target = glm::mix(from.target, to.target, share);
+    camera.distance = from.distance * std::pow(to.distance / from.distance, share);
+    camera.azimuth = from.azimuth + share * std::remainder(to.azimuth - from.azimuth, turn);
+    camera.elevation = glm::mix(from.elevation, to.elevation, share);
+    camera.vertical_angle = glm::mix(from.vertical_angle, to.vertical_angle, share);
+    return camera;
+}
+
+float eased(float share) {
+    const float inside = std::clamp(share, 0.0F, 1.0F);
+    return inside * inside * (3 - 2 * inside);
 }
 
 void carry(OrbitCamera& camera, const HandRate& rate, double dt_s) {

@@ -31,6 +31,14 @@ void pan(OrbitCamera& camera, float right, float down, float height);
 float angstrom_per_pixel(const OrbitCamera& camera, const glm::vec3& place, float height);
 // Nearer for factors below 1.
 void zoom(OrbitCamera& camera, float factor);
+// The same, while what is seen at a place of the picture stays there, if it is at the target's
+// depth: a place so many pixels to the right of the target and below it.
+void zoom_at(OrbitCamera& camera, float factor, float right, float down, float height);
+// On the way from one camera to another, `share` from 0 to 1: turns the short way round, and comes
+// nearer by equal factors in equal shares.
+OrbitCamera between(const OrbitCamera& from, const OrbitCamera& to, float share);
+// A share of the time as a share of the way: slow at both ends.
+float eased(float share);
 // What is seen goes at a hand's rate for a time, as if it were in hand: to the right and up by a
 // height of the picture, or nearer by a factor of e, for every `carried_m` of the hand. It turns
 // with the hand, but never over, and does not roll.

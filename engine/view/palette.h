@@ -41,6 +41,9 @@ inline constexpr std::array chain_carbons = std::to_array<glm::vec3>({{0.474F, 0
 // What is no atom: force and torque, where the hand wants the molecule, hydrogen bonds.
 inline constexpr glm::vec3 force_colour{0.849F, 0.232F, 0.002F};
 inline constexpr glm::vec3 wish_colour{0.162F, 0.002F, 0.256F};
+// Over what a person has selected, which is drawn thicker, too: no colour is left that is 15 from
+// all others; this one is 10.
+inline constexpr glm::vec3 selected_colour{0.86F, 0.00F, 0.35F};
 inline constexpr glm::vec3 hydrogen_bond_colour{0.035F, 0.123F, 0.147F};
 
 }  // namespace palpa

@@ -62,7 +62,9 @@ constexpr std::array key_names = std::to_array<KeyName>({
     {GLFW_KEY_R, Key::R},
     {GLFW_KEY_S, Key::S},
     {GLFW_KEY_T, Key::T},
+    {GLFW_KEY_U, Key::U},
     {GLFW_KEY_V, Key::V},
+    {GLFW_KEY_W, Key::W},
     {GLFW_KEY_X, Key::X},
     {GLFW_KEY_Y, Key::Y},
     {GLFW_KEY_Z, Key::Z},
@@ -156,14 +158,15 @@ void Window::listen(GLFWwindow* window) {
         const auto index = static_cast<std::size_t>(button);  // left, right, middle, as ours
         input.down[index] = action == GLFW_PRESS;
         if (action != GLFW_PRESS) {
-            if (button == GLFW_MOUSE_BUTTON_LEFT) release_left(window_of(w));
+            release(window_of(w), button);
             return;
         }
         // Where the cursor was then: by now it may be elsewhere.
         double x = window_of(w).cursor_x_, y = window_of(w).cursor_y_;
         window_of(w).scale_to_pixels(x, y);
-        input.clicked.push_back({static_cast<MouseButton>(index), x, y});
-        if (button == GLFW_MOUSE_BUTTON_LEFT) press_left(window_of(w), mods);
+        input.clicked.push_back({static_cast<MouseButton>(index), x, y,
+                                 (mods & GLFW_MOD_CONTROL) != 0, (mods & GLFW_MOD_SHIFT) != 0});
+        if (button != GLFW_MOUSE_BUTTON_MIDDLE) press(window_of(w), button, mods);
     });
     glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) {
         Window& window = window_of(w);
@@ -192,21 +195,29 @@ void Window::listen(GLFWwindow* window) {
     });
 }
 
-void Window::press_left(Window& window, int mods) {
+void Window::press(Window& window, int button, int mods) {
     const double x = window.cursor_x_, y = window.cursor_y_;
+    const bool is_right = button == GLFW_MOUSE_BUTTON_RIGHT;
     const double now = glfwGetTime();
     const double moved = std::hypot(x - window.last_click_x_, y - window.last_click_y_);
-    window.input_.double_clicked =
-        now - window.last_click_s_ < double_click_s && moved < double_click_pixels;
-    window.last_click_s_ = now;
+    const bool is_second =
+        !is_right && now - window.last_click_s_ < double_click_s && moved < double_click_pixels;
+    window.input_.double_clicked = window.input_.double_clicked || is_second;
+    window.last_click_s_ = is_right ? -1 : now;
     window.last_click_x_ = x;
     window.last_click_y_ = y;
-    window.click_ = {x, y, (mods & GLFW_MOD_CONTROL) != 0, (mods & GLFW_MOD_SHIFT) != 0,
-                     window.input_.double_clicked};
+    window.click_ = {x,
+                     y,
+                     (mods & GLFW_MOD_CONTROL) != 0,
+                     (mods & GLFW_MOD_SHIFT) != 0,
+                     (mods & GLFW_MOD_ALT) != 0,
+                     is_second,
+                     is_right};
     window.is_clicking_ = true;
 }
 
-void Window::release_left(Window& window) {
+void Window::release(Window& window, int button) {
+    if (window.click_.is_right != (button == GLFW_MOUSE_BUTTON_RIGHT)) return;
     if (!std::exchange(window.is_clicking_, false)) return;
     MouseClick click = window.click_;
     window.scale_to_pixels(click.x, click.y);

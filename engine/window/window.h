@@ -67,7 +67,9 @@ enum class Key {
     R,
     S,
     T,
+    U,
     V,
+    W,
     X,
     Y,
     Z,
@@ -90,13 +92,15 @@ struct KeyPress {
 struct MousePress {
     MouseButton button;
     double x = 0, y = 0;
+    bool control = false, shift = false;
 };
 
-// The left button went down and up, and the mouse stayed where it was.
+// The left or the right button went down and up, and the mouse stayed where it was.
 struct MouseClick {
     double x = 0, y = 0;
-    bool control = false, shift = false;  // as it went down
-    bool is_second = false;               // of a double click
+    bool control = false, shift = false, alt = false;  // as it went down
+    bool is_second = false;                            // of a double click
+    bool is_right = false;                             // the right button
 };
 
 // What came in since the last poll. Mouse places in pixels of the picture, from the upper left.
@@ -161,8 +165,8 @@ public:
 
 private:
     static void listen(GLFWwindow* window);
-    static void press_left(Window& window, int mods);
-    static void release_left(Window& window);
+    static void press(Window& window, int button, int mods);
+    static void release(Window& window, int button);
     void scale_to_pixels(double& x, double& y) const;
 
     GLFWwindow* window_ = nullptr;

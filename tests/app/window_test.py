@@ -665,6 +665,149 @@ class Session(unittest.TestCase):
             self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn("mode 2", result.stdout)
 
+    def count_selected(self, display):
+        """Pixels in the tint of what is selected, between the panels."""
+        (width, height), pixels = read_png(self.screenshot(display))
+        count = 0
+        for y in range(90, height - 260, 2):
+            for x in range(362, width - 362, 2):
+                red, green, blue = pixels[4 * (width * y + x):4 * (width * y + x) + 3]
+                count += red > 130 and green < 0.65 * red and 0.5 * red < blue < 0.95 * red
+        return count
+
+    def test_atoms_are_selected_by_words_and_by_a_box(self):
+        with Display() as display:
+            self.start(display)
+            display.do("key", "l")
+            self.assertEqual(self.count_selected(display), 0)
+            fixed, moved = self.find_waters(display)
+            display.do("key", "ctrl+f")
+            self.screenshot(display)  # the field has the keys
+            display.do("type", "molecule fixt")
+            display.do("key", "Return")
+            self.screenshot(display)
+            self.assertEqual(self.count_selected(display), 0)  # an error, and no program's end
+            display.do("key", "ctrl+f")
+            self.screenshot(display)
+            display.do("type", "molecule fixed")
+            display.do("key", "Return")
+            self.wait_until(lambda: self.count_selected(display) > 100, "what is selected")
+            one = self.count_selected(display)
+            display.do("key", "Escape")  # ends the selection, not the program
+            self.wait_until(lambda: self.count_selected(display) == 0, "nothing selected")
+
+            # A box around both oxygens.
+            display.do("mousemove", fixed[0] - 30, fixed[1] - 30, "keydown", "ctrl", "mousedown", 1)
+            self.screenshot(display)
+            display.do("mousemove", moved[0] + 30, moved[1] + 30)
+            self.screenshot(display)
+            display.do("mouseup", 1, "keyup", "ctrl")
+            self.wait_until(lambda: self.count_selected(display) > 1.5 * one, "both waters")
+            for a, b in zip((fixed, moved), self.find_middles(display)):
+                self.assertLess(self.way(a, b), 30)  # the view did not turn
+            display.do("key", "Escape")
+            self.screenshot(display)
+            self.quit(display)
+
+    def find_middles(self, display):
+        """Of both waters, once nothing is tinted."""
+        display.do("key", "Escape")
+        self.wait_until(lambda: self.count_selected(display) == 0, "nothing selected")
+        return self.find_waters(display)
+
+    def test_names_and_views_are_saved_with_the_scene(self):
+        scene = Path(shutil.copytree(ROOT / "scenes" / "water", self.folder / "mine"))
+        saved = scene / "scene-2.toml"
+        with Display() as display:
+            self.start(display, scene=scene)
+            display.do("key", "l")
+            fixed, moved = self.find_waters(display)
+            display.do("mousemove", *fixed)
+            self.screenshot(display)
+            display.do("keydown", "alt", "click", 1, "keyup", "alt")
+            self.screenshot(display)
+            display.do("mousemove", *moved)
+            self.screenshot(display)
+            display.do("click", 3)  # the right button does the same
+            self.screenshot(display)
+            display.do("click", 3)  # no longer
+            self.screenshot(display)
+            display.do("mousemove", 640, 400, "click", 4, "click", 4)  # the wheel: nearer
+            self.screenshot(display)
+            display.do("key", "shift+w")
+            self.screenshot(display)
+            display.do("key", "ctrl+s")
+            self.wait_until(saved.exists, "the saved scene")
+            self.assertIn('label = ["molecule fixed and resid 1 and name OH2"]', saved.read_text())
+            self.assertIn('[[view.saved]]\nname = "view 1"', saved.read_text())
+            near = self.find_waters(display)
+            display.do("key", "Home")
+            self.screenshot(display)
+            away = self.find_waters(display)
+            self.assertGreater(self.way(*near), 1.1 * self.way(*away))
+            display.do("key", "w")
+            self.wait_until(lambda: abs(self.way(*self.find_waters(display)) - self.way(*near)) <
+                            0.03 * self.way(*near), "the saved view")
+            display.do("key", "Home", "key", "u")  # the tour comes to it too
+            self.wait_until(lambda: abs(self.way(*self.find_waters(display)) - self.way(*near)) <
+                            0.03 * self.way(*near), "the saved view")
+            display.do("key", "Escape")  # ends the tour, not the program
+            self.screenshot(display)
+            display.do("key", "ctrl+z")  # the name of the one that was named and is no longer
+            self.screenshot(display)
+            self.quit(display, changed=True)
+        result = subprocess.run([PROGRAM, "run", saved, "--check"], capture_output=True, text=True)
+        self.assertEqual(result.returncode, 0, result.stderr)
+
+    def test_a_step_of_the_lesson_shows_its_view(self):
+        scene = Path(shutil.copytree(ROOT / "scenes" / "water", self.folder / "mine")) / "scene.toml"
+        text = scene.read_text()
+        self.assertIn("[lesson.approach]\n", text)
+        scene.write_text(text.replace("[lesson.approach]\n", '[lesson.approach]\nview = "near"\n') +
+                         '\n[[view.saved]]\nname = "near"\ncamera = [0.0, 0.0, 1.5]\n')
+        with Display() as display:
+            self.start(display, "--set", "stroke=hold", scene=scene)
+            self.wait_until(lambda: not self.is_flying(display), "the view")
+            near = self.way(*self.find_waters(display))
+            display.do("key", "Home")
+            self.screenshot(display)
+            self.assertGreater(near, 1.2 * self.way(*self.find_waters(display)))
+            self.quit(display)
+
+    def is_flying(self, display):
+        before = self.find_waters(display)
+        time.sleep(0.5)
+        return self.way(before[0], self.find_waters(display)[0]) > 1
+
+    def test_a_window_that_is_hidden_or_tiny_comes_back(self):
+        with Display() as display:
+            self.start(display)
+            window = display.find_window()[0]
+            display.do("windowunmap", window)
+            time.sleep(0.5)
+            self.assertIsNone(self.program.poll())
+            display.do("windowmap", window)
+            self.wait_until(display.focus_window, "the window")
+            display.do("windowsize", "--sync", window, 320, 240)
+            self.wait_until(lambda: size_of_png(self.screenshot(display)) == (320, 240), "that size")
+            display.do("key", "F5")
+            display.do("windowsize", "--sync", window, 1280, 720)
+            self.wait_until(lambda: size_of_png(self.screenshot(display)) == (1280, 720),
+                            "that size")
+            self.quit(display)
+
+    def test_without_a_font_file_words_remain(self):
+        os.environ["PALPA_FONT"] = "/nowhere"
+        try:
+            with Display() as display:
+                self.start(display)
+                (width, _), pixels = read_png(self.screenshot(display))
+                row = [pixels[4 * (width * y + x)] for y in range(20, 60) for x in range(20, 340)]
+                self.assertGreater(sum(value < 100 for value in row), 50)  # dark letters
+                self.quit(display)
+        finally:
+            del os.environ["PALPA_FONT"]
+
     def test_space_keeps_the_cursor_and_gives_it_back(self):
         with Display() as display:
             self.start(display)

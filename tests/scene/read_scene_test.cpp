@@ -758,6 +758,25 @@ TEST_CASE("what [view] cannot mean is refused where it stands", "[scene][errors]
                StartsWith(at(18, row.column)) && Contains(row.what));
 }
 
+TEST_CASE("what saved views cannot mean is refused where it stands", "[scene][errors]") {
+    const std::string view = "[[view.saved]]\nname = \"near\"\n";
+    const std::string step =
+        "[lesson.one]\ntext = \"t\"\ntask = \"t\"\nat_most = 1.0\nview = \"naer\"\n";
+
+    CHECK_THAT(error_of(base + "[[view.saved]]\ncamera = [0, 0, 1]\n"), Contains("name"));
+    CHECK_THAT(error_of(base + view + "camera = [0, 91, 1]\n"),
+               StartsWith(at(19, 10)) && Contains("'view.saved[1].camera' is [0, 91, 1]"));
+    CHECK_THAT(error_of(base + view + view), StartsWith(at(20, 8)) &&
+                                                 Contains("'view.saved[2].name' is \"near\"") &&
+                                                 Contains("a name of its own"));
+    CHECK_THAT(error_of(base + view + step), StartsWith(at(23, 8)) &&
+                                                 Contains("'lesson.one.view' is \"naer\"") &&
+                                                 Contains("expected a saved view: near"));
+    CHECK_THAT(error_of(base + step), Contains("[[view.saved]] has none"));
+    CHECK(parse_scene(base + view + replaced(step, "naer", "near"), file).lesson.at(0).view ==
+          "near");
+}
+
 TEST_CASE("a flag and a list can be set over a scene", "[scene][settings]") {
     CHECK(with({"joints.methyl=true"}).joints.methyl);
     CHECK(with({"joints.rigid=[\"A 1 C N\"]"}).joints.rigid == std::vector<std::string>{"A 1 C N"});

@@ -74,23 +74,32 @@ TEST_CASE("odd values survive being written and read, to the last bit", "[scene]
     scene.coupling.A_f_min = 1 + std::numeric_limits<double>::epsilon();
     scene.coupling.gamma_per_N = 1e18;
     scene.coupling.feel_within_pN = 1.0 / 3;
-    scene.view = {Representation::InHand,
-                  Colouring::Element,
-                  ShownBonds::All,
-                  {-0.1, 1.0 / 3, 0.7},
-                  "x",
-                  true,
-                  {{Representation::Surface, "chain \"A\"", Colouring::BFactor, 0.1 + 0.2},
-                   {Representation::Lines, "", {}, 1}},
-                  {"resid 25", "name 'O5\\''"},
-                  ShownHydrogens::Polar,
-                  Shadows::Soft,
-                  false,
-                  3};
+    scene.view = {
+        Representation::InHand,
+        Colouring::Element,
+        ShownBonds::All,
+        {-0.1, 1.0 / 3, 0.7},
+        "x",
+        true,
+        {{Representation::Surface, "chain \"A\"", Colouring::BFactor, 0.1 + 0.2},
+         {Representation::Lines, "", {}, 1}},
+        {"resid 25", "name 'O5\\''"},
+        ShownHydrogens::Polar,
+        Shadows::Soft,
+        false,
+        3,
+        {"water", "resid 1"},
+        {{"from \"above\"", {0.1 + 0.2, -90, 100}, "resid 1:3", {1.0 / 3, -0.5, 0}, {}, {}},
+         {"b",
+          {0, 0, 1},
+          "",
+          {},
+          Representation::Cartoon,
+          {{Representation::Lines, "water", {}, 1}, {Representation::Licorice, "ion"}}}}};
     scene.period_ms = 10000;
     scene.seed = 1'000'000'000'000'000;
     scene.lesson = {{"zuerst", "two\nlines \"quoted\"", "do", LessonQuantity::Force, -0.25, {}, 0},
-                    {"dann", "text", "task", LessonQuantity::Mode, {}, 4.0, 0.5}};
+                    {"dann", "text", "task", LessonQuantity::Mode, {}, 4.0, 0.5, "b"}};
 
     const std::string text = formatted(scene);
     INFO(text);
@@ -135,6 +144,10 @@ TEST_CASE("odd values survive being written and read, to the last bit", "[scene]
     CHECK(back.view.shadows == Shadows::Soft);
     CHECK_FALSE(back.view.occlusion);
     CHECK(back.view.outline == 3);
+    CHECK(back.view.hidden == scene.view.hidden);
+    CHECK(back.view.saved == scene.view.saved);
+    CHECK(back.view.saved.at(1).layers.size() == 2);
+    CHECK(back.lesson.at(1).view == "b");
     CHECK(back.seed == scene.seed);
     REQUIRE(back.lesson.size() == 2);
     CHECK(back.lesson[0].name == "zuerst");
@@ -179,6 +192,8 @@ TEST_CASE("every field is written, under its full key", "[scene][write]") {
     scene.coupling.feel_within_pN = 50;
     scene.view.representation = Representation::Licorice;
     scene.view.layers.push_back({Representation::Surface, "protein", Colouring::Potential});
+    scene.view.saved = {
+        {.name = "near", .representation = Representation::Lines, .layers = scene.view.layers}};
     for (MoleculeDescription& molecule : scene.molecules) molecule.topology = folder / "dimer.psf";
     scene.engine.emplace().atoms = folder / "dimer.psf";
 
@@ -198,7 +213,7 @@ TEST_CASE("every field is written, under its full key", "[scene][write]") {
         if (dot == std::string::npos) continue;
         std::string table = field.key.substr(0, dot);
         if (table == "molecules.NAME") table = "molecules.fixed";
-        if (table == "view.layers") table = "[view.layers]";
+        if (table == "view.layers" || table.starts_with("view.saved")) table = "[" + table + "]";
         CHECK(text.find("\n[" + table + "]\n") != std::string::npos);
     }
 }

@@ -1,5 +1,6 @@
 """palpa render from outside: a picture without a display, and one clear line where there is none."""
 import os
+import shutil
 import struct
 import subprocess
 import sys
@@ -22,10 +23,10 @@ class Render(unittest.TestCase):
     def tearDown(self):
         self.folder.cleanup()
 
-    def render(self, *arguments, **environment):
+    def render(self, *arguments, scene=WATER, **environment):
         clean = {key: value for key, value in os.environ.items()
                  if key not in ("DISPLAY", "WAYLAND_DISPLAY")}
-        return subprocess.run([PROGRAM, "render", WATER, "--overwrite", *map(str, arguments)], capture_output=True,
+        return subprocess.run([PROGRAM, "render", scene, "--overwrite", *map(str, arguments)], capture_output=True,
                               text=True, env={**clean, **environment})
 
     def size_of_image(self):
@@ -73,6 +74,35 @@ class Render(unittest.TestCase):
         self.assertEqual(result.returncode, 2)
         self.assertIn("water.crd", result.stderr)
         self.assertEqual(places.read_text(), kept)
+
+    def test_a_saved_view_is_seen_as_its_camera_says(self):
+        scene = Path(shutil.copytree(WATER, Path(self.folder.name) / "views")) / "scene.toml"
+        with scene.open("a") as file:
+            file.write('\n[[view.saved]]\nname = "from above"\ncamera = [0.0, 80.0, 1.0]\n'
+                       'representation = "space-filling"\n'
+                       '[[view.saved]]\nname = "the other"\nlook_at = "molecule moved"\n'
+                       '[[view.saved.layers]]\nrepresentation = "space-filling"\n'
+                       'of = "molecule moved"\n')
+        pictures = []
+        for choice in ((), ("--view", "from above"), ("--view", "the other")):
+            result = self.render("-o", self.image, "--size", "64x48", *choice, scene=scene)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            pictures.append(self.image.read_bytes())
+            if "from above" in choice:
+                above = shutil.copy(self.image, Path(self.folder.name) / "above.png")
+        self.assertEqual(len(set(pictures)), 3)
+        # All atoms are framed in both ways, so that the same camera sees the same picture.
+        self.render("-o", self.image, "--size", "64x48", "--camera", "0,80", "--as",
+                    "space-filling", scene=scene)
+        (_, one), (_, other) = read_png(above), read_png(self.image)
+        self.assertLess(sum(abs(a - b) for a, b in zip(one, other)) / len(one), 20)
+        self.image.unlink()
+        self.assert_bad_input(
+            self.render("-o", self.image, "--view", "from abuve", scene=scene),
+            "did you mean 'from above'?")
+        self.assert_bad_input(self.render("-o", self.image, "--view", "x"), "[[view.saved]]")
+        self.assertNotEqual(self.render("-o", self.image, "--view", "from above",
+                                        "--camera", "0,0", scene=scene).returncode, 0)
 
     def test_the_same_picture_twice_is_the_same_to_the_byte(self):
         pictures = []

@@ -119,6 +119,68 @@ TEST_CASE("settings and edits are undone in the order in which they were made", 
     CHECK(press(Action::Undo) == '-');
 }
 
+TEST_CASE("what is added to the picture is undone among settings", "[ui]") {
+    Screen screen;
+    const ViewAdditions none = screen.overlay.additions();
+    const ViewAdditions one{{}, {"resid 1"}, {}}, two{{{.of = "water"}}, {"resid 1"}, {"ion"}};
+    screen.overlay.set_additions(one);
+    screen.overlay.set_additions(one);  // no change, and no step
+    screen.overlay.perform(Action::Mode2, screen.commands);
+    screen.overlay.set_additions(two);
+    screen.commands.clear();
+
+    screen.overlay.perform(Action::Undo, screen.commands);
+    CHECK(screen.overlay.additions() == one);
+    CHECK(screen.commands.empty());  // the window sends pictures
+    screen.overlay.perform(Action::Undo, screen.commands);
+    CHECK(screen.commands.size() == 1);
+    screen.overlay.perform(Action::Undo, screen.commands);
+    CHECK(screen.overlay.additions() == none);
+    screen.overlay.perform(Action::Undo, screen.commands);
+    CHECK(screen.overlay.additions() == none);
+    for (int i = 0; i < 3; ++i) screen.overlay.perform(Action::Redo, screen.commands);
+    CHECK(screen.overlay.additions() == two);
+    screen.overlay.perform(Action::Undo, screen.commands);
+    screen.overlay.set_additions(none);
+    screen.overlay.perform(Action::Redo, screen.commands);  // nothing is left
+    CHECK(screen.overlay.additions() == none);
+}
+
+TEST_CASE("panels stay in the window with text twice as large, and without a font file",
+          "[ui][overlay]") {
+    struct Row {
+        ImVec2 size;
+        float text_scale;
+        const char* font;  // null: the usual one
+    };
+    const auto row = GENERATE(values<Row>({{{1280, 720}, 2, nullptr},
+                                           {{2560, 1440}, 2, nullptr},
+                                           {{1280, 720}, 1, "/nowhere"},
+                                           {{1280, 720}, 2, "/nowhere"}}));
+    INFO(row.size.x << " x " << row.size.y << ", text " << row.text_scale);
+    if (row.font) setenv("PALPA_FONT", row.font, 1);
+    Screen screen(test::water_scene(), row.text_scale);
+    unsetenv("PALPA_FONT");
+    ImGui::GetIO().DisplaySize = row.size;
+    for (int i = 0; i < 4; ++i) screen.frame();
+
+    CHECK(screen.vertices() > 1000);                                   // words are there
+    if (row.font) CHECK(ImGui::GetFont()->FindGlyphNoFallback(0xC5));  // Å
+    const ScreenArea free = screen.overlay.free_area(row.size.x, row.size.y);
+    CHECK(free.width() >= 0.15F * row.size.x);
+    for (const ImGuiWindow* const window : ImGui::GetCurrentContext()->Windows) {
+        if (!window->WasActive || window->IsFallbackWindow) continue;
+        INFO(window->Name);
+        const ImRect area = window->Rect();
+        CHECK(area.Min.x >= 0);
+        CHECK(area.Min.y >= 0);
+        CHECK(area.Max.x <= row.size.x);
+        CHECK(area.Max.y <= row.size.y);
+        CHECK(
+            (window->ScrollbarY || window->ContentSize.y <= window->InnerRect.GetHeight() + 0.5F));
+    }
+}
+
 TEST_CASE("a dragged slider changes a gain at once, and one undo takes the whole drag back",
           "[ui][overlay]") {
     Screen screen;

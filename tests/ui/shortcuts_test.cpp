@@ -24,4 +24,12 @@ TEST_CASE("every key means one thing, and the help tells it", "[ui]") {
     CHECK(find_action(Key::Plus, true, true) == Action::LargerText);
     CHECK(find_action(Key::Z, true, true) == Action::Redo);
     CHECK(find_action(Key::Z, true, false) == Action::Undo);
+    // Letters that do something else with Ctrl or Shift.
+    CHECK(find_action(Key::F, false) == Action::Focus);
+    CHECK(find_action(Key::F, false, true) == Action::FocusSelected);
+    CHECK(find_action(Key::F, true) == Action::Select);
+    CHECK(find_action(Key::W, false) == Action::NextView);
+    CHECK(find_action(Key::W, false, true) == Action::AddView);
+    CHECK_FALSE(find_action(Key::W, true));  // closes windows elsewhere
+    CHECK(find_action(Key::U, false) == Action::Tour);
 }

@@ -139,6 +139,54 @@ TEST_CASE("a zoom changes the distance by its factor, within limits", "[view][ca
     CHECK(camera.distance == Approx(2000));
 }
 
+TEST_CASE("what is under the cursor stays there while the camera comes nearer", "[view][camera]") {
+    OrbitCamera camera{.target = {1, 2, 3}, .distance = 20, .azimuth = 0.7F, .elevation = -0.4F};
+    const float scale = angstrom_per_pixel(camera, camera.target, view_height);
+    const glm::vec3 place =
+        camera.target + scale * (50.0F * rightward(camera) - 30.0F * upward(camera));
+    const float factor = GENERATE(0.5F, 0.9F, 1.7F, 1e-6F);
+
+    zoom_at(camera, factor, 50, 30, view_height);
+
+    CHECK(camera.distance == Approx(std::max(20 * factor, 1.0F)));  // or as near as it goes
+    const glm::vec3 there = seen_at(camera, place);
+    CHECK(there.x == Approx(160 + 50).epsilon(0.001));
+    CHECK(there.y == Approx(90 + 30).epsilon(0.001));
+}
+
+TEST_CASE("between two cameras the way turns the short way round", "[view][camera]") {
+    constexpr float degree = 3.14159265F / 180;
+    const OrbitCamera from{
+        .target = {0, 0, 0}, .distance = 10, .azimuth = 170 * degree, .elevation = 10 * degree};
+    const OrbitCamera to{.target = {2, 4, -6},
+                         .distance = 40,
+                         .azimuth = (-170 + 720) * degree,
+                         .elevation = 30 * degree,
+                         .vertical_angle = 0.8F};
+
+    const OrbitCamera begin = between(from, to, 0), middle = between(from, to, 0.5F),
+                      end = between(from, to, 1);
+
+    CHECK(begin.target == from.target);
+    CHECK(begin.distance == 10);
+    CHECK(begin.azimuth == from.azimuth);
+    CHECK(begin.elevation == from.elevation);
+    CHECK(glm::distance(middle.target, {1, 2, -3}) < 1e-5);
+    CHECK(middle.distance == Approx(20));  // twice, and twice again
+    CHECK(middle.azimuth == Approx(180 * degree));
+    CHECK(middle.elevation == Approx(20 * degree));
+    CHECK(middle.vertical_angle == Approx(0.7));
+    CHECK(glm::distance(end.target, to.target) < 1e-5);
+    CHECK(end.distance == Approx(40));
+    CHECK(end.azimuth == Approx(190 * degree));
+    CHECK(glm::distance(backward(end), backward(to)) < 1e-5);
+    CHECK(end.elevation == Approx(to.elevation));
+    CHECK(eased(-1) == 0);
+    CHECK(eased(0.25F) == Approx(0.15625));
+    CHECK(eased(0.5F) == 0.5F);
+    CHECK(eased(2) == 1);
+}
+
 TEST_CASE("everything that is framed fits, from every side, and not with much to spare",
           "[view][camera]") {
     const FrameScene scene = long_box();

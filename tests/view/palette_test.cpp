@@ -32,6 +32,7 @@ std::vector<Category> categories() {
     all.push_back({"force", as_doubles(force_colour)});
     all.push_back({"wish", as_doubles(wish_colour)});
     all.push_back({"hydrogen bond", as_doubles(hydrogen_bond_colour)});
+    all.push_back({"selected", as_doubles(selected_colour)});
     return all;
 }
 
@@ -92,14 +93,15 @@ TEST_CASE("without one kind of cone greys stay grey, and its colours are confuse
 
 TEST_CASE("colours that mark different things differ for every kind of colour vision",
           "[view][palette]") {
-    constexpr double least = 15;  // CIEDE2000
+    constexpr double usual = 15, least_of_selected = 10;  // CIEDE2000
     const std::vector<Category> all = categories();
-    REQUIRE(all.size() == 15);
+    REQUIRE(all.size() == 16);
     for (const test::Vision& vision : test::visions) {
         for (std::size_t i = 0; i < all.size(); ++i) {
             for (std::size_t j = i + 1; j < all.size(); ++j) {
                 if (!are_seen_together(all[i], all[j])) continue;
                 INFO(vision.name << ": " << all[i].name << ", " << all[j].name << " " << j);
+                const double least = all[j].name == "selected" ? least_of_selected : usual;
                 CHECK(test::colour_difference(vision, all[i].colour, all[j].colour) >= least);
             }
         }

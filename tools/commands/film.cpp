@@ -9,7 +9,6 @@
 #include "session/run_headless.h"
 #include "tools/commands/print_run.h"
 #include "tools/commands/worded_picture.h"
-#include "view/first_view.h"
 
 #include <fmt/format.h>
 #include <cmath>
@@ -42,8 +41,7 @@ int make_film(SceneDescription scene, World& world, const ViewSettings& view,
         if (now_s < options.time_s - 1e-9 || film.frame_count() >= most) return;
         WordedFrame frame = build_worded_frame(builder, world, view);
         if (!camera) {
-            camera = first_camera(scene.view, frame.scene, framed_atoms(scene.view, world),
-                                  aspect_of(options.width, options.height));
+            camera = render_camera(scene, options, world, frame.scene);
         }
         finish_frame(scene.view, world, *camera, frame.scene);
         film.add(draw_worded(renderer, size, frame, painter));

@@ -22,6 +22,8 @@
 #include "view/clip.h"
 #include "view/first_view.h"
 #include "view/hydrogen_bonds.h"
+#include "view/saved_views.h"
+#include "view/selected_atoms.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -80,8 +82,24 @@ void apply_looks(const std::vector<RenderOptions::Said>& said, ViewDescription& 
     finish();
 }
 
+// Null where none is asked for.
+const SavedView* find_asked_view(const RenderOptions& options, const ViewDescription& view) {
+    if (options.saved_view.empty()) return nullptr;
+    std::vector<std::string_view> names;
+    for (const SavedView& saved : view.saved) names.emplace_back(saved.name);
+    if (names.empty())
+        throw LoadError({"--view " + options.saved_view},
+                        "the scene has no saved views; expected [[view.saved]] in its file");
+    return &view.saved[choice_called("--view", options.saved_view, names)];
+}
+
 // What the options say over the scene's [view].
 void apply_options(const RenderOptions& options, World& world, ViewDescription& view) {
+    if (const SavedView* const saved = find_asked_view(options, view)) {
+        if (saved->representation) view.representation = saved->representation;
+        view.layers.insert(view.layers.end(), saved->layers.begin(), saved->layers.end());
+        view.clip = false;  // as in a window
+    }
     apply_looks(options.said, view);
     for (const std::string& label : options.labels) {
         (void)parse_selection(label, "--label");
@@ -115,6 +133,19 @@ void apply_options(const RenderOptions& options, World& world, ViewDescription& 
 constexpr std::string_view coordinates_title = "Written by palpa render.\n";
 
 }  // namespace
+
+OrbitCamera render_camera(const SceneDescription& scene, const RenderOptions& options,
+                          const World& world, const FrameScene& frame) {
+    const float aspect = aspect_of(options.width, options.height);
+    const SavedView* const saved = find_asked_view(options, scene.view);
+    if (!saved) return first_camera(scene.view, frame, framed_atoms(scene.view, world), aspect);
+    std::vector<glm::vec3> places;
+    for (const Vec3& place : world.resource<AtomTable>().positions)
+        places.push_back(as_float(place));
+    const std::vector<bool> framed =
+        saved->look_at.empty() ? std::vector<bool>() : select_as_seen(world, saved->look_at);
+    return saved_camera(*saved, places, framed, aspect);
+}
 
 void finish_frame(const ViewDescription& view, const World& world, const OrbitCamera& camera,
                   FrameScene& frame) {
@@ -194,9 +225,7 @@ int render_command(const RenderOptions& options) {
     tell(on_stage, "drawing");
     FrameBuilder builder;
     WordedFrame frame = build_worded_frame(builder, world, view);
-    const float aspect = aspect_of(options.width, options.height);
-    const OrbitCamera camera =
-        first_camera(scene.view, frame.scene, framed_atoms(scene.view, world), aspect);
+    const OrbitCamera camera = render_camera(scene, options, world, frame.scene);
     finish_frame(scene.view, world, camera, frame.scene);
 
     GpuDevice gpu{GpuOptions{}};
@@ -346,6 +375,9 @@ void add_render(CLI::App& program, ProgramCommand& chosen) {
                     "degrees around what is framed and above it, and how many times nearer")
         ->type_name("AZIMUTH,ELEVATION[,ZOOM]");
     render.add_option("--look-at", options.look_at, "a molecule of the scene to frame, not all");
+    render.add_option("--view", options.saved_view, "a saved view of the scene, by its name")
+        ->type_name("NAME")
+        ->excludes("--camera", "--look-at");
     render.add_flag_callback(
         "--clip", [&options] { options.clips = true; },
         "leave out what stands in front of the molecule in hand");

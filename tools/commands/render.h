@@ -42,6 +42,7 @@ struct RenderOptions {
     bool transparent = false;  // the background
     std::string camera;        // azimuth, elevation in degrees, zoom
     std::string look_at;       // a molecule's name
+    std::string saved_view;    // of the scene's, by name
     std::optional<bool> clips;
     std::uint32_t samples = 1;  // a pixel: 1, 4, 9 or 16
     bool overwrites = false;    // earlier files of this command
@@ -56,6 +57,10 @@ int render_command(const RenderOptions& options);
 // camera comes nearer than where it sees everything; as [view] has them. Throws LoadError that
 // names the option.
 std::array<double, 3> read_camera(std::string_view text);
+
+// The camera of the saved view that the options name, or the scene's first one. Throws LoadError.
+OrbitCamera render_camera(const SceneDescription& scene, const RenderOptions& options,
+                          const World& world, const FrameScene& frame);
 
 // Seen by that camera.
 void finish_frame(const ViewDescription& view, const World& world, const OrbitCamera& camera,
