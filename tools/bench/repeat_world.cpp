@@ -3,10 +3,10 @@
 #include "molecule/atoms.h"
 #include "simulation/components.h"
 
+#include <fmt/format.h>
 #include <Eigen/Geometry>
 #include <cmath>
 #include <cstdint>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -57,7 +57,7 @@ World repeat_world(World world, std::size_t atoms) {
         const auto first = static_cast<std::uint32_t>(table.size());
         append_copy(table, count, bonds, cell.cwiseProduct(edges));
         for (Molecule molecule : molecules) {
-            molecule.name += " " + std::to_string(copy);
+            molecule.name = fmt::format("{} {}", molecule.name, copy);
             molecule.atoms.first += first;
             molecule.reference_atom += first;
             world.set(world.create(), std::move(molecule));
