@@ -40,26 +40,31 @@ DrawnShapes::Bound DrawnShapes::bound_of(const glm::vec3& centre, float radius,
 }
 
 // A ray that passes a sphere's centre within 0.6 of its radius meets the sphere in front of the
-// centre, if it is within 53° of the camera's axis. A square of such pixels.
+// centre, if it is within 53° of the camera's axis. Those of a disc of pixels do.
 void DrawnShapes::cover(const Bound& sphere) {
-    constexpr float inner = 0.42F;
-    const float scale = 0.5F * frame_.size.y * frame_.projection.y / sphere.distance;
-    const float half = inner * sphere.radius * scale;
+    constexpr float inner = 0.6F, farthest_aside = 0.9F;  // tangent of an angle, of each axis
     const float x_end = (1 + std::abs(frame_.centre.x)) / frame_.projection.x,
                 y_end = (1 + std::abs(frame_.centre.y)) / frame_.projection.y;
-    if (sphere.distance - sphere.radius < frame_.projection.z || x_end > 0.9F || y_end > 0.9F)
+    if (sphere.distance - sphere.radius < frame_.projection.z || x_end > farthest_aside ||
+        y_end > farthest_aside)
         return;
+    const float scale = 0.5F * frame_.size.y * frame_.projection.y / sphere.distance,
+                reach = inner * sphere.radius * scale;
+    // Of pixels whose middles are between two places.
     const auto first = [](float at) {
         return std::max(static_cast<std::int32_t>(std::ceil(at - 0.5F)), 0);
     };
     const auto end = [](float at, std::int32_t size) {
         return std::min(static_cast<std::int32_t>(std::floor(at - 0.5F)) + 1, size);
     };
-    const std::int32_t left = first(sphere.x - half), right = end(sphere.x + half, width_),
-                       bottom = end(sphere.y + half, height_);
-    for (std::int32_t y = first(sphere.y - half); y < bottom; ++y) {
+    const std::int32_t bottom = end(sphere.y + reach, height_);
+    for (std::int32_t y = first(sphere.y - reach); y < bottom; ++y) {
+        const float down = static_cast<float>(y) + 0.5F - sphere.y,
+                    half = std::sqrt(std::max(reach * reach - down * down, 0.0F));
+        const std::int32_t right = end(sphere.x + half, width_);
         float* const row = covered_.data() + std::ptrdiff_t{y} * width_;
-        for (std::int32_t x = left; x < right; ++x) row[x] = std::min(row[x], sphere.distance);
+        for (std::int32_t x = first(sphere.x - half); x < right; ++x)
+            row[x] = std::min(row[x], sphere.distance);
     }
 }
 

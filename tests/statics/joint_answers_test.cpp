@@ -92,7 +92,7 @@ TEST_CASE("what was beyond first order can be seen until hands move again",
     SecondOrderStatics statics = build_second_order_statics(c.model, c.held);
     CHECK(norm_of(find_beyond_first_order(c.model, statics)) == 0);
     CHECK(norm_of(estimate_joint_errors(c.model, c.settings, c.state, statics)) == 0);
-    for (int k = 0; k < 10; ++k) {
+    for (int k = 0; k < 25; ++k) {
         c.move_hand(Vec3(0.017, 0, 0));
         REQUIRE(step_second_order(c.model, c.settings, c.state, statics).is_finite);
     }
@@ -104,10 +104,15 @@ TEST_CASE("what was beyond first order can be seen until hands move again",
     }
     REQUIRE(statics.renewed > renewed + 1);
     REQUIRE(statics.is_at_rest);
-    CHECK(norm_of(find_beyond_first_order(c.model, statics)) > 0.3 * moving);
-    // While at rest no joint is wrong any more.
-    CHECK(norm_of(estimate_joint_errors(c.model, c.settings, c.state, statics)) <
-          1e-3 * norm_of(find_beyond_first_order(c.model, statics)));
+    INFO(norm_of(find_beyond_first_order(c.model, statics)) << " of " << moving);
+    CHECK(norm_of(find_beyond_first_order(c.model, statics)) > 0.1 * moving);
+    // Near rest what is wrong is what one Newton step would yet turn.
+    const std::vector<double> found = estimate_joint_errors(c.model, c.settings, c.state, statics);
+    const std::vector<double> right = turns_to_rest(c);
+    CHECK(norm_of(found) < 0.2 * moving);
+    for (std::size_t i = 0; i < found.size(); ++i)
+        if (c.model.coordinate_of_body[i] >= 0)
+            CHECK(found[i] == Approx(right[i]).margin(0.1 * norm_of(right)));
 }
 
 TEST_CASE("estimated errors of joints are those of complete relaxation, in size and in order",

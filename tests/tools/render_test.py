@@ -162,6 +162,34 @@ class Render(unittest.TestCase):
         return [(i // 4 % self.width, i // 4 // self.width)
                 for i in range(0, len(one), 4) if one[i:i + 4] != other[i:i + 4]]
 
+    def test_hydrogens_shadows_crevices_and_outlines_are_chosen(self):
+        def pixels(*options):
+            result = self.render("-o", self.image, "--size", "200x120", "--no-words", "--no-arrow",
+                                 "--hydrogen-bonds", "none", *options)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            size, picture = read_png(self.image)
+            return [tuple(picture[4 * i:4 * i + 3]) for i in range(size[0] * size[1])]
+
+        def dark(picture):
+            return sum(max(pixel) < 60 for pixel in picture)
+
+        plain = pixels("--camera", "30,15")
+        oxygens = pixels("--camera", "30,15", "--hydrogens", "none")
+        self.assertEqual(plain, pixels("--camera", "30,15", "--hydrogens", "polar"))
+        self.assertEqual(plain, pixels("--camera", "30,15", "--set", "view.hydrogens=polar"))
+        self.assertNotEqual(plain, oxygens)
+        filled = ("--as", "space-filling", "--camera", "30,15")
+        self.assertEqual(pixels(*filled), pixels(*filled, "--shadows", "none"))
+        light = sum(map(sum, pixels(*filled)))
+        self.assertLess(sum(map(sum, pixels(*filled, "--shadows", "soft"))), light)
+        self.assertLess(light, sum(map(sum, pixels(*filled, "--no-occlusion"))))
+        widths = [dark(pixels(*filled, "--outline", width)) for width in (0, 1, 3)]
+        self.assertLess(widths[0], widths[1])
+        self.assertLess(2 * widths[1] - widths[0], widths[2])
+        self.image.unlink()
+        self.assert_bad_input(self.render("-o", self.image, "--hydrogens", "some"), "polar")
+        self.assert_bad_input(self.render("-o", self.image, "--shadows", "hard"), "soft")
+
     def test_a_label_stands_beside_what_it_names(self):
         named = ("--label", "name OH2 and segment FIX")
         result = subprocess.run([PROGRAM, "select", WATER, named[1]], capture_output=True, text=True)

@@ -180,7 +180,7 @@ int bench_command(const BenchOptions& options) {
     if (options.kernel && options.scenes.empty()) bench_gas_kernels(rows);
     if (options.servo) bench_made_up_servo(rows);
     if (options.engine) bench_engine(rows);
-    if (options.render) bench_meshes(rows);
+    if (options.render && options.atoms == 0) bench_meshes(rows);
     for (const std::filesystem::path& path : options.scenes) {
         const SceneDescription scene = read_scene(path, options.settings);
         refuse_remote_engine(scene);

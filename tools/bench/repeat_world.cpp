@@ -7,7 +7,6 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <cstdint>
-#include <string>
 #include <utility>
 #include <vector>
 

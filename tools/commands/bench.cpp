@@ -117,7 +117,8 @@ void add_bench(CLI::App& program, ProgramCommand& chosen) {
     bench
         .add_option("--atoms", options.atoms,
                     "with --render: repeat each scene until it has so many, 500000 say")
-        ->check(in_range(1, 2'000'000));
+        ->check(in_range(1, 2'000'000))
+        ->needs("--render");
     bench
         .add_flag("--kernel", options.kernel,
                   "time the kernels of pairs alone, of all atoms of a scene's topology file; of a "
