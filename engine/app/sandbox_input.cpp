@@ -34,6 +34,8 @@ void Sandbox::take_input() {
             press_in_dialog(press);
         } else if (!graphics_->ui.wants_keys()) {
             press_key(press);
+        } else {
+            selection_panel_.press(press.key);
         }
     }
     take_dropped(input);

@@ -7,11 +7,24 @@
 #include <imgui_impl_glfw.h>
 #include <imgui_impl_vulkan.h>
 #include <imgui_internal.h>
+#include <array>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <string_view>
 
 namespace palpa {
 namespace {
+
+// By its first bytes: the library ends the program over files that are none.
+bool is_font(const std::filesystem::path& file) {
+    std::array<char, 4> begin{};
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream.read(begin.data(), begin.size())) return false;
+    const std::string_view mark(begin.data(), begin.size());
+    using namespace std::string_view_literals;
+    return mark == "\0\1\0\0"sv || mark == "true" || mark == "OTTO" || mark == "ttcf";
+}
 
 // The library's own bitmap font is the last resort.
 void add_font(float text_pixels) {
@@ -20,7 +33,9 @@ void add_font(float text_pixels) {
                                          0x209F, 0x2190, 0x21FF, 0x2200, 0x22FF, 0};
     ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
     for (const std::filesystem::path& file : list_font_files())
-        if (atlas.AddFontFromFileTTF(file.string().c_str(), text_pixels, nullptr, ranges)) return;
+        if (is_font(file) &&
+            atlas.AddFontFromFileTTF(file.string().c_str(), text_pixels, nullptr, ranges))
+            return;
     atlas.AddFontDefault();
 }
 

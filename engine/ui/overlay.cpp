@@ -240,7 +240,7 @@ ScreenArea Overlay::free_area(float width, float height) const {
     // The notes above and the lesson below change their size; the picture does not follow that, but
     // leaves room for what is usual.
     area.top = scaled(area.width() < scaled(620) ? 68 : 48);
-    if (shows_lesson_ && !lesson_.steps().empty()) {
+    if (selects_ || (shows_lesson_ && !lesson_.steps().empty())) {
         area.bottom = height - scaled(area.width() < scaled(480) ? 215 : 185);
     }
     // In a window so small that nothing is left, the picture has all of it.
@@ -252,6 +252,7 @@ ScreenArea Overlay::free_area(float width, float height) const {
 void Overlay::draw(const Readout& readout, const OverlayStatus& status,
                    std::vector<Command>& commands, std::vector<Action>& actions) {
     forget_refused(readout);
+    selects_ = status.selects;
     if (shows_overlays_) {
         draw_scene(readout, status, commands, actions);
         draw_right_panel(commands);

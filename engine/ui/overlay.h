@@ -149,6 +149,7 @@ private:
     double force_gain_ = 0;
     float sliders_height_ = 0, plot_height_ = 0;  // pixels, as drawn last
     float left_covered_ = 0, right_covered_ = 0;  // pixels, by the panels
+    bool selects_ = false;                        // the panel of selections is there
 
     std::optional<std::string> device_;  // just chosen
     bool shows_overlays_ = true, shows_lesson_ = true, shows_help_ = false;

@@ -43,6 +43,10 @@ bool is_removed(const std::string& text) {
 
 }  // namespace
 
+void SelectionPanel::press(Key key) {
+    if (key == Key::Enter || key == Key::Escape) pressed_ = key;
+}
+
 void SelectionPanel::open() { is_open_ = wants_focus_ = true; }
 
 // Its field takes no keys from then on.
@@ -82,12 +86,14 @@ SelectionOrder SelectionPanel::draw(const SelectionStatus& status, const ViewAdd
 void SelectionPanel::type_expression(const SelectionStatus& status, SelectionOrder& order) {
     if (std::exchange(wants_focus_, false)) ImGui::SetKeyboardFocusHere();
     const std::string before = text_;
-    if (type_text("##expression", "protein and within 5 of ligand", text_,
-                  ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll))
-        order.select = trimmed(text_);
-    // Esc ends typing; the library would take the text back.
-    if (ImGui::IsItemDeactivated() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)))
-        text_ = before;
+    (void)type_text("##expression", "protein and within 5 of ligand", text_,
+                    ImGuiInputTextFlags_AutoSelectAll);
+    const bool is_typed = ImGui::IsItemActive() || ImGui::IsItemDeactivated();
+    const std::optional<Key> pressed = std::exchange(pressed_, std::nullopt);
+    if (is_typed && pressed == Key::Enter) order.select = trimmed(text_);
+    // It ends typing; the library would take the text back.
+    if (is_typed && pressed == Key::Escape) text_ = before;
+    if (ImGui::IsItemActive() && pressed) ImGui::ClearActiveID();
     if (!status.problem.empty()) {
         ImGui::PushStyleColor(ImGuiCol_Text, wrong_colour);
         ImGui::TextWrapped("%s", status.problem.c_str());

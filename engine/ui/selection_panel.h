@@ -3,6 +3,7 @@
 #include "scene/choices.h"
 #include "ui/layout.h"
 #include "ui/view_additions.h"
+#include "window/window.h"
 
 #include <optional>
 #include <string>
@@ -32,6 +33,10 @@ public:
     void close();
     bool is_open() const noexcept { return is_open_; }
 
+    // A key while a field has the keys: where it is this one, Enter asks for its expression, Esc
+    // ends typing. When it is drawn the next time, so that what was typed before counts.
+    void press(Key key);
+
     // Of a selection that was made elsewhere: the field shows it.
     void show(const std::string& expression);
 
@@ -47,6 +52,7 @@ private:
     void list_additions(const ViewAdditions& additions, SelectionOrder& order);
 
     bool is_open_ = false, wants_focus_ = false;
+    std::optional<Key> pressed_;
     std::string text_;
     Representation representation_ = Representation::Licorice;
     std::optional<Colouring> colouring_;  // as everything

@@ -797,7 +797,7 @@ class Session(unittest.TestCase):
             self.quit(display)
 
     def test_without_a_font_file_words_remain(self):
-        os.environ["PALPA_FONT"] = "/nowhere"
+        os.environ["PALPA_FONT"] = __file__  # no font
         try:
             with Display() as display:
                 self.start(display)

@@ -155,10 +155,10 @@ TEST_CASE("panels stay in the window with text twice as large, and without a fon
     };
     const auto row = GENERATE(values<Row>({{{1280, 720}, 2, nullptr},
                                            {{2560, 1440}, 2, nullptr},
-                                           {{1280, 720}, 1, "/nowhere"},
-                                           {{1280, 720}, 2, "/nowhere"}}));
+                                           {{1280, 720}, 1, "/nowhere/font.ttf"},
+                                           {{1280, 720}, 2, __FILE__}}));
     INFO(row.size.x << " x " << row.size.y << ", text " << row.text_scale);
-    if (row.font) setenv("PALPA_FONT", row.font, 1);
+    if (row.font) setenv("PALPA_FONT", row.font, 1);  // not there; or no font
     Screen screen(test::water_scene(), row.text_scale);
     unsetenv("PALPA_FONT");
     ImGui::GetIO().DisplaySize = row.size;

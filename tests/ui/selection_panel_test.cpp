@@ -45,10 +45,19 @@ struct SelectionScreen {
         frame();
         frame();
     }
-    void press(ImGuiKey key) {
-        ImGui::GetIO().KeysDown[key] = true;
+    // As the window passes it on, and, where a frame sees it, the library.
+    void press(Key key, bool is_seen = true) {
+        const ImGuiKey_ same = key == Key::Enter ? ImGuiKey_Enter : ImGuiKey_Escape;
+        ImGui::GetIO().KeysDown[same] = is_seen;
+        panel.press(key);
         frame();
-        ImGui::GetIO().KeysDown[key] = false;
+        ImGui::GetIO().KeysDown[same] = false;
+        frame();
+    }
+    void press_end() {
+        ImGui::GetIO().KeysDown[ImGuiKey_End] = true;
+        frame();
+        ImGui::GetIO().KeysDown[ImGuiKey_End] = false;
         frame();
     }
     void click(ImVec2 place) {
@@ -68,7 +77,8 @@ struct SelectionScreen {
         const ImRect rect = panel_area();
         for (float y = rect.Min.y + 50; y < rect.Max.y; y += 8)
             for (float x = rect.Min.x + 10; x < rect.Max.x; x += 25) {
-                if (ImGui::GetCurrentContext()->OpenPopupStack.Size > 0) press(ImGuiKey_Escape);
+                if (ImGui::GetCurrentContext()->OpenPopupStack.Size > 0)
+                    ImGui::ClosePopupToLevel(0, true);
                 click({x, y});
                 if (is_done()) return true;
             }
@@ -87,6 +97,7 @@ struct SelectionScreen {
 
 TEST_CASE("an expression is typed, asked for by Enter, and kept where it was wrong",
           "[ui][selection]") {
+    const bool is_seen = GENERATE(true, false);  // false: it was down for less than a frame
     SelectionScreen screen;
     screen.frame();
     CHECK_FALSE(screen.panel.is_open());
@@ -95,7 +106,7 @@ TEST_CASE("an expression is typed, asked for by Enter, and kept where it was wro
     screen.frame();
     screen.type("protien");
     CHECK_FALSE(screen.selected);
-    screen.press(ImGuiKey_Enter);
+    screen.press(Key::Enter, is_seen);
     REQUIRE(screen.selected == "protien");
 
     screen.status.problem = "selection, column 1: 'protien'";
@@ -103,13 +114,13 @@ TEST_CASE("an expression is typed, asked for by Enter, and kept where it was wro
     screen.panel.open();
     screen.frame();
     screen.frame();
-    screen.press(ImGuiKey_End);
+    screen.press_end();
     screen.type(" or water");
-    screen.press(ImGuiKey_Escape);  // typing ends, and nothing is lost
+    screen.press(Key::Escape, is_seen);  // typing ends, and nothing is lost
     screen.panel.open();
     screen.frame();
     screen.frame();
-    screen.press(ImGuiKey_Enter);
+    screen.press(Key::Enter, is_seen);
     CHECK(screen.selected == "protien or water");
 
     screen.panel.show("resid 1:3");
@@ -117,7 +128,7 @@ TEST_CASE("an expression is typed, asked for by Enter, and kept where it was wro
     screen.panel.open();
     screen.frame();
     screen.frame();
-    screen.press(ImGuiKey_Enter);
+    screen.press(Key::Enter, is_seen);
     CHECK(screen.selected == "resid 1:3");
 }
 
