@@ -128,6 +128,7 @@ LiveSession::LiveSession(const SceneDescription& scene, const ViewSettings& view
       framed_(framed_atoms(scene.view, simulation_.world())),
       recorder_(scene, simulation_.devices()) {
     for (HandOrder& order : orders_) order.granted_ticks = ticks_of(scene.period_ms);
+    builder_.follow(simulation_.world(), view_.marks);
     start_servo();
     simulation_thread_ = std::thread([this] { run_simulation(); });
     recorder_thread_ = std::thread([this] { run_recorder(); });
@@ -486,6 +487,7 @@ void LiveSession::post_frame_if_wanted() {
     } catch (const LoadError&) {  // a layer names a molecule that an edit removed
         view_.layers.clear();
         view_.labels.clear();
+        view_.marks.measures.clear();
         frame.picture = builder_.build(world, contacts, view_, &frame.labels);
     }
     frame.legend = find_legend(world, view_);

@@ -123,4 +123,9 @@ inline constexpr std::array<std::string_view, 10> colouring_names{
 enum class ShownBonds { None, InHand, All };
 inline constexpr std::array<std::string_view, 3> shown_bond_names{"none", "in-hand", "all"};
 
+// Of which parts the force on what is in the hand is shown: as a whole, and besides what the
+// residues or atoms around do to it, the strongest.
+enum class ShownForces { Hand, Residues, Atoms };
+inline constexpr std::array<std::string_view, 3> shown_force_names{"hand", "residues", "atoms"};
+
 }  // namespace palpa

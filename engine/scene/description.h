@@ -190,6 +190,17 @@ struct ViewLayer {
     }
 };
 
+// Marks that are drawn on request.
+struct ViewMarks {
+    std::vector<std::string> measures{};  // two to four selections each, with ';' between them
+    ShownBonds contacts = ShownBonds::None;
+    ShownForces forces = ShownForces::Hand;
+    bool ghost = false;  // what is in the hand as it was at the start
+    double trail_s = 0;  // the way of what is in the hand over the last seconds; 0: none
+
+    friend bool operator==(const ViewMarks&, const ViewMarks&) = default;
+};
+
 struct ViewDescription {
     std::optional<Representation> representation;  // unset: what shows the scene best
     Colouring colouring = Colouring::Chain;
@@ -199,6 +210,7 @@ struct ViewDescription {
     bool clip = false;                      // nothing in front of the grabbed molecule
     std::vector<ViewLayer> layers{};
     std::vector<std::string> labels{};  // selections whose residues or atoms are named
+    ViewMarks marks{};
 };
 
 struct SceneDescription {

@@ -19,7 +19,8 @@ ViewSettings first_settings(const ViewDescription& view, const World& world) {
             .colouring = view.colouring,
             .hydrogen_bonds = view.hydrogen_bonds,
             .layers = view.layers,
-            .labels = view.labels};
+            .labels = view.labels,
+            .marks = view.marks};
 }
 
 AtomRange framed_atoms(const ViewDescription& view, const World& world) {

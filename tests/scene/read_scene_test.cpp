@@ -700,6 +700,7 @@ TEST_CASE("the view table says how a scene is seen at first, without it the prog
     CHECK(unset.camera == std::array<double, 3>{0, 0, 1});
     CHECK(unset.look_at.empty());
     CHECK_FALSE(unset.clip);
+    CHECK(unset.marks == ViewMarks{{}, ShownBonds::None, ShownForces::Hand, false, 0});
 
     const ViewDescription view = parse_scene(base + R"(
 [view]
@@ -709,9 +710,19 @@ hydrogen_bonds = "all"
 camera = [-40, 12.5, 2]
 look_at = "moved"
 clip = true
+measure = ["name OH2; name H1", "all; all; all"]
+contacts = "in-hand"
+forces = "residues"
+ghost = true
+trail_s = 2.5
 )",
                                              file)
                                      .view;
+    CHECK(view.marks == ViewMarks{{"name OH2; name H1", "all; all; all"},
+                                  ShownBonds::InHand,
+                                  ShownForces::Residues,
+                                  true,
+                                  2.5});
     CHECK(view.representation == Representation::SpaceFilling);
     CHECK(view.colouring == Colouring::Element);
     CHECK(view.hydrogen_bonds == ShownBonds::All);
@@ -738,6 +749,10 @@ TEST_CASE("what [view] cannot mean is refused where it stands", "[scene][errors]
         {"camera = [0, 0, 0]", 10, "a factor from 0.01 to 100"},
         {"look_at = \"fixt\"", 11, "'view.look_at' is \"fixt\", which is no molecule"},
         {"clip = 1", 8, "expected true or false"},
+        {"measure = \"all; all\"", 11, "expected a list of texts"},
+        {"contacts = \"hand\"", 12, "expected one of none, in-hand, all"},
+        {"forces = \"atom\"", 10, "did you mean 'atoms'?"},
+        {"trail_s = -1", 11, "expected a number from 0 to 10000"},
         {"zoom = 2", 1, "zoom"},
     }));
     INFO(row.line);

@@ -82,7 +82,8 @@ TEST_CASE("odd values survive being written and read, to the last bit", "[scene]
                   true,
                   {{Representation::Surface, "chain \"A\"", Colouring::BFactor, 0.1 + 0.2},
                    {Representation::Lines, "", {}, 1}},
-                  {"resid 25", "name 'O5\\''"}};
+                  {"resid 25", "name 'O5\\''"},
+                  {{"all; name \"CA\""}, ShownBonds::InHand, ShownForces::Atoms, true, 1.0 / 3}};
     scene.period_ms = 10000;
     scene.seed = 1'000'000'000'000'000;
     scene.lesson = {{"zuerst", "two\nlines \"quoted\"", "do", LessonQuantity::Force, -0.25, {}, 0},
@@ -127,6 +128,7 @@ TEST_CASE("odd values survive being written and read, to the last bit", "[scene]
     CHECK(back.view.clip);
     CHECK(back.view.layers == scene.view.layers);
     CHECK(back.view.labels == scene.view.labels);
+    CHECK(back.view.marks == scene.view.marks);
     CHECK(back.seed == scene.seed);
     REQUIRE(back.lesson.size() == 2);
     CHECK(back.lesson[0].name == "zuerst");
