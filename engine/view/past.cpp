@@ -177,7 +177,7 @@ void Past::add_ghost(const World& world, std::span<const ResidueSpan> residues,
 }
 
 void Past::add_trail(double trail_s, FrameScene& frame) const {
-    constexpr float thick = 0.14F, thin = 0.03F;  // Å
+    constexpr float thick = 0.1F, thin = 0.03F;  // Å
     const auto look_at = [&](const Point& point) {
         const auto age =
             static_cast<float>(std::clamp((now_s_ - point.time_s) / trail_s, 0.0, 1.0));

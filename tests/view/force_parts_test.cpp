@@ -16,8 +16,10 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <glm/geometric.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 using namespace palpa;

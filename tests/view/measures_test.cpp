@@ -37,8 +37,7 @@ Drawn draw(const std::vector<Vec3>& places) {
     return drawn;
 }
 
-// Ends of sticks on the circle about a place, farther from the lines between the places than
-// `beside`: those of the arc.
+// Ends of the arc's pieces, all as far from its centre.
 std::vector<glm::vec3> arc_of(const Drawn& drawn, const glm::vec3& centre) {
     std::vector<glm::vec3> places;
     for (const SphereShape& ball : drawn.frame.spheres) {

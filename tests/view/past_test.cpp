@@ -18,6 +18,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/geometric.hpp>
+#include <iterator>
 #include <string>
 #include <vector>
 
