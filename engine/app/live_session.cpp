@@ -86,17 +86,24 @@ LiveHand show_hand(const World& world, Entity hand, const AtomDirectory& atoms) 
 // Layers, labels and what is hidden that cannot be evaluated in this world.
 void drop_wrong_selections(const World& world, ViewSettings& view) {
     const std::vector<SecondaryStructure> any(world.resource<AtomTable>().size());
-    const auto is_wrong = [&](const std::string& text) {
+    const auto is_wrong_selection = [&](const Selection& selection) {
         try {
-            if (!text.empty()) (void)select_in_world(world, parse_selection(text), any);
+            (void)select_in_world(world, selection, any);
             return false;
         } catch (const LoadError&) {
             return true;
         }
     };
+    const auto is_wrong = [&](const std::string& text) {
+        return !text.empty() && is_wrong_selection(parse_selection(text));
+    };
     std::erase_if(view.layers, [&](const ViewLayer& layer) { return is_wrong(layer.of); });
     std::erase_if(view.labels, is_wrong);
     std::erase_if(view.hidden, is_wrong);
+    std::erase_if(view.marks.measures, [&](const std::string& text) {
+        const std::vector<Selection> selections = parse_measure(text, "view.measure");
+        return std::ranges::any_of(selections, is_wrong_selection);
+    });
 }
 
 }  // namespace
@@ -145,6 +152,7 @@ LiveSession::LiveSession(const SceneDescription& scene, const ViewSettings& view
       framed_(framed_atoms(scene.view, simulation_.world())),
       recorder_(scene, simulation_.devices()) {
     for (HandOrder& order : orders_) order.granted_ticks = ticks_of(scene.period_ms);
+    builder_.follow(simulation_.world(), view_.marks);
     start_servo();
     simulation_thread_ = std::thread([this] { run_simulation(); });
     recorder_thread_ = std::thread([this] { run_recorder(); });

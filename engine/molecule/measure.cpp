@@ -126,7 +126,7 @@ double find_dihedral(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
 }
 
 std::vector<AtomPair> find_overlaps(const AtomTable& atoms, std::span<const AtomRange> residues,
-                                    double overlap) {
+                                    double overlap, const std::vector<bool>& of) {
     constexpr int fewest_bonds = 4;
     const std::vector<std::uint32_t> residue_of = number_residues(atoms, residues);
     const std::vector<double> radii = list_radii(atoms, residue_of);
@@ -138,12 +138,14 @@ std::vector<AtomPair> find_overlaps(const AtomTable& atoms, std::span<const Atom
     const PointGrid grid(places_of(atoms, numbers));
     const BondLists bonds(atoms);
     std::vector<AtomPair> pairs;
-    for (const std::uint32_t a : numbers) {
-        const double reach = radii[a] + largest - overlap;
-        if (reach <= 0) continue;
-        grid.visit_near(atoms.positions[a], reach, [&](std::uint32_t point) {
-            const std::uint32_t b = numbers[point];
-            if (b <= a || residue_of[a] == residue_of[b]) return;
+    for (const std::uint32_t from : numbers) {
+        const double reach = radii[from] + largest - overlap;
+        if (reach <= 0 || (!of.empty() && !of[from])) continue;
+        grid.visit_near(atoms.positions[from], reach, [&](std::uint32_t point) {
+            const std::uint32_t to = numbers[point];
+            if (of.empty() ? to <= from : of[to]) return;
+            const auto [a, b] = std::minmax(from, to);
+            if (residue_of[a] == residue_of[b]) return;
             const double distance = (atoms.positions[a] - atoms.positions[b]).norm();
             if (distance >= radii[a] + radii[b] - overlap) return;
             if (!bonds.are_within(a, b, fewest_bonds - 1)) pairs.push_back({a, b, distance});

@@ -27,9 +27,11 @@ inline constexpr double clash_overlap = 0.4, contact_overlap = -0.4;
 
 // Pairs a < b of heavy atoms of two residues that are nearer than the sum of their radii
 // (van_der_waals_radius) less the overlap, and more than three bonds apart; by rising a, then b.
-// Atoms of elements without a radius take no part. `residues`: list_residues.
+// Atoms of elements without a radius take no part. `residues`: list_residues. `of`, one an atom:
+// only pairs of one of these with one that is not; empty: all.
 std::vector<AtomPair> find_overlaps(const AtomTable& atoms, std::span<const AtomRange> residues,
-                                    double overlap = clash_overlap);
+                                    double overlap = clash_overlap,
+                                    const std::vector<bool>& of = {});
 
 // Salt bridges: a nitrogen (a) of Lys, Arg or doubly protonated His at most `distance` (Å) from an
 // oxygen (b) of Asp or Glu (D. J. Barlow and J. M. Thornton, J. Mol. Biol. 1983, 168, 867). The

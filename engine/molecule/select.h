@@ -24,6 +24,10 @@ struct Selection {
 // Throws LoadError, "SOURCE, column 9: 'protien', expected ...": columns are letters, from 1.
 Selection parse_selection(std::string_view text, std::string source = "selection");
 
+// What is measured: two, three or four expressions with ';' between them, "name CA and resid 25;
+// ligand". Throws the same; columns are those of the whole text.
+std::vector<Selection> parse_measure(std::string_view text, const std::string& source = "measure");
+
 // Whether other atoms may be selected once atoms have moved, or hands hold others.
 bool depends_on_positions(const Selection& selection);
 bool depends_on_hands(const Selection& selection);

@@ -131,5 +131,9 @@ inline constexpr std::array<std::string_view, 3> shown_hydrogen_names{"all", "po
 // Shadows of opaque things upon each other.
 enum class Shadows { None, Soft };
 inline constexpr std::array<std::string_view, 2> shadow_names{"none", "soft"};
+// Of which parts the force on what is in the hand is shown: as a whole, and besides what the
+// residues or atoms around do to it, the strongest.
+enum class ShownForces { Hand, Residues, Atoms };
+inline constexpr std::array<std::string_view, 3> shown_force_names{"hand", "residues", "atoms"};
 
 }  // namespace palpa

@@ -207,6 +207,17 @@ struct SavedView {
     }
 };
 
+// Marks that are drawn on request.
+struct ViewMarks {
+    std::vector<std::string> measures{};  // two to four selections each, with ';' between them
+    ShownBonds contacts = ShownBonds::None;
+    ShownForces forces = ShownForces::Hand;
+    bool ghost = false;  // what is in the hand as it was at the start
+    double trail_s = 0;  // the way of what is in the hand over the last seconds; 0: none
+
+    friend bool operator==(const ViewMarks&, const ViewMarks&) = default;
+};
+
 struct ViewDescription {
     std::optional<Representation> representation;  // unset: what shows the scene best
     Colouring colouring = Colouring::Chain;
@@ -218,10 +229,11 @@ struct ViewDescription {
     std::vector<std::string> labels{};  // selections whose residues or atoms are named
     ShownHydrogens hydrogens = ShownHydrogens::All;
     Shadows shadows = Shadows::None;
-    bool occlusion = true;     // crevices are darker
-    std::int64_t outline = 1;  // pixels
+    bool occlusion = true;              // crevices are darker
+    std::int64_t outline = 1;           // pixels
     std::vector<std::string> hidden{};  // selections that are drawn only by layers
     std::vector<SavedView> saved{};     // in the order of the file
+    ViewMarks marks{};
 };
 
 struct SceneDescription {

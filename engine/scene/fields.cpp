@@ -531,6 +531,33 @@ void visit_saved_views(FieldVisitor& v, std::vector<SavedView>& views) {
     }
 }
 
+void visit_marks(FieldVisitor& v, ViewMarks& marks) {
+    v.texts({.key = "measure",
+             .meaning = "two, three or four selections, \"SELECTION; SELECTION\": the distance, "
+                        "angle or dihedral of their atoms, or of the centres of their atoms"},
+            marks.measures);
+    choose(v,
+           {.key = "contacts",
+            .meaning = "which contacts, clashes (heavy atoms overlap by 0.4 Å and more) and salt "
+                       "bridges are drawn, as of hydrogen_bonds"},
+           shown_bond_names, marks.contacts);
+    choose(v,
+           {.key = "forces",
+            .meaning = "hand: the force on what is in the hand; residues, atoms: besides, what "
+                       "those around do to it, the strongest 10 or 20"},
+           shown_force_names, marks.forces);
+    v.flag({.key = "ghost",
+            .meaning = "what is in the hand as it was at the start, pale, residues around that "
+                       "have moved by 0.5 Å since, and its place of rest"},
+           marks.ghost);
+    v.real({.key = "trail_s",
+            .meaning = "where the centre of what is in the hand was in the last seconds; 0: "
+                       "nothing is drawn",
+            .lowest = 0,
+            .highest = 1e4},
+           marks.trail_s);
+}
+
 void visit_view(FieldVisitor& v, ViewDescription& view) {
     v.enter_table({.key = "view", .meaning = "how the scene is seen at first"});
     choose_if_set(
@@ -585,6 +612,7 @@ void visit_view(FieldVisitor& v, ViewDescription& view) {
                         "beside themselves"},
             view.labels);
     v.texts({.key = "hide", .meaning = "selections that nothing but layers draws"}, view.hidden);
+    visit_marks(v, view.marks);
     visit_layers(v, view.layers);
     visit_saved_views(v, view.saved);
     v.leave_table();

@@ -2,7 +2,6 @@
 
 #include "core/units.h"
 #include "molecule/hydropathy.h"
-#include "molecule/point_grid.h"
 #include "simulation/components.h"
 #include "simulation/held.h"
 #include "simulation/resources.h"
@@ -10,6 +9,7 @@
 #include "statics/torsion_state.h"
 #include "view/colour_scales.h"
 #include "view/elements.h"
+#include "view/force_parts.h"
 #include "view/in_hand.h"
 #include "view/palette.h"
 
@@ -122,18 +122,6 @@ Colours colour_scale(std::span<const double> values, double low, double high) {
     return colours;
 }
 
-// Those bonded to held ones over three bonds or fewer, and these.
-std::vector<bool> find_bonded(const AtomTable& atoms, std::vector<bool> held) {
-    for (int bonds = 0; bonds < 3; ++bonds) {
-        const std::vector<bool> before = held;
-        for (const auto& [a, b] : atoms.bonds) {
-            if (before[a]) held[b] = true;
-            if (before[b]) held[a] = true;
-        }
-    }
-    return held;
-}
-
 constexpr double least_push_pN = 1, most_push_pN = 1000;
 
 Colours colour_pushes(const World& world) {
@@ -231,25 +219,13 @@ std::vector<LegendEntry> legend_of_scale(std::string low, std::string middle, st
 
 std::vector<double> find_pushes(const World& world) {
     constexpr double reach = 12;  // Å
-    const AtomTable& atoms = world.resource<AtomTable>();
     const std::vector<bool> in_hand = find_held_atoms(world);
-    const std::vector<bool> bonded = find_bonded(atoms, in_hand);
-    std::vector<std::uint32_t> held, near;
-    std::vector<Vec3> places;
-    for (std::uint32_t i = 0; i < atoms.size(); ++i) {
-        if (!in_hand[i]) continue;
-        held.push_back(i);
-        places.push_back(atoms.positions[i]);
-    }
-    std::vector<double> pushes(atoms.size(), 0);
-    if (held.empty()) return pushes;
-    const PointGrid grid(places);
-    for (std::uint32_t i = 0; i < atoms.size(); ++i)
-        if (!bonded[i] && grid.has_near(atoms.positions[i], reach)) near.push_back(i);
-    const GatheredPoints group(atoms, held), environment(atoms, near);
-    std::vector<Vec3> on_group(held.size(), Vec3::Zero()), on_near(near.size(), Vec3::Zero());
-    (void)add_pair_forces(group.view(), environment.view(), pair_rule(world), on_group, on_near);
-    for (std::size_t i = 0; i < near.size(); ++i) pushes[near[i]] = on_near[i].norm();
+    std::vector<std::uint32_t> held;
+    for (std::uint32_t i = 0; i < in_hand.size(); ++i)
+        if (in_hand[i]) held.push_back(i);
+    std::vector<double> pushes;
+    for (const Vec3& force : find_forces_by_atoms(world, held, reach))
+        pushes.push_back(force.norm());
     return pushes;
 }
 

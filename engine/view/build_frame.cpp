@@ -8,9 +8,13 @@
 #include "simulation/select_in_world.h"
 #include "simulation/systems/publish_contact.h"
 #include "view/atom_colours.h"
+#include "view/contact_pairs.h"
 #include "view/draw_layer.h"
+#include "view/force_parts.h"
 #include "view/hydrogen_bonds.h"
 #include "view/in_hand.h"
+#include "view/measures.h"
+#include "view/past.h"
 #include "view/pocket.h"
 #include "view/residue_structure.h"
 
@@ -39,6 +43,40 @@ std::vector<AtomLook> find_looks(const World& world, const ViewSettings& setting
         std::fill_n(looks.begin() + molecule.atoms.first, molecule.atoms.count, look);
     });
     return looks;
+}
+
+bool are_visible(std::span<const AtomLook> looks, std::size_t a, std::size_t b) {
+    return looks[a].visible && looks[b].visible;
+}
+
+std::vector<HydrogenBond> find_visible_bonds(const World& world, ShownBonds which,
+                                             std::span<const AtomLook> looks) {
+    std::vector<HydrogenBond> bonds = find_hydrogen_bonds(world, which);
+    std::erase_if(bonds, [&](const HydrogenBond& bond) {
+        return !are_visible(looks, bond.hydrogen, bond.acceptor);
+    });
+    return bonds;
+}
+
+ContactPairs find_visible_pairs(const FrameParts& parts, ShownBonds which,
+                                std::span<const AtomLook> looks) {
+    ContactPairs pairs = find_contact_pairs(parts.world, which, parts.residues);
+    for (std::vector<AtomPair>* const kind : {&pairs.contacts, &pairs.clashes, &pairs.salt_bridges})
+        std::erase_if(*kind,
+                      [&](const AtomPair& pair) { return !are_visible(looks, pair.a, pair.b); });
+    return pairs;
+}
+
+// How a layer draws atoms, of which `chosen` are its own.
+std::vector<AtomLook> find_layer_looks(std::span<const AtomLook> looks, const ViewLayer& layer,
+                                       const std::vector<bool>& chosen) {
+    std::vector<AtomLook> shown(looks.begin(), looks.end());
+    for (std::size_t atom = 0; atom < shown.size(); ++atom) {
+        shown[atom].representation = layer.representation;
+        shown[atom].colouring = layer.colouring.value_or(shown[atom].colouring);
+        shown[atom].visible = shown[atom].visible && chosen[atom];
+    }
+    return shown;
 }
 
 std::vector<SecondaryStructure> per_atom(const AtomTable& atoms,
@@ -84,12 +122,16 @@ void add_selection_labels(const AtomTable& atoms, std::span<const ResidueSpan> r
     }
 }
 
+HeldMolecule find_held(const World& world, Entity hand) {
+    const AtomRange atoms = held_range(world, hand);
+    return {atoms, as_float(held_place(world, hand)),
+            as_float(centre_of_mass(world.resource<AtomTable>(), atoms))};
+}
+
 void add_signs(const World& world, Entity hand, const ContactModel& contact, FrameScene& frame,
                std::vector<ViewLabel>& labels) {
     if (!world.find<Grip>(hand)) return;
-    const AtomRange atoms = held_range(world, hand);
-    const HeldMolecule held{atoms, as_float(held_place(world, hand)),
-                            as_float(centre_of_mass(world.resource<AtomTable>(), atoms))};
+    const HeldMolecule held = find_held(world, hand);
     constexpr double nN = 1e9, angstrom_nN = 1e19;
     add_force(as_float(nN * contact.force_newton), held, frame, labels);
     if (!moves_in_space(world, hand)) return;
@@ -110,30 +152,100 @@ void add_last_snap(const World& world, FrameScene& frame, std::vector<ViewLabel>
 
 }  // namespace
 
-glm::vec3 as_float(const Vec3& v) {
-    return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
-}
-
-// The caches of FrameBuilder.
+// What FrameBuilder keeps.
 struct FrameBuilder::Kept {
     ResidueStructure structure;
-    std::vector<KeptLayer> layers;                  // that of everything first
-    std::map<std::string, Selection> selections{};  // by their texts
+    std::vector<KeptLayer> layers;                             // that of everything first
+    std::map<std::string, Selection> selections{};             // by their texts
+    std::map<std::string, std::vector<Selection>> measures{};  // by their texts
+    Past past;
 
-    const Selection& parsed(const std::string& text, const char* source) {
-        const auto found = selections.find(text);
-        if (found != selections.end()) return found->second;
-        return selections.emplace(text, parse_selection(text, source)).first->second;
+    std::vector<bool> select(const FrameParts& parts, const Selection& selection) const {
+        const AtomTable& atoms = parts.world.resource<AtomTable>();
+        return select_in_world(parts.world, selection,
+                               per_atom(atoms, parts.residues, parts.structure));
     }
+    std::vector<bool> select(const FrameParts& parts, const std::string& text, const char* source) {
+        auto found = selections.find(text);
+        if (found == selections.end())
+            found = selections.emplace(text, parse_selection(text, source)).first;
+        return select(parts, found->second);
+    }
+    void draw_layers(const FrameParts& parts, std::span<const AtomLook> looks,
+                     const ViewSettings& settings, FrameScene& frame);
+    void add_measures(const FrameParts& parts, std::span<const std::string> texts,
+                      FrameScene& frame, std::vector<ViewLabel>& labels);
+    void add_marks(const FrameParts& parts, const ViewMarks& marks, std::span<const AtomLook> looks,
+                   FrameScene& frame, std::vector<ViewLabel>& labels);
 };
+
+void FrameBuilder::Kept::draw_layers(const FrameParts& parts, std::span<const AtomLook> looks,
+                                     const ViewSettings& settings, FrameScene& frame) {
+    const std::vector<ViewLayer>& shown = settings.layers;
+    layers.resize(1 + shown.size());
+    std::vector<AtomLook> not_hidden(looks.begin(), looks.end());
+    for (const std::string& text : settings.hidden) {
+        const std::vector<bool> hidden = select(parts, text, "view.hide");
+        for (std::size_t i = 0; i < looks.size(); ++i)
+            if (hidden[i]) not_hidden[i].visible = false;
+    }
+    draw_layer(parts, not_hidden, find_layer_colours(parts, not_hidden), 1, layers[0], frame);
+    for (std::size_t i = 0; i < shown.size(); ++i) {
+        const std::vector<bool> chosen = shown[i].of.empty()
+                                             ? std::vector<bool>(looks.size(), true)
+                                             : select(parts, shown[i].of, "view.layers.of");
+        const std::vector<AtomLook> own = find_layer_looks(looks, shown[i], chosen);
+        draw_layer(parts, own, find_layer_colours(parts, own), static_cast<float>(shown[i].opacity),
+                   layers[1 + i], frame);
+    }
+}
+
+// Those of which each selection has an atom.
+void FrameBuilder::Kept::add_measures(const FrameParts& parts, std::span<const std::string> texts,
+                                      FrameScene& frame, std::vector<ViewLabel>& labels) {
+    const std::vector<Vec3>& positions = parts.world.resource<AtomTable>().positions;
+    for (const std::string& text : texts) {
+        auto found = measures.find(text);
+        if (found == measures.end())
+            found = measures.emplace(text, parse_measure(text, "view.measure")).first;
+        std::vector<Vec3> places;
+        for (const Selection& selection : found->second) {
+            const std::vector<bool> chosen = select(parts, selection);
+            if (std::ranges::find(chosen, true) == chosen.end()) break;
+            places.push_back(find_centre(positions, chosen));
+        }
+        if (places.size() == found->second.size()) add_measure(places, frame, labels);
+    }
+}
+
+void FrameBuilder::Kept::add_marks(const FrameParts& parts, const ViewMarks& marks,
+                                   std::span<const AtomLook> looks, FrameScene& frame,
+                                   std::vector<ViewLabel>& labels) {
+    const World& world = parts.world;
+    add_contact_pairs(world.resource<AtomTable>(), find_visible_pairs(parts, marks.contacts, looks),
+                      frame, labels);
+    for (const Entity hand : find_hands(world))
+        if (marks.forces != ShownForces::Hand && world.find<Grip>(hand))
+            add_force_parts(world, hand, marks.forces, parts.residues, find_held(world, hand),
+                            frame, labels);
+    if (marks.ghost)
+        past.add_ghost(world, parts.residues, find_pocket(world, parts.residues), frame, labels);
+    if (marks.trail_s > 0) past.add_trail(marks.trail_s, frame);
+    add_measures(parts, marks.measures, frame, labels);
+}
 
 FrameBuilder::FrameBuilder() : kept_(std::make_unique<Kept>()) {}
 FrameBuilder::FrameBuilder(FrameBuilder&&) noexcept = default;
 FrameBuilder& FrameBuilder::operator=(FrameBuilder&&) noexcept = default;
 FrameBuilder::~FrameBuilder() = default;
 
+void FrameBuilder::follow(const World& world, const ViewMarks& marks) {
+    kept_->past.follow(world, marks);
+}
+
 FrameScene FrameBuilder::build(const World& world, std::span<const ContactModel> contacts,
                                const ViewSettings& settings, std::vector<ViewLabel>* labels) {
+    follow(world, settings.marks);
     FrameScene frame;
     frame.shadows = settings.shadows != Shadows::None;
     frame.occlusion = settings.occlusion;
@@ -141,10 +253,8 @@ FrameScene FrameBuilder::build(const World& world, std::span<const ContactModel>
     std::vector<ViewLabel> words;
     const AtomTable& atoms = world.resource<AtomTable>();
     const std::vector<AtomLook> looks = find_looks(world, settings);
-    std::vector<HydrogenBond> bonds = find_hydrogen_bonds(world, settings.hydrogen_bonds);
-    std::erase_if(bonds, [&](const HydrogenBond& bond) {
-        return !looks[bond.hydrogen].visible || !looks[bond.acceptor].visible;
-    });
+    const std::vector<HydrogenBond> bonds =
+        find_visible_bonds(world, settings.hydrogen_bonds, looks);
     std::vector<bool> takes_part(atoms.size(), false);
     for (const HydrogenBond& bond : bonds) takes_part[bond.hydrogen] = true;
     const std::vector<ResidueSpan> residues = find_residues(world);
@@ -152,39 +262,14 @@ FrameScene FrameBuilder::build(const World& world, std::span<const ContactModel>
     const std::vector<bool> held = find_held_atoms(world), in_hand = find_in_hand(world);
     const FrameParts parts{world,   residues,   structure,         held,
                            in_hand, takes_part, settings.hydrogens};
-    const auto select = [&](const std::string& text, const char* source) {
-        return select_in_world(world, kept_->parsed(text, source),
-                               per_atom(atoms, residues, structure));
-    };
-    kept_->layers.resize(1 + settings.layers.size());
-    const auto draw = [&](std::span<const AtomLook> shown, float opacity, KeptLayer& kept) {
-        draw_layer(parts, shown, find_layer_colours(parts, shown), opacity, kept, frame);
-    };
-    std::vector<AtomLook> not_hidden = looks;
-    for (const std::string& text : settings.hidden) {
-        const std::vector<bool> hidden = select(text, "view.hide");
-        for (std::size_t i = 0; i < looks.size(); ++i)
-            if (hidden[i]) not_hidden[i].visible = false;
-    }
-    draw(not_hidden, 1, kept_->layers[0]);
-    for (std::size_t i = 0; i < settings.layers.size(); ++i) {
-        const ViewLayer& layer = settings.layers[i];
-        std::vector<AtomLook> shown = looks;
-        const std::vector<bool> chosen = layer.of.empty() ? std::vector<bool>(atoms.size(), true)
-                                                          : select(layer.of, "view.layers.of");
-        for (std::size_t atom = 0; atom < shown.size(); ++atom) {
-            shown[atom].representation = layer.representation;
-            shown[atom].colouring = layer.colouring.value_or(shown[atom].colouring);
-            shown[atom].visible = shown[atom].visible && chosen[atom];
-        }
-        draw(shown, static_cast<float>(layer.opacity), kept_->layers[1 + i]);
-    }
+    kept_->draw_layers(parts, looks, settings, frame);
     add_hydrogen_bonds(atoms, bonds, frame, words);
     for (const std::string& text : settings.labels)
-        add_selection_labels(atoms, residues, select(text, "view.label"), words);
+        add_selection_labels(atoms, residues, kept_->select(parts, text, "view.label"), words);
     const std::vector<Entity> hands = find_hands(world);
     for (std::size_t i = 0; settings.force_arrow && i < contacts.size(); ++i)
         add_signs(world, hands[i], contacts[i], frame, words);
+    kept_->add_marks(parts, settings.marks, looks, frame, words);
     add_last_snap(world, frame, words);
     if (labels) *labels = std::move(words);
     return frame;

@@ -4,6 +4,7 @@
 #include "haptics/exchange.h"
 #include "render/frame_scene.h"
 #include "scene/description.h"
+#include "view/place.h"
 #include "view/signs.h"
 
 #include <memory>
@@ -23,8 +24,9 @@ struct ViewSettings {
     ShownHydrogens hydrogens = ShownHydrogens::All;
     Shadows shadows = Shadows::None;
     bool occlusion = true;
-    int outline = 1;  // pixels
+    int outline = 1;                    // pixels
     std::vector<std::string> hidden{};  // selections that layers alone draw
+    ViewMarks marks{};
 
     friend bool operator==(const ViewSettings&, const ViewSettings&) = default;
 };
@@ -48,6 +50,10 @@ public:
     FrameScene build(const World& world, std::span<const ContactModel> contacts,
                      const ViewSettings& settings, std::vector<ViewLabel>* labels = nullptr);
 
+    // Between frames, as often as wanted, the first time before anything has moved: for marks of
+    // what was before, where frames are few. `build` does it as well.
+    void follow(const World& world, const ViewMarks& marks);
+
 private:
     struct Kept;
     std::unique_ptr<Kept> kept_;
@@ -65,8 +71,5 @@ std::vector<ContactModel> find_contacts(const World& world);
 
 // The atoms of a range among a frame's spheres.
 std::vector<SphereShape> shapes_of(const FrameScene& frame, const AtomRange& atoms);
-
-// A place as pictures have it.
-glm::vec3 as_float(const Vec3& v);
 
 }  // namespace palpa

@@ -24,7 +24,8 @@ ViewSettings first_settings(const ViewDescription& view, const World& world) {
             .shadows = view.shadows,
             .occlusion = view.occlusion,
             .outline = static_cast<int>(view.outline),
-            .hidden = view.hidden};
+            .hidden = view.hidden,
+            .marks = view.marks};
 }
 
 AtomRange framed_atoms(const ViewDescription& view, const World& world) {

@@ -1,6 +1,7 @@
 #include "view/legend.h"
 
 #include "simulation/components.h"
+#include "view/palette.h"
 
 #include <algorithm>
 
@@ -22,6 +23,11 @@ std::vector<LegendEntry> find_legend(const World& world, const ViewSettings& set
     for (const Colouring colouring : used) {
         const std::vector<LegendEntry> entries = find_legend(world, colouring);
         legend.insert(legend.end(), entries.begin(), entries.end());
+    }
+    if (settings.marks.contacts != ShownBonds::None) {
+        legend.push_back({contact_colour, "contact"});
+        legend.push_back({clash_colour, "clash"});
+        legend.push_back({salt_bridge_colour, "salt bridge"});
     }
     return legend;
 }

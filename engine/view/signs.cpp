@@ -1,5 +1,6 @@
 #include "view/signs.h"
 
+#include "view/lines.h"
 #include "view/palette.h"
 
 #include <fmt/format.h>
@@ -9,7 +10,6 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>
-#include <utility>
 
 namespace palpa {
 namespace {
@@ -70,7 +70,15 @@ float free_way(const Ray& ray, float start, const HeldMolecule& held, const Fram
     return free;
 }
 
-// The length of an arrow for a decade of force: more for molecules that are seen from farther away.
+float head_length(float arrow, float decade) { return std::min(0.55F * decade, 0.6F * arrow); }
+
+std::string with_unit(double value, const char* unit) {
+    return value < 0.1 ? fmt::format("{:.0f} p{}", 1e3 * value, unit)
+                       : fmt::format("{:.3g} n{}", value, unit);
+}
+
+}  // namespace
+
 float decade_of(const HeldMolecule& held, const FrameScene& frame) {
     constexpr float share = 0.12F, least = 0.8F, most = 2.4F;  // of the molecule's radius; Å
     float radius = 0;
@@ -81,70 +89,32 @@ float decade_of(const HeldMolecule& held, const FrameScene& frame) {
     return std::clamp(share * radius, least, most);
 }
 
-// All but hydrogen bonds, which belong to the atoms.
-bool is_on_top(std::uint32_t pick) { return pick != hydrogen_bond_pick; }
-
-void add_stick(const glm::vec3& a, const glm::vec3& b, float radius, const glm::vec3& colour,
-               std::uint32_t pick, FrameScene& frame) {
-    frame.cones.push_back({a, b, radius, radius, colour, colour, pick, is_on_top(pick)});
+float arrow_length(double force_nN, float decade) {
+    if (!(force_nN > least_shown_nN)) return 0;
+    const double decades = std::log10(std::min(force_nN, most_shown_nN) / least_shown_nN);
+    return static_cast<float>(decades) * decade;
 }
 
-void add_head(const glm::vec3& from, const glm::vec3& tip, float radius, const glm::vec3& colour,
-              std::uint32_t pick, FrameScene& frame) {
-    frame.cones.push_back(
-        {from, tip, radius, 0.02F * radius, colour, colour, pick, is_on_top(pick)});
+void add_arrow(const glm::vec3& tail, const glm::vec3& tip, float decade, std::uint32_t pick,
+               FrameScene& frame) {
+    const float length = glm::distance(tail, tip);
+    if (!(length > 0)) return;
+    const float head = head_length(length, decade);
+    const glm::vec3 neck = tip - head / length * (tip - tail);
+    add_stick(tail, neck, {0.11F * decade, force_colour, pick}, frame);
+    add_head(neck, tip, {std::min(0.3F * decade, 0.6F * head), force_colour, pick}, frame);
 }
 
-// Flat, and closed on both sides: a cone is so only at its first end.
-void add_disc(const glm::vec3& centre, const glm::vec3& axis, float radius, std::uint32_t pick,
-              FrameScene& frame) {
-    constexpr float half = 0.09F;  // of the radius
-    add_stick(centre, centre + half * radius * axis, radius, ring_colour, pick, frame);
-    add_stick(centre, centre - half * radius * axis, radius, ring_colour, pick, frame);
-}
-
-// From one place to another with gaps, beginning and ending with a dash.
-void add_dashes(const glm::vec3& a, const glm::vec3& b, float dash, float radius,
-                const glm::vec3& colour, std::uint32_t pick, FrameScene& frame) {
-    constexpr float gap = 0.75F;  // of a dash
-    const float length = glm::distance(a, b);
-    const auto count = static_cast<int>(std::lround((length / dash + gap) / (1 + gap)));
-    if (count < 1) return;
-    const glm::vec3 along = (b - a) / length;
-    const float each = length / (static_cast<float>(count) + gap * static_cast<float>(count - 1));
-    for (int i = 0; i < count; ++i) {
-        const glm::vec3 from = a + (1 + gap) * each * static_cast<float>(i) * along;
-        add_stick(from, from + each * along, radius, colour, pick, frame);
-    }
-}
-
-// Two directions across an axis, right-handed with it.
-std::pair<glm::vec3, glm::vec3> across(const glm::vec3& axis) {
-    const glm::vec3 size = glm::abs(axis);
-    const glm::vec3 other = size.x <= size.y && size.x <= size.z ? glm::vec3(1, 0, 0)
-                            : size.y <= size.z                   ? glm::vec3(0, 1, 0)
-                                                                 : glm::vec3(0, 0, 1);
-    const glm::vec3 first = glm::normalize(glm::cross(axis, other));
-    return {first, glm::cross(axis, first)};
-}
-
-std::string with_unit(double value, const char* unit) {
-    return value < 0.1 ? fmt::format("{:.0f} p{}", 1e3 * value, unit)
-                       : fmt::format("{:.3g} n{}", value, unit);
-}
-
-}  // namespace
+std::string force_in_words(double force_nN) { return with_unit(force_nN, "N"); }
 
 void add_force(const glm::vec3& force_nN, const HeldMolecule& held, FrameScene& frame,
                std::vector<ViewLabel>& labels) {
     const auto size = static_cast<double>(glm::length(force_nN));
     if (!(size > least_shown_nN)) return;
     const float decade = decade_of(held, frame);
-    const auto decades =
-        static_cast<float>(std::log10(std::min(size, most_shown_nN) / least_shown_nN));
-    const float length = decades * decade;
+    const float length = arrow_length(size, decade);
     const float thin = 0.11F * decade, gap = 0.15F * decade;
-    const float head = std::min(0.55F * decade, 0.6F * length);
+    const float head = head_length(length, decade);
 
     const glm::vec3 along = force_nN / static_cast<float>(size);
     const Ray ahead{held.place, along, thin}, behind{held.place, -along, thin};
@@ -156,15 +126,14 @@ void add_force(const glm::vec3& force_nN, const HeldMolecule& held, FrameScene& 
     const glm::vec3 tail =
         held.place + (comes_from_behind ? -(out_behind + length) : out_ahead) * along;
 
-    const glm::vec3 neck = tail + (length - head) * along, tip = tail + length * along;
-    add_stick(tail, neck, thin, force_colour, arrow_pick, frame);
-    add_head(neck, tip, std::min(0.3F * decade, 0.6F * head), force_colour, arrow_pick, frame);
+    const glm::vec3 tip = tail + length * along;
+    add_arrow(tail, tip, decade, arrow_pick, frame);
     for (int tick = 1; static_cast<float>(tick) * decade < length - head; ++tick) {
         const glm::vec3 place = tail + static_cast<float>(tick) * decade * along;
-        add_disc(place, along, 0.19F * decade, arrow_pick, frame);
+        add_disc(place, along, {0.19F * decade, ring_colour, arrow_pick}, frame);
         labels.push_back({place, fmt::format("{:g}", least_shown_nN * std::pow(10, tick)), true});
     }
-    labels.push_back({comes_from_behind ? tail : tip, with_unit(size, "N")});
+    labels.push_back({comes_from_behind ? tail : tip, force_in_words(size)});
 }
 
 void add_torque(const glm::vec3& torque_angstrom_nN, const HeldMolecule& held, FrameScene& frame,
@@ -180,26 +149,18 @@ void add_torque(const glm::vec3& torque_angstrom_nN, const HeldMolecule& held, F
     const float out = way_out({held.centre, axis, radius + thin}, held, frame);
     const glm::vec3 foot = held.centre + out * axis;
     const glm::vec3 middle = foot + 0.5F * decade * axis;
-    add_stick(foot, middle + 0.35F * decade * axis, 0.5F * thin, force_colour, torque_pick, frame);
+    const glm::vec3 top = middle + 0.35F * decade * axis;
+    add_stick(foot, top, {0.5F * thin, force_colour, torque_pick}, frame);
 
     const auto [right, up] = across(axis);
-    const auto on_arc = [&, &x = right, &y = up](float angle) {
-        return middle + radius * (std::cos(angle) * x + std::sin(angle) * y);
-    };
     const float head = std::min(0.5F * decade / radius, 0.6F * sweep);  // rad
-    constexpr float longest = pi / 15;                                  // of a straight piece
-    const int pieces = std::max(1, static_cast<int>(std::ceil((sweep - head) / longest)));
-    for (int i = 0; i < pieces; ++i) {
-        const float step = (sweep - head) / static_cast<float>(pieces);
-        const float from = step * static_cast<float>(i);
-        add_stick(on_arc(from), on_arc(from + step), thin, force_colour, torque_pick, frame);
-        frame.spheres.push_back({on_arc(from + step), thin, force_colour, torque_pick, true});
-    }
-    const glm::vec3 neck = on_arc(sweep - head);
-    const glm::vec3 tangent = glm::normalize(on_arc(sweep) - neck);
-    add_head(neck, neck + head * radius * tangent, 0.22F * decade, force_colour, torque_pick,
+    const Arc arc{middle, right, up, radius, sweep - head};
+    add_arc(arc, {thin, force_colour, torque_pick}, frame);
+    const glm::vec3 neck = arc.place(sweep - head);
+    const glm::vec3 tangent = glm::normalize(arc.place(sweep) - neck);
+    add_head(neck, neck + head * radius * tangent, {0.22F * decade, force_colour, torque_pick},
              frame);
-    labels.push_back({on_arc(sweep), with_unit(size, "N Å")});
+    labels.push_back({arc.place(sweep), with_unit(size, "N Å")});
 }
 
 void add_hydrogen_bonds(const AtomTable& atoms, std::span<const HydrogenBond> bonds,
@@ -222,7 +183,7 @@ void add_hydrogen_bonds(const AtomTable& atoms, std::span<const HydrogenBond> bo
         const glm::vec3 a = from + (radius_of[bond.hydrogen] + radius) * along;
         const glm::vec3 b = to - (radius_of[bond.acceptor] + radius) * along;
         if (!(glm::dot(b - a, along) > least)) continue;
-        add_dashes(a, b, dash, radius, hydrogen_bond_colour, hydrogen_bond_pick, frame);
+        add_dashes(a, b, dash, {radius, hydrogen_bond_colour, hydrogen_bond_pick}, frame);
         if (drawn++ == 0 || bonds.size() <= most_labels) {
             labels.push_back({0.5F * (a + b), fmt::format("{:.2f} Å", bond.length)});
         }
@@ -232,15 +193,9 @@ void add_hydrogen_bonds(const AtomTable& atoms, std::span<const HydrogenBond> bo
 void add_snap(const glm::vec3& place, double released, FrameScene& frame,
               std::vector<ViewLabel>& labels) {
     constexpr float radius = 1.1F, thick = 0.06F;  // Å
-    constexpr int pieces = 24;                     // of a ring, every other one drawn
     for (const glm::vec3 axis : {glm::vec3(1, 0, 0), glm::vec3(0, 1, 0)}) {
         const auto [first, second] = across(axis);
-        const auto on_ring = [&, &x = first, &y = second](int piece) {
-            const float angle = 2 * pi * static_cast<float>(piece) / pieces;
-            return place + radius * (std::cos(angle) * x + std::sin(angle) * y);
-        };
-        for (int i = 0; i < pieces; i += 2)
-            add_stick(on_ring(i), on_ring(i + 1), thick, force_colour, snap_pick, frame);
+        add_arc({place, first, second, radius, 2 * pi}, {thick, force_colour, snap_pick}, frame, 2);
     }
     labels.push_back({place, fmt::format("snap, {:.0f} kcal/mol set free", released)});
 }
@@ -249,20 +204,12 @@ void add_wish(const glm::vec3& place, const glm::vec3& wish, const glm::vec3& to
               FrameScene& frame) {
     constexpr float shown_from = 0.1F, dash = 0.22F, thread = 0.035F;  // Å
     constexpr float ring = 0.50F, thick = 0.05F;
-    constexpr int pieces = 36;
     const float length = glm::distance(place, wish);
     if (!(length > shown_from)) return;
-    add_dashes(place, place + std::max(1 - ring / length, 0.5F) * (wish - place), dash, thread,
-               wish_colour, wish_pick, frame);
+    add_dashes(place, place + std::max(1 - ring / length, 0.5F) * (wish - place), dash,
+               {thread, wish_colour, wish_pick}, frame);
     const auto [right, up] = across(glm::normalize(towards_eye));
-    const auto on_ring = [&, &x = right, &y = up](int piece) {
-        const float angle = 2 * pi * static_cast<float>(piece) / pieces;
-        return wish + ring * (std::cos(angle) * x + std::sin(angle) * y);
-    };
-    for (int i = 0; i < pieces; ++i) {
-        add_stick(on_ring(i), on_ring(i + 1), thick, wish_colour, wish_pick, frame);
-        frame.spheres.push_back({on_ring(i), thick, wish_colour, wish_pick, true});
-    }
+    add_arc({wish, right, up, ring, 2 * pi}, {thick, wish_colour, wish_pick}, frame);
 }
 
 }  // namespace palpa

@@ -5,6 +5,7 @@
 #include "molecule/atoms.h"
 #include "render/frame_scene.h"
 #include "view/hydrogen_bonds.h"
+#include "view/picks.h"
 
 #include <cstdint>
 #include <glm/vec3.hpp>
@@ -13,11 +14,6 @@
 #include <vector>
 
 namespace palpa {
-
-// What these shapes are picked as. Atoms, and bonds by their first atom, are picked by their index.
-inline constexpr std::uint32_t arrow_pick = UINT32_MAX - 1, wish_pick = UINT32_MAX - 2,
-                               torque_pick = UINT32_MAX - 3, hydrogen_bond_pick = UINT32_MAX - 4,
-                               snap_pick = UINT32_MAX - 5, first_sign_pick = snap_pick;
 
 // A few words beside a place of the picture; a tick's may be left out where there is no room.
 struct ViewLabel {
@@ -37,6 +33,20 @@ struct HeldMolecule {
     glm::vec3 place{0};   // Å, where the hand has it
     glm::vec3 centre{0};  // Å, of its mass
 };
+
+// The length of an arrow for a decade of force (Å): more for molecules that are seen from farther
+// away.
+float decade_of(const HeldMolecule& held, const FrameScene& frame);
+
+// Of the arrow of such a force, Å; 0 for one that is not shown.
+float arrow_length(double force_nN, float decade);
+
+// A shaft and a head in the colour of forces; as thick as it has to be for that decade.
+void add_arrow(const glm::vec3& tail, const glm::vec3& tip, float decade, std::uint32_t pick,
+               FrameScene& frame);
+
+// "210 pN", "1.25 nN".
+std::string force_in_words(double force_nN);
 
 // An arrow along the force. It stands on the line through the hand's place, outside of the atoms:
 // ahead of the molecule if there is room, else it comes from behind, its head at the molecule. A

@@ -96,6 +96,19 @@ TEST_CASE("heavy atoms of two residues clash below their radii less 0.4 Å", "[m
 
     const AtomTable apart = table_of({{"LIG", "1", "C1", 0}, {"LIG", "2", "N1", 3.6}});
     CHECK(find_overlaps(apart, residues_of(apart), contact_overlap).size() == 1);
+    // Of one side alone, whichever comes first.
+    AtomTable three =
+        table_of({{"LIG", "1", "C1", 0}, {"LIG", "2", "C1", 2.5}, {"LIG", "3", "C1", 5}});
+    const auto count_of = [&](const std::vector<bool>& of) {
+        return find_overlaps(three, residues_of(three), clash_overlap, of).size();
+    };
+    CHECK(count_of({}) == 2);
+    CHECK(count_of({true, false, false}) == 1);
+    CHECK(count_of({false, false, true}) == 1);
+    CHECK(count_of({false, true, false}) == 2);
+    CHECK(count_of({true, true, false}) == 1);
+    CHECK(count_of({true, true, true}) == 0);
+
     AtomTable metal = table_of({{"LIG", "1", "O1", 0}, {"ZN", "2", "ZN", 2}});
     metal.element[1] = "ZN";
     CHECK(clashes(metal).empty());

@@ -704,6 +704,7 @@ TEST_CASE("the view table says how a scene is seen at first, without it the prog
     CHECK(unset.shadows == Shadows::None);
     CHECK(unset.occlusion);
     CHECK(unset.outline == 1);
+    CHECK(unset.marks == ViewMarks{{}, ShownBonds::None, ShownForces::Hand, false, 0});
 
     const ViewDescription view = parse_scene(base + R"(
 [view]
@@ -717,9 +718,19 @@ hydrogens = "polar"
 shadows = "soft"
 occlusion = false
 outline = 0
+measure = ["name OH2; name H1", "all; all; all"]
+contacts = "in-hand"
+forces = "residues"
+ghost = true
+trail_s = 2.5
 )",
                                              file)
                                      .view;
+    CHECK(view.marks == ViewMarks{{"name OH2; name H1", "all; all; all"},
+                                  ShownBonds::InHand,
+                                  ShownForces::Residues,
+                                  true,
+                                  2.5});
     CHECK(view.representation == Representation::SpaceFilling);
     CHECK(view.colouring == Colouring::Element);
     CHECK(view.hydrogen_bonds == ShownBonds::All);
@@ -750,6 +761,10 @@ TEST_CASE("what [view] cannot mean is refused where it stands", "[scene][errors]
         {"camera = [0, 0, 0]", 10, "a factor from 0.01 to 100"},
         {"look_at = \"fixt\"", 11, "'view.look_at' is \"fixt\", which is no molecule"},
         {"clip = 1", 8, "expected true or false"},
+        {"measure = \"all; all\"", 11, "expected a list of texts"},
+        {"contacts = \"hand\"", 12, "expected one of none, in-hand, all"},
+        {"forces = \"atom\"", 10, "did you mean 'atoms'?"},
+        {"trail_s = -1", 11, "expected a number from 0 to 10000"},
         {"zoom = 2", 1, "zoom"},
     }));
     INFO(row.line);

@@ -95,7 +95,8 @@ TEST_CASE("odd values survive being written and read, to the last bit", "[scene]
           "",
           {},
           Representation::Cartoon,
-          {{Representation::Lines, "water", {}, 1}, {Representation::Licorice, "ion"}}}}};
+          {{Representation::Lines, "water", {}, 1}, {Representation::Licorice, "ion"}}}},
+        {{"all; name \"CA\""}, ShownBonds::InHand, ShownForces::Atoms, true, 1.0 / 3}};
     scene.period_ms = 10000;
     scene.seed = 1'000'000'000'000'000;
     scene.lesson = {{"zuerst", "two\nlines \"quoted\"", "do", LessonQuantity::Force, -0.25, {}, 0},
@@ -148,6 +149,7 @@ TEST_CASE("odd values survive being written and read, to the last bit", "[scene]
     CHECK(back.view.saved == scene.view.saved);
     CHECK(back.view.saved.at(1).layers.size() == 2);
     CHECK(back.lesson.at(1).view == "b");
+    CHECK(back.view.marks == scene.view.marks);
     CHECK(back.seed == scene.seed);
     REQUIRE(back.lesson.size() == 2);
     CHECK(back.lesson[0].name == "zuerst");

@@ -23,6 +23,9 @@ LOOKS = ("ball-and-stick", "space-filling", "licorice", "in-hand", "pocket", "li
 # Of the protease, as a cartoon with a surface of its pocket.
 COLOURS = ("element", "chain", "residue", "structure", "charge", "b-factor", "force", "activity",
            "potential", "hydrophobicity")
+# Contacts and forces of residues of the inhibitor, and from one flap to the other over its centre.
+MARKS = ("--contacts", "in-hand", "--forces", "residues", "--hydrogen-bonds", "none", "--look-at", "inhibitor",
+         "--measure", "chain A and resid 50 and name CA; ligand; chain B and resid 50 and name CA")
 
 NOTABLE = 24        # levels of 255 by which a channel must be off for a pixel to count as different
 MOST_DIFFERENT = 0.02
@@ -39,6 +42,9 @@ def pictures():
     for scene, camera in CAMERAS.items():
         for look in LOOKS:
             yield f"{scene}-{look}.png", scene, ("--as", look, "--camera", camera)
+    yield "hiv-marks.png", "hiv", MARKS
+    yield "water-past.png", "water", ("--time", "2", "--set", "hand.stroke=in-out", "--ghost", "--trail", "2",
+                                      "--camera", "30,15")
     for colour in COLOURS:
         yield (f"hiv-coloured-{colour}.png", "hiv",
                ("--representation", "cartoon", "--colour", colour, "--representation", "surface",

@@ -249,6 +249,45 @@ class Render(unittest.TestCase):
         _, said = self.pixels("--label", "name OH2", size="48x12")  # a line is higher than that
         self.assertRegex(said, r"^note: \d+ of \d+ labels found no room")
 
+    def test_marks_are_drawn_on_request_by_options_as_by_the_scene(self):
+        apart = ("--set", "hand.start_angstrom=4.5")
+        for size, *option, key in (
+                (1500, "--measure", "segment FIX and name OH2; segment MOV and name OH2",
+                 'measure=["segment FIX and name OH2; segment MOV and name OH2"]'),
+                (300, "--measure", "name H1 and segment MOV; name OH2 and segment MOV; name H2 and segment MOV",
+                 'measure=["name H1 and segment MOV; name OH2 and segment MOV; name H2 and segment MOV"]'),
+                (100, "--forces", "residues", "forces=residues"),
+                (100, "--ghost", "ghost=true")):
+            with self.subTest(option=option):
+                marked, said = self.pixels(*apart, *option)
+                self.assertEqual(said, "")
+                self.assertEqual(marked, self.pixels(*apart, "--set", f"view.{key}")[0])
+                self.assertGreater(len(self.differing(self.pixels(*apart)[0], marked)), size // 5)
+        # Oxygens 2.3 Å apart clash, as the hand's hydrogens point away; a film of 4 s has a trail at its end.
+        near = ("--set", "hand.start_angstrom=2.3")
+        clash, _ = self.pixels(*near, "--contacts", "in-hand")
+        self.assertEqual(clash, self.pixels(*near, "--contacts")[0])
+        self.assertNotEqual(clash, self.pixels(*near, "--contacts", "none")[0])
+        self.assertEqual(self.pixels(*near, "--contacts", "none"), self.pixels(*near))
+
+    def test_ghost_and_trail_are_of_the_time_before_the_picture(self):
+        played = ("--time", "2", "--set", "hand.stroke=in-out")
+        plain, _ = self.pixels(*played)
+        for option in (("--ghost",), ("--trail", "2")):
+            with self.subTest(option=option):
+                marked = self.differing(plain, self.pixels(*played, *option)[0])
+                self.assertGreater(len(marked), 50)
+        short = self.differing(plain, self.pixels(*played, "--trail", "0.2")[0])
+        self.assertLess(len(short), len(self.differing(plain, self.pixels(*played, "--trail", "2")[0])))
+
+    def test_a_measure_that_is_none_is_refused(self):
+        for measure, expected in (("name OH2", "--measure: 'name OH2' has 1 selection; expected two, three or four"),
+                                  ("all; nme OH2", "--measure, column 6")):
+            with self.subTest(measure=measure):
+                self.assert_bad_input(self.render("-o", self.image, "--measure", measure), expected)
+        _, said = self.pixels("--measure", "name OH2; name XX")
+        self.assertIn("2nd of view.measure = 'name OH2; name XX' selects no atoms", said)
+
     def test_clip_leaves_out_what_is_in_front(self):
         # From the left the fixed water stands before the moved one.
         view = ("--camera=-90,0", "--as", "space-filling", "--set", "hand.start_angstrom=3")

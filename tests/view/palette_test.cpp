@@ -107,3 +107,24 @@ TEST_CASE("colours that mark different things differ for every kind of colour vi
         }
     }
 }
+
+TEST_CASE("marks on request differ from each other and from signs for every kind of colour vision",
+          "[view][palette]") {
+    constexpr double least = 15;  // CIEDE2000
+    const std::vector<Category> marks{{"contact", as_doubles(contact_colour)},
+                                      {"clash", as_doubles(clash_colour)},
+                                      {"salt bridge", as_doubles(salt_bridge_colour)},
+                                      {"measure", as_doubles(measure_colour)},
+                                      {"force", as_doubles(force_colour)},
+                                      {"wish", as_doubles(wish_colour)},
+                                      {"hydrogen bond", as_doubles(hydrogen_bond_colour)},
+                                      {"background", {1, 1, 1}}};
+    for (const test::Vision& vision : test::visions) {
+        for (std::size_t i = 0; i < marks.size(); ++i) {
+            for (std::size_t j = i + 1; j < marks.size(); ++j) {
+                INFO(vision.name << ": " << marks[i].name << ", " << marks[j].name);
+                CHECK(test::colour_difference(vision, marks[i].colour, marks[j].colour) >= least);
+            }
+        }
+    }
+}

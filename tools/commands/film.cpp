@@ -37,6 +37,7 @@ int make_film(SceneDescription scene, World& world, const ViewSettings& view,
     FrameBuilder builder;
     std::size_t due = 0;
     const auto draw = [&] {
+        builder.follow(world, view.marks);
         const double now_s = static_cast<double>(due++) / options.film_fps;
         if (now_s < options.time_s - 1e-9 || film.frame_count() >= most) return;
         WordedFrame frame = build_worded_frame(builder, world, view);

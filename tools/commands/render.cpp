@@ -93,6 +93,21 @@ const SavedView* find_asked_view(const RenderOptions& options, const ViewDescrip
     return &view.saved[choice_called("--view", options.saved_view, names)];
 }
 
+void apply_marks(const MarkOptions& options, ViewMarks& marks) {
+    for (const std::string& measure : options.measures) {
+        (void)parse_measure(measure, "--measure");
+        marks.measures.push_back(measure);
+    }
+    if (!options.contacts.empty())
+        marks.contacts = static_cast<ShownBonds>(
+            choice_called("--contacts", options.contacts, shown_bond_names));
+    if (!options.forces.empty())
+        marks.forces =
+            static_cast<ShownForces>(choice_called("--forces", options.forces, shown_force_names));
+    marks.ghost = marks.ghost || options.ghost;
+    marks.trail_s = options.trail_s.value_or(marks.trail_s);
+}
+
 // What the options say over the scene's [view].
 void apply_options(const RenderOptions& options, World& world, ViewDescription& view) {
     if (const SavedView* const saved = find_asked_view(options, view)) {
@@ -119,6 +134,7 @@ void apply_options(const RenderOptions& options, World& world, ViewDescription& 
     }
     view.occlusion = options.has_occlusion.value_or(view.occlusion);
     view.outline = options.outline.value_or(static_cast<int>(view.outline));
+    apply_marks(options.marks, view.marks);
     if (!options.look_at.empty()) {
         std::vector<std::string_view> names;
         world.each<Molecule>(
@@ -217,13 +233,17 @@ int render_command(const RenderOptions& options) {
     ViewSettings view = first_settings(scene.view, world);
     view.force_arrow = options.arrow;
     if (options.film) return make_film(scene, world, view, options, progress);
+    FrameBuilder builder;
+    builder.follow(world, view.marks);
     if (options.time_s > 0) {
+        constexpr double looks_per_s = 100;  // for what was before
+        const auto look = [&] { builder.follow(world, view.marks); };
         scene.seconds = options.time_s;
         EmulatedOmni device(build_emulated_omni(scene, world));
-        run_headless(scene, world, device, {}, nullptr, progress.shares("playing"));
+        run_headless(scene, world, device, {}, nullptr, progress.shares("playing"),
+                     {looks_per_s, look});
     }
     tell(on_stage, "drawing");
-    FrameBuilder builder;
     WordedFrame frame = build_worded_frame(builder, world, view);
     const OrbitCamera camera = render_camera(scene, options, world, frame.scene);
     finish_frame(scene.view, world, camera, frame.scene);
@@ -339,6 +359,30 @@ void add_look_options(CLI::App& render, RenderOptions& options) {
     render.add_flag("--transparent", options.transparent, "the background");
 }
 
+void add_mark_options(CLI::App& render, MarkOptions& marks) {
+    render
+        .add_option("--measure",
+                    "\"SELECTION; SELECTION[; SELECTION[; SELECTION]]\": the distance, angle or "
+                    "dihedral of their atoms, or of the centres of their atoms; again and again")
+        ->type_name("SELECTIONS")
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->each([&](const std::string& value) { marks.measures.push_back(value); });
+    render
+        .add_option("--contacts", marks.contacts,
+                    "contacts, clashes and salt bridges: none, in-hand or all, as it stands alone")
+        ->expected(0, 1)
+        ->default_str("all");
+    render
+        .add_option("--forces", marks.forces,
+                    fmt::format("{}: what they do to what is in the hand, as arrows",
+                                fmt::join(shown_force_names, ", ")))
+        ->type_name("NAME");
+    render.add_flag("--ghost", marks.ghost, "what is in the hand as it was at the start, pale");
+    render.add_option("--trail", marks.trail_s, "its way over so many seconds before")
+        ->check(in_range(0.0, 1e4))
+        ->type_name("SECONDS");
+}
+
 }  // namespace
 
 void add_render(CLI::App& program, ProgramCommand& chosen) {
@@ -370,6 +414,7 @@ void add_render(CLI::App& program, ProgramCommand& chosen) {
     render.add_option("--time", options.time_s, "seconds that the hand plays before")
         ->check(in_range(0.0, 1e5));
     add_look_options(render, options);
+    add_mark_options(render, options.marks);
     render
         .add_option("--camera", options.camera,
                     "degrees around what is framed and above it, and how many times nearer")

@@ -20,6 +20,14 @@ namespace palpa {
 // Of a picture with all its samples: it takes some 2 GiB until it is written.
 inline constexpr std::int64_t most_pixels = std::int64_t{1} << 26;
 
+// Over the scene's [view], where they are given.
+struct MarkOptions {
+    std::vector<std::string> measures;  // besides those of the scene
+    std::string contacts, forces;       // names of choices
+    bool ghost = false;
+    std::optional<double> trail_s;
+};
+
 struct RenderOptions {
     std::filesystem::path scene;
     std::vector<std::string> settings;
@@ -39,6 +47,7 @@ struct RenderOptions {
     std::string hydrogen_bonds, hydrogens, shadows;
     std::optional<bool> has_occlusion;
     std::optional<int> outline;
+    MarkOptions marks;
     bool transparent = false;  // the background
     std::string camera;        // azimuth, elevation in degrees, zoom
     std::string look_at;       // a molecule's name

@@ -122,6 +122,7 @@ int study_in_window(const StudyCommand& command) {
     // They would show what is to be felt.
     view.force_arrow = false;
     view.hydrogen_bonds = ShownBonds::None;
+    view.marks = {};
     WindowOptions window;
     window.view = view;
     window.orders = &orders;
