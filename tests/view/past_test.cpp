@@ -67,7 +67,13 @@ TEST_CASE("the ghost stands where what is in the hand was at the start", "[view]
         for (std::size_t channel = 0; channel < 3; ++channel)
             CHECK(bond.colour_a[static_cast<int>(channel)] > 0.5F);  // pale
     }
-    settings.marks.ghost = false;
+    ViewSettings without = settings;
+    without.marks.ghost = false;
+    CHECK(cones_of(builder.build(world, {}, without), ghost_pick).empty());
+
+    // A reset is a new start.
+    world.resource<Clock>().steps = 0;
+    move_grabbed(world, 4);
     CHECK(cones_of(builder.build(world, {}, settings), ghost_pick).empty());
 }
 
