@@ -36,6 +36,8 @@ void Sandbox::take_input() {
             press_key(press);
         } else {
             selection_panel_.press(press.key);
+            // What no text is made of.
+            if (press.key == Key::F12 || press.key == Key::F5) press_key(press);
         }
     }
     take_dropped(input);

@@ -764,7 +764,7 @@ class Session(unittest.TestCase):
         text = scene.read_text()
         self.assertIn("[lesson.approach]\n", text)
         scene.write_text(text.replace("[lesson.approach]\n", '[lesson.approach]\nview = "near"\n') +
-                         '\n[[view.saved]]\nname = "near"\ncamera = [0.0, 0.0, 1.5]\n')
+                         '\n[[view.saved]]\nname = "near"\ncamera = [0.0, 0.0, 2.2]\n')
         with Display() as display:
             self.start(display, "--set", "stroke=hold", scene=scene)
             self.wait_until(lambda: not self.is_flying(display), "the view")

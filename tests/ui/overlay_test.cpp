@@ -12,6 +12,7 @@
 #include <imgui_internal.h>
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cstdlib>
 #include <limits>
 #include <optional>
 #include <variant>
@@ -75,6 +76,15 @@ struct Screen {
     std::optional<Question> question;
     std::optional<Key> given;
 };
+
+// As the environment does; empty: the usual ones.
+void name_font(const char* file) {
+#ifdef _WIN32
+    _putenv_s("PALPA_FONT", file);
+#else
+    setenv("PALPA_FONT", file, 1);
+#endif
+}
 
 }  // namespace
 
@@ -158,9 +168,9 @@ TEST_CASE("panels stay in the window with text twice as large, and without a fon
                                            {{1280, 720}, 1, "/nowhere/font.ttf"},
                                            {{1280, 720}, 2, __FILE__}}));
     INFO(row.size.x << " x " << row.size.y << ", text " << row.text_scale);
-    if (row.font) setenv("PALPA_FONT", row.font, 1);  // not there; or no font
+    if (row.font) name_font(row.font);  // not there; or no font
     Screen screen(test::water_scene(), row.text_scale);
-    unsetenv("PALPA_FONT");
+    name_font("");
     ImGui::GetIO().DisplaySize = row.size;
     for (int i = 0; i < 4; ++i) screen.frame();
 

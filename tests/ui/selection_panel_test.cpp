@@ -71,15 +71,14 @@ struct SelectionScreen {
         frame();
     }
     ImRect panel_area() const { return ImGui::FindWindowByName(selection_panel)->Rect(); }
-    // Clicks all over the panel's lower part until something has happened.
+    // Clicks all over the panel's lower part until something has happened; it may grow meanwhile.
     template <class Test>
     bool click_until(const Test& is_done) {
-        const ImRect rect = panel_area();
-        for (float y = rect.Min.y + 50; y < rect.Max.y; y += 8)
-            for (float x = rect.Min.x + 10; x < rect.Max.x; x += 25) {
+        for (float y = 50; y < panel_area().GetHeight(); y += 8)
+            for (float x = 10; x < panel_area().GetWidth(); x += 25) {
                 if (ImGui::GetCurrentContext()->OpenPopupStack.Size > 0)
                     ImGui::ClosePopupToLevel(0, true);
-                click({x, y});
+                click({panel_area().Min.x + x, panel_area().Min.y + y});
                 if (is_done()) return true;
             }
         return false;
