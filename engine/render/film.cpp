@@ -22,9 +22,11 @@ namespace fs = std::filesystem;
 constexpr std::string_view film_mark = "Made by Palpa";
 constexpr std::array<std::string_view, 4> film_endings{".MP4", ".MKV", ".MOV", ".WEBM"};
 
+bool is_sequence(const fs::path& film) { return film.extension().empty(); }
+
 fs::path folder_of(const fs::path& film) {
     fs::path folder = film;
-    folder += "-frames";
+    if (!is_sequence(film)) folder += "-frames";
     return folder;
 }
 
@@ -92,11 +94,15 @@ std::string escaped(std::string_view name) {
 }  // namespace
 
 void check_film(const FilmSettings& settings) {
+    if (is_sequence(settings.file)) {
+        (void)list_frames(settings.file, settings.overwrites);
+        return;
+    }
     const std::string ending = upper_case(settings.file.extension().string());
     if (std::ranges::find(film_endings, ending) == film_endings.end()) {
         throw LoadError({settings.file.string()},
                         fmt::format("'{}' is no ending of a film; expected .mp4, .mkv, .mov or "
-                                    ".webm",
+                                    ".webm, or a folder for its pictures",
                                     settings.file.extension().string()));
     }
     if (is_there(settings.file) && !(settings.overwrites && is_own_film(settings.file))) {
@@ -127,6 +133,10 @@ FilmEnd Film::finish() {
     FilmEnd end{false, folder_, {}};
     if (count_ == 0) {
         end.why = "no picture was taken";
+        return end;
+    }
+    if (is_sequence(settings_.file)) {
+        end.is_done = true;
         return end;
     }
     const WorkFolder work;
@@ -162,7 +172,7 @@ FilmEnd Film::finish() {
     for (std::size_t i = 0; i < count_; ++i)
         fs::remove(folder_ / fmt::format("{:05}.png", i), error);
     fs::remove(folder_, error);
-    end.is_film = true;
+    end.is_film = end.is_done = true;
     return end;
 }
 

@@ -11,19 +11,23 @@
 namespace palpa {
 
 struct FilmSettings {
-    std::filesystem::path file;  // ffmpeg knows the kind by its ending: .mp4, .mkv, .mov, .webm
-    double per_second = 25;      // pictures
-    bool overwrites = false;     // a film, and pictures, that this program made before
+    // ffmpeg knows the kind by its ending: .mp4, .mkv, .mov, .webm. Without an ending: a folder for
+    // numbered pictures, and no film.
+    std::filesystem::path file;
+    double per_second = 25;   // pictures
+    bool overwrites = false;  // a film, and pictures, that this program made before
 };
 
 // What became of it.
 struct FilmEnd {
+    bool is_done = false;          // what was asked for is there
     bool is_film = false;          // the file is there, and its pictures are gone
     std::filesystem::path folder;  // else where the pictures are
-    std::string why;               // and why: a sentence
+    std::string why;               // where it is not done: a sentence
 };
 
-// Pictures go to the folder FILE-frames, 00000.png and on. One thread at a time.
+// Pictures go to the folder FILE-frames, or FILE where it has no ending, 00000.png and on. One
+// thread at a time.
 class Film {
 public:
     // Throws LoadError: another ending, a file or a folder that is there and not this program's to

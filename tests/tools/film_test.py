@@ -53,6 +53,17 @@ class Film(unittest.TestCase):
                     code=1)
         self.assertEqual(len(list(self.frames.iterdir())), 2)
 
+    def test_a_name_without_an_ending_is_a_folder_of_pictures(self):
+        folder = self.tmp / "water"
+        result = self.render("--film", folder, "--seconds", 0.5, "--fps", 10, PATH=str(self.tmp))
+        self.assertIn(f"{folder}: 5 pictures of 64x48\n", result.stdout)
+        self.assertEqual(sorted(path.name for path in folder.iterdir()), [f"{i:05}.png" for i in range(5)])
+        self.render("--film", folder, "--seconds", 0.5, "--fps", 10, code=2)
+        self.render("--film", folder, "--seconds", 0.2, "--fps", 10, "--overwrite")
+        self.assertEqual(len(list(folder.iterdir())), 2)
+        (folder / "notes.txt").write_text("somebody's")
+        self.render("--film", folder, "--seconds", 0.2, "--fps", 10, "--overwrite", code=2)
+
     def test_a_film_that_fails_is_a_failure(self):
         broken = self.tmp / "ffmpeg"
         broken.write_text("#!/bin/sh\necho no encoder >&2\nexit 1\n")

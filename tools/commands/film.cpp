@@ -60,10 +60,10 @@ int make_film(SceneDescription scene, World& world, const ViewSettings& view,
         fmt::print("{}: {} pictures of {}x{}, {} a second, on {}\n", options.film->string(),
                    film.frame_count(), options.width, options.height, options.film_fps, gpu.name());
     } else {
-        fmt::print("{}: {} pictures of {}x{}; {}\n", end.folder.string(), film.frame_count(),
-                   options.width, options.height, end.why);
+        fmt::print("{}: {} pictures of {}x{}{}{}\n", end.folder.string(), film.frame_count(),
+                   options.width, options.height, end.is_done ? "" : "; ", end.why);
     }
-    return exit_code_after(end.is_film ? 0 : 1);
+    return exit_code_after(end.is_done ? 0 : 1);
 }
 
 }  // namespace palpa

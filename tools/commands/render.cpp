@@ -392,14 +392,16 @@ void add_render(CLI::App& program, ProgramCommand& chosen) {
              {"palpa render scenes/hiv -o tunnel.png",
               "palpa render scenes/hiv -o pocket.png --representation surface --of protein "
               "--opacity 0.5",
-              "palpa render scenes/water --film water.mp4 --seconds 4"});
+              "palpa render scenes/water --film water.mp4 --seconds 4",
+              "palpa render scenes/water --film water-frames --seconds 4"});
     render.add_option("scene", options.scene, "scene folder or file")->required();
     render.add_option("-o,--output", options.image, "PNG file to write")->type_name("FILE.png");
     CLI::Option* const film =
         render
             .add_option("--film", options.film,
                         "a film instead, by ffmpeg; where that makes none its pictures, in the "
-                        "folder FILE-frames, and exit code 1")
+                        "folder FILE-frames, and exit code 1; a name without an ending is a folder "
+                        "for numbered pictures")
             ->type_name("FILE.mp4");
     render.add_option("--seconds", options.film_seconds, "simulated, of the film, 10 unless given")
         ->check(in_range(0.001, 1e5))
