@@ -15,7 +15,8 @@ std::vector<double> find_beyond_first_order(const TorsionModel& model,
 
 // Estimated error of each body's joint against complete relaxation, rad, never below 0: what the
 // model has yet to turn it, and the model's own error at the last renewals, which grows with the
-// square of the age. 0 as above. `state`: where the last step left it.
+// square of the age. That a minimum is about to vanish, so that relaxation goes far from here, it
+// cannot know. 0 as above. `state`: where the last step left it.
 std::vector<double> estimate_joint_errors(const TorsionModel& model,
                                           const SecondOrderSettings& settings,
                                           const TorsionState& state,

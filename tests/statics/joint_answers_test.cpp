@@ -105,14 +105,14 @@ TEST_CASE("what was beyond first order can be seen until hands move again",
     REQUIRE(statics.renewed > renewed + 1);
     REQUIRE(statics.is_at_rest);
     INFO(norm_of(find_beyond_first_order(c.model, statics)) << " of " << moving);
-    CHECK(norm_of(find_beyond_first_order(c.model, statics)) > 0.1 * moving);
+    CHECK(norm_of(find_beyond_first_order(c.model, statics)) > 0.5 * moving);
     // Near rest what is wrong is what one Newton step would yet turn.
     const std::vector<double> found = estimate_joint_errors(c.model, c.settings, c.state, statics);
     const std::vector<double> right = turns_to_rest(c);
-    CHECK(norm_of(found) < 0.2 * moving);
+    CHECK(norm_of(found) < 0.1 * moving);
     for (std::size_t i = 0; i < found.size(); ++i)
         if (c.model.coordinate_of_body[i] >= 0)
-            CHECK(found[i] == Approx(right[i]).margin(0.1 * norm_of(right)));
+            CHECK(found[i] == Approx(right[i]).margin(0.1 * norm_of(right) + 1e-6));
 }
 
 TEST_CASE("estimated errors of joints are those of complete relaxation, in size and in order",
