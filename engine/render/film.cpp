@@ -130,7 +130,8 @@ void Film::add(const Picture& picture) {
 }
 
 FilmEnd Film::finish() {
-    FilmEnd end{false, folder_, {}};
+    FilmEnd end;
+    end.folder = folder_;
     if (count_ == 0) {
         end.why = "no picture was taken";
         return end;
