@@ -23,8 +23,6 @@
 namespace palpa {
 namespace {
 
-constexpr glm::vec3 background{0.86F, 0.89F, 0.93F};
-
 // Stretches the renderer's picture over an image of the window.
 void blit(VkCommandBuffer commands, VkImage from, VkExtent2D from_size, VkImage to,
           VkExtent2D to_size) {
@@ -222,13 +220,14 @@ void Sandbox::compose_picture() {
     }
     fly();
     shown_ = frame_.picture;
-    if (!selected_.empty()) highlight(*frame_.atoms, frame_.places, selected_, shown_);
+    if (has_frame_ && selected_.size() == frame_.atoms->names.size())
+        highlight(*frame_.atoms, frame_.places, selected_, shown_);
     if (clips_ && has_frame_ && in_hand().held.count > 0)
         clip_in_front(in_hand().held, camera_, shown_);
     show_wish();
     shown_.camera = frame_camera(camera_, shown_);
     shown_.camera.centre = free_centre();
-    shown_.background = background;
+    shown_.background = window_background;
     shown_.is_coarse = true;
     shown_.occlusion = shown_.occlusion && scale_.has_effects();
     shown_.shadows = shown_.shadows && scale_.has_effects();

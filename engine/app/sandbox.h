@@ -29,6 +29,7 @@ namespace palpa {
 
 using SteadyClock = std::chrono::steady_clock;
 
+inline constexpr glm::vec3 window_background{0.86F, 0.89F, 0.93F};
 inline constexpr double notice_s = 4, first_notice_s = 15;
 
 // All that is lost with a device, made and thrown away as one.
@@ -104,6 +105,7 @@ private:
     void follow_tour();
     void follow_lesson();
     const std::vector<bool>& find_framed(const std::string& selection);
+    void take_camera();
     void fly_to(const OrbitCamera& camera);
     void fly();
     bool is_saved() const;
@@ -224,6 +226,7 @@ private:
     ViewAdditions written_additions_;                  // the same
     std::optional<std::size_t> at_view_;               // of the saved ones, that was gone to last
     std::map<std::string, std::vector<bool>> framed_;  // atoms, by selections
+    std::string framed_problem_;                       // of the last one
     std::vector<bool> framed_now_;                     // by one that depends on the moment
     std::optional<std::size_t> lesson_step_;           // that was shown last
     struct Flight {

@@ -78,8 +78,7 @@ void Sandbox::move_camera(const Input& input) {
                         (input.is_down(MouseButton::Left) && input.shift);
     const bool is_moved = input.is_down(MouseButton::Left) || shifts;
     if ((is_moved && (dx != 0 || dy != 0)) || input.wheel != 0) {
-        flight_.reset();
-        tour_.reset();
+        take_camera();
     }
     if (shifts) {
         pan(camera_, dx, dy, static_cast<float>(window_.size().height));
@@ -110,7 +109,9 @@ void Sandbox::heed_device(const Input& input) {
     constexpr double longest_s = 0.1;  // after a pause nothing leaps
     const double passed_s = std::chrono::duration<double>(SteadyClock::now() - heeded_).count();
     heeded_ = SteadyClock::now();
-    carry(camera_, hands_.front().device->view_rate(), std::min(passed_s, longest_s));
+    const auto rate = hands_.front().device->view_rate();
+    if (!rate.m_per_s.isZero() || !rate.rad_per_s.isZero()) take_camera();
+    carry(camera_, rate, std::min(passed_s, longest_s));
 }
 
 void Sandbox::move_hand(const Input& input) {

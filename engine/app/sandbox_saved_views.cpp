@@ -16,9 +16,10 @@ constexpr std::chrono::seconds tour_stop{5};
 
 }  // namespace
 
-// The atoms that a selection names; none where it is wrong.
+// The atoms that a selection names; none where it is wrong, and `framed_problem_` says why.
 const std::vector<bool>& Sandbox::find_framed(const std::string& selection) {
     framed_now_.clear();
+    framed_problem_.clear();
     if (selection.empty()) return framed_now_;
     const auto found = framed_.find(selection);
     if (found != framed_.end()) return found->second;
@@ -28,7 +29,7 @@ const std::vector<bool>& Sandbox::find_framed(const std::string& selection) {
         if (depends_on_positions(parsed) || depends_on_hands(parsed)) return framed_now_;
         return framed_[selection] = framed_now_;
     } catch (const LoadError& error) {
-        notice(error.what());
+        framed_problem_ = error.what();
         framed_now_.clear();
         return framed_now_;
     }
@@ -59,6 +60,7 @@ void Sandbox::go_to_next_view() {
     if (!has_frame_) return;
     if (saved_views_.empty()) return notice("no view is saved yet: Shift+W saves this one");
     go_to(at_view_ ? (*at_view_ + 1) % saved_views_.size() : 0);
+    if (!framed_problem_.empty()) return notice(framed_problem_);
     if (!tour_)
         notice(fmt::format("{} ({} of {})", saved_views_[*at_view_].name, *at_view_ + 1,
                            saved_views_.size()));
@@ -76,7 +78,13 @@ void Sandbox::add_view() {
     }
     if (view_.representation != options_.view.representation)
         saved.representation = view_.representation;
-    set_camera(saved, camera_, frame_.places, find_framed(saved.look_at), free_room());
+    const OrbitCamera& camera = flight_ ? flight_->to : camera_;
+    set_camera(saved, camera, frame_.places, find_framed(saved.look_at), free_room());
+    if (!framed_problem_.empty()) {
+        saved.look_at.clear();
+        set_camera(saved, camera, frame_.places, {}, free_room());
+    }
+    tour_.reset();
     notice(
         fmt::format("saved as {}; W shows saved views, Ctrl+S writes them to a file", saved.name));
     saved_views_.push_back(std::move(saved));

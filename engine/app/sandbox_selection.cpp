@@ -41,12 +41,13 @@ void Sandbox::select(const std::string& expression) {
         return;
     }
     try {
-        std::vector<bool> chosen = select_as_seen(session_.copy_world(), expression);
+        const World world = session_.copy_world();  // may be ahead of the frame that is shown
+        std::vector<bool> chosen = select_as_seen(world, expression);
         if (std::ranges::find(chosen, true) == chosen.end()) {
             selection_.problem = "selects no atoms";
             return;
         }
-        selection_ = {expression, describe_count(*frame_.atoms, chosen), {}};
+        selection_ = {expression, describe_count(*list_atoms(world), chosen), {}};
         selected_ = std::move(chosen);
     } catch (const LoadError& error) {
         selection_.problem = error.what();
@@ -124,10 +125,10 @@ void Sandbox::pin(std::uint32_t atom) {
     const std::string name = to_string(frame_.atoms->names[atom]);
     if (before == additions.labels.end()) {
         additions.labels.push_back(expression);
-        notice(fmt::format("{} is named; a click with Alt takes the name away", name));
+        notice(fmt::format("{} is labelled; Alt+click again removes the label", name));
     } else {
         additions.labels.erase(before);
-        notice(fmt::format("{} is named no longer", name));
+        notice(fmt::format("label of {} removed", name));
     }
     overlay_.set_additions(std::move(additions));
 }
@@ -143,6 +144,7 @@ void Sandbox::look_at_selected_or_ligand() {
     OrbitCamera camera = camera_;
     frame_shapes(camera, balls, free_room());
     zoom(camera, room_around);
+    take_camera();
     fly_to(camera);
 }
 

@@ -40,10 +40,15 @@ glm::vec2 Sandbox::target_pixel() const {
     return {0.5F * (area.left + area.right), 0.5F * (area.top + area.bottom)};
 }
 
-// As it was when the window opened, wherever the molecules are now; what was added stays.
-void Sandbox::show_first_view() {
+// Whatever moved the camera by itself ends.
+void Sandbox::take_camera() {
     flight_.reset();
     tour_.reset();
+}
+
+// As it was when the window opened, wherever the molecules are now; what was added stays.
+void Sandbox::show_first_view() {
+    take_camera();
     at_view_.reset();
     camera_ = first_camera(first_, first_picture_, frame_.framed, free_room());
     clips_ = first_.clip;
@@ -52,13 +57,13 @@ void Sandbox::show_first_view() {
 }
 
 void Sandbox::look_at_all() {
-    flight_.reset();
+    take_camera();
     frame_all(camera_, frame_.picture, free_room());
     clips_ = looks_at_grabbed_ = false;
 }
 
 void Sandbox::look_at_grabbed() {
-    flight_.reset();
+    take_camera();
     frame_shapes(camera_, shapes_of(frame_.picture, in_hand().held), free_room());
     zoom(camera_, surroundings);
     clips_ = looks_at_grabbed_ = true;
@@ -89,6 +94,7 @@ void Sandbox::send_view() {
         const std::vector<ViewLayer>& layers = saved_views_[*at_view_].layers;
         wanted.layers.insert(wanted.layers.end(), layers.begin(), layers.end());
     }
+    wanted.background = window_background;
     if (wanted == sent_) return;
     sent_ = wanted;
     session_.send(sent_);
@@ -98,7 +104,7 @@ void Sandbox::look_at_pixel(double x, double y) {
     const std::optional<std::uint32_t> atom = find_atom(x, y);
     for (const SphereShape& sphere : frame_.picture.spheres) {
         if (sphere.pick != atom) continue;
-        flight_.reset();
+        take_camera();
         camera_.target = sphere.centre;
         return;
     }
@@ -107,9 +113,13 @@ void Sandbox::look_at_pixel(double x, double y) {
 // As it is seen now, for a scene's file.
 ViewDescription Sandbox::describe_view() const {
     ViewDescription view = first_;
+    view.saved = saved_views_;
     view.colouring = view_.colouring;
     if (view_.representation != options_.view.representation) {
         view.representation = view_.representation;
+        // Those without one are seen as the scene was.
+        for (SavedView& saved : view.saved)
+            if (!saved.representation) saved.representation = options_.view.representation;
     }
     view.camera = describe_camera(camera_, first_, first_picture_, frame_.framed, free_room());
     view.clip = clips_;
@@ -117,7 +127,6 @@ ViewDescription Sandbox::describe_view() const {
     view.layers = additions.layers;
     view.labels = additions.labels;
     view.hidden = additions.hidden;
-    view.saved = saved_views_;
     // The scene's file knows no molecules that were added.
     const auto is_lost = [&](const std::string& text) {
         return !text.empty() && !names_only(text, own_molecules_);

@@ -13,8 +13,9 @@ namespace palpa {
 bool is_water_residue(std::string_view residue) noexcept;
 
 // A file has one frame; velocities and the box are left out. Coordinates may have more digits, as
-// GROMACS writes them: the distance of the decimal points says. A GRO file has no segments: here
-// each is a run of atoms, WAT (and WAT2, ...) of water, ION of residues of one atom, and M1, M2,
+// GROMACS writes them: found from the distance of the decimal points. A GRO file has no segments:
+// here each is a run of atoms, WAT (and WAT2, ...) of water, ION of residues of one atom, and M1,
+// M2,
 // ... of the rest, where the next one begins where a residue's number is lower than that before it.
 // Throws LoadError with the line of what is wrong.
 Structure read_gro(const std::filesystem::path& path);

@@ -17,7 +17,7 @@ public:
 
     // Guesses the element where the record has none. An atom that comes again (the same model,
     // chain, segment, residue, number and insertion code, name, alternate location) is left out,
-    // which `Structure::repeated` says. Refused are more than `most_repeated` of these, for which
+    // which `Structure::repeated` lists. Refused are more than `most_repeated` of these, for which
     // MODEL, TER or chains may have been lost; one of another residue; an element that is none.
     void add_atom(AtomName name, const Vec3& position, AtomRecord record, std::size_t line);
 

@@ -150,7 +150,7 @@ struct AtomTable {
 };
 
 // In upper case: as the table has it, or as the atom's name says (molecule/element.h). Empty where
-// neither says.
+// neither has it.
 std::string find_element(const AtomTable& atoms, std::size_t atom);
 
 // Residues of a table: neighbouring atoms of one segment, number and residue name, and of one of

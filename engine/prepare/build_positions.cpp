@@ -123,7 +123,7 @@ private:
         return found;
     }
 
-    // Without parameters, what the number of neighbours says.
+    // Without parameters, what follows from the number of neighbours.
     double angle(std::uint32_t a, std::uint32_t centre, std::uint32_t c) const noexcept {
         const std::optional<double> theta0 = graph_.find_angle(a, centre, c);
         if (theta0) return *theta0;

@@ -308,7 +308,8 @@ void visit_lesson_step(FieldVisitor& v, LessonStepDescription& s) {
     v.text({.key = "task", .meaning = "what to do", .required = true}, s.task);
     choose(v,
            {.key = "quantity",
-            .meaning = "what says that it was done: the distance of the reference atoms, the "
+            .meaning = "the quantity that decides whether the step is done: the distance of the "
+                       "reference atoms, the "
                        "force on the molecule or on the hand (+ repels), the coupling's mode"},
            lesson_quantity_names, s.quantity);
     v.optional_real({.key = "at_least",

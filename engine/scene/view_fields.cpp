@@ -68,11 +68,13 @@ void visit_marks(FieldVisitor& v, ViewMarks& marks) {
              .meaning = "two, three or four selections, \"SELECTION; SELECTION\": the distance, "
                         "angle or dihedral of their atoms, or of the centres of their atoms"},
             marks.measures);
-    choose(v,
-           {.key = "contacts",
-            .meaning = "which contacts, clashes (heavy atoms overlap by 0.4 Å and more) and salt "
-                       "bridges are drawn, as of hydrogen_bonds"},
-           shown_bond_names, marks.contacts);
+    choose(
+        v,
+        {.key = "contacts",
+         .meaning = "which contacts, clashes (heavy atoms overlap by 0.4 Å or more, by 0.8 Å in a "
+                    "hydrogen bond) and salt bridges are drawn; the values are those of "
+                    "hydrogen_bonds"},
+        shown_bond_names, marks.contacts);
     choose(v,
            {.key = "forces",
             .meaning = "hand: the force on what is in the hand; residues, atoms: besides, what "
@@ -106,9 +108,10 @@ void visit_view(FieldVisitor& v, ViewDescription& view) {
     choose(v,
            {.key = "colour",
             .meaning = "chain: carbons in a colour of their chain; charge: of each residue; "
-                       "activity: which joints answer, and by how much; "
-                       "error: of their angles; potential: of the scene's charges, on "
-                       "surfaces"},
+                       "activity: by second order, how far each joint turned beyond the linear "
+                       "answer; with few active joints, which are active; else how far each "
+                       "turned since the files; error: estimated error of each joint's angle, by "
+                       "second order; potential: of the scene's charges, on surfaces"},
            colouring_names, view.colouring);
     choose(v,
            {.key = "hydrogen_bonds",
@@ -117,9 +120,10 @@ void visit_view(FieldVisitor& v, ViewDescription& view) {
            shown_bond_names, view.hydrogen_bonds);
     choose(v,
            {.key = "hydrogens",
-            .meaning = "which are drawn as balls and sticks, licorice, lines or filling space; "
-                       "polar: bonded to N, O or S; besides always those of hydrogen bonds that "
-                       "are drawn"},
+            .meaning = "which are drawn as balls and sticks (also beside a cartoon), licorice, "
+                       "lines or filling space; polar: bonded to N, O or S; those of hydrogen "
+                       "bonds that are drawn are always there; in-hand, pocket and surface have "
+                       "rules of their own"},
            shown_hydrogen_names, view.hydrogens);
     choose(v, {.key = "shadows", .meaning = "of things upon each other"}, shadow_names,
            view.shadows);

@@ -65,7 +65,7 @@ void Statistics::add_place(const ContactModel& contact) {
         first_place_angstrom_.norm() > on_top && place.dot(first_place_angstrom_) < 0;
     running_.closest_angstrom = std::min(running_.closest_angstrom, distance);
     running_.went_through = running_.went_through || beyond;
-    // On which side only an axis says.
+    // Only on one axis is there a side.
     running_.last_angstrom = beyond && contact.active_freedom <= 1 ? -distance : distance;
 }
 

@@ -419,6 +419,7 @@ void reset(World& world) {
     scene.coupling = world.resource<SceneFile>().coupling;
     World start = load_world(scene);
     keep_clock_and_devices(world, start);
+    ++start.resource<Clock>().resets;
     world = std::move(start);
 }
 

@@ -19,7 +19,7 @@ struct RelaxReport {
 
 // Moves `positions`, the group's, as one body downhill until the norm of its force, and that of its
 // torque divided by its radius of gyration, are below `force_tolerance` (kcal/mol/Å), or nothing
-// gets better any more: the report says. Quasi-Newton steps (BFGS) on place and turn about
+// gets better any more, as the report shows. Quasi-Newton steps (BFGS) on place and turn about
 // `centre`, none of which moves a point by more than 0.1 Å; every step lowers the energy. The same
 // input gives the same pose, always. Of `group` everything but the positions is used.
 RelaxReport relax_rigid(std::span<Vec3> positions, const Vec3& centre, FieldPoints group,

@@ -103,7 +103,7 @@ AtomKey key_of(const AtomName& name, bool has_segments) {
     return {has_segments ? name.segment : "", name.residue, name.number, name.atom};
 }
 
-// The engine's atoms as a file has them; masses where it says.
+// The engine's atoms as a file has them; masses where it has them.
 struct EngineFile {
     std::vector<AtomName> names;
     std::vector<double> masses;

@@ -59,6 +59,7 @@ struct Coupling {
 struct Clock {
     double period_s = 0;  // declared, of a step
     std::uint64_t steps = 0;
+    std::uint64_t resets = 0;  // by edits, which leave the steps counted on
 };
 
 // Which atoms of the table a model has.
@@ -104,7 +105,7 @@ struct AdaptiveState {
     // Where the scene says how exact forces must be, and what finds out.
     std::optional<AccuracyController> accuracy;
     // Before a step: what was rendered to the first hand where it now is, kcal/mol/Å; nothing: what
-    // the step itself says.
+    // the step itself finds.
     std::optional<Vec3> rendered;
     std::size_t choose_every = 0;  // steps, as the scene says
     // How much each joint counts for what it moves; empty where all do alike. And whether what is

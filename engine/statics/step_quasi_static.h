@@ -73,8 +73,8 @@ double place_within(const TorsionModel& model, const TorsionState& from, double 
 void guide_pivots(const TorsionModel& model, const TorsionState& state,
                   AssemblyState& assembly) noexcept;
 
-// Fast pairs round the energy, the sum of terms of some magnitude; of a change that is smaller than
-// that, the work of the forces along the move, as `find_work()` has it, says.
+// Fast pairs round the energy, the sum of terms of some magnitude; for a change that is smaller
+// than that rounding the work of the forces along the move, `find_work()`, decides.
 template <class FindWork>
 bool is_energy_lower(const ForceSettings& settings, double magnitude, double change,
                      const FindWork& find_work) noexcept {

@@ -137,21 +137,22 @@ void SelectionPanel::choose_look() {
 void SelectionPanel::draw_buttons(const SelectionStatus& status, const ViewAdditions& additions,
                                   SelectionOrder& order) {
     ViewAdditions changed = additions;
-    const auto hide = [&] {
-        if (std::ranges::find(changed.hidden, status.expression) == changed.hidden.end())
-            changed.hidden.push_back(status.expression);
+    const auto add_new = [](auto& items, const auto& item) {
+        if (std::ranges::find(items, item) == items.end()) items.push_back(item);
     };
     const auto add_layer = [&] {
-        changed.layers.push_back(
-            {.representation = representation_, .of = status.expression, .colouring = colouring_});
+        add_new(changed.layers, ViewLayer{.representation = representation_,
+                                          .of = status.expression,
+                                          .colouring = colouring_});
     };
-    if (button("Show so", true)) add_layer();
-    tip("drawn so besides");
-    if (button("Only so")) hide(), add_layer();
-    tip("drawn so, and no longer as everything is");
+    const auto hide = [&] { add_new(changed.hidden, status.expression); };
+    if (button("Add this look", true)) add_layer();
+    tip("drawn in this representation in addition");
+    if (button("Show only this look")) hide(), add_layer();
+    tip("drawn in this representation alone");
     if (button("Hide")) hide();
-    if (button("Name")) changed.labels.push_back(status.expression);
-    tip("names its residues, or an atom alone");
+    if (button("Label")) add_new(changed.labels, status.expression);
+    tip("labels its residues, or a single atom");
     if (button("Look at it")) order.focus = true;
     if (button("Clear (Esc)")) order.select = "";
     if (changed != additions) order.additions = std::move(changed);

@@ -324,7 +324,7 @@ std::vector<LegendEntry> find_legend(const World& world, Colouring colouring) {
         case Colouring::Activity:
             switch (shown_activity(world)) {
                 case ShownActivity::BeyondFirstOrder:
-                    return legend_of_scale("joint 0.001° beyond first order, or less", "0.03°",
+                    return legend_of_scale("joint beyond first order: 0.001° or less", "0.03°",
                                            "1° or more");
                 case ShownActivity::Active:
                     return {{sequential_colour(0), "joint or base at rest"},
@@ -336,7 +336,7 @@ std::vector<LegendEntry> find_legend(const World& world, Colouring colouring) {
         case Colouring::Error:
             if (!world.find_resource<SecondOrder>())
                 return {{no_value, "no estimate: not of second order"}};
-            return legend_of_scale("joint wrong by 0.001°, or less", "0.03°", "1° or more");
+            return legend_of_scale("estimated joint error: 0.001° or less", "0.03°", "1° or more");
     }
     return {};
 }

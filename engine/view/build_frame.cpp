@@ -247,6 +247,7 @@ FrameScene FrameBuilder::build(const World& world, std::span<const ContactModel>
                                const ViewSettings& settings, std::vector<ViewLabel>* labels) {
     follow(world, settings.marks);
     FrameScene frame;
+    frame.background = settings.background;
     frame.shadows = settings.shadows != Shadows::None;
     frame.occlusion = settings.occlusion;
     frame.outline = settings.outline;

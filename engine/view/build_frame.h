@@ -27,6 +27,7 @@ struct ViewSettings {
     int outline = 1;                    // pixels
     std::vector<std::string> hidden{};  // selections that layers alone draw
     ViewMarks marks{};
+    glm::vec3 background{1};  // into which what is older fades
 
     friend bool operator==(const ViewSettings&, const ViewSettings&) = default;
 };

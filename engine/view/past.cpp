@@ -98,7 +98,7 @@ void add_pale_atoms(const AtomTable& atoms, std::span<const Vec3> places,
 
 void Past::follow(const World& world, const ViewMarks& marks) {
     const Clock& clock = world.resource<Clock>();
-    if (!has_begun_ || clock.steps < steps_) begin(world, marks.ghost);
+    if (!has_begun_ || clock.steps < steps_ || clock.resets != resets_) begin(world, marks.ghost);
     // Periods may change; the way is as old as the steps that it took.
     now_s_ += static_cast<double>(clock.steps - steps_) * clock.period_s;
     steps_ = clock.steps;
@@ -111,6 +111,7 @@ void Past::begin(const World& world, bool seeks_rest) {
     *this = Past();
     has_begun_ = true;
     steps_ = world.resource<Clock>().steps;
+    resets_ = world.resource<Clock>().resets;
     if (!seeks_rest) return;
     for (const Entity hand : find_hands(world))
         if (const auto rest = find_resting_place(world, hand)) rests_.push_back(*rest);
@@ -118,6 +119,8 @@ void Past::begin(const World& world, bool seeks_rest) {
 
 void Past::see_new_molecules(const World& world) {
     const std::vector<Vec3>& positions = world.resource<AtomTable>().positions;
+    // An entity of a molecule that was taken back may become another's.
+    std::erase_if(starts_, [&](const auto& start) { return !world.find<Molecule>(start.first); });
     world.each<Molecule>([&](Entity entity, const Molecule& molecule) {
         std::vector<Vec3>& start = starts_[entity];
         if (start.size() == molecule.atoms.count) return;

@@ -16,8 +16,8 @@
 
 namespace palpa {
 
-// Of one world, followed from step to step by its clock. Where the clock goes back, by a reset or
-// in another world, everything begins anew.
+// Of one world, followed from step to step by its clock. After a reset, or where the clock goes
+// back (in another world), everything begins anew.
 class Past {
 public:
     // The first look is the start, where marks that want a place of rest have it found. Edits may
@@ -52,7 +52,7 @@ private:
     void follow_hand(const World& world, Entity hand, double trail_s);
     std::vector<Vec3> start_of_all(const World& world) const;
 
-    std::uint64_t steps_ = 0;
+    std::uint64_t steps_ = 0, resets_ = 0;
     bool has_begun_ = false;
     double now_s_ = 0;
     std::map<Entity, std::vector<Vec3>> starts_;  // by molecule, Å

@@ -25,6 +25,11 @@ std::vector<SphereShape> balls_of(std::span<const glm::vec3> places,
 
 double rounded(double value, double parts) { return std::round(parts * value) / parts; }
 
+// To three digits.
+double rounded_to_digits(double value) {
+    return value > 0 ? rounded(value, std::pow(10, 2 - std::floor(std::log10(value)))) : 0;
+}
+
 }  // namespace
 
 const SavedView* find_saved_view(std::span<const SavedView> views, std::string_view name) {
@@ -60,9 +65,13 @@ void set_camera(SavedView& saved, const OrbitCamera& camera, std::span<const glm
     saved.shift = {};
     const OrbitCamera straight = saved_camera(saved, places, framed, room);
     const double zoom = static_cast<double>(straight.distance) / camera.distance;
-    saved.camera[2] = std::clamp(rounded(zoom, 100), least_zoom, most_zoom);
+    saved.camera[2] = std::clamp(rounded_to_digits(zoom), least_zoom, most_zoom);
     const glm::vec3 shift = camera.target - straight.target;
-    saved.shift = {rounded(shift.x, 100), rounded(shift.y, 100), rounded(shift.z, 100)};
+    const auto component = [](double value) {
+        constexpr double longest = 1e4;  // Å, that the key takes
+        return std::clamp(rounded(value, 100), -longest, longest);
+    };
+    saved.shift = {component(shift.x), component(shift.y), component(shift.z)};
 }
 
 }  // namespace palpa

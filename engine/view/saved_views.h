@@ -22,7 +22,7 @@ OrbitCamera saved_camera(const SavedView& saved, std::span<const glm::vec3> plac
                          const std::vector<bool>& framed, const Room& room);
 
 // Gives a view the camera and the shift by which saved_camera sees as this one does: to tenths of a
-// degree, and hundredths of the zoom and of an Å, within what the keys take.
+// degree, three digits of the zoom and hundredths of an Å, within what the keys take.
 void set_camera(SavedView& saved, const OrbitCamera& camera, std::span<const glm::vec3> places,
                 const std::vector<bool>& framed, const Room& room);
 

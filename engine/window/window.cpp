@@ -217,6 +217,7 @@ void Window::press(Window& window, int button, int mods) {
 }
 
 void Window::release(Window& window, int button) {
+    if (button == GLFW_MOUSE_BUTTON_MIDDLE) return;
     if (window.click_.is_right != (button == GLFW_MOUSE_BUTTON_RIGHT)) return;
     if (!std::exchange(window.is_clicking_, false)) return;
     MouseClick click = window.click_;

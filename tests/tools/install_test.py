@@ -117,7 +117,7 @@ class Install(unittest.TestCase):
     def test_bash_completes_commands_and_options(self):
         self.assertEqual(set(self.complete("palpa", "")),
                          {*commands(), "help", "--help", "--version"})
-        self.assertEqual(self.complete("palpa", "sc"), ["scenarios"])
+        self.assertEqual(self.complete("palpa", "sc"), ["scene", "scenarios"])
         self.assertEqual(self.complete("palpa", "help", "dev"), ["devices"])
         self.assertEqual(self.complete("palpa", "run", "water", "--he"), ["--help", "--headless"])
         self.assertEqual(self.complete("palpa", "render", "--rep"), ["--representation"])

@@ -131,7 +131,7 @@ TEST_CASE("an expression is typed, asked for by Enter, and kept where it was wro
     CHECK(screen.selected == "resid 1:3");
 }
 
-TEST_CASE("buttons draw, hide, name and look at what is selected; what was added is removed",
+TEST_CASE("buttons draw, hide, name and look at what is selected, and what was added is removed",
           "[ui][selection]") {
     SelectionScreen screen;
     screen.panel.show("resid 5");
@@ -143,7 +143,12 @@ TEST_CASE("buttons draw, hide, name and look at what is selected; what was added
     screen.frame();
     REQUIRE(screen.click_until([&] { return !screen.additions.layers.empty(); }));
     CHECK(screen.additions.layers[0].of == "resid 5");
-    CHECK(screen.additions.hidden.empty());  // "Show so" stands first
+    CHECK(screen.additions.hidden.empty());  // "Add this look" stands first
+    const std::size_t layers = screen.additions.layers.size();
+    (void)screen.click_until([&] { return !screen.additions.labels.empty(); });
+    CHECK(screen.additions.layers.size() == layers);  // the same is not added again
+    screen.additions.labels.clear();
+    screen.additions.hidden.clear();
     REQUIRE(screen.click_until([&] { return !screen.additions.hidden.empty(); }));
     CHECK(screen.additions.hidden[0] == "resid 5");
     screen.additions = {};

@@ -77,6 +77,44 @@ TEST_CASE("the ghost stands where what is in the hand was at the start", "[view]
     CHECK(cones_of(builder.build(world, {}, settings), ghost_pick).empty());
 }
 
+TEST_CASE("a reset by an edit is a new start, though steps are counted on", "[view][past]") {
+    World world = test::three_waters(0, {0, 4, 0});
+    ViewSettings settings = plain();
+    settings.marks.ghost = true;
+    FrameBuilder builder;
+    builder.follow(world, settings.marks);
+    wait(world, 10);
+    move_grabbed(world, 5);
+    REQUIRE_FALSE(cones_of(builder.build(world, {}, settings), ghost_pick).empty());
+
+    // As where the file's place is another by now: what stood before is no ghost of this start.
+    World again = world;
+    ++again.resource<Clock>().resets;
+    CHECK(cones_of(builder.build(again, {}, settings), ghost_pick).empty());
+
+    const std::uint64_t resets = world.resource<Clock>().resets;
+    World edited = test::three_waters(0, {0, 4, 0});
+    reset(edited);
+    CHECK(edited.resource<Clock>().resets == resets + 1);
+}
+
+TEST_CASE("the ghost and what is old of the trail have the colour of the background",
+          "[view][past]") {
+    World world = test::three_waters(0, {0, 4, 0});
+    ViewSettings settings = plain();
+    settings.marks.ghost = true;
+    settings.background = {0, 0, 1};
+    FrameBuilder builder;
+    builder.follow(world, settings.marks);
+    wait(world, 10);
+    move_grabbed(world, 5);
+    const FrameScene frame = builder.build(world, {}, settings);
+    CHECK(frame.background == settings.background);
+    const std::vector<ConeShape> ghost = cones_of(frame, ghost_pick);
+    REQUIRE_FALSE(ghost.empty());
+    for (const ConeShape& bond : ghost) CHECK(bond.colour_a.z > bond.colour_a.x + 0.3F);
+}
+
 TEST_CASE("the ghost has residues around that moved by 0.5 Å, and no hydrogens on carbon",
           "[view][past]") {
     World world =

@@ -52,6 +52,16 @@ TEST_CASE("a view that is saved from a camera sees as that one did", "[view][sav
     CHECK(twice.camera == saved.camera);
 }
 
+TEST_CASE("a far view keeps its distance to a per cent", "[view][saved]") {
+    for (const float distance : {200.0F, 700.0F, 1100.0F}) {
+        const OrbitCamera camera{.target = {2, 3, 0}, .distance = distance};
+        SavedView saved{.name = "far"};
+        set_camera(saved, camera, places, first_three, 1.0F);
+        CHECK(saved_camera(saved, places, first_three, 1.0F).distance ==
+              Approx(distance).epsilon(0.006));
+    }
+}
+
 TEST_CASE("saved views are found by their names, and new ones get a free one", "[view][saved]") {
     const std::vector<SavedView> views{{.name = "view 1"}, {.name = "flaps"}, {.name = "view 3"}};
     CHECK(find_saved_view(views, "flaps") == &views[1]);

@@ -11,7 +11,7 @@ namespace palpa {
 
 // What is between a charge and a place weakens the potential by this factor. Growing with distance
 // it stands for the water that gets between, and charges near by count more: 4 r is a common
-// choice. 80 without growth is water everywhere, and the net charge says.
+// choice. 80 without growth is water everywhere: far away the net charge decides.
 struct Dielectric {
     double constant = 4;
     bool grows_with_distance = true;  // times the distance in Å

@@ -10,7 +10,7 @@ namespace palpa {
 
 // `felt`: the contact model that the hand feels at this moment; its force decides how far the
 // molecule goes for the handle's travel, dx_m = dx_h / A_d(F_m), the paper's incremental coupling
-// with its one-step delay. A pose that says the molecule's place puts it there.
+// with its one-step delay. A pose that gives the molecule's place puts it there.
 struct StepInput {
     std::span<const HandPose> hands;
     std::span<const ContactModel> felt;
