@@ -29,10 +29,11 @@ void Sandbox::take_input() {
     if (input.rescaled) restart_graphics();
     heed_device(input);
     if (options_.pads) post_pad(input);
+    const auto types = [&] { return graphics_->ui.wants_keys() || selection_panel_.awaits_keys(); };
     for (const KeyPress& press : input.pressed) {
         if (add_panel_.is_open() && !question_) {
             press_in_dialog(press);
-        } else if (!graphics_->ui.wants_keys()) {
+        } else if (!types()) {
             press_key(press);
         } else {
             selection_panel_.press(press.key);
@@ -41,9 +42,9 @@ void Sandbox::take_input() {
         }
     }
     take_dropped(input);
-    const bool leads = hand().is_led() && !graphics_->ui.wants_keys() && !is_asked();
+    const bool leads = hand().is_led() && !types() && !is_asked();
     const double seconds = 1e-3 * ms_since(std::exchange(last_input_, SteadyClock::now()));
-    const bool keys_lead = hands_[by_keys()].is_led() && !graphics_->ui.wants_keys() && !is_asked();
+    const bool keys_lead = hands_[by_keys()].is_led() && !types() && !is_asked();
     if (keys_lead) move_hand_by_keys(input, std::min(seconds, longest_key_s));
     const bool held_before = std::exchange(holding_, leads && input.is_held(Key::Space));
     window_.capture_cursor(holding_);

@@ -44,7 +44,10 @@ void Sandbox::select(const std::string& expression) {
         const World world = session_.copy_world();  // may be ahead of the frame that is shown
         std::vector<bool> chosen = select_as_seen(world, expression);
         if (std::ranges::find(chosen, true) == chosen.end()) {
-            selection_.problem = "selects no atoms";
+            selection_.problem =
+                selected_.empty()
+                    ? "selects no atoms"
+                    : fmt::format("selects no atoms; {} is still selected", selection_.expression);
             return;
         }
         selection_ = {expression, describe_count(*list_atoms(world), chosen), {}};

@@ -383,11 +383,20 @@ void Overlay::draw_warnings(const Readout& readout, const OverlayStatus& status)
     const float width = std::max(scaled(240), area.width() - 2 * panel_edge());
     ImGui::SetNextWindowPos({0.5F * (area.left + area.right), panel_edge()}, ImGuiCond_Always,
                             {0.5F, 0});
-    ImGui::SetNextWindowSizeConstraints({scaled(200), 0}, {width, 0.6F * screen.y});
+    // The library would know the size of new words only in the next frame.
+    const ImGuiStyle& style = ImGui::GetStyle();
+    const float wrap = width - 2 * style.WindowPadding.x;
+    ImVec2 size{scaled(200), 2 * style.WindowPadding.y - style.ItemSpacing.y};
+    for (const std::string& warning : warnings) {
+        const ImVec2 words = ImGui::CalcTextSize(warning.c_str(), nullptr, false, wrap);
+        size.x = std::max(size.x, std::min(words.x + 1, wrap) + 2 * style.WindowPadding.x);
+        size.y += words.y + style.ItemSpacing.y;
+    }
+    ImGui::SetNextWindowSize({size.x, std::min(size.y, 0.6F * screen.y)});
     ImGui::Begin("##warnings", nullptr,
-                 fixed_panel | ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_AlwaysAutoResize |
-                     ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoInputs);
-    ImGui::PushTextWrapPos(width - 2 * ImGui::GetStyle().WindowPadding.x);
+                 fixed_panel | ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoFocusOnAppearing |
+                     ImGuiWindowFlags_NoInputs);
+    ImGui::PushTextWrapPos(style.WindowPadding.x + wrap);
     for (const std::string& warning : warnings) ImGui::TextUnformatted(warning.c_str());
     ImGui::PopTextWrapPos();
     ImGui::End();

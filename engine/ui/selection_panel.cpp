@@ -47,11 +47,11 @@ void SelectionPanel::press(Key key) {
     if (key == Key::Enter || key == Key::Escape) pressed_ = key;
 }
 
-void SelectionPanel::open() { is_open_ = wants_focus_ = true; }
+void SelectionPanel::open() { is_open_ = wants_focus_ = awaits_keys_ = true; }
 
 // Its field takes no keys from then on.
 void SelectionPanel::close() {
-    is_open_ = false;
+    is_open_ = awaits_keys_ = false;
     ImGui::ClearActiveID();
 }
 
@@ -88,6 +88,7 @@ void SelectionPanel::type_expression(const SelectionStatus& status, SelectionOrd
     const std::string before = text_;
     (void)type_text("##expression", "protein and within 5 of ligand", text_,
                     ImGuiInputTextFlags_AutoSelectAll);
+    if (ImGui::IsItemActive()) awaits_keys_ = false;
     const bool is_typed = ImGui::IsItemActive() || ImGui::IsItemDeactivated();
     const std::optional<Key> pressed = std::exchange(pressed_, std::nullopt);
     if (is_typed && pressed == Key::Enter) order.select = trimmed(text_);

@@ -32,6 +32,8 @@ public:
     void open();
     void close();
     bool is_open() const noexcept { return is_open_; }
+    // It was opened, and its field is not there yet.
+    bool awaits_keys() const noexcept { return awaits_keys_; }
 
     // A key while a field has the keys: where it is this one, Enter asks for its expression, Esc
     // ends typing. When it is drawn the next time, so that what was typed before counts.
@@ -51,7 +53,7 @@ private:
                       SelectionOrder& order);
     void list_additions(const ViewAdditions& additions, SelectionOrder& order);
 
-    bool is_open_ = false, wants_focus_ = false;
+    bool is_open_ = false, wants_focus_ = false, awaits_keys_ = false;
     std::optional<Key> pressed_;
     std::string text_;
     Representation representation_ = Representation::Licorice;

@@ -220,8 +220,9 @@ std::string scene_hint(const std::string& typed) {
 std::string explain_conversion(const std::string& what) {
     const std::size_t colon = what.find(": "), equals = what.find(" = ");
     if (colon == std::string::npos || equals == std::string::npos || equals < colon) return what;
-    return fmt::format("{}: '{}' is no number", what.substr(colon + 2, equals - colon - 2),
-                       printable(what.substr(equals + 3)));
+    const std::string value = what.substr(equals + 3);
+    return fmt::format("{}: '{}' is no {}number", what.substr(colon + 2, equals - colon - 2),
+                       printable(value), find_real(value) ? "whole " : "");
 }
 
 std::string explain_extras(const CLI::App& program, const CLI::App& command) {

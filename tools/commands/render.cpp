@@ -44,11 +44,14 @@ void apply_looks(const std::vector<RenderOptions::Said>& said, ViewDescription& 
     std::optional<ViewLayer> layer;  // begun; one without `of` is everything
     const auto finish = [&] {
         if (!layer) return;
-        if (layer->of.empty()) {
+        // What shines through is a layer of everything, and nothing else is drawn of it.
+        if (layer->of.empty() && layer->opacity < 1) view.hidden.emplace_back("all");
+        if (layer->of.empty() && !(layer->opacity < 1)) {
             view.representation = layer->representation;
             view.colouring = layer->colouring.value_or(view.colouring);
+        } else {
+            view.layers.push_back(*layer);
         }
-        if (!layer->of.empty() || layer->opacity < 1) view.layers.push_back(*layer);
         layer.reset();
     };
     for (const auto& [option, value] : said) {
@@ -198,6 +201,9 @@ void check_render_options(const RenderOptions& options) {
         throw LoadError({"palpa render"},
                         "draws a picture or a film; expected -o FILE.png or "
                         "--film FILE.mp4, one of them");
+    if (!options.film && upper_case(options.image.extension().string()) != ".PNG")
+        throw LoadError({"-o " + options.image.string()},
+                        "pictures are PNG files; expected a name that ends in .png");
     if (options.film && options.coordinates)
         throw LoadError({"--coordinates"},
                         "is of a picture; expected -o instead of --film, or palpa export");

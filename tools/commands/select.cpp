@@ -4,9 +4,9 @@
 #include "scene/read_scene.h"
 #include "simulation/components.h"
 #include "simulation/load.h"
-#include "simulation/select_in_world.h"
 #include "tools/commands/command.h"
 #include "tools/commands/progress.h"
+#include "view/selected_atoms.h"
 
 #include <fmt/format.h>
 #include <cstddef>
@@ -115,14 +115,14 @@ void print_selected_json(const std::string& expression,
 }
 
 int select_command(const SelectOptions& options) {
-    const Selection selection = parse_selection(options.expression);
+    (void)parse_selection(options.expression);  // before the scene is loaded
     const SceneDescription scene = read_scene(options.scene, options.settings);
     refuse_remote_engine(scene);
     ProgressLine progress;
     const World world = load_world(scene, progress.stages());
     progress.wipe();
     const std::vector<SelectedResidue> residues =
-        list_selected(world, select_in_world(world, selection));
+        list_selected(world, select_as_seen(world, options.expression));
     options.json ? print_selected_json(options.expression, residues) : print_selected(residues);
     return 0;
 }
