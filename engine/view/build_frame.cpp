@@ -61,9 +61,12 @@ std::vector<HydrogenBond> find_visible_bonds(const World& world, ShownBonds whic
 ContactPairs find_visible_pairs(const FrameParts& parts, ShownBonds which,
                                 std::span<const AtomLook> looks) {
     ContactPairs pairs = find_contact_pairs(parts.world, which, parts.residues);
-    for (std::vector<AtomPair>* const kind : {&pairs.contacts, &pairs.clashes, &pairs.salt_bridges})
-        std::erase_if(*kind,
-                      [&](const AtomPair& pair) { return !are_visible(looks, pair.a, pair.b); });
+    const auto is_hidden = [&](const AtomPair& pair) {
+        return !are_visible(looks, pair.a, pair.b);
+    };
+    std::erase_if(pairs.contacts, is_hidden);
+    std::erase_if(pairs.salt_bridges, is_hidden);
+    std::erase_if(pairs.clashes, [&](const Clash& clash) { return is_hidden(clash.pair); });
     return pairs;
 }
 

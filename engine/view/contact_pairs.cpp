@@ -108,15 +108,14 @@ ContactPairs find_contact_pairs(const World& world, ShownBonds which,
     const JoinedAtoms joined(world, which, found.salt_bridges);
     for (const AtomPair& pair : find_overlaps(atoms, ranges, contact_overlap, of)) {
         const bool is_joined = joined.has(pair);
-        const double overlap = overlap_of(atoms, pair) - (is_joined ? bonded_allowance : 0);
-        if (overlap > clash_overlap) {
-            found.clashes.push_back(pair);
+        const double excess = overlap_of(atoms, pair) - (is_joined ? bonded_allowance : 0);
+        if (excess > clash_overlap) {
+            found.clashes.push_back({pair, excess});
         } else if (!is_joined) {
             found.contacts.push_back(pair);
         }
     }
-    std::ranges::stable_sort(found.clashes, std::greater(),
-                             [&](const AtomPair& pair) { return overlap_of(atoms, pair); });
+    std::ranges::stable_sort(found.clashes, std::greater(), &Clash::excess);
     return found;
 }
 
@@ -133,14 +132,14 @@ void add_contact_pairs(const AtomTable& atoms, const ContactPairs& pairs, FrameS
         const auto [a, b] = drawn.between(pair, least);
         add_stick(a, b, contact, frame);
     }
-    for (const AtomPair& pair : pairs.clashes) {
-        const auto [a, b] = drawn.between(pair, least);
+    for (const Clash& each : pairs.clashes) {
+        const auto [a, b] = drawn.between(each.pair, least);
         const glm::vec3 middle = 0.5F * (a + b);
         if (a == b) continue;
         add_stick(a, b, clash, frame);
         add_disc(middle, glm::normalize(b - a), plate, frame);
-        if (&pair == pairs.clashes.data())
-            labels.push_back({middle, fmt::format("{:.1f} Å overlap", overlap_of(atoms, pair))});
+        if (&each == pairs.clashes.data())
+            labels.push_back({middle, fmt::format("{:.1f} Å overlap", each.excess)});
     }
     for (const AtomPair& pair : pairs.salt_bridges) {
         const auto [a, b] = drawn.between(pair, least);

@@ -12,21 +12,28 @@
 
 namespace palpa {
 
-// No pair is of two kinds: what is a salt bridge or a hydrogen bond is no contact, and a clash only
-// where it overlaps by 0.4 Å more than others must, as hydrogen bonds are that much shorter (UCSF
-// Chimera allows as much).
-struct ContactPairs {
-    std::vector<AtomPair> contacts, salt_bridges;  // molecule/measure.h; by rising atoms
-    std::vector<AtomPair> clashes;                 // the most overlap first
+// A pair whose van der Waals spheres overlap too much.
+struct Clash {
+    AtomPair pair;
+    double excess = 0;  // Å of overlap; of a hydrogen bond or salt bridge 0.4 less
 };
 
-// In hand: of what hands hold with all the rest.
+// Each pair has one kind. A salt bridge or hydrogen bond is never a contact. It is a clash only if
+// it overlaps by 0.4 Å more than other pairs may, because hydrogen bonds are that much shorter
+// (UCSF Chimera has the same allowance).
+struct ContactPairs {
+    std::vector<AtomPair> contacts, salt_bridges;  // molecule/measure.h; sorted by a, then b
+    std::vector<Clash> clashes;                    // the largest excess first
+};
+
+// Finds the pairs of a world. ShownBonds::InHand: only pairs of an atom that a hand holds and one
+// that none holds.
 ContactPairs find_contact_pairs(const World& world, ShownBonds which,
                                 std::span<const ResidueSpan> residues);
 
-// Contacts: thin lines; clashes: thick ones with a disc in their middle, and the overlap of the
-// worst in words; salt bridges: wide dashes, with the lengths of up to four. From atom to atom as
-// drawn.
+// Draws contacts as thin lines, clashes as thick lines with a disc in the middle, and salt bridges
+// as wide dashes. Lines end at the spheres as drawn. Labels: the excess of the worst clash, and the
+// lengths of salt bridges where there are at most four.
 void add_contact_pairs(const AtomTable& atoms, const ContactPairs& pairs, FrameScene& frame,
                        std::vector<ViewLabel>& labels);
 
