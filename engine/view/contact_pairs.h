@@ -4,6 +4,7 @@
 #include "molecule/measure.h"
 #include "render/frame_scene.h"
 #include "scene/choices.h"
+#include "view/hydrogen_bonds.h"
 #include "view/pocket.h"
 #include "view/signs.h"
 
@@ -26,10 +27,11 @@ struct ContactPairs {
     std::vector<Clash> clashes;                    // the largest excess first
 };
 
-// Finds the pairs of a world. ShownBonds::InHand: only pairs of an atom that a hand holds and one
-// that none holds.
+// Finds the pairs of a world. ShownBonds::InHand: only pairs of an atom that is in hand and one
+// that is not. `bonds`: the hydrogen bonds of the same choice, or all.
 ContactPairs find_contact_pairs(const World& world, ShownBonds which,
-                                std::span<const ResidueSpan> residues);
+                                std::span<const ResidueSpan> residues,
+                                std::span<const HydrogenBond> bonds);
 
 // Draws contacts as thin lines, clashes as thick lines with a disc in the middle, and salt bridges
 // as wide dashes. Lines end at the spheres as drawn. Labels: the excess of the worst clash, and the

@@ -25,6 +25,11 @@ using namespace palpa;
 
 namespace {
 
+ContactPairs find_pairs(const World& world, ShownBonds which) {
+    return find_contact_pairs(world, which, find_residues(world),
+                              find_hydrogen_bonds(world, which));
+}
+
 // Two waters of which the first atoms alone are near to each other, on the x axis; the third one is
 // by itself.
 struct Pair {
@@ -53,7 +58,7 @@ struct Pair {
         atoms.names[first].atom = atom;
     }
     std::array<std::size_t, 3> count(ShownBonds which = ShownBonds::InHand) {
-        const ContactPairs found = find_contact_pairs(world, which, find_residues(world));
+        const ContactPairs found = find_pairs(world, which);
         return {found.contacts.size(), found.clashes.size(), found.salt_bridges.size()};
     }
 };
@@ -125,8 +130,7 @@ TEST_CASE("the worst clash is that of the largest overlap beyond what its pair i
     atoms.element[third] = "C";
     atoms.positions[third] = {0, 2.6, 0};  // 1.52 + 1.70 - 2.6 = 0.62 Å
 
-    const ContactPairs found =
-        find_contact_pairs(pair.world, ShownBonds::InHand, find_residues(pair.world));
+    const ContactPairs found = find_pairs(pair.world, ShownBonds::InHand);
 
     REQUIRE(found.clashes.size() == 2);
     CHECK((found.clashes[0].pair.a == third || found.clashes[0].pair.b == third));
@@ -192,7 +196,7 @@ TEST_CASE("contacts of the inhibitor in HIV-1 protease are those of a plain sear
                 std::ranges::count_if(joined, [&](const auto& one) { return near.contains(one); }));
         }();
 
-    const ContactPairs found = find_contact_pairs(world, ShownBonds::InHand, find_residues(world));
+    const ContactPairs found = find_pairs(world, ShownBonds::InHand);
 
     CHECK(near.size() > 50);
     CHECK(bonded > 3);
