@@ -10,6 +10,7 @@
 #include "forces/minimise.h"
 #include "ligands/approximate.h"
 #include "molecule/atoms.h"
+#include "molecule/element.h"
 #include "prepare/build_positions.h"
 
 #include <fmt/format.h>
@@ -84,10 +85,6 @@ double energy(const RigidWater& water, const std::vector<Vec3>& water_places,
                                {places, numbers.charge, numbers.sqrt_epsilon, numbers.half_rmin},
                                {units::charmm_coulomb_constant})
         .energy();
-}
-
-bool is_polar(const std::string& element) {
-    return element == "N" || element == "O" || element == "S";
 }
 
 bool is_acceptor(const ModelCompound& compound, std::uint32_t atom) {

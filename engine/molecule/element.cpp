@@ -105,4 +105,8 @@ double van_der_waals_radius(std::string_view element) noexcept {
     return found == bondi_radii.end() ? 0 : found->second;
 }
 
+double largest_van_der_waals_radius() noexcept {
+    return std::ranges::max(bondi_radii, {}, &std::pair<std::string_view, double>::second).second;
+}
+
 }  // namespace palpa

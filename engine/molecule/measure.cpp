@@ -3,11 +3,15 @@
 #include "molecule/element.h"
 #include "molecule/point_grid.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <map>
+#include <numeric>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -27,32 +31,53 @@ std::vector<std::uint32_t> number_residues(const AtomTable& atoms,
 // Who is bonded to whom.
 class BondLists {
 public:
-    explicit BondLists(const AtomTable& atoms) : neighbours_(atoms.size()) {
+    explicit BondLists(const AtomTable& atoms)
+        : first_(atoms.size() + 1, 0), neighbours_(2 * atoms.bonds.size()) {
         for (const auto& [a, b] : atoms.bonds) {
-            neighbours_[a].push_back(b);
-            neighbours_[b].push_back(a);
+            ++first_[a];
+            ++first_[b];
+        }
+        std::partial_sum(first_.begin(), first_.end(), first_.begin());
+        for (const auto& [a, b] : atoms.bonds) {  // from the end of each list to its beginning
+            neighbours_[--first_[a]] = b;
+            neighbours_[--first_[b]] = a;
         }
     }
 
     bool are_within(std::uint32_t a, std::uint32_t b, int bonds) const {
         if (a == b) return true;
         if (bonds == 0) return false;
+        const auto next = std::span(neighbours_).subspan(first_[a], first_[a + 1] - first_[a]);
         return std::ranges::any_of(
-            neighbours_[a], [&](std::uint32_t next) { return are_within(next, b, bonds - 1); });
+            next, [&](std::uint32_t atom) { return are_within(atom, b, bonds - 1); });
     }
 
 private:
-    std::vector<std::vector<std::uint32_t>> neighbours_;
+    // The neighbours of atom i are [first_[i], first_[i + 1]) of `neighbours_`.
+    std::vector<std::uint32_t> first_, neighbours_;
 };
 
+// Around those of `of`, as far as any atom's sphere can reach theirs; empty where all may clash.
+std::optional<Eigen::AlignedBox3d> find_reached(const AtomTable& atoms, double overlap,
+                                                const std::vector<bool>& of) {
+    if (of.empty()) return std::nullopt;
+    Eigen::AlignedBox3d box;
+    for (std::size_t i = 0; i < atoms.size(); ++i)
+        if (of[i]) box.extend(atoms.positions[i]);
+    if (box.isEmpty()) return box;
+    const Vec3 reach = Vec3::Constant(std::max(2 * largest_van_der_waals_radius() - overlap, 0.0));
+    return Eigen::AlignedBox3d(box.min() - reach, box.max() + reach);
+}
+
 // Radii of those atoms that may clash; 0 of all others.
-std::vector<double> list_radii(const AtomTable& atoms, std::span<const std::uint32_t> residue_of) {
+std::vector<double> list_radii(const AtomTable& atoms, std::span<const std::uint32_t> residue_of,
+                               const std::optional<Eigen::AlignedBox3d>& within) {
     std::vector<double> radii(atoms.size(), 0);
     for (std::size_t i = 0; i < atoms.size(); ++i) {
+        if (residue_of[i] == of_no_residue) continue;
+        if (within && !within->contains(atoms.positions[i])) continue;
         const std::string element = find_element(atoms, i);
-        const bool is_hydrogen = element == "H" || element == "D";
-        if (!is_hydrogen && residue_of[i] != of_no_residue)
-            radii[i] = van_der_waals_radius(element);
+        if (element != "H" && element != "D") radii[i] = van_der_waals_radius(element);
     }
     return radii;
 }
@@ -129,7 +154,8 @@ std::vector<AtomPair> find_overlaps(const AtomTable& atoms, std::span<const Atom
                                     double overlap, const std::vector<bool>& of) {
     constexpr int fewest_bonds = 4;
     const std::vector<std::uint32_t> residue_of = number_residues(atoms, residues);
-    const std::vector<double> radii = list_radii(atoms, residue_of);
+    const std::vector<double> radii =
+        list_radii(atoms, residue_of, find_reached(atoms, overlap, of));
     std::vector<std::uint32_t> numbers;
     for (std::uint32_t i = 0; i < radii.size(); ++i)
         if (radii[i] > 0) numbers.push_back(i);

@@ -1,6 +1,7 @@
 #include "molecule/select.h"
 
 #include "core/text.h"
+#include "molecule/element.h"
 #include "molecule/point_grid.h"
 #include "molecule/residue_kinds.h"
 #include "molecule/selection_match.h"
@@ -125,8 +126,7 @@ private:
     Atoms select_polar() {
         return select_where([&](std::size_t i) {
             if (!is_hydrogen(i) || carriers()[i] == i) return false;
-            const std::string element = find_element(atoms_, carriers()[i]);
-            return element == "N" || element == "O" || element == "S";
+            return is_polar(find_element(atoms_, carriers()[i]));
         });
     }
 
@@ -378,8 +378,11 @@ bool has_term(const SelectionNode& node, const Test& test) {
 
 bool depends_on_positions(const Selection& selection) {
     return has_term(*selection.root, [](const SelectionNode& node) {
+        const auto* const word = std::get_if<AtomClass>(&node.term);
         const auto* const compare = std::get_if<CompareTerm>(&node.term);
-        return std::holds_alternative<WithinTerm>(node.term) ||
+        const bool is_structure = word && (*word == AtomClass::Helix ||
+                                           *word == AtomClass::Strand || *word == AtomClass::Coil);
+        return is_structure || std::holds_alternative<WithinTerm>(node.term) ||
                (compare && compare->property >= NumberProperty::X);
     });
 }

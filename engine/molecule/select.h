@@ -28,7 +28,8 @@ Selection parse_selection(std::string_view text, std::string source = "selection
 // ligand". Throws the same; columns are those of the whole text.
 std::vector<Selection> parse_measure(std::string_view text, const std::string& source = "measure");
 
-// Whether other atoms may be selected once atoms have moved, or hands hold others.
+// Whether other atoms may be selected once atoms have moved, which helices and strands follow, or
+// hands hold others.
 bool depends_on_positions(const Selection& selection);
 bool depends_on_hands(const Selection& selection);
 

@@ -4,8 +4,21 @@
 #include "simulation/resources.h"
 
 #include <algorithm>
+#include <cstddef>
 
 namespace palpa {
+
+void number_residues(AtomDirectory& directory) {
+    std::vector<bool> begins(directory.names.size(), false);  // a molecule
+    for (const AtomDirectory::Entry& entry : directory.molecules)
+        if (entry.atoms.count > 0) begins[entry.atoms.first] = true;
+    directory.residue_of.assign(directory.names.size(), 0);
+    for (std::size_t i = 1; i < directory.names.size(); ++i) {
+        const bool goes_on =
+            !begins[i] && is_same_residue(directory.names[i - 1], directory.names[i]);
+        directory.residue_of[i] = directory.residue_of[i - 1] + (goes_on ? 0 : 1);
+    }
+}
 
 std::shared_ptr<const AtomDirectory> list_atoms(const World& world) {
     auto directory = std::make_shared<AtomDirectory>();
@@ -13,6 +26,7 @@ std::shared_ptr<const AtomDirectory> list_atoms(const World& world) {
     world.each<Molecule>([&](Entity, const Molecule& molecule) {
         directory->molecules.push_back({molecule.name, molecule.atoms, molecule.reference_atom});
     });
+    number_residues(*directory);
     directory->force_field = world.resource<SceneFile>().force_field;
     return directory;
 }

@@ -21,11 +21,15 @@ struct AtomDirectory {
     };
     std::vector<Entry> molecules;
     std::vector<AtomName> names;                    // of the atoms of the table
+    std::vector<std::uint32_t> residue_of;          // of each atom, rising from 0: number_residues
     std::shared_ptr<const ForceField> force_field;  // of what can be added; it never changes
 };
 
 // Null where there is none of that name.
 const AtomDirectory::Entry* find_molecule(const AtomDirectory& directory, std::string_view name);
+
+// Fills `residue_of` from molecules and names.
+void number_residues(AtomDirectory& directory);
 
 // As long as nothing is added or removed.
 std::shared_ptr<const AtomDirectory> list_atoms(const World& world);

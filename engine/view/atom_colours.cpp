@@ -224,7 +224,8 @@ std::vector<double> find_pushes(const World& world) {
     for (std::uint32_t i = 0; i < in_hand.size(); ++i)
         if (in_hand[i]) held.push_back(i);
     std::vector<double> pushes;
-    for (const Vec3& force : find_forces_by_atoms(world, held, reach))
+    for (const Vec3& force :
+         find_forces_by_atoms(world, gather_held(world, std::move(held)), reach))
         pushes.push_back(force.norm());
     return pushes;
 }

@@ -49,21 +49,31 @@ bool are_visible(std::span<const AtomLook> looks, std::size_t a, std::size_t b) 
     return looks[a].visible && looks[b].visible;
 }
 
-std::vector<HydrogenBond> find_visible_bonds(const World& world, ShownBonds which,
+std::vector<HydrogenBond> find_visible_bonds(std::span<const HydrogenBond> all,
                                              std::span<const AtomLook> looks) {
-    std::vector<HydrogenBond> bonds = find_hydrogen_bonds(world, which);
+    std::vector<HydrogenBond> bonds(all.begin(), all.end());
     std::erase_if(bonds, [&](const HydrogenBond& bond) {
         return !are_visible(looks, bond.hydrogen, bond.acceptor);
     });
     return bonds;
 }
 
-ContactPairs find_visible_pairs(const FrameParts& parts, ShownBonds which,
+// `shown`, of these `bonds`, are used again where they have what is needed.
+ContactPairs find_visible_pairs(const FrameParts& parts, ShownBonds which, ShownBonds shown,
+                                std::span<const HydrogenBond> bonds,
                                 std::span<const AtomLook> looks) {
-    ContactPairs pairs = find_contact_pairs(parts.world, which, parts.residues);
-    for (std::vector<AtomPair>* const kind : {&pairs.contacts, &pairs.clashes, &pairs.salt_bridges})
-        std::erase_if(*kind,
-                      [&](const AtomPair& pair) { return !are_visible(looks, pair.a, pair.b); });
+    std::vector<HydrogenBond> own;
+    if (shown != which && shown != ShownBonds::All) {
+        own = find_hydrogen_bonds(parts.world, which);
+        bonds = own;
+    }
+    ContactPairs pairs = find_contact_pairs(parts.world, which, parts.residues, bonds);
+    const auto is_hidden = [&](const AtomPair& pair) {
+        return !are_visible(looks, pair.a, pair.b);
+    };
+    std::erase_if(pairs.contacts, is_hidden);
+    std::erase_if(pairs.salt_bridges, is_hidden);
+    std::erase_if(pairs.clashes, [&](const Clash& clash) { return is_hidden(clash.pair); });
     return pairs;
 }
 
@@ -175,7 +185,8 @@ struct FrameBuilder::Kept {
                      const ViewSettings& settings, FrameScene& frame);
     void add_measures(const FrameParts& parts, std::span<const std::string> texts,
                       FrameScene& frame, std::vector<ViewLabel>& labels);
-    void add_marks(const FrameParts& parts, const ViewMarks& marks, std::span<const AtomLook> looks,
+    void add_marks(const FrameParts& parts, const ViewSettings& settings,
+                   std::span<const HydrogenBond> bonds, std::span<const AtomLook> looks,
                    FrameScene& frame, std::vector<ViewLabel>& labels);
 };
 
@@ -218,12 +229,18 @@ void FrameBuilder::Kept::add_measures(const FrameParts& parts, std::span<const s
     }
 }
 
-void FrameBuilder::Kept::add_marks(const FrameParts& parts, const ViewMarks& marks,
+// `bonds`: the hydrogen bonds of the settings, also those of hidden atoms.
+void FrameBuilder::Kept::add_marks(const FrameParts& parts, const ViewSettings& settings,
+                                   std::span<const HydrogenBond> bonds,
                                    std::span<const AtomLook> looks, FrameScene& frame,
                                    std::vector<ViewLabel>& labels) {
     const World& world = parts.world;
-    add_contact_pairs(world.resource<AtomTable>(), find_visible_pairs(parts, marks.contacts, looks),
-                      frame, labels);
+    const ViewMarks& marks = settings.marks;
+    if (marks.contacts != ShownBonds::None)
+        add_contact_pairs(
+            world.resource<AtomTable>(),
+            find_visible_pairs(parts, marks.contacts, settings.hydrogen_bonds, bonds, looks), frame,
+            labels);
     for (const Entity hand : find_hands(world))
         if (marks.forces != ShownForces::Hand && world.find<Grip>(hand))
             add_force_parts(world, hand, marks.forces, parts.residues, find_held(world, hand),
@@ -254,8 +271,8 @@ FrameScene FrameBuilder::build(const World& world, std::span<const ContactModel>
     std::vector<ViewLabel> words;
     const AtomTable& atoms = world.resource<AtomTable>();
     const std::vector<AtomLook> looks = find_looks(world, settings);
-    const std::vector<HydrogenBond> bonds =
-        find_visible_bonds(world, settings.hydrogen_bonds, looks);
+    const std::vector<HydrogenBond> all_bonds = find_hydrogen_bonds(world, settings.hydrogen_bonds);
+    const std::vector<HydrogenBond> bonds = find_visible_bonds(all_bonds, looks);
     std::vector<bool> takes_part(atoms.size(), false);
     for (const HydrogenBond& bond : bonds) takes_part[bond.hydrogen] = true;
     const std::vector<ResidueSpan> residues = find_residues(world);
@@ -270,7 +287,7 @@ FrameScene FrameBuilder::build(const World& world, std::span<const ContactModel>
     const std::vector<Entity> hands = find_hands(world);
     for (std::size_t i = 0; settings.force_arrow && i < contacts.size(); ++i)
         add_signs(world, hands[i], contacts[i], frame, words);
-    kept_->add_marks(parts, settings.marks, looks, frame, words);
+    kept_->add_marks(parts, settings, all_bonds, looks, frame, words);
     add_last_snap(world, frame, words);
     if (labels) *labels = std::move(words);
     return frame;

@@ -1,8 +1,6 @@
 #include "view/contact_pairs.h"
 
 #include "molecule/element.h"
-#include "view/elements.h"
-#include "view/hydrogen_bonds.h"
 #include "view/in_hand.h"
 #include "view/lines.h"
 #include "view/palette.h"
@@ -14,8 +12,6 @@
 #include <cstdint>
 #include <functional>
 #include <glm/geometric.hpp>
-#include <map>
-#include <set>
 #include <utility>
 
 namespace palpa {
@@ -39,35 +35,27 @@ std::vector<AtomRange> as_ranges(std::span<const ResidueSpan> residues) {
 // Heavy atoms of hydrogen bonds and salt bridges, the lower number first.
 class JoinedAtoms {
 public:
-    JoinedAtoms(const World& world, ShownBonds which, std::span<const AtomPair> salt_bridges) {
-        const AtomTable& atoms = world.resource<AtomTable>();
-        const std::vector<HydrogenBond> bonds = find_hydrogen_bonds(world, which);
-        std::map<std::uint32_t, std::uint32_t> donor_of;
-        for (const HydrogenBond& bond : bonds) donor_of[bond.hydrogen] = bond.hydrogen;
-        for (const auto& [a, b] : atoms.bonds) {  // CHARMM's water has one between hydrogens too
-            if (donor_of.contains(a) && element_of(atoms, b) != "H") donor_of[a] = b;
-            if (donor_of.contains(b) && element_of(atoms, a) != "H") donor_of[b] = a;
-        }
+    JoinedAtoms(std::span<const HydrogenBond> bonds, std::span<const AtomPair> salt_bridges) {
         for (const HydrogenBond& bond : bonds)
-            pairs_.insert(std::minmax({donor_of[bond.hydrogen], bond.acceptor}));
+            pairs_.push_back(std::minmax({bond.donor, bond.acceptor}));
         for (const AtomPair& bridge : salt_bridges)
-            pairs_.insert(std::minmax({bridge.a, bridge.b}));
+            pairs_.push_back(std::minmax({bridge.a, bridge.b}));
+        std::ranges::sort(pairs_);
     }
 
-    bool has(const AtomPair& pair) const { return pairs_.contains({pair.a, pair.b}); }
+    bool has(const AtomPair& pair) const {
+        return std::ranges::binary_search(pairs_, std::pair(pair.a, pair.b));
+    }
 
 private:
-    std::set<std::pair<std::uint32_t, std::uint32_t>> pairs_;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;
 };
 
 // The line between two atoms outside of their spheres, as they are drawn.
 class DrawnAtoms {
 public:
     DrawnAtoms(const AtomTable& atoms, const FrameScene& frame)
-        : atoms_(atoms), radii_(atoms.size(), 0) {
-        for (const SphereShape& sphere : frame.spheres)
-            if (sphere.pick < radii_.size()) radii_[sphere.pick] = sphere.radius;
-    }
+        : atoms_(atoms), radii_(find_drawn_radii(frame, atoms.size())) {}
 
     struct Line {
         glm::vec3 a{0}, b{0};
@@ -94,7 +82,8 @@ private:
 }  // namespace
 
 ContactPairs find_contact_pairs(const World& world, ShownBonds which,
-                                std::span<const ResidueSpan> residues) {
+                                std::span<const ResidueSpan> residues,
+                                std::span<const HydrogenBond> bonds) {
     ContactPairs found;
     if (which == ShownBonds::None) return found;
     const AtomTable& atoms = world.resource<AtomTable>();
@@ -105,18 +94,17 @@ ContactPairs find_contact_pairs(const World& world, ShownBonds which,
     std::erase_if(found.salt_bridges, [&](const AtomPair& bridge) {
         return !of.empty() && of[bridge.a] == of[bridge.b];
     });
-    const JoinedAtoms joined(world, which, found.salt_bridges);
+    const JoinedAtoms joined(bonds, found.salt_bridges);
     for (const AtomPair& pair : find_overlaps(atoms, ranges, contact_overlap, of)) {
         const bool is_joined = joined.has(pair);
-        const double overlap = overlap_of(atoms, pair) - (is_joined ? bonded_allowance : 0);
-        if (overlap > clash_overlap) {
-            found.clashes.push_back(pair);
+        const double excess = overlap_of(atoms, pair) - (is_joined ? bonded_allowance : 0);
+        if (excess > clash_overlap) {
+            found.clashes.push_back({pair, excess});
         } else if (!is_joined) {
             found.contacts.push_back(pair);
         }
     }
-    std::ranges::stable_sort(found.clashes, std::greater(),
-                             [&](const AtomPair& pair) { return overlap_of(atoms, pair); });
+    std::ranges::stable_sort(found.clashes, std::greater(), &Clash::excess);
     return found;
 }
 
@@ -128,19 +116,20 @@ void add_contact_pairs(const AtomTable& atoms, const ContactPairs& pairs, FrameS
     constexpr LineLook bridge{0.07F, salt_bridge_colour, salt_bridge_pick};
     constexpr float least = 0.3F, dash = 0.3F;  // Å
     constexpr std::size_t most_labels = 4;
+    if (pairs.contacts.empty() && pairs.clashes.empty() && pairs.salt_bridges.empty()) return;
     const DrawnAtoms drawn(atoms, frame);
     for (const AtomPair& pair : pairs.contacts) {
         const auto [a, b] = drawn.between(pair, least);
         add_stick(a, b, contact, frame);
     }
-    for (const AtomPair& pair : pairs.clashes) {
-        const auto [a, b] = drawn.between(pair, least);
+    for (const Clash& each : pairs.clashes) {
+        const auto [a, b] = drawn.between(each.pair, least);
         const glm::vec3 middle = 0.5F * (a + b);
         if (a == b) continue;
         add_stick(a, b, clash, frame);
         add_disc(middle, glm::normalize(b - a), plate, frame);
-        if (&pair == pairs.clashes.data())
-            labels.push_back({middle, fmt::format("{:.1f} Å overlap", overlap_of(atoms, pair))});
+        if (&each == pairs.clashes.data())
+            labels.push_back({middle, fmt::format("{:.1f} Å overlap", each.excess)});
     }
     for (const AtomPair& pair : pairs.salt_bridges) {
         const auto [a, b] = drawn.between(pair, least);

@@ -4,6 +4,7 @@
 #include "molecule/measure.h"
 #include "render/frame_scene.h"
 #include "scene/choices.h"
+#include "view/hydrogen_bonds.h"
 #include "view/pocket.h"
 #include "view/signs.h"
 
@@ -12,21 +13,29 @@
 
 namespace palpa {
 
-// No pair is of two kinds: what is a salt bridge or a hydrogen bond is no contact, and a clash only
-// where it overlaps by 0.4 Å more than others must, as hydrogen bonds are that much shorter (UCSF
-// Chimera allows as much).
-struct ContactPairs {
-    std::vector<AtomPair> contacts, salt_bridges;  // molecule/measure.h; by rising atoms
-    std::vector<AtomPair> clashes;                 // the most overlap first
+// A pair whose van der Waals spheres overlap too much.
+struct Clash {
+    AtomPair pair;
+    double excess = 0;  // Å of overlap; of a hydrogen bond or salt bridge 0.4 less
 };
 
-// In hand: of what hands hold with all the rest.
-ContactPairs find_contact_pairs(const World& world, ShownBonds which,
-                                std::span<const ResidueSpan> residues);
+// Each pair has one kind. A salt bridge or hydrogen bond is never a contact. It is a clash only if
+// it overlaps by 0.4 Å more than other pairs may, because hydrogen bonds are that much shorter
+// (UCSF Chimera has the same allowance).
+struct ContactPairs {
+    std::vector<AtomPair> contacts, salt_bridges;  // molecule/measure.h; sorted by a, then b
+    std::vector<Clash> clashes;                    // the largest excess first
+};
 
-// Contacts: thin lines; clashes: thick ones with a disc in their middle, and the overlap of the
-// worst in words; salt bridges: wide dashes, with the lengths of up to four. From atom to atom as
-// drawn.
+// Finds the pairs of a world. ShownBonds::InHand: only pairs of an atom that is in hand and one
+// that is not. `bonds`: the hydrogen bonds of the same choice, or all.
+ContactPairs find_contact_pairs(const World& world, ShownBonds which,
+                                std::span<const ResidueSpan> residues,
+                                std::span<const HydrogenBond> bonds);
+
+// Draws contacts as thin lines, clashes as thick lines with a disc in the middle, and salt bridges
+// as wide dashes. Lines end at the spheres as drawn. Labels: the excess of the worst clash, and the
+// lengths of salt bridges where there are at most four.
 void add_contact_pairs(const AtomTable& atoms, const ContactPairs& pairs, FrameScene& frame,
                        std::vector<ViewLabel>& labels);
 

@@ -1,5 +1,6 @@
 #include "view/draw_layer.h"
 
+#include "molecule/element.h"
 #include "molecule/residue_kinds.h"
 #include "molecule/surface/potential.h"
 #include "simulation/held.h"
@@ -73,13 +74,9 @@ std::vector<bool> find_left_out(const FrameParts& parts) {
     for (std::size_t i = 0; i < atoms.size(); ++i)
         left_out[i] = element_of(atoms, i) == "H" && !parts.takes_part[i];
     if (parts.hydrogens == ShownHydrogens::None) return left_out;
-    const auto is_polar = [&](std::size_t atom) {
-        const std::string_view element = element_of(atoms, atom);
-        return element == "N" || element == "O" || element == "S";
-    };
     for (const auto& [a, b] : atoms.bonds) {
-        if (is_polar(a)) left_out[b] = false;
-        if (is_polar(b)) left_out[a] = false;
+        if (is_polar(element_of(atoms, a))) left_out[b] = false;
+        if (is_polar(element_of(atoms, b))) left_out[a] = false;
     }
     return left_out;
 }

@@ -2,7 +2,6 @@
 
 #include "core/units.h"
 #include "molecule/point_grid.h"
-#include "simulation/held.h"
 #include "simulation/resources.h"
 #include "view/place.h"
 
@@ -11,7 +10,9 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
+#include <utility>
 
 namespace palpa {
 namespace {
@@ -51,31 +52,39 @@ Vec3 find_middle(std::span<const Vec3> places, std::span<const Vec3> forces) {
 
 }  // namespace
 
-std::vector<Vec3> find_forces_by_atoms(const World& world, std::span<const std::uint32_t> held,
-                                       double reach) {
+HeldPoints gather_held(const World& world, std::vector<std::uint32_t> numbers) {
+    const AtomTable& atoms = world.resource<AtomTable>();
+    std::vector<bool> is_bonded = find_bonded(atoms, numbers);
+    GatheredPoints points(atoms, numbers);
+    return {std::move(numbers), std::move(is_bonded), std::move(points)};
+}
+
+std::vector<Vec3> find_forces_by_atoms(const World& world, const HeldPoints& held, double reach) {
     const AtomTable& atoms = world.resource<AtomTable>();
     std::vector<Vec3> forces(atoms.size(), Vec3::Zero());
-    if (held.empty()) return forces;
-    const std::vector<bool> bonded = find_bonded(atoms, held);
-    const GatheredPoints group(atoms, held);
-    const PointGrid grid(group.positions);
+    if (held.numbers.empty()) return forces;
+    std::optional<PointGrid> grid;
+    if (std::isfinite(reach)) grid.emplace(held.points.positions);
     std::vector<std::uint32_t> near;
     for (std::uint32_t i = 0; i < atoms.size(); ++i) {
-        const bool is_near = std::isinf(reach) || grid.has_near(atoms.positions[i], reach);
-        if (!bonded[i] && is_near) near.push_back(i);
+        if (held.is_bonded[i]) continue;
+        if (!grid || grid->has_near(atoms.positions[i], reach)) near.push_back(i);
     }
     const GatheredPoints environment(atoms, near);
-    std::vector<Vec3> on_group(held.size(), Vec3::Zero()), on_near(near.size(), Vec3::Zero());
-    (void)add_pair_forces(group.view(), environment.view(), pair_rule(world), on_group, on_near);
+    std::vector<Vec3> on_held(held.numbers.size(), Vec3::Zero());
+    std::vector<Vec3> on_near(near.size(), Vec3::Zero());
+    (void)add_pair_forces(held.points.view(), environment.view(), pair_rule(world), on_held,
+                          on_near);
     for (std::size_t i = 0; i < near.size(); ++i) forces[near[i]] = -on_near[i];
     return forces;
 }
 
-std::vector<ForcePart> find_force_parts(const World& world, Entity hand, ShownForces of,
-                                        std::span<const ResidueSpan> residues, double least_nN) {
+std::vector<ForcePart> find_force_parts(const World& world, Entity hand, const HeldPoints& held,
+                                        ShownForces of, std::span<const ResidueSpan> residues,
+                                        double least_nN) {
     std::vector<ForcePart> parts;
     if (of == ShownForces::Hand) return parts;
-    const std::vector<Vec3> forces = find_forces_by_atoms(world, held_atoms(world, hand));
+    const std::vector<Vec3> forces = find_forces_by_atoms(world, held);
     const Mat3& projector = grip_of(world, hand).projector;
     const auto add = [&](std::size_t first, std::size_t end) {
         ForcePart part{first, end, Vec3::Zero()};
@@ -95,17 +104,15 @@ std::vector<ForcePart> find_force_parts(const World& world, Entity hand, ShownFo
     return parts;
 }
 
-ForceEnds find_ends(const World& world, Entity hand, const ForcePart& part) {
-    const AtomTable& atoms = world.resource<AtomTable>();
-    const std::vector<std::uint32_t> held = held_atoms(world, hand);
-    const std::vector<bool> bonded = find_bonded(atoms, held);
+ForceEnds find_ends(const World& world, const HeldPoints& held, const ForcePart& part) {
     std::vector<std::uint32_t> exerting;
     for (std::size_t i = part.first; i < part.end; ++i)
-        if (!bonded[i]) exerting.push_back(static_cast<std::uint32_t>(i));
-    const GatheredPoints group(atoms, held), others(atoms, exerting);
-    std::vector<Vec3> on_group(held.size(), Vec3::Zero()), on_others(exerting.size(), Vec3::Zero());
-    (void)add_pair_forces(group.view(), others.view(), pair_rule(world), on_group, on_others);
-    return {find_middle(others.positions, on_others), find_middle(group.positions, on_group)};
+        if (!held.is_bonded[i]) exerting.push_back(static_cast<std::uint32_t>(i));
+    const GatheredPoints others(world.resource<AtomTable>(), exerting);
+    std::vector<Vec3> on_held(held.numbers.size(), Vec3::Zero());
+    std::vector<Vec3> on_others(exerting.size(), Vec3::Zero());
+    (void)add_pair_forces(held.points.view(), others.view(), pair_rule(world), on_held, on_others);
+    return {find_middle(others.positions, on_others), find_middle(held.points.positions, on_held)};
 }
 
 glm::vec3 add_force_part(const Vec3& force_nN, const ForceEnds& ends, float decade,
@@ -128,13 +135,15 @@ void add_force_parts(const World& world, Entity hand, ShownForces of,
                      std::span<const ResidueSpan> residues, const HeldMolecule& held,
                      FrameScene& frame, std::vector<ViewLabel>& labels) {
     constexpr std::size_t most_residues = 10, most_atoms = 20, most_certain = 6;
-    std::vector<ForcePart> parts = find_force_parts(world, hand, of, residues);
+    if (of == ShownForces::Hand) return;
+    const HeldPoints points = gather_held(world, held_atoms(world, hand));
+    std::vector<ForcePart> parts = find_force_parts(world, hand, points, of, residues);
     parts.resize(std::min(parts.size(), of == ShownForces::Atoms ? most_atoms : most_residues));
     const float decade = decade_of(held, frame);
     for (std::size_t i = 0; i < parts.size(); ++i) {
         const Vec3 force_nN = nanonewton_per_unit * parts[i].force;
         const glm::vec3 place =
-            add_force_part(force_nN, find_ends(world, hand, parts[i]), decade, frame);
+            add_force_part(force_nN, find_ends(world, points, parts[i]), decade, frame);
         labels.push_back({place,
                           fmt::format("{} {}", name_of(world.resource<AtomTable>(), parts[i], of),
                                       force_in_words(force_nN.norm())),

@@ -4,6 +4,7 @@
 #include "math/vec.h"
 #include "render/frame_scene.h"
 #include "scene/choices.h"
+#include "simulation/held.h"
 #include "view/pocket.h"
 #include "view/signs.h"
 
@@ -16,41 +17,52 @@
 
 namespace palpa {
 
-// Of every atom of the table the force (kcal/mol/Å) that it exerts on these: non-bonded pairs, of
-// atoms within `reach` (Å); none of these themselves, and of those bonded to them over three bonds
-// or fewer.
-std::vector<Vec3> find_forces_by_atoms(const World& world, std::span<const std::uint32_t> held,
+// Held atoms, gathered once a frame for the functions below.
+struct HeldPoints {
+    std::vector<std::uint32_t> numbers;  // of the table
+    // One per atom of the table: whether it is held, or within three bonds of one that is. Such
+    // atoms exert no non-bonded force here.
+    std::vector<bool> is_bonded;
+    GatheredPoints points;
+};
+HeldPoints gather_held(const World& world, std::vector<std::uint32_t> numbers);
+
+// Returns one vector per atom of the table: the non-bonded force (kcal/mol/Å) that it exerts on the
+// held atoms. It is zero for held atoms, for atoms within three bonds of these, and for atoms
+// farther than `reach` (Å) from all of them.
+std::vector<Vec3> find_forces_by_atoms(const World& world, const HeldPoints& held,
                                        double reach = std::numeric_limits<double>::infinity());
 
 struct ForcePart {
     std::size_t first = 0, end = 0;  // atoms that exert it
-    Vec3 force = Vec3::Zero();       // on what is held, kcal/mol/Å
+    Vec3 force = Vec3::Zero();       // on the held atoms, kcal/mol/Å
 };
 
-// Of residues, or of single atoms, that exert more than the least force that is shown, on what the
-// hand holds, as far as the hand may move it, along x or in space; the strongest first, without a
-// reach. Of a rigid molecule in hand they sum to the force on the hand's arrow, but for those that
-// are weaker. Nothing for ShownForces::Hand. The hand must hold something.
-std::vector<ForcePart> find_force_parts(const World& world, Entity hand, ShownForces of,
-                                        std::span<const ResidueSpan> residues,
+// Returns the residues, or single atoms, that exert more than `least_nN` on what the hand holds,
+// the strongest first. No distance is too large. Forces are projected on the directions in which
+// the hand may move. For a rigid held molecule the parts sum to the force on the hand's arrow, less
+// the parts that are too weak. ShownForces::Hand gives no parts. The hand must hold something;
+// `held`: its held_atoms.
+std::vector<ForcePart> find_force_parts(const World& world, Entity hand, const HeldPoints& held,
+                                        ShownForces of, std::span<const ResidueSpan> residues,
                                         double least_nN = least_shown_nN);
 
-// Where an arrow of a part begins and ends: each place is the mean of its atoms', weighted by the
-// force that each has from or on the others.
+// Where an arrow of a part begins and ends. Each place is a mean over atoms, weighted by the size
+// of the force that acts on each atom.
 struct ForceEnds {
     Vec3 from = Vec3::Zero();  // among the atoms that exert it
-    Vec3 on = Vec3::Zero();    // among those that are held
+    Vec3 on = Vec3::Zero();    // among the held atoms
 };
-ForceEnds find_ends(const World& world, Entity hand, const ForcePart& part);
+ForceEnds find_ends(const World& world, const HeldPoints& held, const ForcePart& part);
 
-// An arrow on the side of `from`: of an attraction it starts on what is held, of a repulsion it
-// ends there. As long as the arrow of such a force on the hand, half as thick. Returns its other
-// end.
+// Draws an arrow on the side of `from`. An attraction starts on the held atoms, a repulsion ends
+// there. The arrow is as long as one of the same force on the hand, and half as thick. Returns the
+// end that is away from the held atoms.
 glm::vec3 add_force_part(const Vec3& force_nN, const ForceEnds& ends, float decade,
                          FrameScene& frame);
 
-// The arrows of the strongest 10 residues or 20 atoms, with their names and forces beside them,
-// those of the strongest 6 first to find room.
+// Draws the arrows of the strongest 10 residues or 20 atoms, labelled with name and force. The
+// labels of the strongest 6 are always shown, the others where there is room.
 void add_force_parts(const World& world, Entity hand, ShownForces of,
                      std::span<const ResidueSpan> residues, const HeldMolecule& held,
                      FrameScene& frame, std::vector<ViewLabel>& labels);

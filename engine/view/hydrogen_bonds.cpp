@@ -1,5 +1,6 @@
 #include "view/hydrogen_bonds.h"
 
+#include "molecule/element.h"
 #include "simulation/resources.h"
 #include "view/elements.h"
 #include "view/in_hand.h"
@@ -19,10 +20,6 @@ constexpr double longest = 2.5;          // Å
 constexpr double cosine_of_bend = -0.5;  // of 120°, the least angle at the hydrogen
 constexpr std::uint32_t no_donor = std::numeric_limits<std::uint32_t>::max();
 constexpr std::size_t bonds_without_pair = 4;  // of a nitrogen: nothing left to accept with
-
-bool is_polar(std::string_view element) {
-    return element == "N" || element == "O" || element == "S";
-}
 
 // What an atom has to do with hydrogen bonds.
 struct Role {
@@ -98,7 +95,7 @@ std::vector<HydrogenBond> find_hydrogen_bonds(const World& world, ShownBonds whi
         const double length = to_acceptor.norm();
         if (!(length < longest)) return;
         if (to_acceptor.dot(to_donor) > cosine_of_bend * length * to_donor.norm()) return;
-        found.push_back({hydrogen, acceptor, length});
+        found.push_back({hydrogen, acceptor, length, roles[hydrogen].donor});
     };
     for (std::uint32_t i = 0; i < atoms.size(); ++i) {
         if (!is_sought_from(i)) continue;

@@ -11,6 +11,7 @@ namespace palpa {
 struct HydrogenBond {
     std::uint32_t hydrogen = 0, acceptor = 0;  // atoms of the table
     double length = 0;                         // Å, from one to the other
+    std::uint32_t donor = 0;                   // the atom that has the hydrogen
 };
 
 // D-H...A, where D and A are nitrogen, oxygen or sulphur, A not a nitrogen with four bonds; shorter

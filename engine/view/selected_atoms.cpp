@@ -13,8 +13,10 @@
 #include <fmt/ranges.h>
 #include <algorithm>
 #include <cctype>
+#include <functional>
 #include <glm/common.hpp>
 #include <optional>
+#include <set>
 #include <string_view>
 
 namespace palpa {
@@ -28,16 +30,23 @@ std::vector<ResidueAtoms> residues_of(const AtomDirectory& directory, const Atom
     std::vector<ResidueAtoms> residues;
     for (std::uint32_t i = atoms.first; i < atoms.first + atoms.count; ++i) {
         const bool goes_on =
-            i > atoms.first && is_same_residue(directory.names[i - 1], directory.names[i]);
+            i > atoms.first && directory.residue_of[i - 1] == directory.residue_of[i];
         if (!goes_on) residues.push_back({i, i});
         residues.back().end = i + 1;
     }
     return residues;
 }
 
+// Atoms that `chosen` says nothing of are not chosen.
+bool is_chosen(const std::vector<bool>& chosen, std::size_t atom) {
+    return atom < chosen.size() && chosen[atom];
+}
+
 std::size_t count_in(const ResidueAtoms& residue, const std::vector<bool>& chosen) {
-    const auto at = [&](std::uint32_t atom) { return chosen.begin() + atom; };
-    return static_cast<std::size_t>(std::count(at(residue.first), at(residue.end), true));
+    std::size_t count = 0;
+    for (std::uint32_t i = residue.first; i < residue.end; ++i)
+        if (is_chosen(chosen, i)) ++count;
+    return count;
 }
 
 // A name that is spelt as a word of the language, or has other signs than letters, in quotes.
@@ -52,12 +61,30 @@ std::string as_name(const std::string& name) {
     return is_plain && !is_word && !name.empty() ? name : fmt::format("\"{}\"", name);
 }
 
-// Their numbers; three or more that follow each other as a range.
-std::string list_numbers(const AtomDirectory& directory, std::span<const ResidueAtoms> residues) {
+// The numbers without their letters of residues that have one and are not chosen: "4" for 4A.
+std::set<std::string, std::less<>> list_unchosen_letters(const AtomDirectory& directory,
+                                                         std::span<const ResidueAtoms> residues,
+                                                         const std::vector<bool>& chosen) {
+    std::set<std::string, std::less<>> numbers;
+    for (const ResidueAtoms& residue : residues) {
+        const std::string& number = directory.names[residue.first].number;
+        const bool has_letter =
+            !number.empty() && std::isdigit(static_cast<unsigned char>(number.back())) == 0;
+        if (has_letter && count_in(residue, chosen) == 0)
+            numbers.insert(number.substr(0, number.size() - 1));
+    }
+    return numbers;
+}
+
+// The residues' numbers; three or more that follow each other as a range. A range also selects the
+// residues with letters of its numbers (1:4 selects 4A), so those of `no_range` stand alone.
+std::string list_numbers(const AtomDirectory& directory, std::span<const ResidueAtoms> residues,
+                         const std::set<std::string, std::less<>>& no_range) {
     const auto number = [&](std::size_t i) -> const std::string& {
         return directory.names[residues[i].first].number;
     };
     const auto follows = [&](std::size_t i) {
+        if (no_range.contains(number(i - 1)) || no_range.contains(number(i))) return false;
         const std::optional<std::int64_t> before = find_integer(number(i - 1)),
                                           now = find_integer(number(i));
         return residues[i - 1].end == residues[i].first && before && now && *before >= 0 &&
@@ -106,26 +133,33 @@ std::string expression_of(const AtomDirectory& directory, const std::vector<bool
         const AtomDirectory::Entry* molecule;
         std::size_t of;  // residues in all
         std::vector<ResidueAtoms> residues;
+        std::set<std::string, std::less<>> no_range;
     };
     std::vector<Part> parts;
     std::size_t count = 0;
     for (const AtomDirectory::Entry& molecule : directory.molecules) {
         std::vector<ResidueAtoms> residues = residues_of(directory, molecule.atoms);
         const std::size_t all = residues.size();
+        std::set<std::string, std::less<>> no_range =
+            list_unchosen_letters(directory, residues, chosen);
         std::erase_if(residues, [&](const auto& each) { return count_in(each, chosen) == 0; });
         count += residues.size();
-        if (!residues.empty()) parts.push_back({&molecule, all, std::move(residues)});
+        if (!residues.empty())
+            parts.push_back({&molecule, all, std::move(residues), std::move(no_range)});
     }
     std::vector<std::string> texts;
     for (const Part& part : parts) {
         std::string text = fmt::format("molecule {}", as_name(part.molecule->molecule));
         const bool is_whole = part.of == part.residues.size();
-        if (!is_whole) text += fmt::format(" and resid {}", list_numbers(directory, part.residues));
+        if (!is_whole)
+            text +=
+                fmt::format(" and resid {}", list_numbers(directory, part.residues, part.no_range));
         const ResidueAtoms& first = part.residues.front();
         if (count == 1 && count_in(first, chosen) < first.end - first.first) {
             text += " and name";
             for (std::uint32_t i = first.first; i < first.end; ++i)
-                if (chosen[i]) text += fmt::format(" {}", as_name(directory.names[i].atom));
+                if (is_chosen(chosen, i))
+                    text += fmt::format(" {}", as_name(directory.names[i].atom));
         }
         texts.push_back(std::move(text));
     }
@@ -183,21 +217,14 @@ std::vector<bool> find_in_box(const FrameScene& frame, std::span<const glm::vec3
 
 void highlight(const AtomDirectory& directory, std::span<const glm::vec3> places,
                const std::vector<bool>& chosen, FrameScene& frame) {
-    if (chosen.size() != places.size() || directory.names.size() != places.size()) return;
+    const std::vector<std::uint32_t>& residue_of = directory.residue_of;
+    if (chosen.size() != places.size() || residue_of.size() != places.size()) return;
     constexpr float share = 0.75F, thicker = 1.3F, dot_radius = 0.35F;  // Å
     const auto tint = [&](glm::vec3& colour) { colour = glm::mix(colour, selected_colour, share); };
-    // Of each atom: whether its residue has one that is chosen; and whether one of it is shown.
-    std::vector<ResidueAtoms> residues;
-    std::vector<std::size_t> residue_of(places.size(), 0);
-    for (const AtomDirectory::Entry& molecule : directory.molecules)
-        for (const ResidueAtoms& residue : residues_of(directory, molecule.atoms)) {
-            std::fill(residue_of.begin() + residue.first, residue_of.begin() + residue.end,
-                      residues.size());
-            residues.push_back(residue);
-        }
-    std::vector<bool> has_chosen(residues.size()), is_shown(residues.size(), false);
-    for (std::size_t i = 0; i < residues.size(); ++i)
-        has_chosen[i] = count_in(residues[i], chosen) > 0;
+    const std::size_t residues = residue_of.empty() ? 0 : residue_of.back() + std::size_t{1};
+    std::vector<bool> has_chosen(residues, false), is_shown(residues, false);
+    for (std::size_t i = 0; i < chosen.size(); ++i)
+        if (chosen[i]) has_chosen[residue_of[i]] = true;
     const auto show = [&](std::uint32_t pick) {
         if (pick < places.size()) is_shown[residue_of[pick]] = true;
         return pick < places.size();

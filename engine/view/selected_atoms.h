@@ -19,7 +19,7 @@ namespace palpa {
 // column, as parse_selection and select_atoms do.
 std::vector<bool> select_as_seen(const World& world, const std::string& expression);
 
-// "12 residues, 180 atoms".
+// "12 residues, 180 atoms". Here and below atoms beyond the end of `chosen` are not chosen.
 std::string describe_count(const AtomDirectory& directory, const std::vector<bool>& chosen);
 
 // An expression that selects the residues with a chosen atom; or, where they are of one residue

@@ -163,15 +163,19 @@ void add_torque(const glm::vec3& torque_angstrom_nN, const HeldMolecule& held, F
     labels.push_back({arc.place(sweep), with_unit(size, "N Å")});
 }
 
+std::vector<float> find_drawn_radii(const FrameScene& frame, std::size_t atoms) {
+    std::vector<float> radii(atoms, 0);
+    for (const SphereShape& sphere : frame.spheres)
+        if (sphere.pick < atoms) radii[sphere.pick] = sphere.radius;
+    return radii;
+}
+
 void add_hydrogen_bonds(const AtomTable& atoms, std::span<const HydrogenBond> bonds,
                         FrameScene& frame, std::vector<ViewLabel>& labels) {
     constexpr float dash = 0.16F, radius = 0.06F, least = 0.2F;  // Å
     constexpr std::size_t most_labels = 4;
     if (bonds.empty()) return;
-    std::vector<float> radius_of(atoms.size(), 0);
-    for (const SphereShape& sphere : frame.spheres) {
-        if (sphere.pick < atoms.size()) radius_of[sphere.pick] = sphere.radius;
-    }
+    const std::vector<float> radius_of = find_drawn_radii(frame, atoms.size());
     std::size_t drawn = 0;
     for (const HydrogenBond& bond : bonds) {
         const auto place_of = [&](std::uint32_t atom) {

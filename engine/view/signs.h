@@ -7,6 +7,7 @@
 #include "view/hydrogen_bonds.h"
 #include "view/picks.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <span>
@@ -58,6 +59,9 @@ void add_force(const glm::vec3& force_nN, const HeldMolecule& held, FrameScene& 
 // molecule on the side to which it points.
 void add_torque(const glm::vec3& torque_angstrom_nN, const HeldMolecule& held, FrameScene& frame,
                 std::vector<ViewLabel>& labels);
+
+// The radius (Å) of each of so many atoms as the frame draws it; 0 where it has no sphere.
+std::vector<float> find_drawn_radii(const FrameScene& frame, std::size_t atoms);
 
 // Dashes from the hydrogen to the acceptor, where the atoms as drawn leave room. The lengths of up
 // to four are written beside them, of more only the shortest's.

@@ -227,6 +227,7 @@ TEST_CASE("what the context lacks is refused", "[molecule][selection]") {
 TEST_CASE("a selection says what it depends on", "[molecule][selection]") {
     CHECK(depends_on_positions(parse_selection("protein and not within 5 of hand")));
     CHECK(depends_on_positions(parse_selection("(y > 3)")));
+    CHECK(depends_on_positions(parse_selection("name CA and not helix")));
     CHECK_FALSE(depends_on_positions(parse_selection("byres charge > 3 or hand")));
     CHECK(depends_on_hands(parse_selection("protein and not within 5 of hand")));
     CHECK_FALSE(depends_on_hands(parse_selection("protein or x > 3")));

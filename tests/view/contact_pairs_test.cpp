@@ -25,6 +25,11 @@ using namespace palpa;
 
 namespace {
 
+ContactPairs find_pairs(const World& world, ShownBonds which) {
+    return find_contact_pairs(world, which, find_residues(world),
+                              find_hydrogen_bonds(world, which));
+}
+
 // Two waters of which the first atoms alone are near to each other, on the x axis; the third one is
 // by itself.
 struct Pair {
@@ -53,7 +58,7 @@ struct Pair {
         atoms.names[first].atom = atom;
     }
     std::array<std::size_t, 3> count(ShownBonds which = ShownBonds::InHand) {
-        const ContactPairs found = find_contact_pairs(world, which, find_residues(world));
+        const ContactPairs found = find_pairs(world, which);
         return {found.contacts.size(), found.clashes.size(), found.salt_bridges.size()};
     }
 };
@@ -115,6 +120,29 @@ TEST_CASE("a hydrogen bond is no contact, and a clash where it is 0.4 Å shorter
     CHECK(pair.count() == Counts{0, 1, 0});
 }
 
+TEST_CASE("the worst clash is that of the largest overlap beyond what its pair is allowed",
+          "[view][contacts]") {
+    Pair pair;
+    pair.put(2.2, "O", "O");  // 0.84 Å of overlap; 0.44 with the allowance of a hydrogen bond
+    AtomTable& atoms = pair.world.resource<AtomTable>();
+    atoms.positions[pair.moved + 1] = {0.96, 0, 0};
+    const std::uint32_t third = test::range_called(pair.world, "third").first;
+    atoms.element[third] = "C";
+    atoms.positions[third] = {0, 2.6, 0};  // 1.52 + 1.70 - 2.6 = 0.62 Å
+
+    const ContactPairs found = find_pairs(pair.world, ShownBonds::InHand);
+
+    REQUIRE(found.clashes.size() == 2);
+    CHECK((found.clashes[0].pair.a == third || found.clashes[0].pair.b == third));
+    CHECK(found.clashes[0].excess == Approx(0.62));
+    CHECK(found.clashes[1].excess == Approx(0.44));
+    std::vector<ViewLabel> labels;
+    FrameScene frame;
+    add_contact_pairs(atoms, found, frame, labels);
+    REQUIRE(labels.size() == 1);
+    CHECK(labels[0].text == "0.6 Å overlap");
+}
+
 TEST_CASE("a salt bridge of what is in hand is found, and is no contact", "[view][contacts]") {
     Pair pair;
     pair.put(2.9, "N", "O");
@@ -168,7 +196,7 @@ TEST_CASE("contacts of the inhibitor in HIV-1 protease are those of a plain sear
                 std::ranges::count_if(joined, [&](const auto& one) { return near.contains(one); }));
         }();
 
-    const ContactPairs found = find_contact_pairs(world, ShownBonds::InHand, find_residues(world));
+    const ContactPairs found = find_pairs(world, ShownBonds::InHand);
 
     CHECK(near.size() > 50);
     CHECK(bonded > 3);

@@ -30,6 +30,13 @@ World protease_world() {
     return load_world(read_scene(test::in_project("scenes/hiv"), std::vector<std::string>()));
 }
 
+std::vector<ForcePart> find_parts(const World& world, ShownForces of,
+                                  double least_nN = least_shown_nN) {
+    const Entity hand = first_hand(world);
+    return find_force_parts(world, hand, gather_held(world, held_atoms(world, hand)), of,
+                            find_residues(world), least_nN);
+}
+
 Vec3 sum_of(const std::vector<ForcePart>& parts) {
     Vec3 sum = Vec3::Zero();
     for (const ForcePart& part : parts) sum += part.force;
@@ -60,10 +67,9 @@ TEST_CASE("the forces of all residues, or of all atoms, sum to the force on the 
     // Another place than that of rest, where forces cancel.
     place_grabbed(world, grip_of(world, hand).pose.place_angstrom + Vec3(0.4, 0, 0));
     const Vec3 whole = grip_of(world, hand).projector * field_on_held(world, hand).force;
-    const std::vector<ResidueSpan> residues = find_residues(world);
     const ShownForces of = GENERATE(ShownForces::Residues, ShownForces::Atoms);
 
-    const std::vector<ForcePart> parts = find_force_parts(world, hand, of, residues, 0);
+    const std::vector<ForcePart> parts = find_parts(world, of, 0);
 
     REQUIRE(whole.norm() > 0.1);
     CHECK((sum_of(parts) - whole).norm() < 1e-9 * whole.norm());
@@ -78,7 +84,25 @@ TEST_CASE("the forces of all residues, or of all atoms, sum to the force on the 
         CHECK_FALSE(has_atom(held, part.first));
         CHECK((of == ShownForces::Residues || part.end == part.first + 1));
     }
-    CHECK(find_force_parts(world, hand, ShownForces::Hand, residues, 0).empty());
+    CHECK(find_parts(world, ShownForces::Hand, 0).empty());
+}
+
+TEST_CASE("with a reach, forces are those of the atoms in it alone", "[view][forces]") {
+    const World world = test::three_waters(0, {0, 40, 0});
+    const HeldPoints held = gather_held(world, held_atoms(world, first_hand(world)));
+    const AtomRange fixed = test::range_called(world, "fixed");
+    const AtomRange third = test::range_called(world, "third");
+
+    const std::vector<Vec3> all = find_forces_by_atoms(world, held);
+    const std::vector<Vec3> near = find_forces_by_atoms(world, held, 12);
+
+    for (std::uint32_t i = 0; i < all.size(); ++i) {
+        CHECK(all[i].isZero(0) == has_atom(held_range(world, first_hand(world)), i));
+        const Vec3 expected = has_atom(third, i) ? Vec3(Vec3::Zero()) : all[i];
+        CHECK((near[i] - expected).norm() <= 1e-12 * expected.norm());
+    }
+    CHECK(near[fixed.first].norm() > 0);
+    CHECK(all[third.first].norm() > 0);
 }
 
 TEST_CASE("of two waters the other one does all: its arrow is as long as the hand's",
@@ -124,8 +148,7 @@ TEST_CASE("of many the strongest 10 residues or 20 atoms are drawn, with their n
 
     const FrameScene frame = build_frame(world, {}, settings, &labels);
 
-    const std::vector<ForcePart> parts =
-        find_force_parts(world, first_hand(world), of, find_residues(world));
+    const std::vector<ForcePart> parts = find_parts(world, of);
     const std::vector<glm::vec3> arrows = list_arrows(frame);
     REQUIRE(arrows.size() == static_cast<std::size_t>(most));
     REQUIRE(labels.size() == arrows.size());

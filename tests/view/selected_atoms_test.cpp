@@ -28,6 +28,7 @@ AtomDirectory small_directory() {
                        {"A", "ALA", "3", "N"},   {"A", "ALA", "4", "N"},  {"A", "SER", "4A", "O5'"},
                        {"W", "TIP3", "1", "OH2"}};
     directory.molecules = {{"a", {0, 6}, 0}, {"water", {6, 1}, 6}};
+    number_residues(directory);
     return directory;
 }
 
@@ -80,6 +81,24 @@ TEST_CASE("chosen atoms become an expression that selects their residues", "[vie
     CHECK(select(directory, expression_of(directory, atoms({0, 2, 6}))) == atoms({0, 1, 2, 6}));
     for (std::uint32_t i = 0; i < 7; ++i)
         CHECK(select(directory, expression_of(directory, i)) == atoms({i}));
+}
+
+TEST_CASE("a range does not reach to residues with letters that are not chosen",
+          "[view][selection]") {
+    const AtomDirectory directory = small_directory();
+    const std::vector<bool> without = atoms({0, 1, 2, 3, 4}), with = atoms({0, 1, 2, 3, 4, 5});
+
+    CHECK(expression_of(directory, without) == "molecule a and resid 1:3 4");
+    CHECK(select(directory, expression_of(directory, without)) == without);
+    CHECK(select(directory, expression_of(directory, with)) == with);
+    CHECK(select(directory, "molecule a and resid 1:4") == with);
+}
+
+TEST_CASE("atoms beyond the end of what is chosen are not chosen", "[view][selection]") {
+    const AtomDirectory directory = small_directory();
+    CHECK(describe_count(directory, atoms({1}, 2)) == "1 residue, 1 atom");
+    CHECK(expression_of(directory, atoms({1}, 2)) == "molecule a and resid 1 and name CA");
+    CHECK(expression_of(directory, atoms({8}, 9)) == "none");
 }
 
 TEST_CASE("a box selects what is shown and seen in it", "[view][selection]") {
