@@ -17,7 +17,7 @@ constexpr auto waters =
     std::to_array<Name>({"HOH", "WAT", "H2O", "DOD", "SOL", "TIP", "TIP2", "TIP3", "TIP4", "TIP5",
                          "TP3M", "SPC", "SPCE", "OH2", "TP3", "T3P", "WTR", "HHO", "OHH"});
 
-// The twenty, with the protonation states of CHARMM and AMBER, and caps.
+// With the protonation states of CHARMM and AMBER, and caps.
 constexpr auto plain_amino_acids = std::to_array<Name>(
     {"ALA", "ARG", "ASN", "ASP", "CYS", "GLN", "GLU", "GLY", "HIS", "ILE", "LEU", "LYS",
      "MET", "PHE", "PRO", "SER", "THR", "TRP", "TYR", "VAL", "HSD", "HSE", "HSP", "HID",
@@ -138,6 +138,10 @@ private:
 }  // namespace
 
 bool is_water(std::string_view residue) noexcept { return contains(waters, residue); }
+
+bool is_plain_amino_acid(std::string_view residue) noexcept {
+    return contains(plain_amino_acids, residue);
+}
 
 std::vector<ResidueKind> find_residue_kinds(const AtomTable& atoms,
                                             std::span<const AtomRange> residues) {

@@ -23,6 +23,9 @@ enum class ResidueKind : std::uint8_t {
 // By its name in the PDB, in CHARMM or in other programs.
 bool is_water(std::string_view residue) noexcept;
 
+// One of the 20, whatever its protonation, or a cap.
+bool is_plain_amino_acid(std::string_view residue) noexcept;
+
 // Of each residue, a range of the table. By its atoms where these decide: a water is an oxygen with
 // two hydrogens, an amino acid has N, CA and C, a nucleotide a ribose and a bond to the next
 // nucleotide. Else by its name: of the PDB (molecule/components.h) and of CHARMM36.

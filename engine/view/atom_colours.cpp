@@ -130,7 +130,12 @@ Colours colour_pushes(const World& world) {
         const double pN = push * units::piconewton_per_kcal_per_mol_angstrom;
         shares.push_back(pN > 0 ? std::log10(pN / least_push_pN) : -1);
     }
-    return colour_scale(shares, 0, std::log10(most_push_pN / least_push_pN));
+    Colours colours = colour_scale(shares, 0, std::log10(most_push_pN / least_push_pN));
+    const Colours elements = colour_elements(world, false);
+    const std::vector<bool> held = find_held_atoms(world);
+    for (std::size_t i = 0; i < colours.size(); ++i)
+        if (held[i]) colours[i] = elements[i];
+    return colours;
 }
 
 constexpr double degrees = 180 / std::numbers::pi;
@@ -138,12 +143,13 @@ constexpr double most_turn_deg = 30;
 constexpr double least_answer_deg = 0.001, most_answer_deg = 1;  // logarithmic
 
 // What activity shows of a world.
-enum class ShownActivity { Turned, Active, BeyondFirstOrder };
+enum class ShownActivity { Nothing, Turned, Active, BeyondFirstOrder };
 
 ShownActivity shown_activity(const World& world) {
     if (world.find_resource<AdaptiveState>()) return ShownActivity::Active;
     if (world.find_resource<SecondOrder>()) return ShownActivity::BeyondFirstOrder;
-    return ShownActivity::Turned;
+    const TorsionState* const state = world.find_resource<TorsionState>();
+    return state && !state->angles.empty() ? ShownActivity::Turned : ShownActivity::Nothing;
 }
 
 // Of each atom what its body has; 0 of those that are in none.
@@ -189,6 +195,8 @@ Colours colour_activity(const World& world) {
                 of_atoms<std::uint8_t>(
                     world, world.find_resource<AdaptiveState>()->statics.selection.is_active),
                 0, 1);
+        case ShownActivity::Nothing:
+            return Colours(world.resource<AtomTable>().size(), no_value);
         case ShownActivity::Turned:
             break;
     }
@@ -246,8 +254,9 @@ std::vector<glm::vec3> find_colours(const World& world, Colouring colouring,
         case Colouring::Activity:
         case Colouring::Error:
             return colours;
-        case Colouring::Charge:
         case Colouring::Potential:
+            return colour_elements(world, true);
+        case Colouring::Charge:
             colour_residues(residues, colours, [&](const ResidueSpan& residue) {
                 double charge = 0;
                 for (std::size_t i = residue.first; i < residue.end; ++i) charge += atoms.charge[i];
@@ -307,7 +316,7 @@ std::vector<LegendEntry> find_legend(const World& world, Colouring colouring) {
                     {diverging_colour(0, 1), "0"},
                     {diverging_colour(1, 1), "+1 e"}};
         case Colouring::Potential:
-            return {{potential_colour(-potential_end), fmt::format("{} kT/e", -potential_end)},
+            return {{potential_colour(-potential_end), fmt::format("surface at {} kT/e", -potential_end)},
                     {potential_colour(0), "0"},
                     {potential_colour(potential_end), fmt::format("+{} kT/e", potential_end)}};
         case Colouring::Hydrophobicity:
@@ -330,6 +339,8 @@ std::vector<LegendEntry> find_legend(const World& world, Colouring colouring) {
                 case ShownActivity::Active:
                     return {{sequential_colour(0), "joint or base at rest"},
                             {sequential_colour(1), "active now"}};
+                case ShownActivity::Nothing:
+                    return {{no_value, "nothing here has joints that turn"}};
                 case ShownActivity::Turned:
                     break;
             }

@@ -25,9 +25,9 @@ namespace palpa {
 //     joint has turned since the scene's files, from 0 to 30°
 //   error: by second order, of its joint's angle against complete relaxation, as estimated
 //     (statics/joint_answers.h), from 0.001° to 1°, logarithmic; grey without an estimate
-//   potential: on surfaces (view/surface_shape.h), atoms as by charge
+//   potential: on surfaces (view/surface_shape.h), all else as by chain
 //   hydrophobicity: of the residue (molecule/hydropathy.h)
-// The atoms in hands have their elements' colours, but for charge, force, activity and error.
+// The atoms in hands have their elements' colours, but for charge, activity and error.
 std::vector<glm::vec3> find_colours(const World& world, Colouring colouring,
                                     std::span<const ResidueSpan> residues,
                                     std::span<const SecondaryStructure> structure);

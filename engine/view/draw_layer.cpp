@@ -188,6 +188,9 @@ std::vector<Thickness> find_thickness(const FrameParts& parts, std::span<const A
     for (std::size_t i = 0; i < parts.residues.size(); ++i) {
         const ResidueSpan& residue = parts.residues[i];
         const bool is_solvent = is_water(atoms.names[residue.first].residue);
+        // What such a side chain is could not be seen from a ribbon: retinal on its lysine.
+        const bool is_modified =
+            residue.alpha < residue.end && !is_plain_amino_acid(atoms.names[residue.first].residue);
         for (std::size_t atom = residue.first; atom < residue.end; ++atom) {
             const auto [representation, colouring, visible] = looks[atom];
             if (!visible) continue;
@@ -198,7 +201,9 @@ std::vector<Thickness> find_thickness(const FrameParts& parts, std::span<const A
             const bool in_hand = representation == Representation::InHand
                                      ? static_cast<bool>(parts.in_hand[atom])
                                      : is_held;
-            if (!is_held && in_ribbon[i] && (is_cartoon || (is_pocket && !near[atom]))) continue;
+            if (!is_held && in_ribbon[i] && !is_modified &&
+                (is_cartoon || (is_pocket && !near[atom])))
+                continue;
             if (is_cartoon && is_solvent && !is_held) continue;
             if (left_out[atom] && chooses_hydrogens(representation)) continue;
             const std::string_view element = element_of(atoms, atom);

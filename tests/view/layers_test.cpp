@@ -77,6 +77,27 @@ TEST_CASE("a cartoon shows proteins as ribbons and the rest as balls", "[view][l
     CHECK(frame.spheres.size() == count(world, "ligand"));
 }
 
+TEST_CASE("a cartoon shows the atoms of a modified residue", "[view][layers]") {
+    World world = protease_world();
+    const auto drawn = [&] {
+        std::size_t found = 0;
+        for (const SphereShape& sphere : build_frame(world, plain(Representation::Cartoon)).spheres)
+            found += sphere.pick < world.resource<AtomTable>().size() &&
+                     world.resource<AtomTable>().names[sphere.pick].residue == "LYR";
+        return found;
+    };
+    std::size_t renamed = 0;
+    const std::vector<bool> lysine =
+        select_in_world(world, parse_selection("protein and resid 45 and index 0:1500"));
+    for (std::size_t i = 0; i < lysine.size(); ++i) {
+        if (!lysine[i]) continue;
+        world.resource<AtomTable>().names[i].residue = "LYR";
+        ++renamed;
+    }
+    REQUIRE(renamed == 22);
+    CHECK(drawn() == renamed);
+}
+
 TEST_CASE("residues that are missing leave a dashed gap", "[view][layers]") {
     World world = protease_world();
     const std::size_t before = build_frame(world, plain(Representation::Cartoon)).cones.size();
@@ -182,6 +203,13 @@ TEST_CASE("colours stand for numbers of the world", "[view][colours]") {
     CHECK(colours(Colouring::BFactor)[7] == sequential_colour(1));
     CHECK(colours(Colouring::BFactor)[8] == sequential_colour(0));
     CHECK_THAT(find_legend(world, Colouring::BFactor).back().text, Contains("80"));
+    // What has no value has no colour of the scale: atoms beside a surface, what is in hand, and
+    // joints where nothing turns.
+    CHECK(colours(Colouring::Potential) == colours(Colouring::Chain));
+    const AtomRange held = held_range(world, first_hand(world));
+    CHECK(colours(Colouring::Force)[held.first] == colours(Colouring::Element)[held.first]);
+    CHECK(colours(Colouring::Activity)[7] == find_legend(world, Colouring::Activity).at(0).colour);
+    CHECK_THAT(find_legend(world, Colouring::Activity).at(0).text, Contains("nothing"));
 }
 
 TEST_CASE("what pushes the hand is what the pairs say", "[view][colours]") {

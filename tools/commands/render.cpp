@@ -349,7 +349,7 @@ void add_look_options(CLI::App& render, RenderOptions& options) {
         [&](const std::string& value) { options.labels.push_back(value); });
     render
         .add_option("--hydrogen-bonds", options.hydrogen_bonds,
-                    "none, in-hand (of what is in the hand) or all, as it stands alone")
+                    "none, in-hand (of the molecule in hand) or all; without a value all")
         ->expected(0, 1)
         ->default_str("all");
     render.add_option(
@@ -375,7 +375,7 @@ void add_mark_options(CLI::App& render, MarkOptions& marks) {
         ->each([&](const std::string& value) { marks.measures.push_back(value); });
     render
         .add_option("--contacts", marks.contacts,
-                    "contacts, clashes and salt bridges: none, in-hand or all, as it stands alone")
+                    "contacts, clashes and salt bridges: none, in-hand or all; without a value all")
         ->expected(0, 1)
         ->default_str("all");
     render
