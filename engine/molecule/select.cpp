@@ -394,6 +394,10 @@ bool depends_on_hands(const Selection& selection) {
     });
 }
 
+bool is_constant(const Selection& selection) {
+    return !depends_on_positions(selection) && !depends_on_hands(selection);
+}
+
 std::vector<bool> select_atoms(const Selection& selection, const SelectionContext& context) {
     return Evaluation(context, selection.source).select(*selection.root);
 }

@@ -25,13 +25,17 @@ struct Selection {
 Selection parse_selection(std::string_view text, std::string source = "selection");
 
 // What is measured: two, three or four expressions with ';' between them, "name CA and resid 25;
-// ligand". Throws the same; columns are those of the whole text.
+// ligand". Where one selects several atoms, the mean of their places stands for them, not weighted
+// by mass. Throws the same; columns are those of the whole text.
 std::vector<Selection> parse_measure(std::string_view text, const std::string& source = "measure");
 
 // Whether other atoms may be selected once atoms have moved, which helices and strands follow, or
 // hands hold others.
 bool depends_on_positions(const Selection& selection);
 bool depends_on_hands(const Selection& selection);
+
+// Neither: the same atoms are selected until some are added or removed.
+bool is_constant(const Selection& selection);
 
 struct NamedRange {
     std::string name;

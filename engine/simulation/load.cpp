@@ -261,6 +261,7 @@ void start_hands(const SceneDescription& scene, World& world) {
 World read_world(const SceneDescription& scene, const StageFunction& on_stage) {
     World world;
     world.set_resource(AtomTable{});
+    world.set_resource(AtomEdition{});
     world.set_resource(Clock{scene.period_ms * 1e-3});
     world.set_resource(BondedTerms{});
     world.set_resource(Mechanics{});

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -63,6 +64,7 @@ Entity create_molecule(World& world, Molecule molecule, Mobility mobility, Sourc
     world.set(entity, mobility);
     world.set(entity, Pose{place, Quat::Identity()});
     world.set(entity, std::move(source));
+    world.set_resource(AtomEdition{std::make_shared<int>()});
     return entity;
 }
 
@@ -107,6 +109,7 @@ void set_shape(World& world, Entity entity) {
 void remove_atoms(World& world, Entity entity) {
     const AtomRange gone = world.find<Molecule>(entity)->atoms;
     AtomTable& atoms = world.resource<AtomTable>();
+    world.set_resource(AtomEdition{std::make_shared<int>()});
     erase(gone, atoms.names);
     erase(gone, atoms.positions);
     erase(gone, atoms.element);

@@ -41,6 +41,14 @@ struct BondedTerms {
 // Beside these: the AtomTable, whose positions every step writes, the TorsionState, without atoms
 // where nothing is mobile, and where clients pull a ClientPull.
 
+// Stands for which atoms, molecules and bonds there are. Copies of a world share it; where any were
+// added or removed it is another one, which is equal to no other.
+struct AtomEdition {
+    std::shared_ptr<const int> mark;
+
+    friend bool operator==(const AtomEdition&, const AtomEdition&) = default;
+};
+
 // What atoms do to each other, beside what the table says of each.
 struct Interactions {
     double coulomb_constant = 0;                    // kcal Å/mol/e^2; over eps with smooth ends

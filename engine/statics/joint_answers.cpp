@@ -44,17 +44,18 @@ std::vector<double> estimate_joint_errors(const TorsionModel& model,
                                           const SecondOrderStatics& statics) {
     if (!statics.linear) return std::vector<double>(model.coordinate_of_body.size(), 0);
     const double age = find_relative_age(model, settings, state, statics);
-    std::vector<double> errors = find_unrelaxed_turns(model, statics);
+    const LinearisedModel& linear = *statics.linear;
+    std::vector<double> errors =
+        find_unrelaxed_turns(model, linear, statics.value.gradient.head(linear.mobile()));
     const std::vector<double>& growth = statics.joint_error_growth;
     for (std::size_t i = 0; i < errors.size(); ++i)
         errors[i] = std::hypot(errors[i], i < growth.size() ? growth[i] * age * age : 0);
     return errors;
 }
 
-std::vector<double> find_unrelaxed_turns(const TorsionModel& model,
-                                         const SecondOrderStatics& statics) {
-    const LinearisedModel& linear = *statics.linear;
-    return turns_of(model, linear, linear.balance(-statics.value.gradient.head(linear.mobile())));
+std::vector<double> find_unrelaxed_turns(const TorsionModel& model, const LinearisedModel& linear,
+                                         const Eigen::VectorXd& gradient) {
+    return turns_of(model, linear, linear.balance(-gradient));
 }
 
 void note_joint_answers(const TorsionModel& model, const SecondOrderSettings& settings,

@@ -6,27 +6,31 @@
 
 namespace palpa {
 
-// By how much each body's joint differs from the linear answer to the hands' move since the
-// linearisation, rad: what relaxation on the model has added. Of the model now and of the last one
-// that ended after hands had moved the larger, so that it can be seen where hands stand still and
-// renewals follow each other. 0 of bases, and of everything before the first step.
+// Returns one angle per body, rad: by how much its joint differs from the linear answer to the
+// hands' move since the linearisation. This is what relaxation on the model has added. Two models
+// count: the one now, and the last one that ended after hands had moved. The larger angle is
+// returned, so that it can be seen while hands stand still and renewals follow each other. It is 0
+// for bases, and for everything before the first step.
 std::vector<double> find_beyond_first_order(const TorsionModel& model,
                                             const SecondOrderStatics& statics);
 
-// Estimated error of each body's joint against complete relaxation, rad, never below 0: what the
-// model has yet to turn it, and the model's own error at the last renewals, which grows with the
-// square of the age. That a minimum is about to vanish, so that relaxation goes far from here, it
-// cannot know. 0 as above. `state`: where the last step left it.
+// Returns one estimated error per body, rad, never below 0: how far its joint is from where
+// complete relaxation would turn it. The estimate has two parts: what the model has yet to turn the
+// joint, and the error that the model itself had at the last renewals, which grows with the square
+// of its age. The estimate cannot know that a minimum is about to vanish, so that relaxation goes
+// far. It is 0 for bases, and before the first step. `state`: where the last step left it.
 std::vector<double> estimate_joint_errors(const TorsionModel& model,
                                           const SecondOrderSettings& settings,
                                           const TorsionState& state,
                                           const SecondOrderStatics& statics);
 
-// -H^-1 g of the model: what it would yet turn each body's joint before it is at rest, rad.
-std::vector<double> find_unrelaxed_turns(const TorsionModel& model,
-                                         const SecondOrderStatics& statics);
+// Returns one angle per body, rad: how far the model would turn its joint before the model is at
+// rest, -H^-1 g. `gradient`: of the model, along its own coordinates.
+std::vector<double> find_unrelaxed_turns(const TorsionModel& model, const LinearisedModel& linear,
+                                         const Eigen::VectorXd& gradient);
 
-// Before a renewal is used, of the model that ends with it.
+// Keeps what the functions above need of the model that this renewal replaces. Call it before the
+// renewal is used.
 void note_joint_answers(const TorsionModel& model, const SecondOrderSettings& settings,
                         const Renewal& renewal, SecondOrderStatics& statics);
 

@@ -1,5 +1,7 @@
 #include "statics/renewal.h"
 
+#include "statics/joint_answers.h"
+
 #include <algorithm>
 #include <cmath>
 #include <tuple>
@@ -88,8 +90,10 @@ Renewal make_renewal(const TorsionModel& model, const SecondOrderSettings& setti
         renewal.model_error = find_largest_force(
             memory.lineariser.held.hands, request.at_rest - linear->gradient.tail(linear->hands()));
         renewal.error_age = request.age;
-        for (std::size_t i = 0; i < request.left.size(); ++i)
-            renewal.joint_errors.push_back(request.state.angles[i] - angles[i] - request.left[i]);
+        std::vector<double> left;
+        if (request.old) left = find_unrelaxed_turns(model, *request.old, request.old_gradient);
+        for (std::size_t i = 0; i < left.size(); ++i)
+            renewal.joint_errors.push_back(request.state.angles[i] - angles[i] - left[i]);
     }
     memory.last = linear;
     renewal.linear = std::move(linear);

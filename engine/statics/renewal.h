@@ -76,8 +76,10 @@ struct RenewalRequest {
     // Gradient at the hands by the old model, and what it would be if that model were at rest;
     // empty where there is none.
     Eigen::VectorXd felt, at_rest;
-    // What that model had yet to turn each body's joint before it was at rest, rad; empty too.
-    std::vector<double> left;
+    // That model, and its gradient at its own coordinates; null and empty too. From these the
+    // renewal finds what the model had yet to turn, which no step needs.
+    std::shared_ptr<const LinearisedModel> old;
+    Eigen::VectorXd old_gradient;
 };
 
 // A model linearised at a relaxed state.

@@ -172,11 +172,12 @@ bool is_finite(const SecondOrderStatics& statics) {
 
 RenewalRequest request_renewal(const TorsionModel& model, const SecondOrderSettings& settings,
                                const TorsionState& state, const SecondOrderStatics& statics) {
-    RenewalRequest request{state, statics.near_reach, 0, {}, {}, {}};
+    RenewalRequest request{state, statics.near_reach, 0, {}, {}, {}, {}};
     if (!statics.linear) return request;
     request.age = find_relative_age(model, settings, state, statics);
     const LinearisedModel& linear = *statics.linear;
-    request.left = find_unrelaxed_turns(model, statics);
+    request.old = statics.linear;
+    request.old_gradient = statics.value.gradient.head(linear.mobile());
     request.felt = statics.value.gradient.tail(linear.hands());
     request.at_rest =
         request.felt + linear.answer().transpose() * statics.value.gradient.head(linear.mobile());

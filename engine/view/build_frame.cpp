@@ -25,6 +25,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -87,16 +88,6 @@ std::vector<AtomLook> find_layer_looks(std::span<const AtomLook> looks, const Vi
         shown[atom].visible = shown[atom].visible && chosen[atom];
     }
     return shown;
-}
-
-std::vector<SecondaryStructure> per_atom(const AtomTable& atoms,
-                                         std::span<const ResidueSpan> residues,
-                                         std::span<const SecondaryStructure> structure) {
-    std::vector<SecondaryStructure> of_atoms(atoms.size(), SecondaryStructure::Coil);
-    for (std::size_t i = 0; i < residues.size(); ++i)
-        for (std::size_t atom = residues[i].first; atom < residues[i].end; ++atom)
-            of_atoms[atom] = structure[i];
-    return of_atoms;
 }
 
 // One an atom, by how each is to be coloured.
@@ -162,24 +153,42 @@ void add_last_snap(const World& world, FrameScene& frame, std::vector<ViewLabel>
 
 }  // namespace
 
+// A selection, and what it selected last.
+class KeptSelection {
+public:
+    explicit KeptSelection(Selection selection)
+        : selection_(std::move(selection)), is_constant_(is_constant(selection_)) {}
+
+    // One entry per atom, until the next call. Evaluated anew only where it may have changed.
+    const std::vector<bool>& update(const FrameParts& parts) {
+        const AtomEdition& now = parts.world.resource<AtomEdition>();
+        if (is_constant_ && edition_ == now) return chosen_;
+        chosen_ = select_in_world(parts.world, selection_, parts.structure_of_atoms);
+        edition_ = now;
+        return chosen_;
+    }
+
+private:
+    Selection selection_;
+    bool is_constant_;
+    std::optional<AtomEdition> edition_;  // of `chosen_`
+    std::vector<bool> chosen_;
+};
+
 // What FrameBuilder keeps.
 struct FrameBuilder::Kept {
     ResidueStructure structure;
-    std::vector<KeptLayer> layers;                             // that of everything first
-    std::map<std::string, Selection> selections{};             // by their texts
-    std::map<std::string, std::vector<Selection>> measures{};  // by their texts
+    std::vector<KeptLayer> layers;                                 // that of everything first
+    std::map<std::string, KeptSelection> selections{};             // by their texts
+    std::map<std::string, std::vector<KeptSelection>> measures{};  // by their texts
     Past past;
 
-    std::vector<bool> select(const FrameParts& parts, const Selection& selection) const {
-        const AtomTable& atoms = parts.world.resource<AtomTable>();
-        return select_in_world(parts.world, selection,
-                               per_atom(atoms, parts.residues, parts.structure));
-    }
-    std::vector<bool> select(const FrameParts& parts, const std::string& text, const char* source) {
+    const std::vector<bool>& select(const FrameParts& parts, const std::string& text,
+                                    const char* source) {
         auto found = selections.find(text);
         if (found == selections.end())
             found = selections.emplace(text, parse_selection(text, source)).first;
-        return select(parts, found->second);
+        return found->second.update(parts);
     }
     void draw_layers(const FrameParts& parts, std::span<const AtomLook> looks,
                      const ViewSettings& settings, FrameScene& frame);
@@ -196,7 +205,7 @@ void FrameBuilder::Kept::draw_layers(const FrameParts& parts, std::span<const At
     layers.resize(1 + shown.size());
     std::vector<AtomLook> not_hidden(looks.begin(), looks.end());
     for (const std::string& text : settings.hidden) {
-        const std::vector<bool> hidden = select(parts, text, "view.hide");
+        const std::vector<bool>& hidden = select(parts, text, "view.hide");
         for (std::size_t i = 0; i < looks.size(); ++i)
             if (hidden[i]) not_hidden[i].visible = false;
     }
@@ -217,11 +226,13 @@ void FrameBuilder::Kept::add_measures(const FrameParts& parts, std::span<const s
     const std::vector<Vec3>& positions = parts.world.resource<AtomTable>().positions;
     for (const std::string& text : texts) {
         auto found = measures.find(text);
-        if (found == measures.end())
-            found = measures.emplace(text, parse_measure(text, "view.measure")).first;
+        if (found == measures.end()) {
+            const std::vector<Selection> parsed = parse_measure(text, "view.measure");
+            found = measures.try_emplace(text, parsed.begin(), parsed.end()).first;
+        }
         std::vector<Vec3> places;
-        for (const Selection& selection : found->second) {
-            const std::vector<bool> chosen = select(parts, selection);
+        for (KeptSelection& selection : found->second) {
+            const std::vector<bool>& chosen = selection.update(parts);
             if (std::ranges::find(chosen, true) == chosen.end()) break;
             places.push_back(find_centre(positions, chosen));
         }
@@ -278,8 +289,9 @@ FrameScene FrameBuilder::build(const World& world, std::span<const ContactModel>
     const std::vector<ResidueSpan> residues = find_residues(world);
     const std::span<const SecondaryStructure> structure = kept_->structure.update(atoms, residues);
     const std::vector<bool> held = find_held_atoms(world), in_hand = find_in_hand(world);
-    const FrameParts parts{world,   residues,   structure,         held,
-                           in_hand, takes_part, settings.hydrogens};
+    const std::vector<SecondaryStructure> of_atoms = per_atom(atoms, residues, structure);
+    const FrameParts parts{world, residues, structure,  of_atoms,
+                           held,  in_hand,  takes_part, settings.hydrogens};
     kept_->draw_layers(parts, looks, settings, frame);
     add_hydrogen_bonds(atoms, bonds, frame, words);
     for (const std::string& text : settings.labels)

@@ -29,9 +29,10 @@ struct FrameParts {
     const World& world;
     std::span<const ResidueSpan> residues;
     std::span<const SecondaryStructure> structure;  // one a residue
-    const std::vector<bool>& held;                  // atoms that hands hold
-    const std::vector<bool>& in_hand;               // with the whole molecule of the first hand
-    const std::vector<bool>& takes_part;            // hydrogens of hydrogen bonds that are drawn
+    std::span<const SecondaryStructure> structure_of_atoms;
+    const std::vector<bool>& held;        // atoms that hands hold
+    const std::vector<bool>& in_hand;     // with the whole molecule of the first hand
+    const std::vector<bool>& takes_part;  // hydrogens of hydrogen bonds that are drawn
     ShownHydrogens hydrogens = ShownHydrogens::All;
 };
 

@@ -9,7 +9,8 @@
 
 namespace palpa {
 
-// The mean of the places of these atoms, by number; `chosen` has at least one.
+// The mean of the places of the chosen atoms, not weighted by mass. `chosen` has one entry per
+// atom, and at least one is true.
 Vec3 find_centre(std::span<const Vec3> positions, const std::vector<bool>& chosen);
 
 // Dashes from each place to the next. Of two their distance, "3.42 Å"; of three an arc about the

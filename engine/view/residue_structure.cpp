@@ -30,6 +30,16 @@ Backbone find_backbone(const AtomTable& atoms, std::span<const ResidueSpan> resi
     return found;
 }
 
+std::vector<SecondaryStructure> per_atom(const AtomTable& atoms,
+                                         std::span<const ResidueSpan> residues,
+                                         std::span<const SecondaryStructure> structure) {
+    std::vector<SecondaryStructure> of_atoms(atoms.size(), SecondaryStructure::Coil);
+    for (std::size_t i = 0; i < residues.size(); ++i)
+        for (std::size_t atom = residues[i].first; atom < residues[i].end; ++atom)
+            of_atoms[atom] = structure[i];
+    return of_atoms;
+}
+
 std::span<const SecondaryStructure> ResidueStructure::update(
     const AtomTable& atoms, std::span<const ResidueSpan> residues) {
     const Backbone backbone = find_backbone(atoms, residues);

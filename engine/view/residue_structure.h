@@ -30,6 +30,11 @@ private:
     std::vector<SecondaryStructure> structure_;
 };
 
+// One entry per atom, from one per residue; coil for atoms of no residue.
+std::vector<SecondaryStructure> per_atom(const AtomTable& atoms,
+                                         std::span<const ResidueSpan> residues,
+                                         std::span<const SecondaryStructure> structure);
+
 // The atom of that name, or `end` of the residue.
 std::size_t find_atom(const AtomTable& atoms, const ResidueSpan& residue, std::string_view name);
 

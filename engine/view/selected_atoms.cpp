@@ -107,12 +107,8 @@ std::vector<bool> select_as_seen(const World& world, const std::string& expressi
     const AtomTable& atoms = world.resource<AtomTable>();
     const std::vector<ResidueSpan> residues = find_residues(world);
     ResidueStructure found;
-    const std::span<const SecondaryStructure> structure = found.update(atoms, residues);
-    std::vector<SecondaryStructure> of_atoms(atoms.size(), SecondaryStructure::Coil);
-    for (std::size_t i = 0; i < residues.size(); ++i)
-        for (std::size_t atom = residues[i].first; atom < residues[i].end; ++atom)
-            of_atoms[atom] = structure[i];
-    return select_in_world(world, parse_selection(expression), of_atoms);
+    return select_in_world(world, parse_selection(expression),
+                           per_atom(atoms, residues, found.update(atoms, residues)));
 }
 
 std::string describe_count(const AtomDirectory& directory, const std::vector<bool>& chosen) {

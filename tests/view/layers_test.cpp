@@ -3,10 +3,12 @@
 #include "core/text.h"
 #include "molecule/select.h"
 #include "scene/read_scene.h"
+#include "simulation/edit.h"
 #include "simulation/held.h"
 #include "simulation/load.h"
 #include "simulation/resources.h"
 #include "simulation/select_in_world.h"
+#include "tests/support/held_scene.h"
 #include "tests/support/load_error_of.h"
 #include "tests/support/paths.h"
 #include "tests/support/water_scene.h"
@@ -156,6 +158,41 @@ TEST_CASE("frames of one builder are as those built alone", "[view][layers]") {
         for (std::size_t v = 0; v < alone.meshes[i].vertices.size(); ++v)
             REQUIRE(kept.meshes[i].vertices[v].place == alone.meshes[i].vertices[v].place);
     }
+}
+
+TEST_CASE("what selections mean is kept until atoms move or others are there", "[view][layers]") {
+    World world = test::three_waters(0, {0, 40, 0});
+    const std::vector<std::string> hidden{
+        GENERATE("molecule third", "within 5 of molecule third", "not hand")};
+    ViewSettings settings = plain(Representation::BallAndStick);
+    settings.hidden = hidden;
+    FrameBuilder builder;
+    const auto is_as_alone = [&] {
+        const FrameScene kept = builder.build(world, {}, settings);
+        const FrameScene alone = build_frame(world, {}, settings);
+        return std::ranges::equal(kept.spheres, alone.spheres, {}, &SphereShape::pick,
+                                  &SphereShape::pick);
+    };
+    CHECK(is_as_alone());
+    CHECK(is_as_alone());
+    // From the third to the first: what is near to the third changes.
+    AtomTable& atoms = world.resource<AtomTable>();
+    const AtomRange third = test::range_called(world, "third");
+    for (std::uint32_t i = third.first; i < third.first + third.count; ++i)
+        atoms.positions[i] += Vec3(0, -36, 0);
+    CHECK(is_as_alone());
+    for (std::uint32_t i = third.first; i < third.first + third.count; ++i)
+        atoms.positions[i] += Vec3(0, 36, 0);
+    // The same number of atoms, in another order: moved, third, new.
+    const World before = world;
+    remove_molecule(world, {"fixed"});
+    CHECK(is_as_alone());
+    add_molecule(world,
+                 {.residue = {}, .copy_of = "third", .name = "new", .at_angstrom = {0, 0, 50}});
+    CHECK(world.resource<AtomTable>().size() == before.resource<AtomTable>().size());
+    CHECK(is_as_alone());
+    world = before;
+    CHECK(is_as_alone());
 }
 
 TEST_CASE("labels name residues and atoms", "[view][layers]") {

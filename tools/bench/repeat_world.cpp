@@ -2,34 +2,43 @@
 
 #include "molecule/atoms.h"
 #include "simulation/components.h"
+#include "simulation/resources.h"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <utility>
 #include <vector>
 
 namespace palpa {
 namespace {
 
-// One more of everything up to `count`.
+// Calls `use` with every array of the table that has one entry per atom, but positions.
+template <class Use>
+void each_column(AtomTable& atoms, const Use& use) {
+    use(atoms.names);
+    use(atoms.element);
+    use(atoms.mass);
+    use(atoms.charge);
+    use(atoms.sqrt_epsilon);
+    use(atoms.half_rmin);
+    use(atoms.type);
+    use(atoms.b_factor);
+}
+
+// One more of everything up to `count`; there is room for it.
 template <class Value>
 void append(std::vector<Value>& values, std::size_t count) {
-    values.reserve(values.size() + count);
     for (std::size_t i = 0; i < count; ++i) values.push_back(Value(values[i]));
 }
 
 void append_copy(AtomTable& atoms, std::size_t count, std::size_t bonds, const Vec3& by) {
     const auto first = static_cast<std::uint32_t>(atoms.size());
-    append(atoms.names, count);
-    append(atoms.element, count);
-    append(atoms.mass, count);
-    append(atoms.charge, count);
-    append(atoms.sqrt_epsilon, count);
-    append(atoms.half_rmin, count);
-    append(atoms.type, count);
-    append(atoms.b_factor, count);
+    each_column(atoms, [&](auto& column) { append(column, std::min(count, column.size())); });
     for (std::size_t i = 0; i < count; ++i)
         atoms.positions.push_back(Vec3(atoms.positions[i] + by));
     for (std::size_t i = 0; i < bonds; ++i)
@@ -51,6 +60,10 @@ World repeat_world(World world, std::size_t atoms) {
     const std::size_t copies = (atoms + count - 1) / count;
     auto side = static_cast<std::size_t>(std::cbrt(static_cast<double>(copies)));
     while (side * side * side < copies) ++side;
+    each_column(table, [&](auto& column) { column.reserve(copies * column.size()); });
+    table.positions.reserve(copies * count);
+    table.bonds.reserve(copies * bonds);
+    world.set_resource(AtomEdition{std::make_shared<int>()});
     for (std::size_t copy = 1; copy < copies; ++copy) {
         const Vec3 cell(static_cast<double>(copy % side), static_cast<double>(copy / side % side),
                         static_cast<double>(copy / side / side));
