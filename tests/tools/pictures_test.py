@@ -21,8 +21,10 @@ CAMERAS = {"water": "30,15", "hiv": "90,15"}
 LOOKS = ("ball-and-stick", "space-filling", "licorice", "in-hand", "pocket", "lines", "cartoon",
          "surface")
 # Of the protease, as a cartoon with a surface of its pocket.
-COLOURS = ("element", "chain", "residue", "structure", "charge", "b-factor", "force", "activity",
+COLOURS = ("element", "chain", "residue", "structure", "charge", "b-factor", "force",
            "potential", "hydrophobicity")
+# Of the protease whose joints answer the hand.
+ANSWERS = ("activity", "error")
 # Contacts and forces of residues of the inhibitor, and from one flap to the other over its centre.
 MARKS = ("--contacts", "in-hand", "--forces", "residues", "--hydrogen-bonds", "none", "--look-at", "inhibitor",
          "--measure", "chain A and resid 50 and name CA; ligand; chain B and resid 50 and name CA")
@@ -49,6 +51,9 @@ def pictures():
         yield (f"hiv-coloured-{colour}.png", "hiv",
                ("--representation", "cartoon", "--colour", colour, "--representation", "surface",
                 "--of", "protein and within 8 of ligand", "--colour", colour, "--opacity", "0.5"))
+    for colour in ANSWERS:
+        yield (f"hiv-coloured-{colour}.png", "hiv/flexible.toml",
+               ("--representation", "cartoon", "--colour", colour, "--time", "3", "--camera", "90,15"))
 
 
 class Pictures(unittest.TestCase):

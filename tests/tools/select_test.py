@@ -70,7 +70,7 @@ class Select(unittest.TestCase):
         self.assert_bad_input("protein and (name CA", "selection, column 21:", "expected")
         self.assert_bad_input("molecule inhibitr", "selection, column 10: no molecule 'inhibitr'",
                               "did you mean 'inhibitor'?")
-        self.assert_bad_input("helix", "selection, column 1: the secondary structure is not known")
+        self.assertRegex(self.select(HIV, "helix").stdout, r"protease_a \(4 residues\)\n    ARG 87, ASN 88, LEU 89, LEU 90\n")
         self.assert_bad_input("", "selection, column 1:")
 
 

@@ -86,7 +86,7 @@ TEST_CASE("contacts reach 0.4 Å beyond the radii, clashes begin 0.4 Å within",
     CHECK(pair.count(ShownBonds::All) == Counts{0, 1, 0});
 }
 
-TEST_CASE("in hand are pairs of what is held with the rest; all has the others too",
+TEST_CASE("in hand are pairs of what is held with the rest, and all has the others too",
           "[view][contacts]") {
     Pair pair;
     pair.put(30, "C", "C");
