@@ -116,10 +116,8 @@ void add_selection_labels(const AtomTable& atoms, std::span<const ResidueSpan> r
         const std::size_t atom = is_alone                      ? chosen.front()
                                  : residue.alpha < residue.end ? residue.alpha
                                                                : residue.first;
-        const AtomName& name = atoms.names[atom];
-        const std::string text = fmt::format("{} {}{}", name.residue, name.number,
-                                             is_alone ? " " + name.atom : std::string());
-        labels.push_back({as_float(atoms.positions[atom]), text});
+        labels.push_back(
+            {as_float(atoms.positions[atom]), name_residue(atoms, residues, atom, is_alone)});
     }
 }
 

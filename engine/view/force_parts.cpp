@@ -4,6 +4,7 @@
 #include "molecule/point_grid.h"
 #include "simulation/resources.h"
 #include "view/place.h"
+#include "view/residue_structure.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -18,12 +19,6 @@ namespace palpa {
 namespace {
 
 constexpr double nanonewton_per_unit = 1e-3 * units::piconewton_per_kcal_per_mol_angstrom;
-
-std::string name_of(const AtomTable& atoms, const ForcePart& part, ShownForces of) {
-    const AtomName& name = atoms.names[part.first];
-    return fmt::format("{} {}{}", name.residue, name.number,
-                       of == ShownForces::Atoms ? " " + name.atom : std::string());
-}
 
 // Those bonded to held ones over three bonds or fewer, and these.
 std::vector<bool> find_bonded(const AtomTable& atoms, std::span<const std::uint32_t> numbers) {
@@ -145,7 +140,9 @@ void add_force_parts(const World& world, Entity hand, ShownForces of,
         const glm::vec3 place =
             add_force_part(force_nN, find_ends(world, points, parts[i]), decade, frame);
         labels.push_back({place,
-                          fmt::format("{} {}", name_of(world.resource<AtomTable>(), parts[i], of),
+                          fmt::format("{} {}",
+                                      name_residue(world.resource<AtomTable>(), residues,
+                                                   parts[i].first, of == ShownForces::Atoms),
                                       force_in_words(force_nN.norm())),
                           i >= most_certain});
     }

@@ -1,6 +1,21 @@
 #include "view/residue_structure.h"
 
+#include <fmt/format.h>
+#include <algorithm>
+
 namespace palpa {
+
+std::string name_residue(const AtomTable& atoms, std::span<const ResidueSpan> residues,
+                         std::size_t atom, bool is_of_atom) {
+    const AtomName& name = atoms.names[atom];
+    const bool is_shared = std::ranges::any_of(residues, [&](const ResidueSpan& residue) {
+        const AtomName& other = atoms.names[residue.first];
+        return other.number == name.number && other.residue == name.residue &&
+               other.segment != name.segment;
+    });
+    return fmt::format("{}{} {}{}{}", is_shared ? name.segment + ":" : std::string(), name.residue,
+                       name.number, is_of_atom ? " " : "", is_of_atom ? name.atom : std::string());
+}
 
 std::size_t find_atom(const AtomTable& atoms, const ResidueSpan& residue, std::string_view name) {
     std::size_t i = residue.first;

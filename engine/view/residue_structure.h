@@ -35,6 +35,11 @@ std::vector<SecondaryStructure> per_atom(const AtomTable& atoms,
                                          std::span<const ResidueSpan> residues,
                                          std::span<const SecondaryStructure> structure);
 
+// "ASP 25", or "ASP 25 CG" of one atom; with the segment, "A:ASP 25", where another segment has a
+// residue of that name and number.
+std::string name_residue(const AtomTable& atoms, std::span<const ResidueSpan> residues,
+                         std::size_t atom, bool is_of_atom);
+
 // The atom of that name, or `end` of the residue.
 std::size_t find_atom(const AtomTable& atoms, const ResidueSpan& residue, std::string_view name);
 

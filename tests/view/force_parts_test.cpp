@@ -130,7 +130,7 @@ TEST_CASE("of two waters the other one does all: its arrow is as long as the han
     CHECK((distance < 2.7 ? tail < tip : tip < tail));
     CHECK(std::max(tail, tip) == Approx(x).margin(1));
     CHECK(std::min(tail, tip) < x - 1);
-    const std::string text = fmt::format("TIP3 1 {}", force_in_words(felt_nN));
+    const std::string text = fmt::format("FIX:TIP3 1 {}", force_in_words(felt_nN));
     CHECK(std::ranges::count(labels, text, &ViewLabel::text) == 1);
     settings.marks.forces = ShownForces::Hand;
     CHECK(list_arrows(build_frame(world, settings)).empty());

@@ -203,7 +203,7 @@ TEST_CASE("labels name residues and atoms", "[view][layers]") {
     (void)build_frame(world, settings, &labels);
     std::vector<std::string> words;
     for (const ViewLabel& label : labels) words.push_back(label.text);
-    CHECK(words == std::vector<std::string>{"ASP 25", "ASP 25", "ILE 50 CD", "ILE 50 CD"});
+    CHECK(words == std::vector<std::string>{"A:ASP 25", "B:ASP 25", "A:ILE 50 CD", "B:ILE 50 CD"});
 }
 
 TEST_CASE("a selection that is none is refused with its column", "[view][layers]") {
