@@ -39,8 +39,8 @@ void find_error(World& world) {
                             nullptr};
     }
     const Renewal rest =
-        make_renewal(model, estimate->settings, {world.resource<TorsionState>(), 0, 0, {}, {}, {}},
-                     *estimate->memory);
+        make_renewal(model, estimate->settings,
+                     {world.resource<TorsionState>(), 0, 0, {}, {}, {}, {}}, *estimate->memory);
     if (!rest.linear) return;
     const AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();
     const Vec3 felt =

@@ -139,3 +139,32 @@ TEST_CASE("estimated errors of joints are those of complete relaxation, in size 
     CHECK(correlation / static_cast<double>(states) > 0.7);
     CHECK(static_cast<double>(right_size) > 0.9 * static_cast<double>(states));
 }
+
+TEST_CASE("where the model is at rest and old, its own error is what the growth with age says",
+          "[statics][second-order]") {
+    HeldPair c;
+    c.settings.evaluations = 60;
+    c.settings.rest = 1e-7;
+    SecondOrderStatics statics = build_second_order_statics(c.model, c.held);
+    std::size_t states = 0;
+    for (int k = 1; k <= 60; ++k) {
+        c.move_hand(Vec3(0.02, 0, 0));
+        REQUIRE(step_second_order(c.model, c.settings, c.state, statics).is_finite);
+        const double age = find_relative_age(c.model, c.settings, c.state, statics);
+        if (statics.renewed < 3 || age < 0.5) continue;
+        const double right = norm_of(only_joints(c.model, turns_to_rest(c)));
+        // What an estimate without the growth would say.
+        const double unrelaxed = norm_of(only_joints(
+            c.model, find_unrelaxed_turns(c.model, *statics.linear,
+                                          statics.value.gradient.head(statics.linear->mobile()))));
+        const double found = norm_of(
+            only_joints(c.model, estimate_joint_errors(c.model, c.settings, c.state, statics)));
+        INFO("age " << age << ": unrelaxed " << unrelaxed << ", estimate " << found << ", right "
+                    << right << " rad");
+        CHECK(unrelaxed < 0.01 * right);
+        // Not linear in the age either: that would be wrong by half from one end to the other.
+        CHECK(found == Approx(right).epsilon(0.2));
+        ++states;
+    }
+    CHECK(states >= 20);
+}

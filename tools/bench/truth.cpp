@@ -113,7 +113,7 @@ Vec3 Truth::evaluate(TorsionState& state) {
 }
 
 Vec3 Truth::renew(const SecondOrderSettings& settings, TorsionState& state) {
-    const Renewal renewal = make_renewal(model_, settings, {state, 0, 0, {}, {}, {}}, memory_);
+    const Renewal renewal = make_renewal(model_, settings, {state, 0, 0, {}, {}, {}, {}}, memory_);
     if (!renewal.linear) throw LoadError({}, "a pose is not finite");
     rms_ = renewal.relaxed.rms_force;
     state = renewal.linear->at;
