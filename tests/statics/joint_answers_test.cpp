@@ -151,7 +151,8 @@ TEST_CASE("where the model is at rest and old, its own error is what the growth 
         c.move_hand(Vec3(0.02, 0, 0));
         REQUIRE(step_second_order(c.model, c.settings, c.state, statics).is_finite);
         const double age = find_relative_age(c.model, c.settings, c.state, statics);
-        if (statics.renewed < 3 || age < 0.5) continue;
+        // The growth is a running mean; that of the first renewals is still in it.
+        if (statics.renewed < 5 || age < 0.5) continue;
         const double right = norm_of(only_joints(c.model, turns_to_rest(c)));
         // What an estimate without the growth would say.
         const double unrelaxed = norm_of(only_joints(
@@ -166,5 +167,5 @@ TEST_CASE("where the model is at rest and old, its own error is what the growth 
         CHECK(found == Approx(right).epsilon(0.2));
         ++states;
     }
-    CHECK(states >= 20);
+    CHECK(states >= 15);
 }
