@@ -316,7 +316,8 @@ std::vector<LegendEntry> find_legend(const World& world, Colouring colouring) {
                     {diverging_colour(0, 1), "0"},
                     {diverging_colour(1, 1), "+1 e"}};
         case Colouring::Potential:
-            return {{potential_colour(-potential_end), fmt::format("surface at {} kT/e", -potential_end)},
+            return {{potential_colour(-potential_end),
+                     fmt::format("surface at {} kT/e", -potential_end)},
                     {potential_colour(0), "0"},
                     {potential_colour(potential_end), fmt::format("+{} kT/e", potential_end)}};
         case Colouring::Hydrophobicity:
