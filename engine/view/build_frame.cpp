@@ -1,5 +1,6 @@
 #include "view/build_frame.h"
 
+#include "molecule/residue_kinds.h"
 #include "molecule/select.h"
 #include "simulation/components.h"
 #include "simulation/held.h"
@@ -10,6 +11,7 @@
 #include "view/atom_colours.h"
 #include "view/contact_pairs.h"
 #include "view/draw_layer.h"
+#include "view/elements.h"
 #include "view/force_parts.h"
 #include "view/hydrogen_bonds.h"
 #include "view/in_hand.h"
@@ -57,6 +59,30 @@ std::vector<HydrogenBond> find_visible_bonds(std::span<const HydrogenBond> all,
         return !are_visible(looks, bond.hydrogen, bond.acceptor);
     });
     return bonds;
+}
+
+// Of residues at whose side chains hydrogen bonds end: these from CA on, without hydrogens but
+// those of the bonds.
+std::vector<bool> find_bond_ends(const AtomTable& atoms, std::span<const ResidueSpan> residues,
+                                 std::span<const HydrogenBond> bonds) {
+    const auto is_backbone = [&](std::size_t atom) {
+        return is_of_backbone(ResidueKind::Protein, atoms.names[atom].atom);
+    };
+    std::vector<bool> ends(atoms.size(), false);
+    for (const HydrogenBond& bond : bonds) {
+        for (const std::uint32_t end : {bond.donor, bond.acceptor}) {
+            const auto residue = std::ranges::find_if(residues, [&](const ResidueSpan& one) {
+                return end >= one.first && end < one.end;
+            });
+            if (residue == residues.end() || residue->alpha >= residue->end || is_backbone(end))
+                continue;
+            for (std::size_t i = residue->first; i < residue->end; ++i)
+                if (!is_backbone(i) && element_of(atoms, i) != "H") ends[i] = true;
+            ends[residue->alpha] = true;
+            if (end == bond.donor) ends[bond.hydrogen] = true;
+        }
+    }
+    return ends;
 }
 
 // `shown`, of these `bonds`, are used again where they have what is needed.
@@ -288,8 +314,12 @@ FrameScene FrameBuilder::build(const World& world, std::span<const ContactModel>
     const std::span<const SecondaryStructure> structure = kept_->structure.update(atoms, residues);
     const std::vector<bool> held = find_held_atoms(world), in_hand = find_in_hand(world);
     const std::vector<SecondaryStructure> of_atoms = per_atom(atoms, residues, structure);
-    const FrameParts parts{world, residues, structure,  of_atoms,
-                           held,  in_hand,  takes_part, settings.hydrogens};
+    // All bonds of a protein would show nearly all of its side chains.
+    const std::vector<bool> ends = settings.hydrogen_bonds == ShownBonds::InHand
+                                       ? find_bond_ends(atoms, residues, bonds)
+                                       : std::vector<bool>(atoms.size(), false);
+    const FrameParts parts{world,   residues,   structure, of_atoms,          held,
+                           in_hand, takes_part, ends,      settings.hydrogens};
     kept_->draw_layers(parts, looks, settings, frame);
     add_hydrogen_bonds(atoms, bonds, frame, words);
     for (const std::string& text : settings.labels)

@@ -201,13 +201,15 @@ std::vector<Thickness> find_thickness(const FrameParts& parts, std::span<const A
             const bool in_hand = representation == Representation::InHand
                                      ? static_cast<bool>(parts.in_hand[atom])
                                      : is_held;
-            if (!is_held && in_ribbon[i] && !is_modified &&
+            const bool is_end = in_ribbon[i] && !is_held && parts.bond_ends[atom];
+            if (!is_held && in_ribbon[i] && !is_modified && !is_end &&
                 (is_cartoon || (is_pocket && !near[atom])))
                 continue;
             if (is_cartoon && is_solvent && !is_held) continue;
             if (left_out[atom] && chooses_hydrogens(representation)) continue;
             const std::string_view element = element_of(atoms, atom);
             thickness[atom] = thickness_of(representation, element, in_hand);
+            if (is_end && is_cartoon) thickness[atom] = {thin_radius, thin_radius};
             if (thickness[atom].atom == 0 && parts.takes_part[atom] &&
                 representation != Representation::Surface)
                 thickness[atom] = {thin_radius, thin_radius};

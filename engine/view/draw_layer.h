@@ -33,6 +33,7 @@ struct FrameParts {
     const std::vector<bool>& held;        // atoms that hands hold
     const std::vector<bool>& in_hand;     // with the whole molecule of the first hand
     const std::vector<bool>& takes_part;  // hydrogens of hydrogen bonds that are drawn
+    const std::vector<bool>& bond_ends;   // side chains at which these end: sticks beside ribbons
     ShownHydrogens hydrogens = ShownHydrogens::All;
 };
 

@@ -100,6 +100,30 @@ TEST_CASE("a cartoon shows the atoms of a modified residue", "[view][layers]") {
     CHECK(drawn() == renamed);
 }
 
+TEST_CASE("a cartoon shows the side chains at which hydrogen bonds of the hand end",
+          "[view][layers]") {
+    const World world = protease_world();
+    const AtomTable& atoms = world.resource<AtomTable>();
+    ViewSettings settings = plain(Representation::Cartoon);
+    settings.hydrogen_bonds = ShownBonds::InHand;
+    const FrameScene frame = build_frame(world, settings);
+    std::set<std::string> shown;  // of the protein
+    for (const SphereShape& sphere : frame.spheres) {
+        if (sphere.pick >= atoms.size()) continue;
+        const AtomName& name = atoms.names[sphere.pick];
+        if (name.segment != "TL3C")
+            shown.insert(name.residue + " " + name.number + " " + name.atom);
+    }
+    // TL-3's hydroxyl is between the two catalytic acids; amides of the flaps bond by backbones.
+    CHECK(shown.contains("ASP 25 OD1"));
+    CHECK(shown.contains("ASP 25 CB"));
+    CHECK(shown.contains("ASP 25 CA"));
+    CHECK_FALSE(shown.contains("ASP 25 N"));
+    CHECK_FALSE(shown.contains("ASP 25 HB1"));
+    CHECK_FALSE(shown.contains("GLY 48 O"));
+    CHECK_FALSE(shown.contains("PRO 1 CB"));
+}
+
 TEST_CASE("residues that are missing leave a dashed gap", "[view][layers]") {
     World world = protease_world();
     const std::size_t before = build_frame(world, plain(Representation::Cartoon)).cones.size();

@@ -375,9 +375,10 @@ void add_mark_options(CLI::App& render, MarkOptions& marks) {
         ->each([&](const std::string& value) { marks.measures.push_back(value); });
     render
         .add_option("--contacts", marks.contacts,
-                    "contacts, clashes and salt bridges: none, in-hand or all; without a value all")
+                    "contacts, clashes and salt bridges: none, in-hand or all; without a value "
+                    "in-hand")
         ->expected(0, 1)
-        ->default_str("all");
+        ->default_str("in-hand");
     render
         .add_option("--forces", marks.forces,
                     fmt::format("{}: what they do to what is in the hand, as arrows",
