@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <iterator>
 #include <optional>
 #include <string_view>
 #include <system_error>
@@ -134,6 +135,10 @@ std::string describe_own_scenes(const std::string& named) {
     std::string wanted = named.starts_with("scenes/") ? named.substr(7) : named;
     if (wanted.ends_with(".toml")) wanted.resize(wanted.size() - 5);
     while (wanted.ends_with('/')) wanted.pop_back();
+    std::vector<std::string> of_it;
+    std::ranges::copy_if(names, std::back_inserter(of_it),
+                         [&](const std::string& name) { return name.starts_with(wanted + "/"); });
+    if (!of_it.empty()) return fmt::format("; did you mean {}?", fmt::join(of_it, " or "));
     const std::string hint = near_name_hint(wanted, views);
     return hint.empty() ? fmt::format("; Palpa's own scenes: {}", join_some(names)) : hint;
 }
