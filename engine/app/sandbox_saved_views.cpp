@@ -26,7 +26,7 @@ const std::vector<bool>& Sandbox::find_framed(const std::string& selection) {
     try {
         const Selection parsed = parse_selection(selection);
         framed_now_ = select_as_seen(session_.copy_world(), selection);
-        if (depends_on_positions(parsed) || depends_on_hands(parsed)) return framed_now_;
+        if (!is_constant(parsed)) return framed_now_;
         return framed_[selection] = framed_now_;
     } catch (const LoadError& error) {
         framed_problem_ = error.what();

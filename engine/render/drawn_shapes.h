@@ -9,11 +9,12 @@
 
 namespace palpa {
 
-// Leaves shapes out; of one frame after another, so that memory stays.
+// Omits shapes that cannot be seen. One for many frames: it keeps its memory.
 class DrawnShapes {
 public:
-    // Of the scene's spheres and cones, in their order, those that may be seen. What is left out is
-    // outside of the view, or hidden wholly by nearer spheres: the picture is the same to the bit.
+    // Of the scene's spheres and cones, in their order, those that may be seen. Omitted are
+    // shapes outside of the view or wholly hidden by nearer spheres: the picture is the same to the
+    // bit.
     //
     // Only where `scene.is_coarse`, and more than 100,000 shapes are smaller than a pixel in
     // radius (cones: than half of one), is it another one: of those whose middles are in the same 2

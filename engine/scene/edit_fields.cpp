@@ -175,15 +175,8 @@ void visit_edit(FieldVisitor& v, EditDescription& edit) {
 }  // namespace
 
 void visit_edits(FieldVisitor& v, std::vector<EditDescription>& edits) {
-    const Field field{.key = "edits", .meaning = "what changes while the scene runs"};
-    std::size_t count = edits.size();
-    v.list_entries(field, count);
-    edits.resize(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        v.enter_entry(field, i, edits[i].place);
-        visit_edit(v, edits[i]);
-        v.leave_table();
-    }
+    visit_entries(v, {.key = "edits", .meaning = "what changes while the scene runs"}, edits,
+                  [&](EditDescription& edit) { visit_edit(v, edit); });
 }
 
 }  // namespace palpa

@@ -92,6 +92,20 @@ void choose_if_set(FieldVisitor& visitor, const Field& field,
     if (index) value = static_cast<Enum>(*index);
 }
 
+// A list of tables: `visit_entry(entry)` visits the fields of one, which has a `place`.
+template <class Entry, class VisitEntry>
+void visit_entries(FieldVisitor& visitor, const Field& field, std::vector<Entry>& entries,
+                   const VisitEntry& visit_entry) {
+    std::size_t count = entries.size();
+    visitor.list_entries(field, count);
+    entries.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        visitor.enter_entry(field, i, entries[i].place);
+        visit_entry(entries[i]);
+        visitor.leave_table();
+    }
+}
+
 void visit_scene(FieldVisitor& visitor, SceneDescription& scene);
 
 // What the table [coupling] holds.

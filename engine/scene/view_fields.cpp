@@ -1,6 +1,5 @@
 #include "scene/view_fields.h"
 
-#include <cstddef>
 #include <vector>
 
 namespace palpa {
@@ -8,12 +7,7 @@ namespace {
 
 void visit_layers(FieldVisitor& v, std::vector<ViewLayer>& layers) {
     const Field field{.key = "layers", .meaning = "what is drawn besides, in this order"};
-    std::size_t count = layers.size();
-    v.list_entries(field, count);
-    layers.resize(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        ViewLayer& layer = layers[i];
-        v.enter_entry(field, i, layer.place);
+    visit_entries(v, field, layers, [&](ViewLayer& layer) {
         choose(v, {.key = "representation", .meaning = "how these atoms are drawn"},
                representation_names, layer.representation);
         v.text({.key = "of",
@@ -27,18 +21,12 @@ void visit_layers(FieldVisitor& v, std::vector<ViewLayer>& layers) {
                 .lowest = 0.05,
                 .highest = 1},
                layer.opacity);
-        v.leave_table();
-    }
+    });
 }
 
 void visit_saved_views(FieldVisitor& v, std::vector<SavedView>& views) {
     const Field field{.key = "saved", .meaning = "views to come back to, in this order"};
-    std::size_t count = views.size();
-    v.list_entries(field, count);
-    views.resize(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        SavedView& saved = views[i];
-        v.enter_entry(field, i, saved.place);
+    visit_entries(v, field, views, [&](SavedView& saved) {
         v.text(
             {.key = "name", .meaning = "by which lessons and `--view` call it", .required = true},
             saved.name);
@@ -59,8 +47,7 @@ void visit_saved_views(FieldVisitor& v, std::vector<SavedView>& views) {
             v, {.key = "representation", .meaning = "as `view.representation`; unset: that one"},
             representation_names, saved.representation);
         visit_layers(v, saved.layers);  // last: they have tables of their own
-        v.leave_table();
-    }
+    });
 }
 
 void visit_marks(FieldVisitor& v, ViewMarks& marks) {

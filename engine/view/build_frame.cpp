@@ -133,6 +133,7 @@ std::vector<glm::vec3> find_layer_colours(const FrameParts& parts,
 // Atoms alone beside themselves, residues of which more is selected beside their CA, or first atom.
 void add_selection_labels(const AtomTable& atoms, std::span<const ResidueSpan> residues,
                           const std::vector<bool>& selected, std::vector<ViewLabel>& labels) {
+    const ResidueNames names(atoms, residues);
     for (const ResidueSpan& residue : residues) {
         std::vector<std::size_t> chosen;
         for (std::size_t i = residue.first; i < residue.end; ++i)
@@ -142,8 +143,7 @@ void add_selection_labels(const AtomTable& atoms, std::span<const ResidueSpan> r
         const std::size_t atom = is_alone                      ? chosen.front()
                                  : residue.alpha < residue.end ? residue.alpha
                                                                : residue.first;
-        labels.push_back(
-            {as_float(atoms.positions[atom]), name_residue(atoms, residues, atom, is_alone)});
+        labels.push_back({as_float(atoms.positions[atom]), names.name(atom, is_alone)});
     }
 }
 

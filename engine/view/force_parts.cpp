@@ -135,14 +135,13 @@ void add_force_parts(const World& world, Entity hand, ShownForces of,
     std::vector<ForcePart> parts = find_force_parts(world, hand, points, of, residues);
     parts.resize(std::min(parts.size(), of == ShownForces::Atoms ? most_atoms : most_residues));
     const float decade = decade_of(held, frame);
+    const ResidueNames names(world.resource<AtomTable>(), residues);
     for (std::size_t i = 0; i < parts.size(); ++i) {
         const Vec3 force_nN = nanonewton_per_unit * parts[i].force;
         const glm::vec3 place =
             add_force_part(force_nN, find_ends(world, points, parts[i]), decade, frame);
         labels.push_back({place,
-                          fmt::format("{} {}",
-                                      name_residue(world.resource<AtomTable>(), residues,
-                                                   parts[i].first, of == ShownForces::Atoms),
+                          fmt::format("{} {}", names.name(parts[i].first, of == ShownForces::Atoms),
                                       force_in_words(force_nN.norm())),
                           i >= most_certain});
     }

@@ -46,9 +46,9 @@ inline constexpr glm::vec3 wish_colour{0.162F, 0.002F, 0.256F};
 inline constexpr glm::vec3 selected_colour{0.86F, 0.00F, 0.35F};
 inline constexpr glm::vec3 hydrogen_bond_colour{0.035F, 0.123F, 0.147F};
 
-// Marks on request. They are told from atoms and bonds by their shapes, so they differ from each
-// other and from the signs above alone. Of contacts M. Okabe and K. Ito's sky blue, of salt bridges
-// a little lighter than their yellow.
+// Marks on request. Their shapes distinguish them from atoms and bonds, so their colours only
+// have to differ from each other and from those of the signs above. Of contacts M. Okabe and K.
+// Ito's sky blue, of salt bridges a little lighter than their yellow.
 inline constexpr glm::vec3 measure_colour{0.010F};
 inline constexpr glm::vec3 contact_colour{0.093F, 0.402F, 0.815F};
 inline constexpr glm::vec3 clash_colour{0.584F, 0.003F, 0.032F};

@@ -1,18 +1,24 @@
 #include "view/residue_structure.h"
 
 #include <fmt/format.h>
-#include <algorithm>
+#include <map>
 
 namespace palpa {
 
-std::string name_residue(const AtomTable& atoms, std::span<const ResidueSpan> residues,
-                         std::size_t atom, bool is_of_atom) {
-    const AtomName& name = atoms.names[atom];
-    const bool is_shared = std::ranges::any_of(residues, [&](const ResidueSpan& residue) {
-        const AtomName& other = atoms.names[residue.first];
-        return other.number == name.number && other.residue == name.residue &&
-               other.segment != name.segment;
-    });
+ResidueNames::ResidueNames(const AtomTable& atoms, std::span<const ResidueSpan> residues)
+    : atoms_(atoms) {
+    std::map<NameAndNumber, std::string_view> segments;
+    for (const ResidueSpan& residue : residues) {
+        const AtomName& name = atoms.names[residue.first];
+        const NameAndNumber key{name.residue, name.number};
+        if (segments.try_emplace(key, name.segment).first->second != name.segment)
+            shared_.insert(key);
+    }
+}
+
+std::string ResidueNames::name(std::size_t atom, bool is_of_atom) const {
+    const AtomName& name = atoms_.names[atom];
+    const bool is_shared = shared_.contains({name.residue, name.number});
     return fmt::format("{}{} {}{}{}", is_shared ? name.segment + ":" : std::string(), name.residue,
                        name.number, is_of_atom ? " " : "", is_of_atom ? name.atom : std::string());
 }

@@ -5,8 +5,11 @@
 #include "view/pocket.h"
 
 #include <cstddef>
+#include <set>
 #include <span>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace palpa {
@@ -35,10 +38,19 @@ std::vector<SecondaryStructure> per_atom(const AtomTable& atoms,
                                          std::span<const ResidueSpan> residues,
                                          std::span<const SecondaryStructure> structure);
 
-// "ASP 25", or "ASP 25 CG" of one atom; with the segment, "A:ASP 25", where another segment has a
-// residue of that name and number.
-std::string name_residue(const AtomTable& atoms, std::span<const ResidueSpan> residues,
-                         std::size_t atom, bool is_of_atom);
+// Names residues, "ASP 25", or "ASP 25 CG" of one atom; with the segment, "A:ASP 25", where another
+// segment has a residue of that name and number. It refers to the table.
+class ResidueNames {
+public:
+    ResidueNames(const AtomTable& atoms, std::span<const ResidueSpan> residues);
+    std::string name(std::size_t atom, bool is_of_atom) const;
+
+private:
+    using NameAndNumber = std::pair<std::string_view, std::string_view>;
+
+    const AtomTable& atoms_;
+    std::set<NameAndNumber> shared_;  // of several segments
+};
 
 // The atom of that name, or `end` of the residue.
 std::size_t find_atom(const AtomTable& atoms, const ResidueSpan& residue, std::string_view name);

@@ -48,7 +48,7 @@ FrameCamera camera_at(const glm::vec3& eye, const glm::vec2& centre) {
 
 }  // namespace
 
-TEST_CASE("what is left out of a crowd cannot be seen", "[render][large][gpu]") {
+TEST_CASE("shapes that are omitted from a crowd cannot be seen", "[render][large][gpu]") {
     GpuDevice device(test::validated());
     Renderer renderer(device);
     FrameScene scene = crowd(8000, 1.2F);  // so few that the renderer takes all

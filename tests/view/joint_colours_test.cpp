@@ -73,7 +73,7 @@ TEST_CASE("joints have the colours of what they add to the linear answer, and of
     const std::vector<glm::vec3> by_error = find_colours(world, Colouring::Error, {}, {});
     CHECK(count_alike(world, by_error, errors) == count);
     CHECK(by_answer != by_error);
-    // They tell joints apart.
+    // Joints differ in them.
     CHECK(*std::ranges::max_element(beyond) > 1e-4);
     CHECK(*std::ranges::max_element(errors) > 0);
     CHECK_THAT(find_legend(world, Colouring::Activity).front().text,

@@ -96,17 +96,19 @@ const SavedView* find_asked_view(const RenderOptions& options, const ViewDescrip
     return &view.saved[choice_called("--view", options.saved_view, names)];
 }
 
+template <class Enum, std::size_t Count>
+void choose_if_given(const char* option, const std::string& value,
+                     const std::array<std::string_view, Count>& names, Enum& chosen) {
+    if (!value.empty()) chosen = static_cast<Enum>(choice_called(option, value, names));
+}
+
 void apply_marks(const MarkOptions& options, ViewMarks& marks) {
     for (const std::string& measure : options.measures) {
         (void)parse_measure(measure, "--measure");
         marks.measures.push_back(measure);
     }
-    if (!options.contacts.empty())
-        marks.contacts = static_cast<ShownBonds>(
-            choice_called("--contacts", options.contacts, shown_bond_names));
-    if (!options.forces.empty())
-        marks.forces =
-            static_cast<ShownForces>(choice_called("--forces", options.forces, shown_force_names));
+    choose_if_given("--contacts", options.contacts, shown_bond_names, marks.contacts);
+    choose_if_given("--forces", options.forces, shown_force_names, marks.forces);
     marks.ghost = marks.ghost || options.ghost;
     marks.trail_s = options.trail_s.value_or(marks.trail_s);
 }
@@ -123,18 +125,10 @@ void apply_options(const RenderOptions& options, World& world, ViewDescription& 
         (void)parse_selection(label, "--label");
         view.labels.push_back(label);
     }
-    if (!options.hydrogen_bonds.empty()) {
-        view.hydrogen_bonds = static_cast<ShownBonds>(
-            choice_called("--hydrogen-bonds", options.hydrogen_bonds, shown_bond_names));
-    }
-    if (!options.hydrogens.empty()) {
-        view.hydrogens = static_cast<ShownHydrogens>(
-            choice_called("--hydrogens", options.hydrogens, shown_hydrogen_names));
-    }
-    if (!options.shadows.empty()) {
-        view.shadows =
-            static_cast<Shadows>(choice_called("--shadows", options.shadows, shadow_names));
-    }
+    choose_if_given("--hydrogen-bonds", options.hydrogen_bonds, shown_bond_names,
+                    view.hydrogen_bonds);
+    choose_if_given("--hydrogens", options.hydrogens, shown_hydrogen_names, view.hydrogens);
+    choose_if_given("--shadows", options.shadows, shadow_names, view.shadows);
     view.occlusion = options.has_occlusion.value_or(view.occlusion);
     view.outline = options.outline.value_or(static_cast<int>(view.outline));
     apply_marks(options.marks, view.marks);
