@@ -74,6 +74,7 @@ int run_program(const std::vector<std::string>& arguments) {
     palpa::ProgramCommand chosen;
     add_commands(program, chosen);
     if (arguments.empty()) return palpa::start_command();
+    if (palpa::is_file_to_open(arguments[0])) return palpa::open_command(arguments);
     if (const auto unknown = palpa::explain_command(program, arguments[0])) {
         fmt::print(stderr, "{}\n", *unknown);
         return bad_input;

@@ -135,13 +135,14 @@ private:
 
 LiveSession::LiveSession(const SceneDescription& scene, const ViewSettings& view,
                          std::span<const LiveDevice> devices, LiveClock* clock, FrameServer* server,
-                         const std::optional<PlaybackChoice>& playback)
+                         const std::optional<PlaybackChoice>& playback,
+                         const StageFunction& on_stage)
     : clock_(clock ? *clock : machine_clock_),
       devices_(devices.begin(), devices.end()),
       orders_(devices.size()),
       servos_(devices.size()),
       line_(std::make_unique<Line>(servos_)),
-      simulation_(scene, describe(devices), *line_, playback),
+      simulation_(scene, describe(devices), *line_, playback, on_stage),
       server_(server),
       ticks_(std::make_unique<Ticks>()),
       journal_queue_(devices.size(), line_->posted()),
@@ -496,8 +497,9 @@ void LiveSession::post_frame_if_wanted() {
     if (edition_ != simulation_.edition()) {
         edition_ = simulation_.edition();
         atoms_ = list_atoms(world);
+        edits_ = std::make_shared<const std::vector<EditDescription>>(simulation_.list_edits());
     }
-    LiveFrame frame{{}, {}, atoms_, {}, framed_, {}, {}, simulation_.readout()};
+    LiveFrame frame{{}, {}, atoms_, {}, framed_, {}, {}, simulation_.readout(), edits_};
     const std::vector<Vec3>& positions = world.resource<AtomTable>().positions;
     frame.places.resize(positions.size());
     std::ranges::transform(positions, frame.places.begin(), as_float);

@@ -4,6 +4,7 @@
 #pragma once
 #include "app/live_clock.h"
 #include "core/ring.h"
+#include "core/stage.h"
 #include "haptics/device.h"
 #include "haptics/hand.h"
 #include "render/frame_scene.h"
@@ -59,6 +60,8 @@ struct LiveFrame {
     std::vector<ViewLabel> labels;               // of the picture
     std::vector<LegendEntry> legend;             // of its colours
     Readout readout;                             // its contact is the first hand's
+    // What a person made of the world and did not undo.
+    std::shared_ptr<const std::vector<EditDescription>> edits{};
 };
 
 // The devices must outlive the session, and belong to its servo thread meanwhile.
@@ -66,11 +69,13 @@ class LiveSession {
 public:
     // Loads the scene and starts all threads. `devices` are of the hands of the scene, in their
     // order; hands beyond these stand still. `clock`: null is the machine's. `server` serves the
-    // session and belongs to its simulation's thread meanwhile; null: nobody does. Throws
+    // session and belongs to its simulation's thread meanwhile; null: nobody does. `on_stage` hears
+    // how far loading is. Throws
     // LoadError, and where a device must not be run with the scene's period (check_period).
     LiveSession(const SceneDescription& scene, const ViewSettings& view,
                 std::span<const LiveDevice> devices, LiveClock* clock = nullptr,
-                FrameServer* server = nullptr, const std::optional<PlaybackChoice>& playback = {});
+                FrameServer* server = nullptr, const std::optional<PlaybackChoice>& playback = {},
+                const StageFunction& on_stage = {});
     // With one device.
     LiveSession(const SceneDescription& scene, const ViewSettings& view, Device& device,
                 HandOrders* orders, LiveClock* clock = nullptr);
@@ -174,6 +179,8 @@ private:
     FrameBuilder builder_;
     std::vector<HandPose> poses_;
     std::shared_ptr<const AtomDirectory> atoms_;
+    std::shared_ptr<const std::vector<EditDescription>> edits_ =
+        std::make_shared<std::vector<EditDescription>>();
     std::uint64_t edition_ = 0;
     bool step_once_ = false;
     LiveClock::Moment settled_{};  // after a reset, until the hand rests

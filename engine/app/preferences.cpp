@@ -39,12 +39,30 @@ bool read_text_scale(const toml::node& value, Preferences& preferences) {
     return scale && *scale >= 0.5 && *scale <= 4;
 }
 
-constexpr std::array<Preference, 4> known_keys{{
+// One scene, as versions before had it, or several.
+bool read_recent(const toml::node& value, Preferences& preferences) {
+    if (const auto one = value.value<std::string>()) {
+        preferences.recent = add_recent(std::move(preferences.recent), *one);
+        return true;
+    }
+    const toml::array* const several = value.as_array();
+    if (!several) return false;
+    std::vector<std::string> recent;
+    for (const toml::node& each : *several) {
+        const auto file = each.value<std::string>();
+        if (!file) return false;
+        if (recent.size() < most_recent) recent.push_back(*file);
+    }
+    preferences.recent = std::move(recent);
+    return true;
+}
+
+constexpr std::array<Preference, 5> known_keys{{
     {"device", read_text<&Preferences::device>,
      "device is no text; expected a name as --device takes it"},
     {"sound", read_sound, "sound is no truth value; expected true or false"},
-    {"scene", read_text<&Preferences::scene>,
-     "scene is no text; expected the file or folder of a scene"},
+    {"scene", read_recent, "scene is no text; expected the file or folder of a scene"},
+    {"recent", read_recent, "recent is no list of texts; expected files of scenes"},
     {"text_scale", read_text_scale, "text_scale is no number from 0.5 to 4"},
 }};
 
@@ -89,11 +107,30 @@ std::string format_preferences(const Preferences& preferences) {
     toml::table table;
     if (preferences.device) table.insert("device", *preferences.device);
     if (preferences.sound) table.insert("sound", *preferences.sound);
-    if (preferences.scene) table.insert("scene", *preferences.scene);
+    if (!preferences.recent.empty()) {
+        toml::array recent;
+        for (const std::string& file : preferences.recent) recent.push_back(file);
+        table.insert("recent", std::move(recent));
+    }
     if (preferences.text_scale) table.insert("text_scale", *preferences.text_scale);
     std::ostringstream text;
     text << "# What was chosen in Palpa's window.\n" << table << "\n";
     return text.str();
+}
+
+std::vector<std::string> add_recent(std::vector<std::string> recent, const std::string& file) {
+    std::erase(recent, file);
+    recent.insert(recent.begin(), file);
+    if (recent.size() > most_recent) recent.resize(most_recent);
+    return recent;
+}
+
+std::optional<fs::path> find_prepared_folder() {
+    const fs::path name = fs::path("palpa") / "scenes";
+    if (const auto folder = find_folder("XDG_DATA_HOME")) return *folder / name;
+    if (const auto folder = find_folder("APPDATA")) return *folder / name;
+    if (const auto folder = find_folder("HOME")) return *folder / ".local" / "share" / name;
+    return std::nullopt;
 }
 
 std::optional<fs::path> find_preferences_file() {

@@ -4,17 +4,23 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace palpa {
 
 struct Preferences {
     std::optional<std::string> device{};  // as --device takes it
     std::optional<bool> sound{};          // the felt force as a tone
-    std::optional<std::string> scene{};   // file or folder that was opened last, absolute
+    std::vector<std::string> recent{};    // scenes that were opened, absolute, the newest first
     std::optional<double> text_scale{};   // of the window's text, over the display's own
 
     friend bool operator==(const Preferences&, const Preferences&) = default;
 };
+
+inline constexpr std::size_t most_recent = 8;
+
+// The file in front of those opened before, once.
+std::vector<std::string> add_recent(std::vector<std::string> recent, const std::string& file);
 
 // Throws LoadError that names `file`, line and column.
 Preferences parse_preferences(std::string_view text, const std::string& file);
@@ -23,6 +29,10 @@ std::string format_preferences(const Preferences& preferences);
 // palpa/preferences.toml below XDG_CONFIG_HOME, or ~/.config, or APPDATA on Windows; nothing where
 // none of them is set.
 std::optional<std::filesystem::path> find_preferences_file();
+
+// Where structures that were opened are prepared: palpa/scenes below XDG_DATA_HOME, or
+// ~/.local/share, or APPDATA on Windows; nothing where none of them is set.
+std::optional<std::filesystem::path> find_prepared_folder();
 
 // The file and what is in it. One that cannot be read is said in `problem`, counts as empty, and is
 // never written over: whoever wrote it can mend it.

@@ -1,9 +1,8 @@
 #include "app/run_window.h"
 
 #include "app/sandbox.h"
-#include "core/interrupt.h"
+#include "app/screenshots.h"
 #include "core/load_error.h"
-#include "platform/thread.h"
 #include "render/picture.h"
 #include "session/run_headless.h"
 #include "ui/caption.h"
@@ -17,7 +16,6 @@
 #include <algorithm>
 #include <cmath>
 #include <system_error>
-#include <thread>
 #include <utility>
 
 namespace palpa {
@@ -40,14 +38,6 @@ void blit(VkCommandBuffer commands, VkImage from, VkExtent2D from_size, VkImage 
                    same ? VK_FILTER_NEAREST : VK_FILTER_LINEAR);
 }
 
-std::filesystem::path next_screenshot(const std::filesystem::path& folder) {
-    for (int number = 1;; ++number) {
-        std::filesystem::path path = folder / fmt::format("palpa-{:04}.png", number);
-        std::error_code error;
-        if (!std::filesystem::exists(path, error)) return path;
-    }
-}
-
 std::vector<WindowHand> list_window_hands(Device& first, const WindowOptions& options) {
     std::vector<WindowHand> hands{{&first, options.orders, options.mouse_reach_m}};
     if (const LedDevice& second = options.second; second.device)
@@ -63,14 +53,15 @@ std::vector<LiveDevice> list_devices(std::span<const WindowHand> hands) {
 
 }  // namespace
 
-Sandbox::Sandbox(const SceneDescription& scene, Device& device, const WindowOptions& options)
+Sandbox::Sandbox(WindowShell& shell, std::unique_ptr<LiveSession> session,
+                 const SceneDescription& scene, Device& device, const WindowOptions& options)
     : options_(options),
       devices_(options.devices),
       hands_(list_window_hands(device, options)),
-      text_scale_(options.text_scale.scale),
-      window_("Palpa - " + scene.title, options.width, options.height),
-      session_(scene, options.view, list_devices(hands_), nullptr, options.server,
-               options.playback),
+      shell_(shell),
+      window_(shell.window()),
+      owned_session_(std::move(session)),
+      session_(*owned_session_),
       overlay_(scene),
       title_(scene.title),
       saved_(overlay_.settings()),
@@ -87,10 +78,7 @@ Sandbox::Sandbox(const SceneDescription& scene, Device& device, const WindowOpti
         throw LoadError({options.screenshots.string()},
                         "is no folder; expected one for screenshots");
     }
-    if (options.grows) window_.grow_with_display();
-    // Drawing, which may be done by threads of the driver, comes after feeling.
-    lower_priority();
-    graphics_ = std::make_unique<Graphics>(window_, options.validation, text_scale_);
+    window_.set_title("Palpa - " + scene.title);
     if (options.sound.is_on) (void)switch_sound(true);
     if (options.record) {
         recorded_in_ = *options.record;
@@ -102,33 +90,20 @@ Sandbox::Sandbox(const SceneDescription& scene, Device& device, const WindowOpti
 }
 
 WindowReport Sandbox::run() {
-    const auto shortest = std::chrono::duration_cast<SteadyClock::duration>(
-        std::chrono::duration<double>(1 / options_.most_frames_per_s));
-    constexpr int most_losses = 3;  // without a picture in between
-    int losses = 0;
-    SteadyClock::time_point next = SteadyClock::now();
-    note_interrupts();
-    while (!quitting_ && noted_interrupt() == 0) {
-        if (window_.should_close()) {
-            window_.keep_open();
-            ask_to_quit();
-        }
-        try {
-            if (losses > 0 || !graphics_) restart_graphics();
+    shell_.run(
+        options_.most_frames_per_s,
+        [this] {
+            if (window_.should_close()) {
+                window_.keep_open();
+                ask_to_quit();
+            }
             frame();
-            losses = 0;
-        } catch (const DeviceLost&) {
-            if (++losses > most_losses) throw;
-            notice("the graphics device was lost, and is back");
-        }
-        // The display's own pace does not throttle everywhere.
-        next = std::max(next + shortest, SteadyClock::now());
-        std::this_thread::sleep_until(next);
-    }
-    keep_validation_messages();
-    if (!validation_messages_.empty()) throw GpuError("validation: " + validation_messages_[0]);
-    WindowReport report{{}, overlay_.settings(), frame_ms_.size(),
-                        0,  scale_.value(),      overlay_.lesson().steps_done()};
+            return !quitting_;
+        },
+        [this] { notice("the graphics device was lost, and is back"); });
+    WindowReport report{{},   overlay_.settings(), frame_ms_.size(),
+                        0,    scale_.value(),      overlay_.lesson().steps_done(),
+                        next_};
     report.summary = hands_.front().statistics.summary();
     report.summary.device = hands_.front().device->spec().name;
     for (const WindowHand& other : std::span(hands_).subspan(1)) {
@@ -165,6 +140,7 @@ void Sandbox::frame() {
     follow_tour();
     send_view();
     tell_of_film();
+    save_for_crash();
     if (const std::vector<std::string> notes = session_.take_server_notes(); !notes.empty())
         notice(fmt::format("{}", fmt::join(notes, "\n")));
     take_input();
@@ -206,7 +182,7 @@ void Sandbox::take_ticks() {
 }
 
 VkExtent2D Sandbox::picture_size() const {
-    const VkExtent2D size = graphics_->swapchain.size();
+    const VkExtent2D size = shell_.graphics()->swapchain.size();
     const auto scaled = [&](std::uint32_t pixels) {
         return std::max(1U, static_cast<std::uint32_t>(std::lround(pixels * scale_.value())));
     };
@@ -234,7 +210,7 @@ void Sandbox::compose_picture() {
 }
 
 void Sandbox::draw() {
-    Graphics& g = *graphics_;
+    Graphics& g = *shell_.graphics();
     if (std::exchange(must_rebuild_, false)) g.swapchain.rebuild(window_.size());
     g.ui.begin();
     std::vector<Command> commands;
@@ -293,26 +269,10 @@ void Sandbox::save(const WindowShot& shot) {
         quitting_ = true;
         return;
     }
-    const std::filesystem::path path = next_screenshot(options_.screenshots);
     try {
-        write_png(path, {shot.width, shot.height, shot.rgba, {}, {}});
-        notice(fmt::format("saved {}", path.string()));
+        notice(fmt::format("saved {}", save_screenshot(options_.screenshots, shot).string()));
     } catch (const LoadError& error) {
         notice(error.what());
-    }
-}
-
-void Sandbox::restart_graphics() {
-    keep_validation_messages();
-    graphics_.reset();
-    drawn_size_ = {};
-    graphics_ = std::make_unique<Graphics>(window_, options_.validation, text_scale_);
-}
-
-void Sandbox::keep_validation_messages() {
-    if (!graphics_) return;
-    for (const std::string& message : graphics_->device.validation_messages()) {
-        validation_messages_.push_back(message);
     }
 }
 
@@ -322,9 +282,22 @@ void Sandbox::notice(std::string text, double seconds) {
                                              std::chrono::duration<double>(seconds));
 }
 
-WindowReport run_window(const SceneDescription& scene, Device& device,
+WindowReport run_window(WindowShell& shell, const SceneDescription& scene, Device& device,
                         const WindowOptions& options) {
-    return Sandbox(scene, device, options).run();
+    const std::vector<WindowHand> hands = list_window_hands(device, options);
+    std::unique_ptr<LiveSession> session;
+    const bool is_loaded = shell.work("Opening " + scene.title, [&](const StageFunction& on_stage) {
+        session = std::make_unique<LiveSession>(scene, options.view, list_devices(hands), nullptr,
+                                                options.server, options.playback, on_stage);
+    });
+    WindowReport report;
+    if (is_loaded) {
+        report = Sandbox(shell, std::move(session), scene, device, options).run();
+    } else {
+        report.next.emplace();
+    }
+    shell.check_validation();
+    return report;
 }
 
 }  // namespace palpa

@@ -21,6 +21,7 @@
 namespace palpa {
 
 class FrameServer;
+class WindowShell;
 
 // A device in the hand's place.
 struct WindowDevice {
@@ -52,16 +53,15 @@ struct SoundChoice {
     std::function<void(bool)> remember{};  // what the person switched it to; throws LoadError
 };
 
-// The size of the window's text, over what the display asks for.
-struct TextScaleChoice {
-    double scale = 1;                        // to begin with
-    std::function<void(double)> remember{};  // what the person chose; throws LoadError
+// A scene as a person changed it.
+struct SceneState {
+    LiveSettings settings;
+    ViewDescription view;
+    std::vector<EditDescription> edits{};  // from the scene's beginning on
 };
 
 struct WindowOptions {
     ViewSettings view{};
-    std::uint32_t width = 1280, height = 800;
-    bool grows = true;  // with the display's scale: nobody asked for that size in pixels
     std::filesystem::path screenshots{"."};            // folder
     std::optional<std::filesystem::path> last_shot{};  // taken after `last_shot_s`, then it quits
     Existing last_shot_existing = Existing::Refuse;
@@ -76,17 +76,22 @@ struct WindowOptions {
     PadLink* pads = nullptr;                        // where game pads are posted
     DeviceMenu devices{};
     SoundChoice sound{};
-    TextScaleChoice text_scale{};
-    // Writes the scene with these settings, shown so, and says where; throws LoadError. Empty:
-    // cannot.
-    std::function<std::string(const LiveSettings&, const ViewDescription&)> save{};
+    // Writes the scene with these settings, shown so, and changed so, and says where; throws
+    // LoadError. Empty: cannot.
+    std::function<std::string(const SceneState&)> save{};
+    // The same where nobody asked, for a crash; without a word of where. Empty: it does not.
+    std::function<void(const SceneState&)> save_for_crash{};
     std::string notice{};           // to begin with
     FrameServer* server = nullptr;  // of the simulation's thread meanwhile
     double most_frames_per_s = 60;
     std::uint64_t lose_device_at = 0;  // frame at which the graphics device is given up, for tests
     StudyCourse* study = nullptr;      // the window is for this alone: no overlays, one key
     std::function<void()> on_trial{};  // after each
-    bool validation = false;  // of all that Vulkan is told; what it finds is thrown at the end
+};
+
+// What the person wants to see after a scene.
+struct NextScreen {
+    std::vector<std::filesystem::path> files{};  // to open; none: the start screen
 };
 
 struct WindowReport {
@@ -96,10 +101,12 @@ struct WindowReport {
     double median_frame_ms = 0;
     double render_scale = 1;  // at the end
     std::size_t lesson_steps_done = 0;
+    std::optional<NextScreen> next{};  // nothing: they quit
 };
 
-// Runs until the person quits. Throws PlatformError without a display, GpuError, LoadError.
-WindowReport run_window(const SceneDescription& scene, Device& device,
+// Loads the scene and shows it in the shell's window until the person leaves it. Throws GpuError,
+// LoadError. Where loading is cancelled the report has a next screen and nothing else.
+WindowReport run_window(WindowShell& shell, const SceneDescription& scene, Device& device,
                         const WindowOptions& options);
 
 }  // namespace palpa

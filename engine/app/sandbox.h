@@ -5,16 +5,13 @@
 #include "app/live_session.h"
 #include "app/render_scale.h"
 #include "app/run_window.h"
-#include "gpu/swapchain.h"
-#include "render/renderer.h"
+#include "app/window_shell.h"
 #include "sound/speaker.h"
 #include "ui/add_panel.h"
-#include "ui/backend.h"
 #include "ui/question.h"
 #include "ui/selection_panel.h"
 #include "view/orbit_camera.h"
 #include "view/selected_atoms.h"
-#include "window/window.h"
 
 #include <chrono>
 #include <map>
@@ -29,26 +26,7 @@ namespace palpa {
 
 using SteadyClock = std::chrono::steady_clock;
 
-inline constexpr glm::vec3 window_background{0.86F, 0.89F, 0.93F};
 inline constexpr double notice_s = 4, first_notice_s = 15;
-
-// All that is lost with a device, made and thrown away as one.
-struct Graphics {
-    Graphics(const Window& window, bool validation, double text_scale)
-        : device({.validation = validation,
-                  .instance_extensions = window.vulkan_extensions(),
-                  .create_surface =
-                      [&window](VkInstance instance) { return window.create_surface(instance); }}),
-          swapchain(device, window.size()),
-          renderer(device),
-          ui(window, device, swapchain.overlay_pass(), swapchain.image_count(),
-             static_cast<float>(text_scale) * window.content_scale()) {}
-
-    GpuDevice device;
-    Swapchain swapchain;
-    Renderer renderer;
-    UiBackend ui;
-};
 
 inline double ms_since(SteadyClock::time_point begin) {
     return std::chrono::duration<double, std::milli>(SteadyClock::now() - begin).count();
@@ -70,7 +48,8 @@ struct WindowHand {
 
 class Sandbox {
 public:
-    Sandbox(const SceneDescription& scene, Device& device, const WindowOptions& options);
+    Sandbox(WindowShell& shell, std::unique_ptr<LiveSession> session, const SceneDescription& scene,
+            Device& device, const WindowOptions& options);
 
     WindowReport run();
 
@@ -109,6 +88,9 @@ private:
     void fly_to(const OrbitCamera& camera);
     void fly();
     bool is_saved() const;
+    std::vector<EditAction> list_lasting_edits() const;
+    SceneState describe_state() const;
+    void save_for_crash();
     void note_saved();
     template <typename Value>
     void choose_next(Value ViewSettings::* choice, std::span<const std::string_view> names,
@@ -155,9 +137,10 @@ private:
     bool save_scene();
     ViewDescription describe_view() const;
     void ask_to_quit();
+    void ask_to_leave(const std::string& how, std::optional<NextScreen> next);
+    void ask_about_dropped(const std::vector<std::filesystem::path>& files);
     void ask_for_stand_in();
     bool is_stand_in(const std::string& name) const;
-    void change_text_scale(double scale);
     std::optional<std::uint32_t> find_atom(double x, double y);
     void look_at_pixel(double x, double y);
     void click(const MouseClick& click);
@@ -176,21 +159,20 @@ private:
     void tell_what_is_held();
     void draw();
     void save(const WindowShot& shot);
-    void restart_graphics();
     void notice(std::string text, double seconds = notice_s);
     VkExtent2D picture_size() const;
-    void keep_validation_messages();
 
     const WindowOptions options_;
     DeviceMenu devices_;
     std::unique_ptr<Device> chosen_;  // in the place of the first that the window began with
     std::vector<WindowHand> hands_;
     std::size_t led_ = 0;  // by the mouse
-    double text_scale_;    // over the display's own
     SteadyClock::time_point next_look_ = SteadyClock::now();
-    Window window_;
-    LiveSession session_;
-    std::unique_ptr<Graphics> graphics_;
+    SteadyClock::time_point next_crash_save_ = SteadyClock::now() + std::chrono::seconds(20);
+    WindowShell& shell_;
+    Window& window_;  // the shell's
+    const std::unique_ptr<LiveSession> owned_session_;
+    LiveSession& session_;
     Overlay overlay_;
     const std::string title_;  // of the scene
     LiveSettings saved_;       // as the scene's file has them, or the file saved last
@@ -224,6 +206,7 @@ private:
     std::vector<SavedView> saved_views_;
     std::vector<SavedView> written_views_;             // as the scene's file has them
     ViewAdditions written_additions_;                  // the same
+    std::vector<EditAction> written_edits_;            // the same, but for the scene's own
     std::optional<std::size_t> at_view_;               // of the saved ones, that was gone to last
     std::map<std::string, std::vector<bool>> framed_;  // atoms, by selections
     std::string framed_problem_;                       // of the last one
@@ -259,14 +242,14 @@ private:
     SteadyClock::time_point heeded_ = SteadyClock::now();  // the device, for the last time
     RenderScale scale_;
     const SteadyClock::time_point start_ = SteadyClock::now();
-    bool is_over_ = false;  // the last screenshot is due
+    bool is_over_ = false;            // the last screenshot is due
+    std::optional<NextScreen> next_;  // after quitting
     bool quitting_ = false, wants_shot_ = false, must_rebuild_ = false;
     std::string notice_;
     std::string refusal_;      // of the device that was tried last
     bool has_looked_ = false;  // for the device that is wanted
     SteadyClock::time_point notice_until_{};
     std::vector<double> frame_ms_;
-    std::vector<std::string> validation_messages_;
     double last_frame_ms_ = 0;
 };
 

@@ -13,8 +13,6 @@
 namespace palpa {
 namespace {
 
-constexpr double text_step = 1.1;
-
 // Of what a study leaves to a person: where to look, and the way out.
 bool is_of_picture(Action action) {
     return action == Action::Focus || action == Action::FrameAll || action == Action::FirstView ||
@@ -53,7 +51,7 @@ void Sandbox::choose_next(Value ViewSettings::* choice, std::span<const std::str
 bool Sandbox::save_scene() {
     if (!options_.save) return false;
     try {
-        const std::string file = options_.save(overlay_.settings(), describe_view());
+        const std::string file = options_.save(describe_state());
         note_saved();
         notice(fmt::format("saved {}", file), first_notice_s);
         return true;
@@ -63,15 +61,24 @@ bool Sandbox::save_scene() {
     }
 }
 
-void Sandbox::ask_to_quit() {
-    if (options_.study || !options_.save || is_saved()) {
+void Sandbox::ask_to_quit() { ask_to_leave("quit", std::nullopt); }
+
+// `next`: what is shown then; `how`: "quit".
+void Sandbox::ask_to_leave(const std::string& how, std::optional<NextScreen> next) {
+    if (options_.study && next) return;
+    const auto leave = [this, next = std::move(next)] {
+        next_ = next;
         quitting_ = true;
-        return;
-    }
-    question_ = {"The settings, or what is added to the view, were changed and are not saved.",
-                 {{Key::S, "Save and quit (S)", [this] { quitting_ = save_scene(); }},
-                  {Key::Q, "Quit without saving (Q)", [this] { quitting_ = true; }},
-                  {Key::Escape, "Stay (Esc)"}}};
+    };
+    if (options_.study || !options_.save || is_saved()) return leave();
+    question_ = {
+        "The settings, or what is added to the view, were changed and are not saved.",
+        {{Key::S, fmt::format("Save and {} (S)", how),
+          [this, leave] {
+              if (save_scene()) leave();
+          }},
+         {Key::Q, fmt::format("{} without saving (Q)", how == "quit" ? "Quit" : "Go on"), leave},
+         {Key::Escape, "Stay (Esc)"}}};
 }
 
 // On standard error too, where it stays.
@@ -159,6 +166,9 @@ void Sandbox::perform(Action action) {
         case Action::FirstView:
             show_first_view();
             break;
+        case Action::StartScreen:
+            ask_to_leave("go on", NextScreen{});
+            break;
         case Action::Select:
             open_selection();
             break;
@@ -196,19 +206,19 @@ void Sandbox::perform(Action action) {
             if (frame_.readout.playback) session_.send(play_from_start());
             break;
         case Action::RestartGraphics:
-            restart_graphics();
+            shell_.restart_graphics();
             break;
         case Action::Save:
             (void)save_scene();
             break;
         case Action::LargerText:
-            change_text_scale(text_scale_ * text_step);
+            notice(shell_.change_text_scale(shell_.text_scale() * text_step));
             break;
         case Action::SmallerText:
-            change_text_scale(text_scale_ / text_step);
+            notice(shell_.change_text_scale(shell_.text_scale() / text_step));
             break;
         case Action::UsualText:
-            change_text_scale(1);
+            notice(shell_.change_text_scale(1));
             break;
         case Action::Quit:
             if (options_.study || (!overlay_.close_something() && !end_tour() && !end_selection()))

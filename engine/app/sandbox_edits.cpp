@@ -1,5 +1,10 @@
 // What a person takes, adds and removes.
+#include "app/sandbox.h"
+
+#include "app/start_screen.h"
 #include "core/load_error.h"
+#include "core/text.h"
+#include "scene/find_scene.h"
 #include "simulation/molecules.h"
 #include "simulation/sources.h"
 #include "view/find_room.h"
@@ -10,7 +15,6 @@
 #include <string>
 #include <utility>
 #include <vector>
-#include "app/sandbox.h"
 
 namespace palpa {
 namespace {
@@ -53,11 +57,11 @@ std::string describe_way(double angstrom, const OrbitCamera& camera) {
 
 // At a pixel of the window.
 std::optional<std::uint32_t> Sandbox::find_atom(double x, double y) {
-    const VkExtent2D window = graphics_->swapchain.size();
+    const VkExtent2D window = shell_.graphics()->swapchain.size();
     if (drawn_size_.width == 0 || window.width == 0 || window.height == 0 || !frame_.atoms)
         return std::nullopt;
-    graphics_->swapchain.wait();
-    const std::uint32_t pick = graphics_->renderer.pick(
+    shell_.graphics()->swapchain.wait();
+    const std::uint32_t pick = shell_.graphics()->renderer.pick(
         static_cast<std::uint32_t>(std::max(x, 0.0) * drawn_size_.width / window.width),
         static_cast<std::uint32_t>(std::max(y, 0.0) * drawn_size_.height / window.height));
     if (pick >= frame_.atoms->names.size()) return std::nullopt;  // nothing, or a sign
@@ -67,7 +71,8 @@ std::optional<std::uint32_t> Sandbox::find_atom(double x, double y) {
 // A click takes what is there, unless another one follows that makes both a double click.
 void Sandbox::click(const MouseClick& click) {
     const bool pins = click.is_right || click.alt;
-    if ((click.is_second && !pins) || options_.study || graphics_->ui.covers(click.x, click.y))
+    if ((click.is_second && !pins) || options_.study ||
+        shell_.graphics()->ui.covers(click.x, click.y))
         return;
     const std::optional<std::uint32_t> atom = find_atom(click.x, click.y);
     if (!atom) return;
@@ -116,7 +121,27 @@ void Sandbox::open_add_panel() {
 
 void Sandbox::take_dropped(const Input& input) {
     if (input.dropped.empty() || options_.study || question_ || !has_frame_) return;
-    add_panel_.open(input.dropped);
+    // What lacks something on its way into the dialog goes there.
+    if (add_panel_.is_open()) return add_panel_.open(input.dropped);
+    ask_about_dropped(input.dropped);
+}
+
+void Sandbox::ask_about_dropped(const std::vector<std::filesystem::path>& files) {
+    const auto is_scene = [](const std::filesystem::path& file) {
+        return can_be_opened(file) && !is_structure(file) && file.extension() != ".gz";
+    };
+    const auto is_topology = [](const std::filesystem::path& file) {
+        return upper_case(file.extension().string()) == ".PSF";
+    };
+    const auto open = [this, files] { ask_to_leave("go on", NextScreen{files}); };
+    if (std::ranges::any_of(files, is_scene)) return open();
+    // A topology belongs to what is added, and is none of what is prepared.
+    if (std::ranges::none_of(files, can_be_opened) || std::ranges::any_of(files, is_topology))
+        return add_panel_.open(files);
+    question_ = {fmt::format("{}: what is to be done with it?", files[0].filename().string()),
+                 {{Key::A, "Add it to this scene (A)", [this, files] { add_panel_.open(files); }},
+                  {Key::O, "Open it as a scene of its own (O)", open},
+                  {Key::Escape, "Nothing (Esc)"}}};
 }
 
 void Sandbox::add(AddEdit wanted) {

@@ -26,10 +26,12 @@ constexpr double longest_key_s = 0.1;  // that counts at once
 void Sandbox::take_input() {
     const Input& input = window_.poll();
     must_rebuild_ = must_rebuild_ || input.resized;
-    if (input.rescaled) restart_graphics();
+    if (input.rescaled) shell_.restart_graphics();
     heed_device(input);
     if (options_.pads) post_pad(input);
-    const auto types = [&] { return graphics_->ui.wants_keys() || selection_panel_.awaits_keys(); };
+    const auto types = [&] {
+        return shell_.graphics()->ui.wants_keys() || selection_panel_.awaits_keys();
+    };
     for (const KeyPress& press : input.pressed) {
         if (add_panel_.is_open() && !question_) {
             press_in_dialog(press);
@@ -50,13 +52,13 @@ void Sandbox::take_input() {
     window_.capture_cursor(holding_);
     // A drag belongs to what lies where it began, however fast the mouse goes.
     for (const MousePress& press : input.clicked) {
-        drags_panel_ = graphics_->ui.covers(press.x, press.y);
+        drags_panel_ = shell_.graphics()->ui.covers(press.x, press.y);
     }
     const bool is_dragging =
         std::find(input.down.begin(), input.down.end(), true) != input.down.end();
     const bool is_on_panel = is_dragging || !input.clicked.empty()
                                  ? drags_panel_
-                                 : graphics_->ui.covers(input.mouse_x, input.mouse_y);
+                                 : shell_.graphics()->ui.covers(input.mouse_x, input.mouse_y);
     const bool draws_box = draw_box(input);
     if (holding_) {
         // What the mouse did since the last look was done without the key, where that is new.

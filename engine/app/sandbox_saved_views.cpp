@@ -119,13 +119,44 @@ void Sandbox::follow_lesson() {
 
 bool Sandbox::is_saved() const {
     return overlay_.settings() == saved_ && overlay_.additions() == written_additions_ &&
-           saved_views_ == written_views_;
+           saved_views_ == written_views_ && list_lasting_edits() == written_edits_;
+}
+
+// Not what is in hand, nor the coupling, which the settings have.
+std::vector<EditAction> Sandbox::list_lasting_edits() const {
+    std::vector<EditAction> actions;
+    if (!frame_.edits) return actions;
+    for (const EditDescription& edit : *frame_.edits) {
+        const bool passes = std::holds_alternative<TakeEdit>(edit.action) ||
+                            std::holds_alternative<LetGoEdit>(edit.action) ||
+                            std::holds_alternative<CouplingEdit>(edit.action);
+        if (!passes) actions.push_back(edit.action);
+    }
+    return actions;
+}
+
+SceneState Sandbox::describe_state() const {
+    SceneState state{overlay_.settings(), describe_view()};
+    if (frame_.edits) state.edits = *frame_.edits;
+    std::erase_if(state.edits, [](const EditDescription& edit) {
+        return std::holds_alternative<CouplingEdit>(edit.action);
+    });
+    return state;
+}
+
+// Now and then, so that a crash loses little.
+void Sandbox::save_for_crash() {
+    constexpr std::chrono::seconds between{20};
+    if (!options_.save_for_crash || !has_frame_ || SteadyClock::now() < next_crash_save_) return;
+    next_crash_save_ = SteadyClock::now() + between;
+    if (!is_saved()) options_.save_for_crash(describe_state());
 }
 
 void Sandbox::note_saved() {
     saved_ = overlay_.settings();
     written_additions_ = overlay_.additions();
     written_views_ = saved_views_;
+    written_edits_ = list_lasting_edits();
 }
 
 }  // namespace palpa

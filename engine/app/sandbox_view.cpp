@@ -137,19 +137,4 @@ ViewDescription Sandbox::describe_view() const {
     return view;
 }
 
-void Sandbox::change_text_scale(double scale) {
-    // Panels need 900 pixels of width at the usual size; beyond a little more they would be cut.
-    constexpr double smallest = 0.7, largest = 4, needed_pixels = 900, too_wide = 1.2;
-    const double fits = too_wide * window_.size().width / (needed_pixels * window_.content_scale());
-    text_scale_ = std::clamp(scale, smallest, std::clamp(fits, 1.0, largest));
-    restart_graphics();
-    notice(fmt::format("text: {:.0f} %", 100 * text_scale_));
-    if (!options_.text_scale.remember) return;
-    try {
-        options_.text_scale.remember(text_scale_);
-    } catch (const LoadError& error) {
-        notice(error.what(), first_notice_s);
-    }
-}
-
 }  // namespace palpa

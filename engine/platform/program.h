@@ -1,5 +1,6 @@
 // The running program, and others.
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -8,6 +9,10 @@ namespace palpa {
 
 // The file of the running program; empty where the system does not say.
 std::filesystem::path find_program_file();
+
+// The system's number of the running program, and whether one of that number runs.
+std::uint64_t own_process_number() noexcept;
+bool is_process_running(std::uint64_t number) noexcept;
 
 // What became of another program.
 struct ProgramEnd {

@@ -3,6 +3,7 @@
 #include "core/files.h"
 #include "core/load_error.h"
 
+#include <fmt/format.h>
 #include <png.h>
 #include <zlib.h>
 #include <algorithm>
@@ -102,6 +103,27 @@ Picture average_down(const Picture& picture, std::uint32_t factor) {
         }
     }
     return smaller;
+}
+
+Picture read_png(const std::filesystem::path& path) {
+    constexpr png_uint_32 most = 4096;
+    const std::string content = read_text_file(path);
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION;
+    if (png_image_begin_read_from_memory(&image, content.data(), content.size()) == 0)
+        throw LoadError({path.string()}, std::string("is no PNG file: ") + image.message);
+    if (image.width > most || image.height > most) {
+        png_image_free(&image);
+        throw LoadError({path.string()},
+                        fmt::format("has {}x{} pixels; expected at most {} either way", image.width,
+                                    image.height, most));
+    }
+    image.format = PNG_FORMAT_RGBA;
+    Picture picture{
+        image.width, image.height, std::vector<std::uint8_t>(PNG_IMAGE_SIZE(image)), {}, {}};
+    if (png_image_finish_read(&image, nullptr, picture.rgba.data(), 0, nullptr) == 0)
+        throw LoadError({path.string()}, std::string("cannot be read: ") + image.message);
+    return picture;
 }
 
 void write_png(const std::filesystem::path& path, const Picture& picture, Existing existing) {

@@ -52,6 +52,10 @@ void divide_by_alpha(Picture& picture);
 // factor x factor, weighted by alpha. The size must be a multiple.
 Picture average_down(const Picture& picture, std::uint32_t factor);
 
+// Reads a PNG file's colours. Throws LoadError that names it; more than 4096 pixels either way are
+// refused.
+Picture read_png(const std::filesystem::path& path);
+
 // A PNG file's word for the program that wrote it, as it stands near the file's beginning.
 inline constexpr std::string_view picture_mark{"Software\0Palpa", 14};
 

@@ -76,6 +76,11 @@ inline constexpr std::array<std::string_view, 3> workspace_names{"clutch", "bubb
 enum class Engage { AtOnce, Ramp };
 inline constexpr std::array<std::string_view, 2> engage_names{"at-once", "ramp"};
 
+// Whom a scene is for.
+enum class SceneLevel { Unstated, Beginner, Student, Researcher };
+inline constexpr std::array<std::string_view, 4> scene_level_names{"unstated", "beginner",
+                                                                   "student", "researcher"};
+
 // What a step of a lesson looks at.
 enum class LessonQuantity { Distance, Force, FeltForce, Mode };
 inline constexpr std::array<std::string_view, 4> lesson_quantity_names{

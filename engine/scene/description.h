@@ -239,6 +239,8 @@ struct ViewDescription {
 struct SceneDescription {
     std::filesystem::path file;
     std::string title, about;
+    SceneLevel level = SceneLevel::Unstated;
+    double minutes = 0;   // that a person spends with it; 0: not stated
     std::string made_by;  // the command that makes the files it names; empty: they are there
     ForceFieldDescription force_field;
     std::vector<MoleculeDescription> molecules;  // in the order of the file

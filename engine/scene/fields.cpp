@@ -464,6 +464,13 @@ private:
 void visit_scene(FieldVisitor& v, SceneDescription& scene) {
     v.text({.key = "title", .meaning = "name of the scene"}, scene.title);
     v.text({.key = "about", .meaning = "what it shows, in a few sentences"}, scene.about);
+    choose(v, {.key = "level", .meaning = "whom it is for; the start screen shows it"},
+           scene_level_names, scene.level);
+    v.real({.key = "minutes",
+            .meaning = "that a person spends with it; 0: not stated",
+            .lowest = 0,
+            .highest = 600},
+           scene.minutes);
     v.text(
         {.key = "made_by",
          .meaning = "how the files that the scene names are made, for who reads it; nothing runs "

@@ -41,6 +41,19 @@ bool is_to_be_made(const toml::table& scene, const fs::path& folder) {
     return false;
 }
 
+// On one line.
+std::string first_sentence(const std::string& text) {
+    std::string sentence;
+    for (const std::string_view line : split_lines(text))
+        for (const std::string_view word : split_words(line)) sentence += std::string(word) + ' ';
+    for (std::size_t at = 0; (at = sentence.find(". ", at)) != std::string::npos; ++at) {
+        // No abbreviation, and no number.
+        if (at > 2 && sentence[at - 2] != '.' && sentence[at - 2] != ' ')
+            return sentence.substr(0, at + 1);
+    }
+    return std::string(trimmed(sentence));
+}
+
 void add_scenes_of(const fs::path& folder, const std::string& prefix,
                    std::vector<SceneEntry>& scenes) {
     for (const fs::path& path : list_folder(folder, most_entries)) {
@@ -50,8 +63,11 @@ void add_scenes_of(const fs::path& folder, const std::string& prefix,
             if (!table.contains("grab")) continue;
             const bool is_usual = path.filename() == usual_name;
             const std::string name = is_usual ? prefix : prefix + "/" + path.stem().string();
-            scenes.push_back(
-                {name, path, table["title"].value_or(std::string()), is_to_be_made(table, folder)});
+            scenes.push_back({name, path, table["title"].value_or(std::string()),
+                              first_sentence(table["about"].value_or(std::string())),
+                              table["level"].value_or(std::string()),
+                              table["minutes"].value_or(0.0), table.contains("lesson"),
+                              is_to_be_made(table, folder)});
         } catch (const toml::parse_error&) {
             continue;
         } catch (const LoadError&) {
@@ -144,6 +160,14 @@ std::string describe_own_scenes(const std::string& named) {
 }
 
 }  // namespace
+
+std::string describe_effort(const SceneEntry& scene) {
+    std::vector<std::string> parts;
+    if (scene.has_lesson) parts.emplace_back("lesson");
+    if (!scene.level.empty()) parts.push_back(scene.level);
+    if (scene.minutes > 0) parts.push_back(fmt::format("{:.0f} minutes", scene.minutes));
+    return fmt::format("{}", fmt::join(parts, ", "));
+}
 
 std::vector<fs::path> own_scene_folders() {
     const fs::path program = find_program_file().parent_path();

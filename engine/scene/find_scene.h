@@ -9,10 +9,18 @@ namespace palpa {
 struct SceneEntry {
     std::string name;  // relative to the folder of the list: "hiv", "hiv/flexible"
     std::filesystem::path file;
-    std::string title;  // as the file says; may be empty
+    std::string title{};  // as the file says; may be empty
+    std::string about{};  // its first sentence
+    std::string level{};  // empty: not stated
+    double minutes = 0;   // the same: 0
+    bool has_lesson = false;
     bool is_to_be_made =
         false;  // by a command that the file names: its molecules are not there yet
 };
+
+// Whom it is for and how long it takes: "lesson, beginner, 10 minutes"; empty where nothing is
+// stated.
+std::string describe_effort(const SceneEntry& scene);
 
 // Where the scenes are that come with the program: installed beside it, or in the source tree of a
 // build. Those that exist.

@@ -50,11 +50,12 @@ SceneDescription as_live(SceneDescription scene) {
 }  // namespace
 
 LiveSimulation::LiveSimulation(const SceneDescription& scene, std::vector<HandDevice> devices,
-                               ServoLine& line, const std::optional<PlaybackChoice>& playback)
+                               ServoLine& line, const std::optional<PlaybackChoice>& playback,
+                               const StageFunction& on_stage)
     : scene_(scene),
       devices_(std::move(devices)),
       line_(line),
-      world_(load_world(as_live(scene))),
+      world_(load_world(as_live(scene), on_stage)),
       edits_(scene),
       poses_(devices_.size()),
       felt_(devices_.size()),
@@ -70,6 +71,12 @@ LiveSimulation::LiveSimulation(const SceneDescription& scene, std::vector<HandDe
 }
 
 LiveSimulation::~LiveSimulation() { leave_engine(world_); }
+
+std::vector<EditDescription> LiveSimulation::list_edits() const {
+    std::vector<EditDescription> edits = history_.list_edits();
+    std::erase_if(edits, [](const EditDescription& edit) { return edit.place.line > 0; });
+    return edits;
+}
 
 bool LiveSimulation::all_stand_still() const noexcept {
     return std::ranges::all_of(devices_, &HandDevice::stands_still);

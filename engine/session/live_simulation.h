@@ -1,6 +1,7 @@
 // The simulation of a live session, one event after the other, without clock, thread or device. A
 // live session runs it beside its servos, and a journal runs it again.
 #pragma once
+#include "core/stage.h"
 #include "ecs/world.h"
 #include "haptics/exchange.h"
 #include "scene/description.h"
@@ -39,9 +40,10 @@ public:
     // only a remote engine knows where atoms are and does not answer, and where a device must not
     // be run with the scene's period (check_period). `playback`: a trajectory of the scene's atoms
     // to play (simulation/playback.h); its scene is one by as_played. Throws LoadError as
-    // start_playback does.
+    // start_playback does. `on_stage` hears how far loading is.
     LiveSimulation(const SceneDescription& scene, std::vector<HandDevice> devices, ServoLine& line,
-                   const std::optional<PlaybackChoice>& playback = {});
+                   const std::optional<PlaybackChoice>& playback = {},
+                   const StageFunction& on_stage = {});
     LiveSimulation(const LiveSimulation&) = delete;
     LiveSimulation& operator=(const LiveSimulation&) = delete;
     // Lets a remote engine go.
@@ -70,6 +72,8 @@ public:
     bool all_stand_still() const noexcept;
     // Of what happened to it; contact, error, work budget and times are left to others.
     const Readout& readout() const noexcept { return readout_; }
+    // What a person made of the world and did not undo; without the scene's own edits.
+    std::vector<EditDescription> list_edits() const;
     // Another number: molecules, or their names, are others than before.
     std::uint64_t edition() const noexcept { return edition_; }
 

@@ -21,6 +21,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <optional>
 #include <span>
 #include <utility>
@@ -555,20 +556,31 @@ void EditHistory::replace(World& world, World changed, const EditDescription& ed
                             std::holds_alternative<ResetEdit>(edit.action);
     has_changed_coupling_ = change.is_of_coupling;
     const bool takes = std::holds_alternative<TakeEdit>(edit.action);
-    const bool ends =
-        (takes || std::holds_alternative<LetGoEdit>(edit.action)) && end_grip(edit.hand);
+    const bool lets_go = std::holds_alternative<LetGoEdit>(edit.action);
+    Entry* const ended = takes || lets_go ? end_grip(edit.hand) : nullptr;
     // Letting go is the end of the grip's entry, where it has one.
-    if (ends && !takes) return;
+    if (ended && lets_go) {
+        ended->change.edits.push_back(edit);
+        return;
+    }
     if (takes) change.grip = edit.hand;
+    change.edits.push_back(edit);
     push(std::move(changed), change, undo_);
 }
 
-bool EditHistory::end_grip(std::size_t hand) noexcept {
+std::vector<EditDescription> EditHistory::list_edits() const {
+    std::vector<EditDescription> edits = dropped_edits_;
+    for (const Entry& entry : undo_)
+        edits.insert(edits.end(), entry.change.edits.begin(), entry.change.edits.end());
+    return edits;
+}
+
+EditHistory::Entry* EditHistory::end_grip(std::size_t hand) noexcept {
     const auto found = std::find_if(undo_.rbegin(), undo_.rend(),
                                     [&](const Entry& entry) { return entry.change.grip == hand; });
-    if (found == undo_.rend()) return false;
+    if (found == undo_.rend()) return nullptr;
     found->change.grip.reset();
-    return true;
+    return &*found;
 }
 
 void EditHistory::go(World& world, std::deque<Entry>& from, std::deque<Entry>& to) {
@@ -590,6 +602,7 @@ void EditHistory::push(World world, const Change& change, std::deque<Entry>& to)
     for (const Entry& entry : redo_) bytes += entry.bytes;
     while (undo_.size() > 1 && (undo_.size() > most_entries || bytes > most_bytes)) {
         bytes -= undo_.front().bytes;
+        std::ranges::move(undo_.front().change.edits, std::back_inserter(dropped_edits_));
         undo_.pop_front();
         ++dropped_;
     }

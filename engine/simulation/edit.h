@@ -44,6 +44,10 @@ public:
     // hands take hold where their devices are.
     void adopt(World& world, World changed, const EditDescription& edit);
 
+    // What was made of the world it began with and is not undone, in order; letting go stands
+    // behind its taking hold.
+    std::vector<EditDescription> list_edits() const;
+
     bool can_undo() const noexcept { return !undo_.empty(); }
     bool can_redo() const noexcept { return !redo_.empty(); }
     // Whether the edit made last, undone or done again changed the coupling.
@@ -57,6 +61,7 @@ private:
         // The hand that took hold, as long as it has not let go.
         std::optional<std::size_t> grip;
         bool is_of_coupling = false;
+        std::vector<EditDescription> edits{};  // one, or taking hold and letting go
     };
     struct Entry {
         World world;
@@ -67,9 +72,10 @@ private:
     void replace(World& world, World changed, const EditDescription& edit);
     void go(World& world, std::deque<Entry>& from, std::deque<Entry>& to);
     void push(World world, const Change& change, std::deque<Entry>& to);
-    bool end_grip(std::size_t hand) noexcept;
+    Entry* end_grip(std::size_t hand) noexcept;
 
     std::deque<Entry> undo_, redo_;
+    std::vector<EditDescription> dropped_edits_;
     std::size_t dropped_ = 0;
     bool has_changed_coupling_ = false;
 };

@@ -98,6 +98,7 @@ private:
     void draw_right_panel(std::vector<Command>& commands);
     void draw_gains(std::vector<Command>& commands);
     void draw_gain_sliders();
+    void choose_touch();
     void choose_laws();
     void choose_range();
     void draw_over_time();

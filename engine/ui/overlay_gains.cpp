@@ -22,6 +22,20 @@ constexpr ImU32 hand_colour = IM_COL32(20, 90, 190, 255);
 constexpr ImU32 gain_colour = IM_COL32(20, 130, 70, 255);
 constexpr ImU32 now_colour = IM_COL32(250, 170, 0, 255);
 
+// What the hand is to feel best: the weakest and the strongest force on the molecule.
+struct Touch {
+    const char* name;
+    double weakest_pN, strongest_pN;
+    const char* explanation;
+};
+constexpr std::array touches{
+    Touch{"waters", 20, 1e3,
+          "20 pN to 1 nN: dispersion and single hydrogen bonds; strong contacts feel alike"},
+    Touch{"pockets", 100, 5e3, "100 pN to 5 nN: what holds a ligand"},
+    Touch{"walls", 1e3, 5e4, "1 to 50 nN: the shape of hard walls; bonds are not noticed"}};
+constexpr double touch_ratio = 50;        // of the strongest to the weakest
+constexpr double least_clamp_newton = 3;  // that a range needs
+
 // Pixels between the axes, at the usual size of text.
 constexpr float least_plot = 70, largest_plot = 240;
 
@@ -121,6 +135,7 @@ void Overlay::remember_edit(const LiveSettings& before) {
 
 void Overlay::draw_gain_sliders() {
     CouplingDescription& c = settings_.coupling;
+    if (is_guarded()) choose_touch();
     if (is_guarded()) choose_laws();
     const bool has_range = is_guarded() && c.feel_pN.has_value();
     const bool is_perceptual = is_guarded() && c.force_law == ForceLawChoice::Perceptual;
@@ -173,6 +188,32 @@ void Overlay::draw_gain_sliders() {
     if (is_guarded()) choose_range();
 }
 
+// The range that is felt, for who knows no gains.
+void Overlay::choose_touch() {
+    CouplingDescription& c = settings_.coupling;
+    if (c.clamp_N < least_clamp_newton) return;
+    const auto set = [&](const std::optional<std::array<double, 2>>& range) {
+        undo_.push_back(settings_);
+        redo_.clear();
+        c.feel_pN = range;
+    };
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted("feel");
+    for (const Touch& touch : touches) {
+        same_line_if_it_fits(touch.name);
+        if (ImGui::SmallButton(touch.name)) set({{touch.weakest_pN, touch.strongest_pN}});
+        tip(touch.explanation);
+    }
+    same_line_if_it_fits("as the scene");
+    if (ImGui::SmallButton("as the scene")) set(scene_.coupling.feel_pN);
+    tip("the range that the scene's file states, or its force law where it states none");
+    if (!c.feel_pN) return;
+    double weakest = (*c.feel_pN)[0];
+    slide("touch", weakest, touches.front().weakest_pN, touches.back().weakest_pN, "from %.0f pN",
+          true, "left: weak forces are felt; right: only strong ones; up to 50 times as strong");
+    if (weakest != (*c.feel_pN)[0]) c.feel_pN = {weakest, touch_ratio * weakest};
+}
+
 void Overlay::choose_laws() {
     CouplingDescription& c = settings_.coupling;
     const std::string laws = fmt::format(
@@ -208,7 +249,7 @@ void Overlay::choose_laws() {
 }
 
 void Overlay::choose_range() {
-    constexpr double lowest_pN = 1, highest_pN = 1e5, least_ratio = 1.1, least_clamp_newton = 3;
+    constexpr double lowest_pN = 1, highest_pN = 1e5, least_ratio = 1.1;
     CouplingDescription& c = settings_.coupling;
     const LiveSettings before = settings_;
     bool has_range = c.feel_pN.has_value();

@@ -143,6 +143,9 @@ void Overlay::draw_buttons(const Readout& readout, bool is_recording,
     same_line_if_it_fits("Reset");
     button("Reset", "R. Molecules and view go back to their start; the settings stay.",
            Action::Reset, actions);
+    same_line_if_it_fits("Open");
+    button("Open", "Ctrl+O. Another scene, or a structure of your own.", Action::StartScreen,
+           actions);
     same_line_if_it_fits("Save");
     button("Save", "Ctrl+S. Writes the scene with these settings to a file of its own.",
            Action::Save, actions);

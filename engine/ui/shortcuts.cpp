@@ -25,6 +25,7 @@ constexpr std::array list = std::to_array<Shortcut>({
     {Key::Digit4, false, Action::Mode4, "4", "constant gains"},
     {Key::Digit5, false, Action::Mode5, "5", "no force"},
     {Key::Digit6, false, Action::Guarded, "6", "guarded coupling"},
+    {Key::O, true, Action::StartScreen, "Ctrl+O", "open another scene, or a file of your own"},
     {Key::S, true, Action::Save, "Ctrl+S", "save the scene as set, to a new file"},
     {Key::V, false, Action::NextRepresentation, "V", "another representation"},
     {Key::C, false, Action::NextColouring, "C", "other colours"},
@@ -71,7 +72,7 @@ constexpr std::array gesture_list = std::to_array<Gesture>({
     {"Alt+click, right click", "label an atom; again removes it"},
     {"double click on an atom", "look at it"},
     {"Ctrl+click on a slider", "type a number"},
-    {"drop a file on the window", "add the molecule in it"},
+    {"drop a file on the window", "add the molecule in it, or open it"},
 });
 
 }  // namespace

@@ -12,6 +12,7 @@ namespace palpa {
 
 enum class Action {
     PauseOrGo,
+    StartScreen,
     StepOnce,
     Reset,
     Mode1,

@@ -298,6 +298,8 @@ const Input& Window::poll() {
     return input_;
 }
 
+void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
+
 bool Window::should_close() const { return glfwWindowShouldClose(window_) == GLFW_TRUE; }
 
 void Window::keep_open() { glfwSetWindowShouldClose(window_, GLFW_FALSE); }

@@ -150,6 +150,8 @@ public:
     // Takes in what happened.
     const Input& poll();
 
+    void set_title(const std::string& title);
+
     bool should_close() const;
     // The person wants to stay after all.
     void keep_open();

@@ -7,17 +7,22 @@
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <string>
+#include <vector>
 
 using namespace palpa;
 using Catch::Contains;
 
 TEST_CASE("preferences read as they were written", "[tools][preferences]") {
-    const Preferences odd{.device = "a \"b\"\n", .sound = GENERATE(true, false)};
+    const Preferences odd{
+        .device = "a \"b\"\n", .sound = GENERATE(true, false), .recent = {"/a 'b'", "c"}};
 
     CHECK(parse_preferences("device = \"omni\"", "p.toml") == Preferences{.device = "omni"});
     CHECK(parse_preferences("sound = true", "p.toml") == Preferences{.sound = true});
     CHECK(parse_preferences(format_preferences(odd), "p.toml") == odd);
     CHECK(parse_preferences(format_preferences({}), "p.toml") == Preferences{});
+    // A version before had one scene.
+    CHECK(parse_preferences("scene = \"/a/b.toml\"", "p.toml").recent ==
+          std::vector<std::string>{"/a/b.toml"});
 }
 
 TEST_CASE("preferences that are wrong say where", "[tools][preferences]") {
@@ -31,9 +36,20 @@ TEST_CASE("preferences that are wrong say where", "[tools][preferences]") {
     CHECK_THAT(told("text_scale = \"2\""), Contains("text_scale is no number from 0.5 to 4"));
     CHECK_THAT(told("text_scale = 4.1"), Contains("p.toml:1:14: text_scale is no number"));
     CHECK_THAT(told("text_scale = 0.4"), Contains("text_scale is no number from 0.5 to 4"));
-    CHECK_THAT(told("devise = \"omni\""), Contains("p.toml:1:10: unknown key 'devise'") &&
-                                              Contains("device, sound, scene, text_scale") &&
-                                              Contains("did you mean 'device'"));
+    CHECK_THAT(told("devise = \"omni\""),
+               Contains("p.toml:1:10: unknown key 'devise'") &&
+                   Contains("device, sound, scene, recent, text_scale") &&
+                   Contains("did you mean 'device'"));
+}
+
+TEST_CASE("a scene that is opened again stands first and once, and only eight are kept",
+          "[tools][preferences]") {
+    CHECK(add_recent({"a", "b"}, "b") == std::vector<std::string>{"b", "a"});
+    std::vector<std::string> recent;
+    for (const char name : std::string("abcdefghij")) recent = add_recent(recent, {name});
+    REQUIRE(recent.size() == most_recent);
+    CHECK(recent.front() == "j");
+    CHECK(recent.back() == "c");
 }
 
 TEST_CASE("a choice is kept, in a folder that was not there", "[tools][preferences]") {

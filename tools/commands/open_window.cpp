@@ -1,5 +1,6 @@
 #include "tools/commands/open_window.h"
 
+#include "app/recovery.h"
 #include "app/run_window.h"
 #include "app/save_scene.h"
 #include "app/window_devices.h"
@@ -12,6 +13,7 @@
 #include "scene/read_scene.h"
 #include "session/recording.h"
 #include "tools/commands/print_run.h"
+#include "tools/commands/screens.h"
 #include "view/first_view.h"
 
 #include <fmt/format.h>
@@ -41,7 +43,8 @@ SoundChoice build_sound_choice(const RunOptions& options, PreferencesFile& prefe
 void remember_scene(const fs::path& scene, PreferencesFile& preferences) {
     std::error_code error;
     Preferences chosen = preferences.now();
-    chosen.scene = fs::absolute(scene, error).lexically_normal().string();
+    chosen.recent =
+        add_recent(chosen.recent, fs::absolute(scene, error).lexically_normal().string());
     try {
         preferences.keep(chosen);
     } catch (const LoadError& problem) {
@@ -82,6 +85,16 @@ void print_report(const SceneDescription& played, const WindowReport& report) {
         fmt::print("  lesson      {} of {} steps done\n", report.lesson_steps_done,
                    played.lesson.size());
     }
+}
+
+// The scene as a person changed it.
+SceneDescription as_set(const SceneDescription& scene, const SceneState& state) {
+    SceneDescription set = scene;
+    set.coupling = state.settings.coupling;
+    set.period_ms = state.settings.period_ms;
+    set.view = state.view;
+    set.edits.insert(set.edits.begin(), state.edits.begin(), state.edits.end());
+    return set;
 }
 
 // The scene as it was played, by the settings that it ended with.
@@ -126,11 +139,19 @@ void check_window_options(const RunOptions& options) {
     (void)check_shot(options);
 }
 
-int open_window(const SceneDescription& scene, const World& world, EmulatedOmniSettings settings,
-                const RunOptions& options) {
+ShellOptions shell_options(const RunOptions& options, PreferencesFile& preferences) {
+    return {.width = options.width,
+            .height = options.height,
+            .grows = !options.has_size,
+            .text_scale = build_text_scale(preferences),
+            .validation = options.validation};
+}
+
+std::optional<NextScreen> show_scene(WindowShell& shell, PreferencesFile& preferences,
+                                     const SceneDescription& scene, const World& world,
+                                     EmulatedOmniSettings settings, const RunOptions& options) {
     if (!settings.hand) settings.hand = hand_model(HandGrip::Medium);  // a window needs somebody
     if (!options.play) give_to_mouse(settings);
-    PreferencesFile preferences(find_preferences_file());
     WindowDevices devices(settings, preferences);
     const WindowDevice first =
         devices.open_first(options.play ? std::optional<std::string>("emulated") : options.device);
@@ -143,45 +164,47 @@ int open_window(const SceneDescription& scene, const World& world, EmulatedOmniS
     const std::unique_ptr<FrameServer> server = open_server(serve, world, !options.json);
     SceneSaver saver(scene.file, options.screenshots);
     const ViewSettings first_view = first_settings(scene.view, world);
-    const auto save = [&](const LiveSettings& live, const ViewDescription& view) {
-        SceneDescription set = scene;
-        set.coupling = live.coupling;
-        set.period_ms = live.period_ms;
-        set.view = view;
-        return describe_saved(saver.save(set));
+    RecoveryFile recovery;
+    const auto save = [&](const SceneState& state) {
+        return describe_saved(saver.save(as_set(scene, state)));
     };
-    const WindowReport report =
-        run_window(scene, *first.device,
-                   {.view = first_view,
-                    .width = options.width,
-                    .height = options.height,
-                    .grows = !options.has_size,
-                    .screenshots = options.screenshots,
-                    .last_shot = options.last_shot,
-                    .last_shot_existing = check_shot(options),
-                    .last_shot_s = options.last_shot_s,
-                    .orders = first.orders,
-                    .mouse_reach_m = options.play ? 0 : first.mouse_reach_m,
-                    .second = {second.device.get(), second.orders, second.mouse_reach_m},
-                    .record = options.record,
-                    .overwrites = options.overwrites,
-                    .trajectory = trajectory_settings(options),
-                    .playback = playback_choice(options),
-                    .pads = &devices.pads(),
-                    .devices = options.play ? DeviceMenu() : devices.menu(),
-                    .sound = build_sound_choice(options, preferences),
-                    .text_scale = build_text_scale(preferences),
-                    .save = save,
-                    .notice = devices.notice(),
-                    .server = server.get(),
-                    .lose_device_at = options.lose_device_at,
-                    .validation = options.validation});
+    const WindowReport report = run_window(
+        shell, scene, *first.device,
+        {.view = first_view,
+         .screenshots = options.screenshots,
+         .last_shot = options.last_shot,
+         .last_shot_existing = check_shot(options),
+         .last_shot_s = options.last_shot_s,
+         .orders = first.orders,
+         .mouse_reach_m = options.play ? 0 : first.mouse_reach_m,
+         .second = {second.device.get(), second.orders, second.mouse_reach_m},
+         .record = options.record,
+         .overwrites = options.overwrites,
+         .trajectory = trajectory_settings(options),
+         .playback = playback_choice(options),
+         .pads = &devices.pads(),
+         .devices = options.play ? DeviceMenu() : devices.menu(),
+         .sound = build_sound_choice(options, preferences),
+         .save = save,
+         .save_for_crash = [&](const SceneState& state) { recovery.save(as_set(scene, state)); },
+         .notice = devices.notice(),
+         .server = server.get(),
+         .lose_device_at = options.lose_device_at});
     const SceneDescription played = find_played(scene, report, options.play);
     if (options.json) {
         fmt::print("{}", format_summary(played, report.summary));
     } else {
         print_report(played, report);
     }
+    return report.next;
+}
+
+int open_window(const SceneDescription& scene, const World& world,
+                const EmulatedOmniSettings& settings, const RunOptions& options) {
+    PreferencesFile preferences(find_preferences_file());
+    WindowShell shell(shell_options(options, preferences));
+    follow_screens(shell, preferences, options,
+                   show_scene(shell, preferences, scene, world, settings, options));
     return 0;
 }
 

@@ -1,17 +1,32 @@
 // A scene in a window: with the device, the sound and the scene file that a person chooses.
 #pragma once
+#include "app/preferences.h"
+#include "app/run_window.h"
+#include "app/window_shell.h"
 #include "devices/emulated_omni.h"
 #include "ecs/world.h"
 #include "scene/description.h"
 #include "tools/commands/run.h"
+
+#include <optional>
 
 namespace palpa {
 
 // What can be said of the options before anything is loaded. Throws LoadError.
 void check_window_options(const RunOptions& options);
 
-// Returns the exit code. Throws LoadError, PlatformError, GpuError.
-int open_window(const SceneDescription& scene, const World& world, EmulatedOmniSettings settings,
-                const RunOptions& options);
+// Of the window that a run opens.
+ShellOptions shell_options(const RunOptions& options, PreferencesFile& preferences);
+
+// One scene in a window that is open. Prints its summary; returns what the person goes on to.
+// `world`: as loaded, to plan by; `settings`: of the emulated device. Throws LoadError, GpuError.
+std::optional<NextScreen> show_scene(WindowShell& shell, PreferencesFile& preferences,
+                                     const SceneDescription& scene, const World& world,
+                                     EmulatedOmniSettings settings, const RunOptions& options);
+
+// A window for this scene, and for what the person goes on to. Returns the exit code. Throws
+// LoadError, PlatformError, GpuError.
+int open_window(const SceneDescription& scene, const World& world,
+                const EmulatedOmniSettings& settings, const RunOptions& options);
 
 }  // namespace palpa

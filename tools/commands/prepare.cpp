@@ -1,14 +1,10 @@
 #include "tools/commands/prepare.h"
 
-#include "charmm/built_in_force_field.h"
-#include "charmm/force_field.h"
 #include "core/files.h"
 #include "core/load_error.h"
 #include "core/shell_word.h"
 #include "core/text.h"
-#include "experiments/tune_scene.h"
-#include "formats/structure.h"
-#include "prepare/prepare.h"
+#include "experiments/make_scene.h"
 #include "tools/commands/command.h"
 #include "tools/commands/force_field.h"
 #include "tools/commands/progress.h"
@@ -138,38 +134,18 @@ void check_outputs(const PrepareOptions& options) {
 }
 
 // The built-in one with what --toppar adds to it, or --toppar's alone.
-ForceField read_wanted_force_field(const PrepareOptions& options) {
+SceneRequest build_request(const PrepareOptions& options, const PrepareSettings& settings) {
     std::vector<std::filesystem::path> files = expand_folders(options.toppar);
     files.insert(files.end(), options.parameters.begin(), options.parameters.end());
-    if (!options.only_toppar) return read_built_in_force_field(files);
-    if (files.empty()) throw LoadError({"--only-toppar"}, "expected --toppar FILE with it");
-    return read_force_field(files);
-}
-
-void report_force_field(const ForceField& force_field, Report& report) {
-    constexpr std::string_view heading = "Force field";
-    for (const std::string& line : force_field.about) report.add(heading, line);
-    const auto& files = force_field.files;
-    for (std::size_t i = force_field.about.empty() ? 0 : 1; i < files.size(); ++i) {
-        report.add(heading, std::filesystem::path(files[i]).filename().string());
-    }
-    for (std::string& line : describe_notes(force_field.notes)) report.warn(std::move(line));
-}
-
-// A structure of which no scene can be made is prepared all the same.
-TunedScene find_scene(const PrepareOptions& options, const std::string& title,
-                      const StageFunction& on_stage, PreparedSystem& system) {
-    if (!options.makes_scene) return {};
-    try {
-        const std::string name =
-            options.title.empty() ? options.structure.stem().string() : options.title;
-        return tune_scene(system, options.grab, !options.x_along.empty(), printable(name), title,
-                          on_stage);
-    } catch (const LoadError& error) {
-        if (!options.grab.empty()) throw;
-        system.report.warn(fmt::format("no scene is written: {}", error.what()));
-        return {};
-    }
+    if (options.only_toppar && files.empty())
+        throw LoadError({"--only-toppar"}, "expected --toppar FILE with it");
+    return {.structure = options.structure,
+            .force_field = std::move(files),
+            .only_these_files = options.only_toppar,
+            .settings = settings,
+            .makes_scene = options.makes_scene,
+            .grab = options.grab,
+            .title = options.title};
 }
 
 // What the force field lacks, a line for each kind of residue.
@@ -228,11 +204,10 @@ void print_json(const PreparedSystem& system, const TunedScene& scene) {
 }
 
 // Residues that the force field does not have are listed before the error.
-PreparedSystem prepare_or_list_unknown(const ForceField& force_field, const Structure& structure,
-                                       const PrepareSettings& settings,
-                                       const PrepareOptions& options, ProgressLine& progress) {
+MadeScene make_or_list_unknown(const SceneRequest& request, const PrepareOptions& options,
+                               ProgressLine& progress) {
     try {
-        return prepare_system(force_field, structure, settings, progress.stages());
+        return make_scene(request, progress.stages());
     } catch (const UnknownResidues& error) {
         progress.wipe();
         if (options.json) {
@@ -259,21 +234,12 @@ int prepare_command(const PrepareOptions& options) {
     const PrepareSettings settings = build_settings(options);
     check_outputs(options);
     ProgressLine progress(!options.json);
-    const StageFunction on_stage = progress.stages();
-    tell(on_stage, "reading the force field");
-    const ForceField force_field = read_wanted_force_field(options);
-    tell(on_stage, "reading the structure");
-    const Structure structure = read_structure(options.structure);
-    PreparedSystem system =
-        prepare_or_list_unknown(force_field, structure, settings, options, progress);
-    report_force_field(force_field, system.report);
-    const std::string origin = fmt::format("Prepared from {} by palpa prepare; see report.txt.",
-                                           options.structure.filename().string());
-    const std::string title =
-        options.title.empty() ? origin : fmt::format("{}\n{}", options.title, origin);
-    const TunedScene scene = find_scene(options, title, on_stage, system);
-    tell(on_stage, "writing");
-    write_prepared(system, options.folder, title, scene.files,
+    const MadeScene made =
+        make_or_list_unknown(build_request(options, settings), options, progress);
+    const PreparedSystem& system = made.system;
+    const TunedScene& scene = made.scene;
+    tell(progress.stages(), "writing");
+    write_prepared(system, options.folder, made.title, scene.files,
                    options.overwrites ? Existing::Replace : Existing::Refuse);
     progress.wipe();
     if (options.json) {

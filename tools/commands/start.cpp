@@ -1,17 +1,16 @@
 #include "tools/commands/start.h"
 
 #include "app/preferences.h"
+#include "app/start_screen.h"
+#include "core/files.h"
 #include "core/load_error.h"
 #include "core/text.h"
 #include "platform/display.h"
-#include "platform/terminal.h"
 #include "scene/find_scene.h"
-#include "tools/commands/run.h"
+#include "tools/commands/screens.h"
 
 #include <fmt/format.h>
-#include <cstdio>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <system_error>
 
@@ -20,16 +19,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void print_scenes(const std::optional<std::string>& last) {
+void print_scenes(const std::vector<std::string>& recent) {
     fmt::print("Scenes\n");
     for (const fs::path& folder : own_scene_folders()) {
         for (const SceneEntry& scene : list_scenes(folder)) {
-            fmt::print("  {:<16} {}{}\n", printable(scene.name), printable(scene.title),
+            const std::string effort = describe_effort(scene);
+            fmt::print("  {:<16} {}{}{}\n", printable(scene.name), printable(scene.title),
+                       effort.empty() ? "" : fmt::format(" ({})", effort),
                        scene.is_to_be_made ? " (made on demand)" : "");
         }
     }
-    std::error_code error;
-    if (last && fs::exists(*last, error)) fmt::print("  last time        {}\n", printable(*last));
+    for (const std::string& file : recent) {
+        std::error_code error;
+        if (fs::exists(file, error)) fmt::print("  opened before    {}\n", printable(file));
+    }
     fmt::print(
         "\n"
         "  palpa run water                opens one in a window\n"
@@ -38,34 +41,24 @@ void print_scenes(const std::optional<std::string>& last) {
         "  palpa --help                   lists all commands\n");
 }
 
-// A double click has no terminal to read a list in.
-std::optional<fs::path> find_scene_to_open(const std::optional<std::string>& last) {
-    std::error_code error;
-    if (!has_display()) return std::nullopt;
-    if (last && fs::exists(*last, error)) return *last;
-    if (is_terminal(stdout)) return std::nullopt;
-    for (const fs::path& folder : own_scene_folders()) {
-        if (fs::exists(folder / "water", error)) return folder / "water";
-    }
-    return std::nullopt;
-}
-
 }  // namespace
 
 int start_command() {
-    const std::optional<std::string> last = PreferencesFile(find_preferences_file()).now().scene;
-    if (const std::optional<fs::path> scene = find_scene_to_open(last)) {
-        RunOptions options;
-        options.scene = *scene;
-        try {
-            return run_command(options);
-        } catch (const LoadError&) {  // whoever cannot open that one may want another
-            print_scenes({});
-            throw;
-        }
-    }
-    print_scenes(last);
+    if (has_display()) return open_screens({});
+    print_scenes(PreferencesFile(find_preferences_file()).now().recent);
     return 0;
+}
+
+bool is_file_to_open(const std::string& argument) { return can_be_opened(argument); }
+
+int open_command(const std::vector<std::string>& files) {
+    for (const std::string& file : files) (void)read_text_file(file);  // or say why not
+    if (!has_display()) {
+        throw LoadError({files[0]},
+                        "needs a display to be opened; without one 'palpa prepare FILE -o FOLDER' "
+                        "makes a scene of a structure, and 'palpa run SCENE --headless' plays it");
+    }
+    return open_screens({files.begin(), files.end()});
 }
 
 }  // namespace palpa

@@ -1,5 +1,6 @@
 // palpa study without operators: a person takes part, in a window.
 #include "app/run_window.h"
+#include "app/window_shell.h"
 #include "core/files.h"
 #include "core/load_error.h"
 #include "devices/emulated_hand.h"
@@ -132,8 +133,8 @@ int study_in_window(const StudyCommand& command) {
         if (is_first) write_text_file(session, study.dump(2) + "\n", Existing::Replace);
         write_text_file(table, before + format_trials(course.results()), Existing::Replace);
     };
-    window.validation = command.validation;
-    (void)run_window(scene, device, window);
+    WindowShell shell({.validation = command.validation});
+    (void)run_window(shell, scene, device, window);
 
     if (course.results().empty()) return 0;
     write_text_file(line, format_line(options), line_existing);

@@ -1,6 +1,7 @@
 #include "platform/program.h"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -12,6 +13,12 @@ namespace palpa {
 std::filesystem::path find_program_file() {
     std::error_code error;
     return std::filesystem::read_symlink("/proc/self/exe", error);
+}
+
+std::uint64_t own_process_number() noexcept { return static_cast<std::uint64_t>(getpid()); }
+
+bool is_process_running(std::uint64_t number) noexcept {
+    return kill(static_cast<pid_t>(number), 0) == 0 || errno == EPERM;
 }
 
 ProgramEnd run_program(const std::vector<std::string>& words, const std::filesystem::path& output,

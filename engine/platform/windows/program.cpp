@@ -51,6 +51,18 @@ std::filesystem::path find_program_file() {
     return std::wstring(path.data(), letters);
 }
 
+std::uint64_t own_process_number() noexcept { return GetCurrentProcessId(); }
+
+bool is_process_running(std::uint64_t number) noexcept {
+    const HANDLE process =
+        OpenProcess(PROCESS_QUERY_LIMITED_INFORMATION, FALSE, static_cast<DWORD>(number));
+    if (!process) return false;
+    DWORD code = 0;
+    const bool runs = GetExitCodeProcess(process, &code) != 0 && code == STILL_ACTIVE;
+    CloseHandle(process);
+    return runs;
+}
+
 ProgramEnd run_program(const std::vector<std::string>& words, const std::filesystem::path& output,
                        const std::filesystem::path& errors) {
     std::wstring line;

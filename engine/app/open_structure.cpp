@@ -1,0 +1,257 @@
+#include "app/open_structure.h"
+
+#include "core/load_error.h"
+#include "core/text.h"
+#include "experiments/make_scene.h"
+#include "scene/find_scene.h"
+#include "ui/file_browser.h"
+#include "ui/layout.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <algorithm>
+#include <array>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+namespace palpa {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double frames_per_s = 60;
+
+bool has_ending(const fs::path& file, std::span<const std::string_view> endings) {
+    return std::ranges::find(endings, upper_case(file.extension().string())) != endings.end();
+}
+
+SceneRequest build_request(std::span<const fs::path> files) {
+    constexpr std::array<std::string_view, 6> of_force_field{".STR", ".RTF", ".PRM",
+                                                             ".TOP", ".PAR", ".INP"};
+    constexpr std::array<std::string_view, 3> of_ligands{".SDF", ".MOL", ".MOL2"};
+    SceneRequest request;
+    request.settings.solvent.reset();  // implicit water where it covers everything
+    for (const fs::path& file : files) {
+        if (has_ending(file, of_force_field)) {
+            request.force_field.push_back(file);
+        } else if (has_ending(file, of_ligands)) {
+            request.settings.ligand_files.push_back(file);
+            request.settings.approximates_ligands = true;
+        } else if (request.structure.empty()) {
+            request.structure = file;
+        } else {
+            throw LoadError({file.string()},
+                            fmt::format("is a second structure; {} was opened alone",
+                                        request.structure.filename().string()));
+        }
+    }
+    if (request.structure.empty()) {
+        throw LoadError({files.empty() ? std::string() : files[0].string()},
+                        "is no structure; expected a .pdb, .cif or .crd file, and with it "
+                        "parameters of its ligands (.str)");
+    }
+    request.settings.entry = request.structure;
+    return request;
+}
+
+// NAME, NAME-2 and so on, of which there is none.
+fs::path find_free_folder(const fs::path& below, const fs::path& structure) {
+    fs::path name = structure.filename();
+    while (name.has_extension()) name = name.stem();  // of "1abc.pdb.gz" both
+    if (name.empty()) name = "structure";
+    for (int number = 1;; ++number) {
+        fs::path folder =
+            below / (number == 1 ? name.string() : fmt::format("{}-{}", name.string(), number));
+        std::error_code error;
+        if (!fs::exists(folder, error)) return folder;
+    }
+}
+
+void begin_page(const char* title) {
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    const float edge = panel_edge();
+    const ImVec2 size{std::min(scaled(820), screen.x - 2 * edge),
+                      std::min(scaled(700), screen.y - 2 * edge)};
+    ImGui::SetNextWindowPos({0.5F * (screen.x - size.x), 0.5F * (screen.y - size.y)});
+    ImGui::SetNextWindowSize(size);
+    ImGui::Begin(title, nullptr, fixed_panel | ImGuiWindowFlags_NoCollapse);
+}
+
+// Leaves room for a row of buttons below.
+void draw_long_text(const std::string& text) {
+    ImGui::BeginChild("##text", {0, -2 * ImGui::GetFrameHeightWithSpacing()}, true);
+    ImGui::PushTextWrapPos(0);
+    ImGui::TextUnformatted(text.c_str(), text.c_str() + text.size());
+    ImGui::PopTextWrapPos();
+    ImGui::EndChild();
+}
+
+// What is done about residues that the force field lacks.
+enum class Remedy { None, Omit, Approximate, Files };
+
+class UnknownPage {
+public:
+    UnknownPage(WindowShell& shell, std::span<const UnknownResidue> residues, bool may_approximate)
+        : shell_(shell), residues_(residues), may_approximate_(may_approximate) {}
+
+    Remedy run(std::vector<fs::path>& files) {
+        shell_.run(frames_per_s, [this] { return frame(); }, [] {});
+        files.insert(files.end(), files_.begin(), files_.end());
+        return remedy_.value_or(Remedy::None);
+    }
+
+private:
+    bool frame() {
+        if (shell_.window().should_close()) return false;
+        for (const KeyPress& press : shell_.poll().pressed) take(press.key);
+        shell_.draw_panels([this] { draw(); });
+        return !remedy_;
+    }
+
+    void take(Key key) {
+        if (browser_.is_open()) {
+            key == Key::Escape ? browser_.close() : browser_.press(key);
+            return;
+        }
+        if (key == Key::Escape) remedy_ = Remedy::None;
+        if (key == Key::L) remedy_ = Remedy::Omit;
+        if (key == Key::A && may_approximate_) remedy_ = Remedy::Approximate;
+        if (key == Key::P) browse();
+    }
+
+    void browse() {
+        std::error_code error;
+        browser_.open("Parameters of a ligand (CHARMM stream file)", {".str", ".rtf", ".prm"},
+                      fs::current_path(error));
+    }
+
+    void draw() {
+        begin_page("Not in the force field");
+        std::string text;
+        for (const UnknownResidue& one : residues_) {
+            text += fmt::format(
+                "{}{}: {} atoms, {} of them ({})\n  {}\n\n", one.name,
+                one.meaning.empty() ? "" : fmt::format(" ({})", one.meaning), one.atoms,
+                one.where.size(),
+                fmt::join(one.where.begin(),
+                          one.where.begin() + std::min<std::ptrdiff_t>(4, std::ssize(one.where)),
+                          ", "),
+                one.advice);
+        }
+        text +=
+            "Leave them out: the structure is prepared without them.\n"
+            "Approximate: types, charges and parameters by likeness to known residues; good "
+            "enough to feel a shape, not to measure.\n"
+            "Parameter file: a CHARMM stream file (.str) with the residue, as the CGenFF server "
+            "(cgenff.com) writes it.";
+        draw_long_text(text);
+        if (ImGui::Button("Leave them out (L)")) remedy_ = Remedy::Omit;
+        ImGui::SameLine();
+        ImGui::BeginDisabled(!may_approximate_);
+        if (ImGui::Button("Approximate (A)")) remedy_ = Remedy::Approximate;
+        ImGui::EndDisabled();
+        ImGui::SameLine();
+        if (ImGui::Button("Parameter file... (P)")) browse();
+        ImGui::SameLine();
+        if (ImGui::Button("Cancel (Esc)")) remedy_ = Remedy::None;
+        ImGui::End();
+        if (const std::optional<fs::path> file = browser_.draw()) {
+            files_.push_back(*file);
+            remedy_ = Remedy::Files;
+        }
+    }
+
+    WindowShell& shell_;
+    std::span<const UnknownResidue> residues_;
+    bool may_approximate_;
+    FileBrowser browser_;
+    std::vector<fs::path> files_;
+    std::optional<Remedy> remedy_;
+};
+
+// Whether the person goes on to the scene.
+bool show_report(WindowShell& shell, const std::string& text, bool has_scene) {
+    std::optional<bool> goes_on;
+    const auto draw = [&] {
+        begin_page("What was decided");
+        draw_long_text(text);
+        ImGui::BeginDisabled(!has_scene);
+        if (ImGui::Button("Feel it (Enter)")) goes_on = true;
+        ImGui::EndDisabled();
+        ImGui::SameLine();
+        if (ImGui::Button("Back (Esc)")) goes_on = false;
+        ImGui::End();
+    };
+    shell.run(
+        frames_per_s,
+        [&] {
+            if (shell.window().should_close()) return false;
+            for (const KeyPress& press : shell.poll().pressed) {
+                if (press.key == Key::Enter && has_scene) goes_on = true;
+                if (press.key == Key::Escape) goes_on = false;
+            }
+            shell.draw_panels(draw);
+            return !goes_on;
+        },
+        [] {});
+    return goes_on.value_or(false);
+}
+
+// Nothing where it was cancelled.
+std::optional<MadeScene> make_with_remedies(WindowShell& shell, SceneRequest request) {
+    const std::string title = "Preparing " + request.structure.filename().string();
+    for (;;) {
+        MadeScene made;
+        std::optional<UnknownResidues> unknown;
+        const bool is_done = shell.work(title, [&](const StageFunction& on_stage) {
+            try {
+                made = make_scene(request, on_stage);
+            } catch (const UnknownResidues& error) {
+                unknown = error;
+            }
+        });
+        if (!is_done) return std::nullopt;
+        if (!unknown) return made;
+        if (!unknown->is_all()) throw LoadError(*unknown);
+        const bool may_approximate = !request.settings.approximates_ligands;
+        switch (UnknownPage(shell, unknown->residues(), may_approximate).run(request.force_field)) {
+            case Remedy::None:
+                return std::nullopt;
+            case Remedy::Omit:
+                for (const UnknownResidue& one : unknown->residues())
+                    request.settings.without.push_back(one.name);
+                break;
+            case Remedy::Approximate:
+                request.settings.approximates_ligands = true;
+                break;
+            case Remedy::Files:
+                break;
+        }
+    }
+}
+
+}  // namespace
+
+std::optional<fs::path> open_structure(WindowShell& shell, std::span<const fs::path> files,
+                                       const fs::path& folder) {
+    const SceneRequest request = build_request(files);
+    const std::optional<MadeScene> made = make_with_remedies(shell, request);
+    if (!made) return std::nullopt;
+    const fs::path results = find_free_folder(folder, request.structure);
+    write_prepared(made->system, results, made->title, made->scene.files);
+    const bool has_scene = !made->scene.files.empty();
+    const std::size_t warnings = made->system.report.warnings().size();
+    std::string text = fmt::format("{} atoms. Written to {}", made->system.structure.names.size(),
+                                   results.string());
+    text += has_scene ? fmt::format("\nIn your hand: {}.", made->scene.in_hand)
+                      : std::string("\nNo scene could be made of it; the warnings say why.");
+    text += fmt::format("\n{} warning{}.\n\n{}", warnings, warnings == 1 ? "" : "s",
+                        made->system.report.to_text());
+    if (!show_report(shell, text, has_scene)) return std::nullopt;
+    return results / "scene.toml";
+}
+
+}  // namespace palpa

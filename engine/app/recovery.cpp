@@ -1,0 +1,87 @@
+#include "app/recovery.h"
+
+#include "app/preferences.h"
+#include "core/files.h"
+#include "core/load_error.h"
+#include "core/text.h"
+#include "platform/program.h"
+#include "scene/write_scene.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cstddef>
+#include <system_error>
+
+namespace palpa {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t most_files = 100;
+
+// Beside the folder of prepared scenes.
+std::optional<fs::path> find_folder() {
+    const std::optional<fs::path> prepared = find_prepared_folder();
+    if (!prepared) return std::nullopt;
+    return prepared->parent_path() / "recovered";
+}
+
+// "TITLE-1234.toml": the number is the process's.
+std::optional<std::uint64_t> find_process(const fs::path& file) {
+    const std::string name = file.stem().string();
+    const std::size_t dash = name.rfind('-');
+    if (file.extension() != ".toml" || dash == std::string::npos) return std::nullopt;
+    const std::optional<std::int64_t> number = find_integer(name.substr(dash + 1));
+    if (!number || *number <= 0) return std::nullopt;
+    return static_cast<std::uint64_t>(*number);
+}
+
+}  // namespace
+
+RecoveryFile::RecoveryFile() : file_(find_folder()) {}
+
+RecoveryFile::~RecoveryFile() {
+    std::error_code error;
+    if (file_ && file_->has_extension()) fs::remove(*file_, error);
+}
+
+void RecoveryFile::save(const SceneDescription& scene) noexcept {
+    if (!file_) return;
+    try {
+        if (!file_->has_extension()) {
+            fs::create_directories(*file_);
+            *file_ /= fmt::format("{}-{}.toml", scene.file.parent_path().filename().string(),
+                                  own_process_number());
+        }
+        const auto whole = [](const fs::path& named) {
+            return fs::absolute(named).lexically_normal().generic_string();
+        };
+        write_text_file(*file_, "# Kept for a crash.\n" + format_scene(scene, whole),
+                        Existing::Replace);
+    } catch (const std::exception&) {
+        file_.reset();
+    }
+}
+
+std::vector<fs::path> list_recovered() {
+    std::vector<fs::path> files;
+    const std::optional<fs::path> folder = find_folder();
+    if (!folder) return files;
+    for (const fs::path& file : list_folder(*folder, most_files)) {
+        const std::optional<std::uint64_t> process = find_process(file);
+        if (process && !is_process_running(*process)) files.push_back(file);
+    }
+    const auto written = [](const fs::path& file) {
+        std::error_code error;
+        return fs::last_write_time(file, error);
+    };
+    std::ranges::sort(files, std::ranges::greater{}, written);
+    return files;
+}
+
+bool is_recovered(const fs::path& file) {
+    const std::optional<fs::path> folder = find_folder();
+    return folder && file.parent_path() == *folder;
+}
+
+}  // namespace palpa

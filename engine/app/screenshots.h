@@ -1,0 +1,12 @@
+// Pictures of the window, under names that are free.
+#pragma once
+#include "gpu/swapchain.h"
+
+#include <filesystem>
+
+namespace palpa {
+
+// As palpa-0001.png and so on in the folder; returns the file. Throws LoadError.
+std::filesystem::path save_screenshot(const std::filesystem::path& folder, const WindowShot& shot);
+
+}  // namespace palpa

@@ -1,0 +1,227 @@
+#include "app/window_shell.h"
+
+#include "core/interrupt.h"
+#include "core/load_error.h"
+#include "platform/thread.h"
+#include "render/picture.h"
+#include "ui/layout.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <future>
+#include <mutex>
+#include <optional>
+#include <string_view>
+#include <thread>
+#include <utility>
+
+namespace palpa {
+namespace {
+
+using SteadyClock = std::chrono::steady_clock;
+
+constexpr double panel_frames_per_s = 60;
+
+// Ends a task at its next stage.
+struct Cancelled {};
+
+// How far a task is, between its thread and the window's.
+class TaskProgress {
+public:
+    StageFunction stages() {
+        return [this](std::string_view stage, std::optional<double> share) {
+            if (is_cancelled) throw Cancelled{};
+            const std::lock_guard lock(mutex_);
+            stage_ = stage;
+            share_ = share;
+        };
+    }
+
+    void draw(const std::string& title, double seconds) {
+        const ImVec2 screen = ImGui::GetIO().DisplaySize;
+        ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5F, 0.5F});
+        ImGui::SetNextWindowSize({std::min(scaled(480), screen.x - 2 * panel_edge()), 0});
+        ImGui::Begin("##task", nullptr, fixed_panel | ImGuiWindowFlags_NoTitleBar);
+        ImGui::TextWrapped("%s", title.c_str());
+        {
+            const std::lock_guard lock(mutex_);
+            const std::string share = share_ ? fmt::format(" ({:.0f} %)", 100 * *share_) : "";
+            ImGui::TextDisabled("%s",
+                                fmt::format("{}{}, {:.0f} s", stage_, share, seconds).c_str());
+            ImGui::ProgressBar(static_cast<float>(share_.value_or(0)), {-1, scaled(8)}, "");
+        }
+        if (is_cancelled) {
+            ImGui::TextDisabled("cancelling");
+        } else if (ImGui::Button("Cancel (Esc)")) {
+            is_cancelled = true;
+        }
+        ImGui::End();
+    }
+
+    std::atomic<bool> is_cancelled{false};
+
+private:
+    std::mutex mutex_;
+    std::string stage_{"beginning"};
+    std::optional<double> share_;
+};
+
+void clear(VkCommandBuffer commands, VkImage image) {
+    const auto code = [](float light) { return static_cast<float>(srgb_code(light)) / 255; };
+    const VkClearColorValue colour{
+        {code(window_background.r), code(window_background.g), code(window_background.b), 1}};
+    const VkImageSubresourceRange all{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+    vkCmdClearColorImage(commands, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &colour, 1, &all);
+}
+
+}  // namespace
+
+Graphics::Graphics(const Window& window, bool validation, double text_scale)
+    : device({.validation = validation,
+              .instance_extensions = window.vulkan_extensions(),
+              .create_surface =
+                  [&window](VkInstance instance) { return window.create_surface(instance); }}),
+      swapchain(device, window.size()),
+      renderer(device),
+      ui(window, device, swapchain.overlay_pass(), swapchain.image_count(),
+         static_cast<float>(text_scale) * window.content_scale()) {}
+
+WindowShell::WindowShell(const ShellOptions& options)
+    : options_(options),
+      text_scale_(options.text_scale.scale),
+      window_(options.title, options.width, options.height) {
+    if (options.grows) window_.grow_with_display();
+    // Drawing, which may be done by threads of the driver, comes after feeling.
+    lower_priority();
+    restart_graphics();
+}
+
+void WindowShell::restart_graphics() {
+    keep_validation_messages();
+    graphics_.reset();
+    graphics_ = std::make_unique<Graphics>(window_, options_.validation, text_scale_);
+}
+
+void WindowShell::run(double most_frames_per_s, const std::function<bool()>& frame,
+                      const std::function<void()>& on_lost) {
+    const auto shortest = std::chrono::duration_cast<SteadyClock::duration>(
+        std::chrono::duration<double>(1 / most_frames_per_s));
+    constexpr int most_losses = 3;  // without a picture in between
+    int losses = 0;
+    SteadyClock::time_point next = SteadyClock::now();
+    note_interrupts();
+    while (noted_interrupt() == 0) {
+        try {
+            if (losses > 0 || !graphics_) restart_graphics();
+            if (!frame()) return;
+            losses = 0;
+        } catch (const DeviceLost&) {
+            if (++losses > most_losses) throw;
+            on_lost();
+        }
+        // The display's own pace does not throttle everywhere.
+        next = std::max(next + shortest, SteadyClock::now());
+        std::this_thread::sleep_until(next);
+    }
+}
+
+std::string WindowShell::change_text_scale(double scale) {
+    // Panels need 900 pixels of width at the usual size; beyond a little more they would be cut.
+    constexpr double smallest = 0.7, largest = 4, needed_pixels = 900, too_wide = 1.2;
+    const double fits = too_wide * window_.size().width / (needed_pixels * window_.content_scale());
+    text_scale_ = std::clamp(scale, smallest, std::clamp(fits, 1.0, largest));
+    restart_graphics();
+    if (options_.text_scale.remember) {
+        try {
+            options_.text_scale.remember(text_scale_);
+        } catch (const LoadError& error) {
+            return error.what();
+        }
+    }
+    return fmt::format("text: {:.0f} %", 100 * text_scale_);
+}
+
+const Input& WindowShell::poll() {
+    const Input& input = window_.poll();
+    must_rebuild_ = must_rebuild_ || input.resized;
+    return input;
+}
+
+void WindowShell::draw_panels(const std::function<void()>& describe, WindowShot* shot,
+                              const std::function<void(VkCommandBuffer, VkImage)>& paint) {
+    if (window_.size().width == 0 || window_.size().height == 0) return;
+    Graphics& g = *graphics_;
+    if (std::exchange(must_rebuild_, false)) g.swapchain.rebuild(window_.size());
+    g.ui.begin();
+    describe();
+    g.ui.end();
+    must_rebuild_ = !g.swapchain.present(
+        [&](VkCommandBuffer commands, VkImage image) {
+            clear(commands, image);
+            if (!paint) return;
+            VkMemoryBarrier cleared{};
+            cleared.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
+            cleared.srcAccessMask = cleared.dstAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
+            vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                                 VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 1, &cleared, 0, nullptr, 0,
+                                 nullptr);
+            paint(commands, image);
+        },
+        [&](VkCommandBuffer commands) { g.ui.draw(commands); }, shot);
+}
+
+bool WindowShell::work(const std::string& title,
+                       const std::function<void(const StageFunction&)>& task) {
+    TaskProgress progress;
+    bool is_done = true;
+    std::future<void> work = worker_.start([&] {
+        try {
+            task(progress.stages());
+        } catch (const Cancelled&) {
+            is_done = false;
+        }
+    });
+    const SteadyClock::time_point begin = SteadyClock::now();
+    const auto is_ready = [&] {
+        return work.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    };
+    try {
+        run(
+            panel_frames_per_s,
+            [&] {
+                const Input& input = poll();
+                const auto is_escape = [](const KeyPress& press) {
+                    return press.key == Key::Escape;
+                };
+                if (window_.should_close() || std::ranges::any_of(input.pressed, is_escape))
+                    progress.is_cancelled = true;
+                const std::chrono::duration<double> passed = SteadyClock::now() - begin;
+                draw_panels([&] { progress.draw(title, passed.count()); });
+                return !is_ready();
+            },
+            [] {});
+    } catch (...) {
+        progress.is_cancelled = true;
+        work.wait();
+        throw;
+    }
+    if (!is_ready()) progress.is_cancelled = true;  // a signal ended the loop
+    work.get();
+    return is_done;
+}
+
+void WindowShell::keep_validation_messages() {
+    if (!graphics_) return;
+    for (const std::string& message : graphics_->device.validation_messages())
+        validation_messages_.push_back(message);
+}
+
+void WindowShell::check_validation() {
+    keep_validation_messages();
+    if (!validation_messages_.empty()) throw GpuError("validation: " + validation_messages_[0]);
+}
+
+}  // namespace palpa

@@ -1,0 +1,63 @@
+#include "experiments/make_scene.h"
+
+#include "charmm/built_in_force_field.h"
+#include "charmm/force_field.h"
+#include "core/load_error.h"
+#include "core/text.h"
+#include "formats/structure.h"
+
+#include <fmt/format.h>
+#include <cstddef>
+#include <string_view>
+#include <utility>
+
+namespace palpa {
+namespace {
+
+ForceField read_wanted_force_field(const SceneRequest& request) {
+    if (!request.only_these_files) return read_built_in_force_field(request.force_field);
+    return read_force_field(request.force_field);
+}
+
+void report_force_field(const ForceField& force_field, Report& report) {
+    constexpr std::string_view heading = "Force field";
+    for (const std::string& line : force_field.about) report.add(heading, line);
+    const auto& files = force_field.files;
+    for (std::size_t i = force_field.about.empty() ? 0 : 1; i < files.size(); ++i) {
+        report.add(heading, std::filesystem::path(files[i]).filename().string());
+    }
+    for (std::string& line : describe_notes(force_field.notes)) report.warn(std::move(line));
+}
+
+TunedScene find_scene(const SceneRequest& request, const std::string& title,
+                      const StageFunction& on_stage, PreparedSystem& system) {
+    if (!request.makes_scene) return {};
+    try {
+        const std::string name =
+            request.title.empty() ? request.structure.stem().string() : request.title;
+        return tune_scene(system, request.grab, request.settings.align.has_value(), printable(name),
+                          title, on_stage);
+    } catch (const LoadError& error) {
+        if (!request.grab.empty()) throw;
+        system.report.warn(fmt::format("no scene is written: {}", error.what()));
+        return {};
+    }
+}
+
+}  // namespace
+
+MadeScene make_scene(const SceneRequest& request, const StageFunction& on_stage) {
+    tell(on_stage, "reading the force field");
+    const ForceField force_field = read_wanted_force_field(request);
+    tell(on_stage, "reading the structure");
+    const Structure structure = read_structure(request.structure);
+    MadeScene made{prepare_system(force_field, structure, request.settings, on_stage), {}, {}};
+    report_force_field(force_field, made.system.report);
+    const std::string origin = fmt::format("Prepared from {} by palpa prepare; see report.txt.",
+                                           request.structure.filename().string());
+    made.title = request.title.empty() ? origin : fmt::format("{}\n{}", request.title, origin);
+    made.scene = find_scene(request, made.title, on_stage, made.system);
+    return made;
+}
+
+}  // namespace palpa

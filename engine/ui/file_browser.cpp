@@ -1,0 +1,164 @@
+#include "ui/file_browser.h"
+
+#include "core/files.h"
+#include "ui/layout.h"
+#include "ui/text_field.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_internal.h>
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <system_error>
+#include <utility>
+
+namespace palpa {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t most_entries = 5000;
+
+std::string in_small_letters(std::string text) {
+    std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
+    return text;
+}
+
+fs::path home_folder() {
+    for (const char* const name : {"HOME", "USERPROFILE"})
+        if (const char* const home = std::getenv(name)) return home;
+    return fs::current_path();
+}
+
+}  // namespace
+
+void FileBrowser::open(std::string title, std::vector<std::string> endings,
+                       const fs::path& folder) {
+    title_ = std::move(title);
+    endings_ = std::move(endings);
+    is_open_ = true;
+    go_to(folder_.empty() ? folder : folder_);
+}
+
+void FileBrowser::close() {
+    is_open_ = false;
+    ImGui::ClearActiveID();
+}
+
+void FileBrowser::press(Key key) {
+    if (key == Key::Up) --steps_;
+    if (key == Key::Down) ++steps_;
+    if (key == Key::Enter) wants_enter_ = true;
+}
+
+bool FileBrowser::is_wanted(const fs::path& file) const {
+    const std::string name = in_small_letters(file.filename().string());
+    return shows_all_ || std::ranges::any_of(endings_, [&](const std::string& ending) {
+               return name.ends_with(ending) || name.ends_with(ending + ".gz");
+           });
+}
+
+void FileBrowser::go_to(const fs::path& folder) {
+    std::error_code error;
+    const fs::path whole = fs::weakly_canonical(fs::absolute(folder, error), error);
+    if (!fs::is_directory(whole, error)) {
+        problem_ = fmt::format("{} is no folder that can be read", folder.string());
+        return;
+    }
+    folder_ = whole;
+    typed_ = whole.string();
+    problem_.clear();
+    entries_.clear();
+    chosen_ = 0;
+    for (const fs::path& path : list_folder(whole, most_entries)) {
+        const std::string name = path.filename().string();
+        if (name.starts_with('.')) continue;
+        const bool is_folder = fs::is_directory(path, error);
+        if (is_folder || is_wanted(path)) entries_.push_back({name, is_folder});
+    }
+    std::ranges::stable_partition(entries_, &Entry::is_folder);
+}
+
+std::optional<fs::path> FileBrowser::choose(const fs::path& path) {
+    std::error_code error;
+    if (fs::is_directory(path, error)) {
+        go_to(path);
+        return std::nullopt;
+    }
+    if (fs::exists(path, error)) return path;
+    problem_ = fmt::format("{} does not exist", path.string());
+    return std::nullopt;
+}
+
+void FileBrowser::draw_places() {
+    if (ImGui::Button("Up")) go_to(folder_.parent_path());
+    ImGui::SameLine();
+    if (ImGui::Button("Home")) go_to(home_folder());
+    ImGui::SameLine();
+    if (ImGui::Checkbox("all files", &shows_all_)) go_to(folder_);
+}
+
+std::optional<fs::path> FileBrowser::draw_entries() {
+    std::optional<fs::path> opened;
+    const float line = ImGui::GetTextLineHeightWithSpacing();
+    constexpr float most_lines = 14, other_lines = 9;
+    const float fits = ImGui::GetIO().DisplaySize.y / line - other_lines;
+    if (!entries_.empty()) {
+        const auto last = static_cast<std::ptrdiff_t>(entries_.size()) - 1;
+        chosen_ = static_cast<std::size_t>(
+            std::clamp<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(chosen_) + steps_, 0, last));
+    }
+    if (ImGui::BeginListBox("##entries", {-1, std::clamp(fits, 3.0F, most_lines) * line})) {
+        for (std::size_t i = 0; i < entries_.size(); ++i) {
+            const Entry& entry = entries_[i];
+            const std::string text = entry.is_folder ? entry.name + "/" : entry.name;
+            if (ImGui::Selectable(text.c_str(), i == chosen_,
+                                  ImGuiSelectableFlags_AllowDoubleClick)) {
+                chosen_ = i;
+                if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) opened = entry.name;
+            }
+            if (i == chosen_ && steps_ != 0) ImGui::SetScrollHereY();
+        }
+        if (entries_.empty()) ImGui::TextDisabled("no such files here");
+        ImGui::EndListBox();
+    }
+    steps_ = 0;
+    return opened;
+}
+
+std::optional<fs::path> FileBrowser::draw() {
+    if (!is_open_) return std::nullopt;
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    draw_shade();
+    ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5F, 0.5F});
+    ImGui::SetNextWindowSize({std::min(scaled(560), screen.x - 2 * panel_edge()), 0});
+    ImGui::SetNextWindowBgAlpha(1);
+    ImGui::Begin((title_ + "###file-browser").c_str(), &is_open_,
+                 fixed_panel | ImGuiWindowFlags_NoCollapse);
+    ImGui::BringWindowToDisplayFront(ImGui::GetCurrentWindow());
+    draw_places();
+    std::optional<fs::path> wanted;
+    if (type_text("##path", "a path", typed_, ImGuiInputTextFlags_EnterReturnsTrue)) {
+        wanted = fs::path(typed_);
+        wants_enter_ = false;
+    }
+    const bool types = ImGui::IsItemActive();
+    if (std::optional<fs::path> opened = draw_entries()) wanted = folder_ / *opened;
+    const bool may_open = chosen_ < entries_.size();
+    ImGui::BeginDisabled(!may_open);
+    const bool is_asked = ImGui::Button("Open (Enter)") || (wants_enter_ && !types);
+    ImGui::EndDisabled();
+    if (is_asked && may_open && !wanted) wanted = folder_ / entries_[chosen_].name;
+    ImGui::SameLine();
+    if (ImGui::Button("Cancel (Esc)")) is_open_ = false;
+    if (!problem_.empty()) ImGui::TextWrapped("%s", problem_.c_str());
+    ImGui::End();
+    wants_enter_ = false;
+    std::optional<fs::path> file;
+    if (wanted) file = choose(*wanted);
+    if (file || !is_open_) close();
+    return file;
+}
+
+}  // namespace palpa

@@ -1,0 +1,147 @@
+#include "tools/commands/screens.h"
+
+#include "app/open_structure.h"
+#include "app/preferences.h"
+#include "app/recovery.h"
+#include "app/start_screen.h"
+#include "app/window_devices.h"
+#include "core/load_error.h"
+#include "devices/open_device.h"
+#include "experiments/emulated_hand.h"
+#include "scene/find_scene.h"
+#include "scene/read_scene.h"
+#include "simulation/load.h"
+#include "tools/commands/open_window.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <string>
+#include <system_error>
+
+namespace palpa {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Of later scenes in the same window: what was said of the first one's is not theirs.
+RunOptions options_of_later(const RunOptions& first) {
+    RunOptions later;
+    later.device = first.device;
+    later.second = first.second;
+    later.sound = first.sound;
+    later.screenshots = first.screenshots;
+    later.validation = first.validation;
+    return later;
+}
+
+std::vector<DeviceOffer> list_offers() {
+    std::vector<DeviceOffer> offers;
+    const DeviceRequest request;
+    for (const DeviceMaker& maker : device_makers()) {
+        if (!maker.file.empty()) continue;
+        const bool is_there = maker.is_emulated || !maker.is_there || maker.is_there(request);
+        offers.push_back({.name = std::string(maker.name),
+                          .summary = std::string(maker.summary),
+                          .is_there = is_there,
+                          .is_stand_in = maker.is_emulated && !maker.needs_window});
+    }
+    return offers;
+}
+
+// What is missing of a device that was chosen; it is remembered all the same, and taken as soon as
+// it is there.
+std::string choose_device(const std::string& name, PreferencesFile& preferences) {
+    Preferences chosen = preferences.now();
+    chosen.device = name;
+    preferences.keep(chosen);
+    const DeviceMaker& maker = device_maker_called(name);
+    if (maker.is_emulated) return {};
+    const DeviceRequest request;
+    const OpenedDevice opened = maker.open(request);
+    for (const DeviceCheck& check : opened.checks) {
+        if (check.outcome == CheckOutcome::Failed)
+            return fmt::format("{}: {}; {}. Until then the mouse is used.", check.layer,
+                               check.found, check.remedy);
+    }
+    return opened.device ? fmt::format("{} is ready.", opened.device->spec().name) : std::string();
+}
+
+StartOptions build_start(PreferencesFile& preferences, const RunOptions& options,
+                         std::string problem) {
+    StartOptions start{
+        .devices = list_offers(),
+        .device = options.device.value_or(preferences.now().device.value_or(first_device)),
+        .choose_device =
+            [&preferences](const std::string& name) { return choose_device(name, preferences); },
+        .problem = std::move(problem),
+        .screenshots = options.screenshots};
+    for (const fs::path& folder : own_scene_folders())
+        std::ranges::move(list_scenes(folder), std::back_inserter(start.scenes));
+    start.recovered = list_recovered();
+    for (const std::string& file : preferences.now().recent) {
+        std::error_code error;
+        if (fs::exists(file, error)) start.recent.emplace_back(file);
+    }
+    return start;
+}
+
+fs::path prepared_folder(const RunOptions& options) {
+    return find_prepared_folder().value_or(options.screenshots);
+}
+
+// Nothing where the person changed their mind.
+std::optional<fs::path> find_scene_of(WindowShell& shell, const std::vector<fs::path>& files,
+                                      const RunOptions& options) {
+    const bool is_scene =
+        files.size() == 1 && !is_structure(files[0]) && files[0].extension() != ".gz";
+    if (is_scene) return find_scene_file(files[0]);
+    return open_structure(shell, files, prepared_folder(options));
+}
+
+std::optional<NextScreen> show_files(WindowShell& shell, PreferencesFile& preferences,
+                                     const std::vector<fs::path>& files, RunOptions options) {
+    const std::optional<fs::path> file = find_scene_of(shell, files, options);
+    if (!file) return NextScreen{};
+    options.scene = *file;
+    std::vector<std::string> settings_over;
+    if (is_recovered(*file)) settings_over.emplace_back(allow_outside);
+    const SceneDescription scene = read_scene(*file, settings_over);
+    World world;
+    EmulatedOmniSettings settings;
+    const bool is_loaded = shell.work("Opening " + scene.title, [&](const StageFunction& on_stage) {
+        world = load_world(scene, on_stage);
+        settings = build_emulated_omni(scene, world);
+    });
+    if (!is_loaded) return NextScreen{};
+    return show_scene(shell, preferences, scene, world, settings, options);
+}
+
+}  // namespace
+
+void follow_screens(WindowShell& shell, PreferencesFile& preferences, const RunOptions& options,
+                    std::optional<NextScreen> next) {
+    const RunOptions later = options_of_later(options);
+    std::string problem;
+    while (next) {
+        if (next->files.empty()) {
+            next = show_start_screen(shell, build_start(preferences, later, std::move(problem)));
+            problem.clear();
+            continue;
+        }
+        try {
+            next = show_files(shell, preferences, next->files, later);
+        } catch (const LoadError& error) {
+            problem = error.what();
+            next.emplace();
+        }
+    }
+}
+
+int open_screens(const std::vector<fs::path>& files, const RunOptions& options) {
+    PreferencesFile preferences(find_preferences_file());
+    WindowShell shell(shell_options(options, preferences));
+    follow_screens(shell, preferences, options, NextScreen{files});
+    return 0;
+}
+
+}  // namespace palpa

@@ -1,0 +1,23 @@
+// What one window shows, one after the other: the start screen, scenes, structures that are opened.
+#pragma once
+#include "app/preferences.h"
+#include "app/run_window.h"
+#include "app/window_shell.h"
+#include "tools/commands/run.h"
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+namespace palpa {
+
+// A window of its own with the start screen, or with these files: a scene, or a structure and
+// parameters of its ligands; the start screen says what is wrong with them. Returns the exit code.
+// Throws PlatformError, GpuError.
+int open_screens(const std::vector<std::filesystem::path>& files, const RunOptions& options = {});
+
+// From a scene on, in a window that is open, until the person quits.
+void follow_screens(WindowShell& shell, PreferencesFile& preferences, const RunOptions& options,
+                    std::optional<NextScreen> next);
+
+}  // namespace palpa
