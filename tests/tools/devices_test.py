@@ -12,7 +12,7 @@ WATER = Path(os.environ["PALPA_ROOT"]) / "scenes" / "water"
 
 def palpa(*arguments, stub="free", answer="", **environment):
     return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True,
-                          input=answer, env={**os.environ, "PALPA_STUB": stub, **environment})
+                          input=answer, env={**os.environ, "PALPA_STUB": stub, "PALPA_DHD_STUB": "absent", **environment})
 
 
 class Devices(unittest.TestCase):
@@ -47,7 +47,7 @@ class Devices(unittest.TestCase):
         self.assertIn("ldconfig", after[0])
 
     def test_force_dimension_is_checked_layer_by_layer(self):
-        def examine(code, stub="free", **environment):
+        def examine(code, stub="", **environment):
             result = palpa("devices", "force-dimension", "--json", PALPA_DHD_STUB=stub, **environment)
             self.assertEqual(result.returncode, code, result.stdout + result.stderr)
             return {check["layer"]: check for check in json.loads(result.stdout)["devices"][0]["checks"]}
@@ -56,8 +56,8 @@ class Devices(unittest.TestCase):
         for layer in ("library", "symbols", "init", "limits", "calibration", "readings"):
             self.assertEqual(checks[layer]["outcome"], "ok", checks[layer])
         self.assertIn("12 N", checks["limits"]["found"])
-        self.assertEqual(examine(1, stub="free,absent")["init"]["found"], "no device found")
-        self.assertIn("rest place", examine(1, stub="free,uncalibrated")["calibration"]["remedy"])
+        self.assertEqual(examine(1, stub="absent")["init"]["found"], "no device found")
+        self.assertIn("rest place", examine(1, stub="uncalibrated")["calibration"]["remedy"])
         missing = examine(1, PALPA_FORCE_DIMENSION="/nowhere/libdhd.so.3")["library"]
         self.assertIn("/nowhere/libdhd.so.3", missing["found"])
         self.assertIn("www.forcedimension.com", missing["remedy"])

@@ -24,13 +24,12 @@ class Stub final : public test::ForceDimensionStub {
 public:
     // PALPA_DHD_STUB in the environment, for programs that no test steps: words with commas
     // between.
-    Stub() : omni_(EmulatedOmniSettings{}) {
+    explicit Stub(bool runs_freely) : omni_(EmulatedOmniSettings{}), runs_freely_(runs_freely) {
         const char* const text = std::getenv("PALPA_DHD_STUB");
         const std::string words = "," + std::string(text ? text : "") + ",";
         const auto is_told = [&](const char* word) {
             return words.find("," + std::string(word) + ",") != std::string::npos;
         };
-        runs_freely_ = is_told("free");
         is_plugged_ = !is_told("absent");
         needs_calibration_ = is_told("uncalibrated");
     }
@@ -245,7 +244,7 @@ private:
     int granted_ = 0, failing_ = 0, off_cause_ = 0, opened_ = 0, violations_ = 0;
     unsigned buttons_ = 0;
     const char* first_violation_ = "";
-    bool runs_freely_ = false, is_waiting_ = false, is_plugged_ = true, is_open_ = false;
+    bool runs_freely_, is_waiting_ = false, is_plugged_ = true, is_open_ = false;
     bool is_force_enabled_ = false, is_gravity_compensated_ = false, is_button_emulated_ = false;
     bool needs_calibration_ = false, is_reporting_ = false;
 };
@@ -253,7 +252,7 @@ private:
 // Never destroyed: a program may end while a device is open.
 std::vector<std::unique_ptr<Stub>>& stubs() {
     static auto& all = *new std::vector<std::unique_ptr<Stub>>;
-    if (all.empty()) all.push_back(std::make_unique<Stub>());
+    if (all.empty()) all.push_back(std::make_unique<Stub>(true));
     return all;
 }
 
@@ -269,7 +268,7 @@ Stub& stub() { return *stubs().back(); }
 #endif
 
 PALPA_EXPORT test::ForceDimensionStub* force_dimension_stub() {
-    stubs().push_back(std::make_unique<Stub>());
+    stubs().push_back(std::make_unique<Stub>(false));
     return &stub();
 }
 
