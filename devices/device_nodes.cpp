@@ -1,6 +1,7 @@
 #include "devices/device_nodes.h"
 
 #include "core/files.h"
+#include "core/text.h"
 #include "platform/file.h"
 
 #include <fmt/format.h>
@@ -8,6 +9,7 @@
 #include <cctype>
 #include <charconv>
 #include <fstream>
+#include <optional>
 #include <system_error>
 
 namespace palpa {
@@ -56,9 +58,16 @@ std::string lower(std::string text) {
 
 bool is_open_to_user(const fs::path& node) { return may_read_and_write(node); }
 
-std::vector<FoundDevice> find_usb_devices(const fs::path& root, std::span<const UsbId> ids) {
+namespace {
+
+// With its folder in /sys, beside each other.
+struct UsbDevices {
     std::vector<FoundDevice> found;
     std::vector<fs::path> folders;
+};
+
+UsbDevices list_usb_devices(const fs::path& root, std::span<const UsbId> ids) {
+    UsbDevices all;
     for (const fs::path& folder : list_folder(root / "sys/bus/usb/devices")) {
         const UsbId id{hex(first_line(folder / "idVendor")), hex(first_line(folder / "idProduct"))};
         if (std::find(ids.begin(), ids.end(), id) == ids.end()) continue;
@@ -66,10 +75,17 @@ std::vector<FoundDevice> find_usb_devices(const fs::path& root, std::span<const 
         FoundDevice device;
         device.where = fmt::format("USB {:04x}:{:04x}{}", id.vendor, id.product,
                                    product.empty() ? "" : " (" + product + ")");
-        found.push_back(device);
+        all.found.push_back(device);
         std::error_code error;
-        folders.push_back(fs::canonical(folder, error));
+        all.folders.push_back(fs::canonical(folder, error));
     }
+    return all;
+}
+
+}  // namespace
+
+std::vector<FoundDevice> find_usb_devices(const fs::path& root, std::span<const UsbId> ids) {
+    auto [found, folders] = list_usb_devices(root, ids);
     for (const char* kind : {"hidraw", "tty"}) {
         for (const fs::path& node : list_folder(root / "sys/class" / kind)) {
             const fs::path above = usb_device_above(node / "device");
@@ -78,6 +94,18 @@ std::vector<FoundDevice> find_usb_devices(const fs::path& root, std::span<const 
                 add_node(root / "dev" / node.filename(), found[i]);
             }
         }
+    }
+    return found;
+}
+
+std::vector<FoundDevice> find_raw_usb_devices(const fs::path& root, std::span<const UsbId> ids) {
+    auto [found, folders] = list_usb_devices(root, ids);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        const std::optional<std::int64_t> bus = find_integer(first_line(folders[i] / "busnum")),
+                                          device = find_integer(first_line(folders[i] / "devnum"));
+        if (!bus || !device) continue;
+        add_node(root / "dev/bus/usb" / fmt::format("{:03}", *bus) / fmt::format("{:03}", *device),
+                 found[i]);
     }
     return found;
 }

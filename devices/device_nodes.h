@@ -27,6 +27,10 @@ bool is_open_to_user(const std::filesystem::path& node);
 std::vector<FoundDevice> find_usb_devices(const std::filesystem::path& root,
                                           std::span<const UsbId> ids);
 
+// The same with their node of the bus itself, for those that no driver of the system serves.
+std::vector<FoundDevice> find_raw_usb_devices(const std::filesystem::path& root,
+                                              std::span<const UsbId> ids);
+
 // FireWire devices whose maker or model, in their own words, contains `name`, in any case.
 std::vector<FoundDevice> find_firewire_devices(const std::filesystem::path& root,
                                                const std::string& name);

@@ -84,10 +84,13 @@ void EmulatedOmni::write(const Vec3& force_newton) noexcept {
     if (!take_orders()) return;
     const double now_s = static_cast<double>(tick_ - start_tick_) * servo_tick_s;
     // Half a nanosecond keeps the tick from hanging on rounding.
-    if (!released_ && now_s > settings_.script.release_s.value_or(INFINITY) - 5e-10) let_go();
+    if (!led_to_m_ && !released_ && now_s > settings_.script.release_s.value_or(INFINITY) - 5e-10)
+        let_go();
     Vec3 drive = Vec3::Zero();
-    if (settings_.driver == HandDriver::Mouse) {
-        drive = follow_mouse();
+    if (led_to_m_) {
+        drive = follow_mouse(*led_to_m_);
+    } else if (settings_.driver == HandDriver::Mouse) {
+        drive = follow_mouse(time_.target_m());
     } else if (settings_.driver == HandDriver::Operator) {
         drive = follow_operator();
     } else if (!released_) {
@@ -134,14 +137,27 @@ bool EmulatedOmni::take_orders() noexcept {
     return goes_on;
 }
 
-Vec3 EmulatedOmni::follow_mouse() noexcept {
+void EmulatedOmni::lead_to(const Vec3& target_m) noexcept {
+    if (!led_to_m_) {
+        // The hand holds on from where it is.
+        if (settings_.driver == HandDriver::Script)
+            wish_m_ = released_ ? true_position_m() : operator_.start_m();
+        wish_m_per_s_.setZero();
+        released_ = false;
+        plant_ = holding_plant_;
+        buttons_ = 0;
+    }
+    led_to_m_ = target_m;
+}
+
+Vec3 EmulatedOmni::follow_mouse(const Vec3& target_m) noexcept {
     if (!settings_.hand) return Vec3::Zero();
     const double stiffness = settings_.hand->stiffness_N_per_m;
     const Vec3& reach = settings_.half_workspace_m;
     const Vec3 handle = true_position_m();
     const double w = live_hand_rad_per_s;
     const Vec3 before = wish_m_;
-    wish_m_per_s_ += servo_tick_s * (w * w * (time_.target_m() - wish_m_) - 2 * w * wish_m_per_s_);
+    wish_m_per_s_ += servo_tick_s * (w * w * (target_m - wish_m_) - 2 * w * wish_m_per_s_);
     wish_m_per_s_ *= std::min(1.0, live_hand_m_per_s / std::max(wish_m_per_s_.norm(), 1e-12));
     wish_m_ += servo_tick_s * wish_m_per_s_;
     const Vec3 ahead = wish_m_ - handle;

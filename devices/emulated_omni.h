@@ -47,6 +47,11 @@ public:
     void write(const Vec3& force_newton) noexcept override;
     void show(const ContactModel& contact) noexcept override;
 
+    // From now on the hand goes after that place (m, from the centre) as one on a mouse does,
+    // whatever its script says. Without a hand nothing happens. By the thread that writes.
+    void lead_to(const Vec3& target_m) noexcept;
+    bool has_hand() const noexcept { return settings_.hand.has_value(); }
+
     // What no device knows: where the handle is between two encoder steps.
     Vec3 true_position_m() const noexcept;
 
@@ -54,7 +59,7 @@ private:
     // False where time stands still.
     bool take_orders() noexcept;
     // What the hand's spring and damper are drawn to (N), by axis.
-    Vec3 follow_mouse() noexcept;
+    Vec3 follow_mouse(const Vec3& target_m) noexcept;
     Vec3 follow_operator() noexcept;
     // Of the present wish and its speed, by spring and damper.
     Vec3 drive_of(const HandModel& hand) const noexcept;
@@ -74,6 +79,7 @@ private:
     std::array<PlantState, 3> state_;  // one per axis
     bool resting_ = true;              // friction held the handle through the last sub-step
     OrderedTime time_;
+    std::optional<Vec3> led_to_m_;  // instead of what the driver says
     Vec3 wish_m_ = Vec3::Zero(), wish_m_per_s_ = Vec3::Zero();
     std::uint64_t tick_ = 0, start_tick_ = 0;  // since the beginning; where the script began
     std::uint32_t buttons_ = 0;                // as pressed during the last tick

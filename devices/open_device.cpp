@@ -3,6 +3,7 @@
 #include "core/load_error.h"
 #include "core/text.h"
 #include "devices/emulated_omni.h"
+#include "devices/force_dimension.h"
 #include "devices/force_joystick.h"
 #include "devices/game_pad.h"
 #include "devices/mouse_handle.h"
@@ -76,6 +77,10 @@ constexpr std::array makers{
                 .summary = "Phantom Omni or Touch, by its maker's OpenHaptics",
                 .is_there = is_omni_there,
                 .open = open_omni},
+    DeviceMaker{.name = "force-dimension",
+                .summary = "omega, delta, sigma or Falcon, by Force Dimension's SDK",
+                .is_there = is_force_dimension_there,
+                .open = open_force_dimension_device},
     DeviceMaker{.name = "spacemouse",
                 .summary = "SpaceMouse: a cap that sets the handle's speed; no force",
                 .is_there = [](const DeviceRequest&) { return is_hid_there(SpaceMouseProtocol()); },

@@ -1,10 +1,18 @@
-// Whether a person reads what is written.
+// Whether a person reads what is written, and what comes in on standard input.
 #pragma once
+#include <cstddef>
 #include <cstdio>
+#include <optional>
+#include <span>
 
 namespace palpa {
 
 // `stream` is stdout or stderr.
 bool is_terminal(std::FILE* stream) noexcept;
+
+// What is next on standard input, as much as is there and has room; 0 bytes at its end. Nothing
+// where none came within that time, or a signal did. Windows waits however long it takes. Not
+// beside what reads stdin.
+std::optional<std::size_t> read_standard_input(std::span<char> buffer, int timeout_ms) noexcept;
 
 }  // namespace palpa

@@ -230,37 +230,42 @@ bool is_engine_address(std::string_view address) {
 
 void check_edits(const SceneDescription& scene, Problems& problems) {
     if (problems.any()) return;  // of a key that is wrong nothing was kept
-    for (std::size_t i = 0; i < scene.edits.size(); ++i) {
-        const std::string whose = fmt::format("edits[{}].hand", i + 1);
-        if (scene.edits[i].hand == 1 && !scene.second) {
-            problems.add(problems.place_of(whose),
-                         fmt::format("'{}' is \"second\", and the scene has one hand; expected "
-                                     "\"first\", or a table [second.grab]",
-                                     whose));
-        }
-        const EditAction& action = scene.edits[i].action;
-        const std::string key = fmt::format("edits[{}].{}", i + 1, edit_names[action.index()]);
-        if (const auto* const restraint = std::get_if<RestraintEdit>(&action)) {
-            const std::size_t ends = restraint->atoms.size() + (restraint->place_angstrom ? 1 : 0);
-            if (!restraint->atoms.empty() && ends != 2) {
-                problems.add(problems.place_of(key),
-                             fmt::format("'{}' has {} ends; expected two atoms, or one and "
-                                         "place_angstrom",
-                                         key, ends));
-            }
-        }
-        const auto* const mobility = std::get_if<MobilityEdit>(&action);
-        if (mobility && !mobility->motion && !mobility->shape) {
+    for (std::size_t i = 0; i < scene.edits.size(); ++i)
+        check_edit(scene.edits[i], scene.second.has_value(), fmt::format("edits[{}].", i + 1),
+                   problems);
+}
+
+void check_edit(const EditDescription& edit, bool has_second, const std::string& path,
+                Problems& problems) {
+    const std::string whose = path + "hand";
+    if (edit.hand == 1 && !has_second) {
+        problems.add(problems.place_of(whose),
+                     fmt::format("'{}' is \"second\", and the scene has one hand; expected "
+                                 "\"first\", or a table [second.grab]",
+                                 whose));
+    }
+    const EditAction& action = edit.action;
+    const std::string key = path + std::string(edit_names[action.index()]);
+    if (const auto* const restraint = std::get_if<RestraintEdit>(&action)) {
+        const std::size_t ends = restraint->atoms.size() + (restraint->place_angstrom ? 1 : 0);
+        if (!restraint->atoms.empty() && ends != 2) {
             problems.add(problems.place_of(key),
-                         fmt::format("'{}' changes nothing; expected motion or shape", key));
+                         fmt::format("'{}' has {} ends; expected two atoms, or one and "
+                                     "place_angstrom",
+                                     key, ends));
         }
-        const auto* const look = std::get_if<AppearanceEdit>(&action);
-        if (look && !look->representation && !look->colouring && !look->visible) {
-            problems.add(problems.place_of(key),
-                         fmt::format("'{}' changes nothing; expected representation, colour "
-                                     "or visible",
-                                     key));
-        }
+    }
+    const auto* const mobility = std::get_if<MobilityEdit>(&action);
+    if (mobility && !mobility->motion && !mobility->shape) {
+        problems.add(problems.place_of(key),
+                     fmt::format("'{}' changes nothing; expected motion or shape", key));
+    }
+    const auto* const look = std::get_if<AppearanceEdit>(&action);
+    if (look && !look->representation && !look->colouring && !look->visible) {
+        problems.add(problems.place_of(key),
+                     fmt::format("'{}' changes nothing; expected representation, colour "
+                                 "or visible",
+                                 key));
     }
 }
 

@@ -164,15 +164,17 @@ void visit_edit(FieldVisitor& v, EditDescription& edit) {
            edit.at_s);
     v.choice({.key = "hand", .meaning = "whose edit it is"}, edit_hand_names, edit.hand);
     for (const std::size_t index : v.one_of(edit_names, edit.action.index())) {
-        if (index != edit.action.index()) {
-            edit.action =
-                action_of(index, std::make_index_sequence<std::variant_size_v<EditAction>>());
-        }
-        std::visit([&](auto& action) { visit_action(v, action); }, edit.action);
+        visit_edit_action(v, index, edit.action);
     }
 }
 
 }  // namespace
+
+void visit_edit_action(FieldVisitor& v, std::size_t index, EditAction& action) {
+    if (index != action.index())
+        action = action_of(index, std::make_index_sequence<std::variant_size_v<EditAction>>());
+    std::visit([&](auto& edit) { visit_action(v, edit); }, action);
+}
 
 void visit_edits(FieldVisitor& v, std::vector<EditDescription>& edits) {
     visit_entries(v, {.key = "edits", .meaning = "what changes while the scene runs"}, edits,

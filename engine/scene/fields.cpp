@@ -2,6 +2,7 @@
 
 #include "scene/edit_fields.h"
 #include "scene/mechanics_fields.h"
+#include "scene/run_commands.h"
 #include "scene/view_fields.h"
 
 #include <fmt/format.h>
@@ -516,6 +517,13 @@ std::vector<FieldNote> list_fields() {
     Lister lister;
     SceneDescription defaults;
     visit_scene(lister, defaults);
+    return std::move(lister.notes);
+}
+
+std::vector<FieldNote> list_run_commands() {
+    Lister lister;
+    RunCommand command;
+    visit_run_command(lister, command);
     return std::move(lister.notes);
 }
 

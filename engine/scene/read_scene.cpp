@@ -8,6 +8,7 @@
 #include "scene/fields.h"
 #include "scene/find_scene.h"
 #include "scene/problems.h"
+#include "scene/run_commands.h"
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
@@ -225,9 +226,11 @@ public:
             }
         }
         if (found.empty()) {
-            level.lacks =
-                fmt::format("'{}' has none of {}; expected one",
-                            level.path.substr(0, level.path.size() - 1), fmt::join(keys, ", "));
+            const std::string whole =
+                level.path.substr(0, std::max<std::size_t>(level.path.size(), 1) - 1);
+            level.lacks = fmt::format("{} has none of {}; expected one",
+                                      whole.empty() ? "the line" : fmt::format("'{}'", whole),
+                                      fmt::join(keys, ", "));
             return {};
         }
         std::ranges::sort(found);
@@ -794,6 +797,74 @@ EditDescription parse_edit(std::string_view text, const TextPlace& place) {
     }
     scene.edits.front().place = place;
     return scene.edits.front();
+}
+
+namespace {
+
+// Up to a # outside of quotes.
+std::string_view without_comment(std::string_view line) {
+    char quote = 0;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        if (quote == '"' && line[i] == '\\') {
+            ++i;
+        } else if (quote != 0) {
+            if (line[i] == quote) quote = 0;
+        } else if (line[i] == '"' || line[i] == '\'') {
+            quote = line[i];
+        } else if (line[i] == '#') {
+            return line.substr(0, i);
+        }
+    }
+    return line;
+}
+
+// The line with the sign = that a word may be without.
+std::string with_equals(std::string_view line) {
+    const std::size_t end = std::min(line.find_first_of(" \t="), line.size());
+    const std::string_view word = line.substr(0, end), rest = trimmed(line.substr(end));
+    if (rest.starts_with('=')) return std::string(line);
+    if (rest.empty()) {
+        const char* const value = word == "read" ? "\"\"" : word == "step" ? "1" : "true";
+        return fmt::format("{} = {}", word, value);
+    }
+    return fmt::format("{} = {}", word, rest);
+}
+
+RunCommand read_run_command(std::string_view line, const SceneDescription& scene) {
+    toml::table root = parse_table(fmt::format("line = {{{}}}", with_equals(line)), {});
+    const toml::table* const table = root.size() == 1 ? root["line"].as_table() : nullptr;
+    if (!table) throw LoadError({}, "is no list of KEY = VALUE with commas between");
+    RunCommand command;
+    Problems problems({});
+    Reader reader(*table, {}, scene.file.parent_path(), false, problems);
+    visit_run_command(reader, command);
+    const auto* const edit = std::get_if<EditAction>(&command.action);
+    if (!problems.any())
+        check_edit({0, command.hand, edit ? *edit : EditAction(), {}}, scene.second.has_value(), "",
+                   problems);
+    reader.finish();
+    (void)problems.finish();
+    return command;
+}
+
+}  // namespace
+
+std::optional<RunCommand> parse_run_command(std::string_view line, const SceneDescription& scene,
+                                            const TextPlace& place) {
+    if (line.size() > most_command_bytes) {
+        throw LoadError(place, fmt::format("the line has {} bytes; expected at most {}",
+                                           line.size(), most_command_bytes));
+    }
+    line = trimmed(without_comment(line));
+    if (line.empty()) return std::nullopt;
+    if (line.find('\n') != std::string_view::npos) throw LoadError(place, "is more than one line");
+    try {
+        return read_run_command(line, scene);
+    } catch (const LoadError& error) {
+        // Its place is within the braces around the line, which nobody wrote.
+        const std::string_view what = error.what();
+        throw LoadError(place, std::string(what.substr(what.find(": ") + 2)));
+    }
 }
 
 SceneDescription read_scene(const fs::path& path, std::span<const std::string> settings) {

@@ -172,6 +172,8 @@ constexpr std::string_view session_mark = "# A recorded Palpa session";
 constexpr std::string_view trajectory_mark =
     "# A recorded Palpa session, in which a trajectory moved the atoms";
 
+constexpr std::string_view commands_mark = "# A recorded Palpa session, which commands drove";
+
 // What the head of a session says about running it again.
 std::string describe_return(const SceneDescription& scene, RecordedBy by) {
     if (scene.engine) {
@@ -186,6 +188,11 @@ std::string describe_return(const SceneDescription& scene, RecordedBy by) {
                 "{},\n# every field written out. Its frames are not here: it cannot be played "
                 "again.\n",
                 trajectory_mark);
+        case RecordedBy::Commands:
+            return fmt::format(
+                "{},\n# every field written out. The commands are not here: to run it again, give "
+                "them to\n#   palpa run session.toml --headless --commands --record NEW_FOLDER\n",
+                commands_mark);
         case RecordedBy::Journal:
             return fmt::format(
                 "{}, every field written out. To play what people did in it (journal.txt):\n#   "
@@ -275,6 +282,10 @@ void check_can_be_made(const fs::path& folder) {
 
 bool is_of_trajectory(const fs::path& folder) {
     return begins_with(folder / "session.toml", trajectory_mark);
+}
+
+bool is_of_commands(const fs::path& folder) {
+    return begins_with(folder / "session.toml", commands_mark);
 }
 
 InputNames::InputNames(const SceneDescription& scene) {

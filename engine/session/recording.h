@@ -53,11 +53,13 @@ private:
 };
 
 // What brings a recorded session back: the scene's own hand, or a journal.
-// A trajectory that moved the atoms is not in the recording, and does not come back.
-enum class RecordedBy { Hand, Journal, Trajectory };
+// A trajectory that moved the atoms, and the lines of a scripted run, are not in the recording, and
+// do not come back.
+enum class RecordedBy { Hand, Journal, Trajectory, Commands };
 
-// Whether the folder holds a recording by a trajectory.
+// Whether the folder holds a recording by a trajectory, or of a scripted run.
 bool is_of_trajectory(const std::filesystem::path& folder);
+bool is_of_commands(const std::filesystem::path& folder);
 
 class Recording {
 public:

@@ -438,6 +438,9 @@ public:
         if (has_mobile(world) && scene.edits.empty()) unbinding_.emplace(world);
     }
 
+    // Atoms may have other numbers from now on.
+    void note_edit() { unbinding_.reset(); }
+
     void add_step(const World& world) {
         const StepReport& report = world.resource<StepReport>();
         for (Statistics& each : statistics_) each.add_step(1e-6 * report.took_us, report.finite);
@@ -552,13 +555,16 @@ Summary run_headless(const SceneDescription& scene, World& world, std::span<Devi
     EditHistory history;
 
     std::uint64_t done = 0, drawn = 0, edition = 0;
+    const EditFunction make = [&](const EditDescription& edit) {
+        history.apply(world, edit);
+        ++edition;
+        log.note_edit();
+        renew_servos(world, hands);
+    };
     const auto step = [&](std::span<const HandPose> poses, std::span<const ContactModel> felt) {
         const double now_s = static_cast<double>(done - 1) * servo_tick_s;
-        const std::vector<EditDescription> due = edits.take_due(now_s);
-        for (const EditDescription& edit : due) history.apply(world, edit);
-        edition += due.size();
-        if (!due.empty()) renew_servos(world, hands);
-        if (before_step) before_step(world);
+        for (const EditDescription& edit : edits.take_due(now_s)) make(edit);
+        if (before_step) before_step(world, make);
         step_world(world, {poses, felt});
         log.add_step(world);
         return list_contacts(world);

@@ -6,6 +6,7 @@
 #include "haptics/hand.h"
 #include "haptics/servo.h"
 #include "scene/description.h"
+#include "scene/edits.h"
 #include "session/lockstep.h"
 #include "session/recording.h"
 #include "session/statistics.h"
@@ -31,8 +32,12 @@ struct FrameClock {
     std::function<void()> draw;
 };
 
-// Called before each step, after the edits that are due.
-using BeforeStepFunction = std::function<void(World&)>;
+// Makes an edit at once, as those of the scene are made. Throws LoadError at its place, and leaves
+// all as it was.
+using EditFunction = std::function<void(const EditDescription&)>;
+
+// Called before each step, after the edits that are due; may make more.
+using BeforeStepFunction = std::function<void(World&, const EditFunction& edit)>;
 
 // Servo ticks of the scene's run.
 std::uint64_t count_ticks(const SceneDescription& scene) noexcept;

@@ -2,6 +2,7 @@
 // name in `PALPA_MOTOR_RIGS`, or a kind of `HidRig`.
 #include "devices/device_check.h"
 #include "devices/emulated_omni.h"
+#include "devices/force_dimension.h"
 #include "devices/force_joystick.h"
 #include "devices/game_pad.h"
 #include "devices/hid_device.h"
@@ -15,6 +16,7 @@
 #include "haptics/servo.h"
 #include "tests/devices/template_device.h"
 #include "tests/devices/wait_until.h"
+#include "tests/support/force_dimension_stub/load.h"
 #include "tests/support/hid_reports.h"
 #include "tests/support/open_haptics_stub/load.h"
 #include "tests/support/pid_stick.h"
@@ -206,6 +208,48 @@ private:
     std::thread stepper_;
 };
 
+// Its own thread stands in the middle of a tick but for the steps.
+class ForceDimensionRig {
+public:
+    static constexpr bool has_own_thread = true;
+    static constexpr std::array<double, 2> moves_m = omni_moves_m;
+
+    ForceDimensionRig() : stub_(test::load_force_dimension_stub()) {
+        DeviceRequest request;
+        request.system_root = "/nowhere";
+        device_ = open_force_dimension(
+                      {.library = PALPA_FORCE_DIMENSION_STUB, .retry_s = 1e-3, .is_paced = false},
+                      request)
+                      .device;
+        REQUIRE(device_);
+        tick();
+    }
+    ForceDimensionRig(const ForceDimensionRig&) = delete;
+    ForceDimensionRig& operator=(const ForceDimensionRig&) = delete;
+    ~ForceDimensionRig() {
+        close();
+        INFO(stub_.first_violation());
+        CHECK(stub_.violations() == 0);
+    }
+
+    Device& device() { return *device_; }
+    void tick() { stub_.step(1); }
+    void plug(bool is_plugged) { stub_.plug(is_plugged); }
+    // The library has the axis to the person first, then right, then up.
+    Vec3 motors() { return {stub_.motor_newton(1), stub_.motor_newton(2), stub_.motor_newton(0)}; }
+    static Vec3 played(const Vec3& force_newton) { return force_newton; }
+    void close() {
+        stub_.run_freely();
+        device_.reset();
+    }
+    void hold() {}
+    void release() {}
+
+private:
+    test::ForceDimensionStub& stub_;
+    std::unique_ptr<Device> device_;
+};
+
 // What a HidRig stands for: the device, its reports with the handle pushed along an axis, and what
 // of the newest report that was written reaches the hand.
 struct SpaceMouseKind {
@@ -366,7 +410,7 @@ private:
 #define PALPA_HID_RIGS                                                             \
     HidRig<SpaceMouseKind>, HidRig<DualSenseKind>, HidRig<BluetoothDualSenseKind>, \
         HidRig<DualShock4Kind>
-#define PALPA_MOTOR_RIGS EmulatedRig, MouseRig, TemplateRig, OpenHapticsRig
+#define PALPA_MOTOR_RIGS EmulatedRig, MouseRig, TemplateRig, OpenHapticsRig, ForceDimensionRig
 #define PALPA_RIGS PALPA_MOTOR_RIGS, JoystickRig, PlayedRig, GamePadRig, PALPA_HID_RIGS
 
 // The servo with a device at its hands: what a molecule at a fixed place asks for.
@@ -511,7 +555,7 @@ TEMPLATE_TEST_CASE("what is no force leaves a device in order", "[devices][confo
 }
 
 TEMPLATE_TEST_CASE("a closed device has no force", "[devices][conformance]", OpenHapticsRig,
-                   JoystickRig, PALPA_HID_RIGS) {
+                   ForceDimensionRig, JoystickRig, PALPA_HID_RIGS) {
     TestType rig;
     for (int i = 0; i < 10; ++i) {
         rig.device().write(Vec3(1, 2, 0));
@@ -525,8 +569,9 @@ TEMPLATE_TEST_CASE("a closed device has no force", "[devices][conformance]", Ope
 }
 
 // Without an end, if it waited.
-TEST_CASE("neither read nor write waits for the device's own thread", "[devices][conformance]") {
-    OpenHapticsRig rig;
+TEMPLATE_TEST_CASE("neither read nor write waits for the device's own thread",
+                   "[devices][conformance]", OpenHapticsRig, ForceDimensionRig) {
+    TestType rig;
     rig.device().write(Vec3(1, 0, 0));
     rig.tick();
     rig.hold();

@@ -1,4 +1,4 @@
-"""palpa devices, with a library in OpenHaptics' place behind which an emulated Omni stands."""
+"""palpa devices, with libraries in the makers' places behind which an emulated Omni stands."""
 import json
 import os
 import subprocess
@@ -12,7 +12,7 @@ WATER = Path(os.environ["PALPA_ROOT"]) / "scenes" / "water"
 
 def palpa(*arguments, stub="free", answer="", **environment):
     return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True,
-                          input=answer, env={**os.environ, "PALPA_STUB": stub, **environment})
+                          input=answer, env={**os.environ, "PALPA_STUB": stub, "PALPA_DHD_STUB": "absent", **environment})
 
 
 class Devices(unittest.TestCase):
@@ -45,6 +45,22 @@ class Devices(unittest.TestCase):
         checks, after = self.examine(1, PALPA_OPENHAPTICS="/nowhere/libHD.so")
         self.assertIn("/nowhere/libHD.so", checks["library"]["found"])
         self.assertIn("ldconfig", after[0])
+
+    def test_force_dimension_is_checked_layer_by_layer(self):
+        def examine(code, stub="", **environment):
+            result = palpa("devices", "force-dimension", "--json", PALPA_DHD_STUB=stub, **environment)
+            self.assertEqual(result.returncode, code, result.stdout + result.stderr)
+            return {check["layer"]: check for check in json.loads(result.stdout)["devices"][0]["checks"]}
+
+        checks = examine(0)
+        for layer in ("library", "symbols", "init", "limits", "calibration", "readings"):
+            self.assertEqual(checks[layer]["outcome"], "ok", checks[layer])
+        self.assertIn("12 N", checks["limits"]["found"])
+        self.assertEqual(examine(1, stub="absent")["init"]["found"], "no device found")
+        self.assertIn("rest place", examine(1, stub="uncalibrated")["calibration"]["remedy"])
+        missing = examine(1, PALPA_FORCE_DIMENSION="/nowhere/libdhd.so.3")["library"]
+        self.assertIn("/nowhere/libdhd.so.3", missing["found"])
+        self.assertIn("www.forcedimension.com", missing["remedy"])
 
     def test_a_second_hand_is_one_of_the_scene(self):
         def run(scene, *arguments):

@@ -42,7 +42,7 @@ constexpr const char* exit_codes =
     "Exit codes\n"
     "  0      done\n"
     "  1      done, and what was checked does not hold (report, replay --verify, devices, ...),\n"
-    "         or no film came out (render --film)\n"
+    "         no film came out (render --film), or a command was refused (run --commands)\n"
     "  2      wrong arguments or input, or something missing; nothing was changed\n"
     "  3      an error in Palpa itself\n"
     "  4      no remote engine answered, or it was lost for good (connect, run)\n"

@@ -54,6 +54,12 @@ void check_is_whole(const std::filesystem::path& folder, const SceneDescription&
                         "a trajectory moved the atoms (--trajectory), and its frames are not in "
                         "the recording; expected one without");
     }
+    if (is_of_commands(folder)) {
+        throw LoadError({folder.string()},
+                        "commands drove the run (--commands), and they are not in the recording; "
+                        "expected one without, or the commands given once more to palpa run "
+                        "session.toml --headless --commands");
+    }
 }
 
 void check_repeats(const SceneDescription& scene) {

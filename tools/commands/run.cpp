@@ -22,6 +22,7 @@
 #include "tools/commands/print_run.h"
 #include "tools/commands/progress.h"
 #include "tools/commands/render.h"
+#include "tools/commands/scripted.h"
 #include "tools/commands/worded_picture.h"
 
 #include <fmt/format.h>
@@ -93,6 +94,14 @@ void check_options(const RunOptions& options) {
         throw LoadError(
             {options.trajectory_speed != 25 ? "--trajectory-speed" : "--trajectory-frame"},
             "is of a trajectory that is played; expected --trajectory FILE too");
+    }
+    if (options.commands && !options.headless) {
+        throw LoadError({"--commands"}, "drives runs without a window; expected --headless too");
+    }
+    if (options.commands && options.json) {
+        throw LoadError({"--json"},
+                        "is a summary on standard output, which has the answers to --commands; "
+                        "expected one of them");
     }
     if (!options.headless) return check_window_options(options);
     if (options.record) check_record_folder(*options.record, options.overwrites);
@@ -178,7 +187,9 @@ int run_without_window(SceneDescription scene, World& world,
     std::optional<Recording> recording;
     if (options.record)
         recording.emplace(*options.record, scene, options.overwrites, devices.size(),
-                          options.trajectory ? RecordedBy::Trajectory : RecordedBy::Hand);
+                          options.trajectory ? RecordedBy::Trajectory
+                          : options.commands ? RecordedBy::Commands
+                                             : RecordedBy::Hand);
     if (recording) recording->begin_trajectory(trajectory_settings(options));
     std::vector<Device*> hands;
     for (const std::unique_ptr<Device>& device : devices) hands.push_back(device.get());
@@ -192,22 +203,30 @@ int run_without_window(SceneDescription scene, World& world,
         warnings.emplace_back(
             "this recording does not have the trajectory's frames: it cannot be played again");
     }
-    const std::unique_ptr<FrameServer> server = open_server(options.serve, world, !options.json);
+    const std::unique_ptr<FrameServer> server =
+        open_server(options.serve, world, !options.json && !options.commands);
     std::optional<ServedRun> served;
-    BeforeStepFunction before_step;
-    if (server) {
-        served.emplace(*server, options.serve, progress);
-        before_step = [&](World& next) { served->before_step(next); };
-    }
+    if (server) served.emplace(*server, options.serve, progress);
+    std::optional<ScriptedRun> scripted;
+    if (options.commands) scripted.emplace(scene, standard_ends(devices));
+    const auto before_step = [&](World& next, const EditFunction& edit) {
+        if (scripted) scripted->before_step(next, edit);
+        if (served) served->before_step(next);
+    };
+    HandTicksFunction watch;
+    if (scripted) watch = [&](std::span<const ServoTick> ticks) { scripted->add(ticks); };
     FrameClock frames;
     if (writer) {
         frames = {options.frames_per_second, [&] { write_frame(writer, world, progress); }};
     }
     print_warnings(warnings);
-    const Summary summary = run_headless(
-        scene, world, hands, warnings, recording ? &*recording : nullptr,
-        progress.shares("playing"), frames, {},
-        [&] { return noted_interrupt() != 0 || is_engine_gone(world); }, before_step);
+    const auto is_over = [&] {
+        return noted_interrupt() != 0 || is_engine_gone(world) || (scripted && scripted->is_over());
+    };
+    const Summary summary =
+        run_headless(scripted ? without_end(scene) : scene, world, hands, warnings,
+                     recording ? &*recording : nullptr, progress.shares("playing"), frames, watch,
+                     is_over, before_step);
     progress.wipe();
     const bool is_gone = is_engine_gone(world);
     const std::string engine =
@@ -220,12 +239,13 @@ int run_without_window(SceneDescription scene, World& world,
     if (recording) print_notes(recording->take_notes());
     if (options.json) {
         fmt::print("{}", format_summary(scene, summary));
-    } else {
+    } else if (!scripted) {
         print_summary(scene, summary);
         if (options.record) fmt::print("recorded in {}\n", options.record->string());
     }
     if (is_gone) fmt::print(stderr, "{}\n", printable(engine));
-    return exit_code_after(is_gone ? engine_lost : 0);
+    const bool is_refused = scripted && scripted->has_refused();
+    return exit_code_after(is_gone ? engine_lost : is_refused ? command_refused : 0);
 }
 
 // Without a window the run goes by the engine's frames; a window, which connects by itself, only
@@ -253,7 +273,7 @@ int run_scene(const SceneDescription& read, const RunOptions& options) {
     const SceneDescription scene = options.trajectory ? as_played(read) : read;
     check_options(options);
     check_second(options, scene);
-    ProgressLine progress(!options.json);
+    ProgressLine progress(!options.json && !options.commands);
     World world = load_world(scene, progress.stages());
     await_first_frame(scene, world, options, progress);
     const std::optional<PlaybackChoice> playback = playback_choice(options);
@@ -374,6 +394,8 @@ void add_headless_options(CLI::App& run, RunOptions& options) {
         ->group("With and without a window");
     run.add_flag("--trajectory-xtc", options.trajectory_xtc, "write trajectory.xtc too")
         ->group("With and without a window");
+    run.add_flag("--commands", options.commands,
+                 "lines of standard input drive the run, and each is answered by a line of JSON");
     run.add_flag("--json", options.json, "print the summary as JSON");
 }
 

@@ -39,6 +39,7 @@ struct RunOptions {
     double last_shot_s = 5;
     std::uint64_t lose_device_at = 0;
     bool validation = false;  // of all calls of Vulkan
+    bool commands = false;    // standard input drives the run (scene/run_commands.h)
     ServeChoice serve;
 };
 
