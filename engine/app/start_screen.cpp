@@ -1,6 +1,5 @@
 #include "app/start_screen.h"
 
-#include "app/screenshots.h"
 #include "core/load_error.h"
 #include "core/text.h"
 #include "render/picture_sheet.h"
@@ -58,7 +57,6 @@ private:
     void draw_devices();
     void choose_device(const std::string& name);
     void load_pictures();
-    void save_shot(const WindowShot& shot);
 
     WindowShell& shell_;
     const StartOptions& options_;
@@ -74,7 +72,6 @@ private:
     std::size_t columns_ = 1;
     std::string device_, problem_, notice_;
     FileBrowser browser_;
-    bool wants_shot_ = false;
     bool is_over_ = false;
     std::optional<NextScreen> next_;
 };
@@ -113,23 +110,13 @@ std::optional<NextScreen> StartScreen::run() {
 bool StartScreen::frame() {
     take_input();
     load_pictures();
-    WindowShot shot;
-    shell_.draw_panels([this] { describe(); }, wants_shot_ ? &shot : nullptr,
+    if (std::string news = shell_.take_notice(); !news.empty()) notice_ = std::move(news);
+    shell_.draw_panels([this] { describe(); },
                        [this](VkCommandBuffer commands, VkImage image) {
                            for (const CardPicture& one : shown_)
                                sheet_->record(commands, one.number, image, one.to, one.within);
                        });
-    if (!shot.rgba.empty()) save_shot(shot);
     return !is_over_ && !next_;
-}
-
-void StartScreen::save_shot(const WindowShot& shot) {
-    wants_shot_ = false;
-    try {
-        notice_ = fmt::format("saved {}", save_screenshot(options_.screenshots, shot).string());
-    } catch (const LoadError& error) {
-        problem_ = error.what();
-    }
 }
 
 // Again where the graphics device was set up again.
@@ -153,7 +140,6 @@ void StartScreen::take_input() {
 }
 
 void StartScreen::press(const KeyPress& press) {
-    if (press.key == Key::F12) wants_shot_ = true;
     if (browser_.is_open()) {
         if (press.key == Key::Escape) return browser_.close();
         return browser_.press(press.key);

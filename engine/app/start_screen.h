@@ -22,7 +22,6 @@ struct StartOptions {
     // LoadError where it cannot be had.
     std::function<std::string(const std::string& name)> choose_device{};
     std::string problem{};  // why the last file could not be opened
-    std::filesystem::path screenshots{"."};
 };
 
 // Whether a file of this name can be opened: a scene or a structure.

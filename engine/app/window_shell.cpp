@@ -1,5 +1,6 @@
 #include "app/window_shell.h"
 
+#include "app/screenshots.h"
 #include "core/interrupt.h"
 #include "core/load_error.h"
 #include "platform/thread.h"
@@ -147,10 +148,12 @@ std::string WindowShell::change_text_scale(double scale) {
 const Input& WindowShell::poll() {
     const Input& input = window_.poll();
     must_rebuild_ = must_rebuild_ || input.resized;
+    const auto is_asked = [](const KeyPress& press) { return press.key == Key::F12; };
+    wants_shot_ = wants_shot_ || std::ranges::any_of(input.pressed, is_asked);
     return input;
 }
 
-void WindowShell::draw_panels(const std::function<void()>& describe, WindowShot* shot,
+void WindowShell::draw_panels(const std::function<void()>& describe,
                               const std::function<void(VkCommandBuffer, VkImage)>& paint) {
     if (window_.size().width == 0 || window_.size().height == 0) return;
     Graphics& g = *graphics_;
@@ -158,6 +161,7 @@ void WindowShell::draw_panels(const std::function<void()>& describe, WindowShot*
     g.ui.begin();
     describe();
     g.ui.end();
+    WindowShot shot;
     must_rebuild_ = !g.swapchain.present(
         [&](VkCommandBuffer commands, VkImage image) {
             clear(commands, image);
@@ -170,7 +174,14 @@ void WindowShell::draw_panels(const std::function<void()>& describe, WindowShot*
                                  nullptr);
             paint(commands, image);
         },
-        [&](VkCommandBuffer commands) { g.ui.draw(commands); }, shot);
+        [&](VkCommandBuffer commands) { g.ui.draw(commands); }, wants_shot_ ? &shot : nullptr);
+    if (shot.rgba.empty()) return;
+    wants_shot_ = false;
+    try {
+        notice_ = fmt::format("saved {}", save_screenshot(options_.screenshots, shot).string());
+    } catch (const LoadError& error) {
+        notice_ = error.what();
+    }
 }
 
 bool WindowShell::work(const std::string& title,

@@ -10,10 +10,12 @@
 #include "window/window.h"
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace palpa {
@@ -33,7 +35,8 @@ struct ShellOptions {
     std::uint32_t width = 1280, height = 800;
     bool grows = true;  // with the display's scale: nobody asked for that size in pixels
     TextScaleChoice text_scale{};
-    bool validation = false;  // of all that Vulkan is told
+    bool validation = false;                 // of all that Vulkan is told
+    std::filesystem::path screenshots{"."};  // folder
 };
 
 // All that is lost with a device, made and thrown away as one.
@@ -67,14 +70,14 @@ public:
     void run(double most_frames_per_s, const std::function<bool()>& frame,
              const std::function<void()>& on_lost);
 
-    // One frame of panels alone, described to the overlay library; nothing while the window is
-    // folded away. With `shot`, what is shown is kept there.
-    // `paint` puts pictures below the panels, into an image in TRANSFER_DST_OPTIMAL.
-    void draw_panels(const std::function<void()>& describe, WindowShot* shot = nullptr,
-                     const std::function<void(VkCommandBuffer, VkImage)>& paint = {});
-
-    // What came in, for a screen of panels.
+    // What came in, for a screen of panels. F12 asks for a screenshot of it.
     const Input& poll();
+    // One frame of panels alone, described to the overlay library; nothing while the window is
+    // folded away. `paint` puts pictures below the panels, into an image in TRANSFER_DST_OPTIMAL.
+    void draw_panels(const std::function<void()>& describe,
+                     const std::function<void(VkCommandBuffer, VkImage)>& paint = {});
+    // Where a screenshot went, or why it could not be saved, since the last call.
+    std::string take_notice() { return std::exchange(notice_, {}); }
 
     // Does the task on a thread of its own, and shows under `title` how far it is. False where the
     // person cancelled it, or closed the window: its next call of the stage function ended it.
@@ -93,6 +96,8 @@ private:
     Window window_;
     std::unique_ptr<Graphics> graphics_;
     bool must_rebuild_ = false;  // the swapchain, for draw_panels()
+    bool wants_shot_ = false;
+    std::string notice_;
     std::vector<std::string> validation_messages_;
 };
 

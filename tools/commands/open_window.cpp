@@ -144,7 +144,8 @@ ShellOptions shell_options(const RunOptions& options, PreferencesFile& preferenc
             .height = options.height,
             .grows = !options.has_size,
             .text_scale = build_text_scale(preferences),
-            .validation = options.validation};
+            .validation = options.validation,
+            .screenshots = options.screenshots};
 }
 
 std::optional<NextScreen> show_scene(WindowShell& shell, PreferencesFile& preferences,

@@ -73,8 +73,7 @@ StartOptions build_start(PreferencesFile& preferences, const RunOptions& options
         .device = options.device.value_or(preferences.now().device.value_or(first_device)),
         .choose_device =
             [&preferences](const std::string& name) { return choose_device(name, preferences); },
-        .problem = std::move(problem),
-        .screenshots = options.screenshots};
+        .problem = std::move(problem)};
     for (const fs::path& folder : own_scene_folders())
         std::ranges::move(list_scenes(folder), std::back_inserter(start.scenes));
     start.recovered = list_recovered();

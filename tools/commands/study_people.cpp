@@ -133,7 +133,9 @@ int study_in_window(const StudyCommand& command) {
         if (is_first) write_text_file(session, study.dump(2) + "\n", Existing::Replace);
         write_text_file(table, before + format_trials(course.results()), Existing::Replace);
     };
-    WindowShell shell({.validation = command.validation});
+    ShellOptions shell_options;
+    shell_options.validation = command.validation;
+    WindowShell shell(shell_options);
     (void)run_window(shell, scene, device, window);
 
     if (course.results().empty()) return 0;
