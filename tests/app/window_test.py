@@ -622,27 +622,6 @@ class Session(unittest.TestCase):
             self.assertEqual(self.quit(display)["device"], "emulated Omni")
         self.assertNotIn("device", chosen.read_text())
 
-    def test_alone_it_opens_the_scene_of_last_time(self):
-        with Display() as display:
-            self.start(display, scene="water/space")  # by its name, which is no path from here
-            self.quit(display)
-            for file in self.folder.glob("*.png"):
-                file.unlink()
-            self.program = subprocess.Popen(
-                [PROGRAM], cwd=self.folder, text=True, stdout=subprocess.PIPE,
-                stderr=subprocess.PIPE,
-                env={**os.environ, "DISPLAY": display.name, "XDG_CONFIG_HOME": str(self.folder)})
-            self.wait_until(display.focus_window, "the window")
-            self.wait_until(lambda: self.try_screenshot(display), "a picture")
-            display.do("key", "Escape")
-            out, err = self.program.communicate(timeout=60)
-        self.assertEqual(self.program.returncode, 0, err)
-        self.assertIn("Two waters in space", out)
-
-    def try_screenshot(self, display):
-        display.do("key", "F12")
-        return list(self.folder.glob("palpa-*.png"))
-
     def test_a_scene_is_saved_as_set_and_can_be_run(self):
         scene = Path(shutil.copytree(ROOT / "scenes" / "water", self.folder / "mine"))
         with Display() as display:

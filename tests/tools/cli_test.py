@@ -115,13 +115,25 @@ class Cli(unittest.TestCase):
                                 env={**clean, "DISPLAY": "", "XDG_CONFIG_HOME": str(self.tmp)})
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertNotIn("nowhere", result.stdout)
-        # What cannot be opened any more is said, and what can be is listed.
-        (self.tmp / "broken.toml").write_text("title = 3")
-        (self.tmp / "palpa" / "preferences.toml").write_text(f"scene = '{self.tmp}/broken.toml'\n")
+        # Where the display does not answer they are listed too.
+        (self.tmp / "mine.toml").write_text("title = 3")
+        (self.tmp / "palpa" / "preferences.toml").write_text(f"recent = ['{self.tmp}/mine.toml']\n")
         result = subprocess.run([PROGRAM], capture_output=True, text=True, cwd=self.tmp,
                                 env={**clean, "DISPLAY": ":1", "XDG_CONFIG_HOME": str(self.tmp)})
-        self.assert_bad_input(result, "broken.toml:1:")
+        self.assert_bad_input(result, "display")
         self.assertIn("palpa run water", result.stdout)
+        self.assertIn("mine.toml", result.stdout)
+
+    def test_a_file_alone_needs_a_display_and_must_be_there(self):
+        clean = {key: value for key, value in os.environ.items()
+                 if key not in ("DISPLAY", "WAYLAND_DISPLAY")}
+        result = subprocess.run([PROGRAM, self.tmp / "none.pdb"], capture_output=True, text=True,
+                                env=clean)
+        self.assert_bad_input(result, "none.pdb")
+        (self.tmp / "one.pdb").write_text("END\n")
+        result = subprocess.run([PROGRAM, self.tmp / "one.pdb"], capture_output=True, text=True,
+                                env=clean)
+        self.assert_bad_input(result, "palpa prepare")
 
     def test_own_scenes_go_by_name(self):
         self.assertIn("Two waters in space", self.palpa("run", "water/space", "--headless",

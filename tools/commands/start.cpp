@@ -8,6 +8,7 @@
 #include "platform/display.h"
 #include "scene/find_scene.h"
 #include "tools/commands/screens.h"
+#include "window/window.h"
 
 #include <fmt/format.h>
 #include <filesystem>
@@ -38,14 +39,24 @@ void print_scenes(const std::vector<std::string>& recent) {
         "  palpa run water                opens one in a window\n"
         "  palpa run water --headless     plays it without a display\n"
         "  palpa prepare 1abc.pdb ...     makes one of your own molecule\n"
+        "  palpa 1abc.pdb                 prepares and opens it in a window\n"
+        "  palpa devices                  says which devices were found, and what is missing\n"
         "  palpa --help                   lists all commands\n");
 }
 
 }  // namespace
 
 int start_command() {
-    if (has_display()) return open_screens({});
-    print_scenes(PreferencesFile(find_preferences_file()).now().recent);
+    const std::vector<std::string> recent = PreferencesFile(find_preferences_file()).now().recent;
+    if (has_display()) {
+        try {
+            return open_screens({});
+        } catch (const PlatformError&) {
+            print_scenes(recent);
+            throw;
+        }
+    }
+    print_scenes(recent);
     return 0;
 }
 

@@ -1,0 +1,45 @@
+#include "app/recovery.h"
+
+#include "scene/read_scene.h"
+#include "tests/support/paths.h"
+#include "tests/support/temporary_folder.h"
+
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+using namespace palpa;
+namespace fs = std::filesystem;
+
+#ifndef _WIN32
+TEST_CASE("what was not saved is offered once the program that kept it is gone",
+          "[app][recovery]") {
+    const test::TemporaryFolder folder;
+    const char* const before = std::getenv("XDG_DATA_HOME");
+    const std::string kept = before ? before : "";
+    setenv("XDG_DATA_HOME", folder.path().c_str(), 1);
+    const fs::path recovered = folder.path() / "palpa" / "recovered";
+    {
+        SceneDescription scene = read_scene(test::in_project("scenes/water"));
+        scene.title = "changed";
+        RecoveryFile file;
+        file.save(scene);
+        REQUIRE(fs::exists(recovered));
+        CHECK(list_recovered().empty());  // this process still runs
+
+        // As if another one had left it: no process has the highest number.
+        for (const fs::directory_entry& entry : fs::directory_iterator(recovered))
+            fs::copy_file(entry.path(), recovered / "water-2147483646.toml");
+        REQUIRE(list_recovered() == std::vector<fs::path>{recovered / "water-2147483646.toml"});
+        CHECK(is_recovered(list_recovered().front()));
+        const SceneDescription read =
+            read_scene(list_recovered().front(), {std::string(allow_outside)});
+        CHECK(read.title == "changed");
+        CHECK(read.molecules.size() == scene.molecules.size());
+    }
+    // A program that ends as it should leaves nothing.
+    CHECK(std::distance(fs::directory_iterator(recovered), fs::directory_iterator()) == 1);
+    before ? setenv("XDG_DATA_HOME", kept.c_str(), 1) : unsetenv("XDG_DATA_HOME");
+}
+#endif

@@ -1,0 +1,163 @@
+"""From the start screen to a structure of one's own and back, in a window under Xvfb."""
+import os
+import shutil
+import subprocess
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+from read_png import read_png
+from window_test import PROGRAM, ROOT, Display
+
+
+class StartScreen(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp())
+        self.shots = 0
+
+    def tearDown(self):
+        if self.program.poll() is None:
+            self.program.kill()
+            self.program.communicate()
+        shutil.rmtree(self.folder)
+
+    def wait_until(self, is_so, what):
+        for _ in range(1200):
+            if is_so():
+                return
+            self.assertIsNone(self.program.poll(), "the program ended early")
+            time.sleep(0.05)
+        self.fail("waited in vain for " + what)
+
+    def start(self, display, *arguments):
+        self.program = subprocess.Popen(
+            [PROGRAM, *map(str, arguments)], cwd=self.folder, text=True, stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            env={**os.environ, "DISPLAY": display.name, "XDG_CONFIG_HOME": str(self.folder),
+                 "XDG_DATA_HOME": str(self.folder / "data")})
+
+    def find_window(self, display, name):
+        return subprocess.run(["xdotool", "search", "--onlyvisible", "--name", f"^{name}$"],
+                              capture_output=True, text=True,
+                              env={**os.environ, "DISPLAY": display.name}).stdout.split()
+
+    def wait_for(self, display, name):
+        """The window with that title, which has the keys."""
+        self.wait_until(lambda: self.find_window(display, name), name)
+        window = self.find_window(display, name)[0]
+        self.wait_until(lambda: subprocess.run(
+            ["xdotool", "windowfocus", "--sync", window], stderr=subprocess.DEVNULL,
+            env={**os.environ, "DISPLAY": display.name}).returncode == 0, "the focus")
+        return window
+
+    def screenshot(self, display):
+        self.shots += 1
+        path = self.folder / f"palpa-{self.shots:04}.png"
+        display.do("key", "F12")
+        self.wait_until(path.exists, path.name)
+        return path
+
+    def end(self, display):
+        display.do("key", "Escape")
+        out, err = self.program.communicate(timeout=60)
+        self.assertEqual(self.program.returncode, 0, err)
+        return out
+
+    def count_greens(self, picture):
+        """Carbons of what is in hand."""
+        (width, height), pixels = read_png(picture)
+        return sum(pixels[i + 1] > pixels[i] + 40 and pixels[i + 1] > pixels[i + 2] + 20
+                   for i in range(0, 4 * width * height, 4))
+
+    def test_a_scene_is_chosen_by_keys_and_left_for_the_start_screen(self):
+        with Display() as display:
+            self.start(display)
+            self.wait_for(display, "Palpa")
+            # The cards have pictures: ligands in them are green.
+            self.assertGreater(self.count_greens(self.screenshot(display)), 100)
+            display.do("key", "Return")
+            self.wait_for(display, "Palpa - Two waters")
+            self.screenshot(display)
+            display.do("key", "ctrl+o")
+            self.wait_for(display, "Palpa")
+            self.assertIn("water/scene.toml",
+                          (self.folder / "palpa" / "preferences.toml").read_text())
+            self.screenshot(display)
+            out = self.end(display)
+        self.assertIn("Two waters", out)
+
+    def test_a_structure_is_dropped_prepared_felt_recorded_saved_and_opened_again(self):
+        structure = self.folder / "hairpin.pdb"
+        exported = subprocess.run([PROGRAM, "export", ROOT / "scenes" / "hairpin", "-o", structure],
+                                  capture_output=True, text=True)
+        self.assertEqual(exported.returncode, 0, exported.stderr)
+        prepared = self.folder / "data" / "palpa" / "scenes" / "hairpin"
+        recording = self.folder / "palpa-session-0001"
+        with Display() as display:
+            self.start(display)
+            display.drop(self.wait_for(display, "Palpa"), structure)
+            self.wait_until((prepared / "scene.toml").exists, "the prepared scene")
+            self.screenshot(display)  # of the report
+            display.do("key", "Return")
+            self.wait_for(display, "Palpa - hairpin")
+            self.screenshot(display)
+            display.do("key", "F9")
+            self.wait_until((recording / "journal.txt").exists, "the recording")
+            display.do("keydown", "Right")
+            time.sleep(1)
+            display.do("keyup", "Right")
+            display.do("key", "Insert")
+            self.screenshot(display)
+            display.do("key", "Return")  # adds a residue
+            self.screenshot(display)
+            self.wait_until(lambda: "add = " in (recording / "journal.txt").read_text(), "the edit")
+            display.do("key", "ctrl+z")
+            self.screenshot(display)
+            display.do("key", "F9")
+            self.wait_until((recording / "summary.json").exists, "the recording's end")
+            display.do("key", "ctrl+s")
+            self.wait_until((prepared / "scene-2.toml").exists, "the saved scene")
+            display.do("key", "ctrl+o")
+            display.drop(self.wait_for(display, "Palpa"), prepared / "scene-2.toml")
+            self.wait_for(display, "Palpa - hairpin")
+            self.screenshot(display)
+            self.end(display)
+        played = subprocess.run([PROGRAM, "replay", recording, "--verify"], capture_output=True,
+                                text=True)
+        self.assertEqual(played.returncode, 0, played.stdout + played.stderr)
+
+    def test_what_was_added_is_in_the_scene_that_is_saved(self):
+        scene = self.folder / "water"
+        shutil.copytree(ROOT / "scenes" / "water", scene)
+        with Display() as display:
+            self.start(display, scene / "scene.toml")
+            self.wait_for(display, "Palpa - Two waters")
+            self.screenshot(display)
+            display.do("key", "Insert")
+            self.screenshot(display)
+            display.do("key", "Return")
+            self.screenshot(display)
+            self.screenshot(display)
+            display.do("key", "ctrl+s")
+            self.wait_until((scene / "scene-2.toml").exists, "the saved scene")
+            self.end(display)
+        self.assertIn("add = {", (scene / "scene-2.toml").read_text())
+        checked = subprocess.run([PROGRAM, "run", scene / "scene-2.toml", "--headless", "--seconds",
+                                  "0.1"], capture_output=True, text=True)
+        self.assertEqual(checked.returncode, 0, checked.stderr)
+
+    def test_a_file_that_is_none_is_explained_on_the_start_screen(self):
+        (self.folder / "broken.toml").write_text("title = 3\n")
+        with Display() as display:
+            self.start(display, self.folder / "broken.toml")
+            self.wait_for(display, "Palpa")
+            (width, _), pixels = read_png(self.screenshot(display))
+            reds = sum(pixels[i] > 150 and pixels[i + 1] < 60
+                       for i in range(0, 4 * width * 120, 4))
+            self.assertGreater(reds, 50)
+            self.end(display)
+
+
+if __name__ == "__main__":
+    unittest.main()
