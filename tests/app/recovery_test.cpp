@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 using namespace palpa;
 namespace fs = std::filesystem;
@@ -33,8 +34,8 @@ TEST_CASE("what was not saved is offered once the program that kept it is gone",
             fs::copy_file(entry.path(), recovered / "water-2147483646.toml");
         REQUIRE(list_recovered() == std::vector<fs::path>{recovered / "water-2147483646.toml"});
         CHECK(is_recovered(list_recovered().front()));
-        const SceneDescription read =
-            read_scene(list_recovered().front(), {std::string(allow_outside)});
+        const std::vector<std::string> settings{std::string(allow_outside)};
+        const SceneDescription read = read_scene(list_recovered().front(), settings);
         CHECK(read.title == "changed");
         CHECK(read.molecules.size() == scene.molecules.size());
     }

@@ -1,0 +1,161 @@
+// Whatever a person presses, the device is never given more than its clamp, and nothing crashes.
+#include "app/live_session.h"
+#include "devices/emulated_omni.h"
+#include "haptics/hand.h"
+#include "tests/support/water_scene.h"
+#include "ui/backend.h"
+#include "ui/overlay.h"
+#include "ui/shortcuts.h"
+
+#include <imgui.h>
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <random>
+#include <span>
+#include <string>
+#include <thread>
+#include <vector>
+
+using namespace palpa;
+
+namespace {
+
+// Remembers the largest force that it was given.
+class ClampedOmni final : public Device {
+public:
+    explicit ClampedOmni(const EmulatedOmniSettings& settings) : omni_(settings) {}
+
+    const DeviceSpec& spec() const noexcept override { return omni_.spec(); }
+    DeviceReading read() noexcept override { return omni_.read(); }
+    void show(const ContactModel& contact) noexcept override { omni_.show(contact); }
+    void write(const Vec3& force_newton) noexcept override {
+        const double force = force_newton.norm();
+        if (!std::isfinite(force)) is_finite_ = false;
+        if (force > largest_) largest_ = force;
+        omni_.write(force_newton);
+    }
+
+    double largest() const noexcept { return largest_; }
+    bool is_finite() const noexcept { return is_finite_; }
+
+private:
+    EmulatedOmni omni_;
+    std::atomic<double> largest_{0};
+    std::atomic<bool> is_finite_{true};
+};
+
+class RandomPerson {
+public:
+    explicit RandomPerson(unsigned seed) : draw_(seed) {}
+
+    // One event: the mouse, a key of the list, a handle pulled somewhere, or an edit.
+    void act(Overlay& overlay, LiveSession& session, std::vector<Command>& commands) {
+        ImGuiIO& io = ImGui::GetIO();
+        switch (below(5)) {
+            case 0:
+                io.MousePos = {static_cast<float>(below(1280)), static_cast<float>(below(800))};
+                io.MouseDown[0] = below(2) == 0;
+                break;
+            case 1:
+                io.MouseDown[0] = below(2) == 0;
+                io.MouseWheel = static_cast<float>(below(3)) - 1;
+                break;
+            case 2: {
+                const std::span<const Shortcut> keys = shortcuts();
+                (void)overlay.perform(keys[below(keys.size())].action, commands);
+                break;
+            }
+            case 3:
+                session.move_hand({0.2 * (unit() - 0.5), 0.2 * (unit() - 0.5), 0});
+                break;
+            default:
+                session.send(edit_now(choose_edit()));
+        }
+    }
+
+private:
+    EditAction choose_edit() {
+        const std::string name = below(2) == 0 ? "fixed" : "moved";
+        switch (below(7)) {
+            case 0:
+                return TakeEdit{name};
+            case 1:
+                return TakeEdit{name + ":1 OH2"};
+            case 2:
+                return LetGoEdit{};
+            case 3:
+                return RemoveEdit{name};
+            case 4:
+                return UndoEdit{};
+            case 5:
+                return RedoEdit{};
+            default: {
+                AddEdit add;
+                add.residue = below(4) == 0 ? "NONE" : "TIP3";
+                add.name = "w" + std::to_string(below(3));
+                add.at_angstrom = {10 * unit() - 5, 10 * unit() - 5, 10 * unit() - 5};
+                return add;
+            }
+        }
+    }
+
+    std::size_t below(std::size_t count) {
+        return std::uniform_int_distribution<std::size_t>(0, count - 1)(draw_);
+    }
+    double unit() { return std::uniform_real_distribution<double>(0, 1)(draw_); }
+
+    std::mt19937 draw_;
+};
+
+}  // namespace
+
+TEST_CASE("a thousand random events of a person give the device no more than its clamp",
+          "[app][random]") {
+    const unsigned seed = GENERATE(1U, 2U);
+    INFO("seed " << seed);
+    constexpr int events = 500;  // of each seed
+    HandOrders orders;
+    EmulatedOmniSettings settings;
+    settings.hand = hand_model(HandGrip::Medium);
+    settings.orders = &orders;
+    settings.driver = HandDriver::Mouse;
+    settings.half_workspace_m = Vec3::Constant(0.5);
+    ClampedOmni device(settings);
+    const SceneDescription scene = test::water_scene();
+    ImGui::CreateContext();
+    ImGui::GetIO().IniFilename = nullptr;
+    ImGui::GetIO().DisplaySize = {1280, 800};
+    ImGui::GetIO().DeltaTime = 1 / 60.0F;
+    set_ui_style(1);
+    unsigned char* pixels = nullptr;
+    int width = 0, height = 0;
+    ImGui::GetIO().Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
+    {
+        Overlay overlay(scene);
+        LiveSession session(scene, {}, device, &orders);
+        RandomPerson person(seed);
+        LiveFrame frame;
+        std::uint64_t frames = 0;
+        for (int i = 0; i < events; ++i) {
+            std::vector<Command> commands;
+            std::vector<Action> actions;
+            person.act(overlay, session, commands);
+            for (ServoTick tick; session.pop_tick(tick);) overlay.add_tick(tick);
+            frames += session.read_frame(frame) ? 1 : 0;
+            ImGui::NewFrame();
+            if (frames > 0) overlay.draw(frame.readout, {}, commands, actions);
+            ImGui::Render();
+            for (const Action action : actions) (void)overlay.perform(action, commands);
+            for (const Command& command : commands) session.send(command);
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        }
+        CHECK(frames > 0);
+    }
+    ImGui::DestroyContext();
+    CHECK(device.is_finite());
+    CHECK(device.largest() > 0);
+    CHECK(device.largest() <= scene.coupling.clamp_N + 1e-9);
+}
