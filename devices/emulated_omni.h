@@ -12,6 +12,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 namespace palpa {
 
@@ -46,6 +47,9 @@ public:
     DeviceReading read() noexcept override;
     void write(const Vec3& force_newton) noexcept override;
     void show(const ContactModel& contact) noexcept override;
+
+    // The script goes on like this (scripted_hand.h); not while a servo runs beside.
+    void go_on(const std::vector<HandWaypoint>& path, bool takes_anew = false);
 
     // What no device knows: where the handle is between two encoder steps.
     Vec3 true_position_m() const noexcept;
