@@ -25,11 +25,11 @@
 namespace palpa {
 namespace {
 
-constexpr double seconds_for_a_step = 5, seconds_between_places = 1.5;
+constexpr double seconds_for_a_step = 4, seconds_between_places = 2.5;
 
-// mm; all of the workspace but its edge.
+// mm; the middle of the workspace.
 std::vector<PathPoint> draw_wander(double seconds, std::uint64_t seed) {
-    const std::array<double, 3> reach{70, 50, 28};
+    const std::array<double, 3> reach{40, 30, 20};
     Draws draws(seed, 0);
     std::vector<PathPoint> path{{0.01, {}, {}}};
     for (double time = seconds_between_places; time < seconds; time += seconds_between_places) {
@@ -166,7 +166,7 @@ double lesson_seconds(const SceneDescription& scene) noexcept {
     double seconds = 0;
     for (const LessonStepDescription& step : scene.lesson) {
         const double path_s = step.operator_path.empty() ? 0 : step.operator_path.back().time_s;
-        seconds += 2 * path_s + step.for_s + seconds_for_a_step;
+        seconds += 1.25 * path_s + step.for_s + seconds_for_a_step;
     }
     return seconds;
 }
