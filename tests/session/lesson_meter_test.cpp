@@ -70,7 +70,7 @@ TEST_CASE("a lesson measures distances between selections, and bonds from one to
 TEST_CASE("the hand's work is what the energy has risen by, and its way how far it went",
           "[session][lesson]") {
     SceneDescription scene =
-        test::water_scene({"stroke=path", "seconds=6", "path=[[0.2, 77.5], [4, 0], [5.5, -35]]"});
+        test::water_scene({"stroke=path", "seconds=6", "path=[[0.2, 77.5], [4, 0], [5.5, -28.3]]"});
     scene.lesson = {asking(LessonQuantity::Work), asking(LessonQuantity::Way)};
     World world = load_world(scene);
     const double start = grabbed_distance(world);

@@ -155,9 +155,9 @@ TEST_CASE("a ripple is of the last two seconds of the force on the hand", "[sess
             lesson.update(reading, mode_2);
         }
     };
-    shake(0.5, 1900);
+    shake(0.1, 1900);
     CHECK_FALSE(lesson.value());
-    shake(0.1, 2100);  // of a sine the rms is the amplitude over the root of 2
+    shake(0.1, 350);  // of a sine the rms is the amplitude over the root of 2
     CHECK(*lesson.value() == Approx(0.1 / std::sqrt(2)).epsilon(0.02));
     CHECK_FALSE(lesson.is_step_done());
     shake(0.5, 2250);

@@ -74,7 +74,7 @@ class Lessons(unittest.TestCase):
     def test_the_same_command_gives_the_same_lines(self):
         first = palpa("lessons", "play", "water", "--headless")
         self.assertEqual(first.stdout, palpa("lessons", "play", "water", "--headless").stdout)
-        self.assertRegex(first.stdout, r"approach +done +\d+\.\d\d s +\d\.\d+; wanted: "
+        self.assertRegex(first.stdout, r"approach +done +\d+\.\d\d s +[\d.]+; wanted: "
                                        r"distance_angstrom at most 4\n")
         self.assertIn("6 of 6 steps done in", first.stdout)
 
