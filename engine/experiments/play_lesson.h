@@ -27,8 +27,8 @@ struct LessonResult {
     bool is_done() const noexcept;
 };
 
-// Simulated seconds that any of them has: the operator's paths and a quarter more, the times that steps
-// ask for, and 4 s for each step.
+// Simulated seconds that any of them has: the operator's paths and a quarter more, the times that
+// steps ask for, and 4 s for each step.
 double lesson_seconds(const SceneDescription& scene) noexcept;
 
 // In lockstep, so the same call gives the same result. Throws LoadError.
