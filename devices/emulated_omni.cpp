@@ -68,6 +68,10 @@ Vec3 EmulatedOmni::true_position_m() const noexcept {
     return {state_[0](0), state_[1](0), state_[2](0)};
 }
 
+void EmulatedOmni::go_on(const std::vector<HandWaypoint>& path, bool takes_anew) {
+    operator_.go_on(path, takes_anew);
+}
+
 DeviceReading EmulatedOmni::read() noexcept {
     Vec3 position = true_position_m();
     if (const double step = settings_.encoder_step_m; step > 0) {
@@ -121,7 +125,7 @@ void EmulatedOmni::write(const Vec3& force_newton) noexcept {
 
 void EmulatedOmni::show(const ContactModel& contact) noexcept {
     operator_.see({units::metre_per_angstrom * contact.molecule.place_angstrom,
-                   contact.displacement_gain, true_position_m()});
+                   contact.displacement_gain, true_position_m(), contact.start});
 }
 
 bool EmulatedOmni::take_orders() noexcept {

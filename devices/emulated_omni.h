@@ -12,6 +12,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 namespace palpa {
 
@@ -51,6 +52,8 @@ public:
     // whatever its script says. Without a hand nothing happens. By the thread that writes.
     void lead_to(const Vec3& target_m) noexcept;
     bool has_hand() const noexcept { return settings_.hand.has_value(); }
+    // The script goes on like this (scripted_hand.h); not while a servo runs beside.
+    void go_on(const std::vector<HandWaypoint>& path, bool takes_anew = false);
 
     // What no device knows: where the handle is between two encoder steps.
     Vec3 true_position_m() const noexcept;

@@ -91,8 +91,22 @@ ScriptedHand::Wish ScriptedHand::step(double tick_s) noexcept {
 }
 
 void ScriptedHand::see(const Sight& sight) noexcept {
+    const bool holds_other = takes_anew_ && sight_ && sight_->start != sight.start;
+    if (!first_sight_ || holds_other) {
+        first_sight_ = sight;
+        takes_anew_ = false;
+    }
     sight_ = sight;
-    if (!first_sight_) first_sight_ = sight;
+}
+
+void ScriptedHand::go_on(const std::vector<HandWaypoint>& path, bool takes_anew) {
+    const Vec3 now = takes_anew ? Vec3::Zero() : find_target(script_.path, script_time_s_).place_m;
+    takes_anew_ = takes_anew;
+    script_.path = {{script_time_s_, now.x(), now.y(), now.z()}};
+    for (HandWaypoint point : path) {
+        point.time_s += script_time_s_;
+        if (point.time_s > script_.path.back().time_s) script_.path.push_back(point);
+    }
 }
 
 Vec3 ScriptedHand::follow_script(double tick_s) noexcept {

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 namespace palpa {
 
@@ -37,8 +38,14 @@ public:
         Vec3 molecule_m = Vec3::Zero();  // where it is, on any origin
         double displacement_gain = 0;    // handle metres per molecule metre
         Vec3 handle_m = Vec3::Zero();
+        std::uint32_t start = 0;  // of the contact model by which it was taken
     };
     void see(const Sight& sight) noexcept;
+
+    // From now on it follows this path, whose times count from now, in place of what is left of its
+    // own. One that leads goes there from where its path had the molecule; `takes_anew`: it is
+    // about to hold something else, and places are counted from where that is.
+    void go_on(const std::vector<HandWaypoint>& path, bool takes_anew = false);
 
     // Moves on by one tick.
     Wish step(double tick_s) noexcept;
@@ -64,6 +71,7 @@ private:
     Vec3 reach_m_;  // where it clutches, by axis
     double most_ahead_m_;
     std::optional<Sight> first_sight_, sight_;
+    bool takes_anew_ = false;           // what it will hold begins a sight of its own
     double script_time_s_ = 0;          // stands still while clutching, or waiting for the molecule
     Vec3 shift_m_ = Vec3::Zero();       // handle place minus script place, from earlier clutching
     double clutch_time_s_ = -1;         // since the button went down; negative: not clutching

@@ -27,6 +27,7 @@ constexpr int bad_input = 2, own_fault = 3;
 // In the order of the help.
 void add_commands(CLI::App& program, palpa::ProgramCommand& chosen) {
     palpa::add_run(program, chosen);
+    palpa::add_lessons(program, chosen);
     palpa::add_connect(program, chosen);
     palpa::add_devices(program, chosen);
     palpa::add_prepare(program, chosen);

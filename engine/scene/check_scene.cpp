@@ -303,6 +303,56 @@ void check_hand(const HandTables& by, bool is_remote, Problems& problems) {
     }
 }
 
+// How many selections the quantity is of, at least and at most.
+std::array<std::size_t, 2> count_selections(LessonQuantity quantity) {
+    switch (quantity) {
+        case LessonQuantity::Between:
+        case LessonQuantity::HydrogenBonds:
+            return {2, 2};
+        case LessonQuantity::Dihedral:
+            return {4, 4};
+        case LessonQuantity::MapCells:
+            return {5, 5};
+        case LessonQuantity::Way:
+            return {0, 1};
+        default:
+            return {0, 0};
+    }
+}
+
+// `check(right, key, what)` adds a problem where that is not right.
+template <class Check>
+void check_lesson_step(const LessonStepDescription& step, const std::string& key,
+                       const Check& check) {
+    const bool has_bounds = step.at_least || step.at_most;
+    if (const auto& question = step.question) {
+        check(!has_bounds, key,
+              fmt::format("'{}' has a question and a quantity with bounds; expected one of them",
+                          key));
+        check(question->right <= static_cast<std::int64_t>(question->answers.size()),
+              key + ".question.right",
+              fmt::format("'{}.question.right' is {}, of {} answers", key, question->right,
+                          question->answers.size()));
+        check(question->why.size() == question->answers.size(), key + ".question.why",
+              fmt::format("'{}.question.why' explains {} of {} answers; expected one of each", key,
+                          question->why.size(), question->answers.size()));
+        return;
+    }
+    check(has_bounds, key,
+          fmt::format("'{}' has neither at_least nor at_most; expected one or both, or a question",
+                      key));
+    const auto [fewest, most] = count_selections(step.quantity);
+    check(step.of.size() >= fewest && step.of.size() <= most, key + ".of",
+          fmt::format("'{}.of' has {} selections, and {} is of {}", key, step.of.size(),
+                      lesson_quantity_names[static_cast<std::size_t>(step.quantity)], most));
+    for (std::size_t i = 1; i < step.operator_path.size(); ++i) {
+        check(step.operator_path[i].time_s > step.operator_path[i - 1].time_s,
+              key + ".operator_path",
+              fmt::format("'{}.operator_path' has the time {} after {}; expected ascending times",
+                          key, step.operator_path[i].time_s, step.operator_path[i - 1].time_s));
+    }
+}
+
 void check_ranges(const SceneDescription& scene, Problems& problems) {
     const auto check = [&](bool right, const std::string& key, const std::string& what) {
         if (!right) problems.add(problems.place_of(key), what);
@@ -346,8 +396,7 @@ void check_ranges(const SceneDescription& scene, Problems& problems) {
                       scene.period_ms));
     for (const LessonStepDescription& step : scene.lesson) {
         const std::string key = "lesson." + step.name;
-        check(step.at_least || step.at_most, key,
-              fmt::format("'{}' has neither at_least nor at_most; expected one or both", key));
+        check_lesson_step(step, key, check);
         check(!(step.at_least && step.at_most) || *step.at_least <= *step.at_most, key + ".at_most",
               fmt::format("'{}.at_most' is below at_least; no value would do", key));
     }

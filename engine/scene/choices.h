@@ -82,9 +82,29 @@ inline constexpr std::array<std::string_view, 4> scene_level_names{"unstated", "
                                                                    "student", "researcher"};
 
 // What a step of a lesson looks at.
-enum class LessonQuantity { Distance, Force, FeltForce, Mode };
-inline constexpr std::array<std::string_view, 4> lesson_quantity_names{
-    "distance_angstrom", "force_nN", "felt_N", "mode"};
+enum class LessonQuantity {
+    Distance,
+    Force,
+    FeltForce,
+    Mode,
+    Ripple,
+    Between,
+    Dihedral,
+    HydrogenBonds,
+    MapCells,
+    Way,
+    Work,
+    Energy
+};
+inline constexpr std::array<std::string_view, 12> lesson_quantity_names{
+    "distance_angstrom", "force_nN",           "felt_N",         "mode",      "ripple_N",
+    "between_angstrom",  "dihedral_deg",       "hydrogen_bonds", "map_cells", "way_angstrom",
+    "work_kcal_per_mol", "energy_kcal_per_mol"};
+
+// What is drawn below a step of a lesson. Map: the cells of two dihedrals that were visited. Force:
+// that on the molecule, over the distance.
+enum class LessonPlot { None, Map, Force };
+inline constexpr std::array<std::string_view, 3> lesson_plot_names{"none", "map", "force"};
 
 // In hand: the grabbed molecule as balls and sticks, all others as thin sticks without hydrogens.
 // Pocket: of the others a cartoon, and thin sticks of those residues that are near to it. Cartoon:

@@ -167,13 +167,31 @@ struct CouplingDescription {
     friend bool operator==(const CouplingDescription&, const CouplingDescription&) = default;
 };
 
+// A question with one right answer; each answer is explained once it was chosen.
+struct LessonQuestion {
+    std::string text;
+    std::vector<std::string> answers;
+    std::int64_t right = 1;  // counted from 1
+    std::vector<std::string> why;
+
+    friend bool operator==(const LessonQuestion&, const LessonQuestion&) = default;
+};
+
 // One step of a lesson: what there is to know, what to do, and how to tell that it was done.
 struct LessonStepDescription {
     std::string name, text, task;
     LessonQuantity quantity = LessonQuantity::Distance;
     std::optional<double> at_least, at_most;
-    double for_s = 0;    // without a break
-    std::string view{};  // a saved view that is shown as the step begins; empty: none
+    double for_s = 0;               // without a break
+    std::string view{};             // a saved view that is shown as the step begins; empty: none
+    std::vector<std::string> of{};  // selections that the quantity is of
+    LessonPlot plot = LessonPlot::None;
+    std::optional<LessonQuestion> question{};  // in place of a quantity
+    // What an operator of `palpa lessons play` does: takes something in hand, changes the coupling,
+    // then leads what it holds, Å from where the scene began, by seconds since the step began.
+    std::string operator_take{};
+    std::vector<std::string> operator_coupling{};
+    std::vector<PathPoint> operator_path{};
 };
 
 // How the scene is seen at first, in a window and by `palpa render`.
@@ -242,6 +260,8 @@ struct SceneDescription {
     SceneLevel level = SceneLevel::Unstated;
     double minutes = 0;   // that a person spends with it; 0: not stated
     std::string made_by;  // the command that makes the files it names; empty: they are there
+    std::string lesson_goal;
+    std::optional<double> lesson_minutes;  // of a person
     ForceFieldDescription force_field;
     std::vector<MoleculeDescription> molecules;  // in the order of the file
     JointsDescription joints;

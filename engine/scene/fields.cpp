@@ -303,6 +303,30 @@ void visit_coupling(FieldVisitor& v, CouplingDescription& c) {
     v.leave_table();
 }
 
+void visit_question(FieldVisitor& v, std::optional<LessonQuestion>& question) {
+    const Field table{.key = "question",
+                      .meaning = "whose right answer does the step, in place of a quantity"};
+    if (!v.is_there(table, question.has_value())) return;
+    if (!question) question.emplace();
+    v.enter_table(table);
+    v.text({.key = "text", .meaning = "what is asked", .required = true}, question->text);
+    v.texts({.key = "answers",
+             .meaning = "to choose from",
+             .lowest = 2,
+             .highest = 6,
+             .required = true},
+            question->answers);
+    v.integer({.key = "right", .meaning = "the number of the right one", .lowest = 1, .highest = 6},
+              question->right);
+    v.texts({.key = "why",
+             .meaning = "of each answer, why it is right or wrong",
+             .lowest = 2,
+             .highest = 6,
+             .required = true},
+            question->why);
+    v.leave_table();
+}
+
 void visit_lesson_step(FieldVisitor& v, LessonStepDescription& s) {
     v.enter_table({.key = s.name, .meaning = "one step of the lesson"});
     v.text({.key = "text", .meaning = "what there is to know", .required = true}, s.text);
@@ -311,8 +335,18 @@ void visit_lesson_step(FieldVisitor& v, LessonStepDescription& s) {
            {.key = "quantity",
             .meaning = "the quantity that decides whether the step is done: the distance of the "
                        "reference atoms, the "
-                       "force on the molecule or on the hand (+ repels), the coupling's mode"},
+                       "force on the molecule or on the hand (+ repels), the coupling's mode, the "
+                       "ripple of the force on the hand in the last 2 s; of what `of` selects: the "
+                       "distance of two centres, the dihedral of four atoms, the number of "
+                       "hydrogen bonds between two, cells of 20° by 20° that two dihedrals have "
+                       "visited so far, how far a centre is from where it began; the work that "
+                       "the hand has done, the potential energy"},
            lesson_quantity_names, s.quantity);
+    v.texts({.key = "of",
+             .meaning = "selections (tools/selections.md): two for between_angstrom and "
+                        "hydrogen_bonds, four atoms for dihedral_deg, five in a row for map_cells "
+                        "(C, N, CA, C, N: φ and ψ), one for way_angstrom; unset: what is in hand"},
+            s.of);
     v.optional_real({.key = "at_least",
                      .meaning = "smallest value that will do",
                      .lowest = -1e6,
@@ -329,6 +363,26 @@ void visit_lesson_step(FieldVisitor& v, LessonStepDescription& s) {
     v.text({.key = "view",
             .meaning = "name of a saved view that is shown as the step begins; unset: none"},
            s.view);
+    choose(v,
+           {.key = "plot",
+            .meaning = "drawn below the task: the map that map_cells counts on, or the force on "
+                       "the molecule over the distance"},
+           lesson_plot_names, s.plot);
+    v.text({.key = "operator_take",
+            .meaning = "what the operator of `palpa lessons play` takes in hand as the step "
+                       "begins, as `edits.take`; unset: what it has"},
+           s.operator_take);
+    const Field coupling{.key = "operator_coupling",
+                         .meaning = "what it changes of the coupling then, as `edits.coupling`"};
+    if (v.is_there(coupling, !s.operator_coupling.empty()))
+        v.coupling_settings(coupling, s.operator_coupling);
+    v.path({.key = "operator_path",
+            .meaning = "where it leads what it holds after that, as `hand.path` of \"lead\": "
+                       "seconds since the step began, Å from where the scene began",
+            .lowest = -1e5,
+            .highest = 1e5},
+           s.operator_path);
+    visit_question(v, s.question);  // last, as a table of its own
     v.leave_table();
 }
 
@@ -477,6 +531,13 @@ void visit_scene(FieldVisitor& v, SceneDescription& scene) {
          .meaning = "how the files that the scene names are made, for who reads it; nothing runs "
                     "it"},
         scene.made_by);
+    v.text({.key = "lesson_goal", .meaning = "what one can do after its lesson"},
+           scene.lesson_goal);
+    v.optional_real({.key = "lesson_minutes",
+                     .meaning = "that a person needs for it",
+                     .lowest = 1,
+                     .highest = 1e3},
+                    scene.lesson_minutes);
     visit_engine(v, scene.engine);
     const bool is_remote = scene.engine && !v.is_listing();
     visit_force_field(v, scene.force_field, !is_remote);

@@ -3,6 +3,7 @@
 #include "haptics/exchange.h"
 #include "scene/description.h"
 #include "scene/edits.h"
+#include "session/lesson_meter.h"
 #include "simulation/accuracy_controller.h"
 #include "simulation/client_pull.h"
 #include "simulation/playback.h"
@@ -58,6 +59,7 @@ struct Readout {
     std::string engine;               // how a remote engine fares, a sentence; empty: there is none
     std::string edit_under_way;       // its key in a scene file; empty: none
     std::optional<PlaybackState> playback;  // where a trajectory is played
+    LessonMeasures lesson;                  // where the scene has one
 };
 
 // How the servo fares.

@@ -1,37 +1,71 @@
 #include "session/lesson.h"
 
+#include "session/ripple.h"
+
 #include <algorithm>
+#include <cmath>
 
 namespace palpa {
 namespace {
 
-double value_of(LessonQuantity quantity, const Reading& reading, CouplingMode mode) noexcept {
-    switch (quantity) {
-        case LessonQuantity::Distance:
-            return reading.distance_angstrom;
-        case LessonQuantity::Force:
-            return reading.molecular_nN;
-        case LessonQuantity::FeltForce:
-            return reading.hand_N;
-        case LessonQuantity::Mode:
-            break;
-    }
-    return static_cast<double>(mode) + 1;  // modes are counted from 1
-}
+constexpr auto ripple_ticks = static_cast<std::size_t>(Lesson::ripple_s * servo_rate_hz);
+constexpr std::size_t ticks_between_ripples = 250;
 
 }  // namespace
 
-void Lesson::update(const Reading& reading, CouplingMode mode) noexcept {
+void Lesson::note_ripple(double hand_N) noexcept {
+    if (felt_N_.size() >= 2 * ripple_ticks)
+        felt_N_.erase(felt_N_.begin(), felt_N_.end() - static_cast<std::ptrdiff_t>(ripple_ticks));
+    felt_N_.push_back(hand_N);
+    if (felt_N_.size() < ripple_ticks || felt_N_.size() % ticks_between_ripples != 0) return;
+    const auto ripple =
+        measure_ripple(std::span<const double>(felt_N_).last(ripple_ticks), servo_tick_s);
+    if (ripple) ripple_N_ = ripple->rms;
+}
+
+void Lesson::update(const Reading& reading, CouplingMode mode,
+                    std::span<const double> measured) noexcept {
     if (is_done()) return;
     shown_s_ += servo_tick_s;
-    if (step_done_) return;
     const LessonStepDescription& step = steps_[current_];
-    const double value = value_of(step.quantity, reading, mode);
-    const bool holds =
-        (!step.at_least || value >= *step.at_least) && (!step.at_most || value <= *step.at_most);
+    if (step.question) return;
+    switch (step.quantity) {
+        case LessonQuantity::Distance:
+            value_ = reading.distance_angstrom;
+            break;
+        case LessonQuantity::Force:
+            value_ = reading.molecular_nN;
+            break;
+        case LessonQuantity::FeltForce:
+            value_ = reading.hand_N;
+            break;
+        case LessonQuantity::Mode:
+            value_ = static_cast<double>(mode) + 1;  // modes are counted from 1
+            break;
+        case LessonQuantity::Energy:
+            value_ = reading.potential_kcal_per_mol;
+            break;
+        case LessonQuantity::Ripple:
+            note_ripple(reading.hand_N);
+            value_ = ripple_N_;
+            break;
+        default:
+            value_.reset();
+            if (current_ < measured.size() && std::isfinite(measured[current_]))
+                value_ = measured[current_];
+    }
+    if (step_done_) return;
+    const bool holds = value_ && (!step.at_least || *value_ >= *step.at_least) &&
+                       (!step.at_most || *value_ <= *step.at_most);
     held_s_ = holds ? held_s_ + servo_tick_s : 0;
     // Half a tick keeps the count from hanging on rounding.
     step_done_ = holds && held_s_ > step.for_s - 0.5 * servo_tick_s;
+}
+
+void Lesson::answer(std::size_t choice) noexcept {
+    if (is_done() || !steps_[current_].question || step_done_) return;
+    chosen_ = choice;
+    step_done_ = choice + 1 == static_cast<std::size_t>(steps_[current_].question->right);
 }
 
 double Lesson::share() const noexcept {
@@ -47,17 +81,24 @@ bool Lesson::go_on() noexcept {
     return true;
 }
 
+void Lesson::begin_step() noexcept {
+    step_done_ = false;
+    held_s_ = shown_s_ = 0;
+    value_.reset();
+    chosen_.reset();
+    felt_N_.clear();
+    ripple_N_.reset();
+}
+
 void Lesson::skip() noexcept {
     if (is_done()) return;
     ++current_;
-    step_done_ = false;
-    held_s_ = shown_s_ = 0;
+    begin_step();
 }
 
 void Lesson::restart() noexcept {
     current_ = 0;
-    step_done_ = false;
-    held_s_ = shown_s_ = 0;
+    begin_step();
 }
 
 }  // namespace palpa

@@ -57,6 +57,7 @@ LiveSimulation::LiveSimulation(const SceneDescription& scene, std::vector<HandDe
       line_(line),
       world_(load_world(as_live(scene), on_stage)),
       edits_(scene),
+      lesson_(scene, world_),
       poses_(devices_.size()),
       felt_(devices_.size()),
       contacts_(devices_.size()),
@@ -104,6 +105,8 @@ void LiveSimulation::play(const StepEvent& event) {
     readout_.step_ms = 1e-3 * report.took_us;
     ++readout_.steps;
     readout_.engine = describe_engine(world_);
+    lesson_.measure(world_);
+    readout_.lesson = lesson_.measures();
     time_s_ += world_.resource<Clock>().period_s;
 }
 
@@ -190,6 +193,7 @@ void LiveSimulation::obey(const Reset& reset) {
     draft_.reset();
     readout_.edit_under_way.clear();
     edits_ = EditPlayer(scene_);
+    lesson_ = LessonMeter(scene_, world_);
     time_s_ = 0;
     ++edition_;
     readout_.problem.clear();

@@ -7,6 +7,7 @@
 #include "scene/description.h"
 #include "session/commands.h"
 #include "session/edit_player.h"
+#include "session/lesson_meter.h"
 #include "session/live_events.h"
 #include "simulation/client_pull.h"
 #include "simulation/edit.h"
@@ -111,6 +112,7 @@ private:
     };
     std::optional<Draft> draft_;
     EditPlayer edits_;
+    LessonMeter lesson_;
     std::optional<ClientPull> pull_;  // that acts in every step
     double time_s_ = 0;               // of the steps so far
     std::vector<HandPose> poses_;

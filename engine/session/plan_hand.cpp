@@ -103,6 +103,15 @@ void check_speed(const SceneDescription& scene, const HandTables& tables,
 
 }  // namespace
 
+std::vector<HandWaypoint> plan_lead(const std::vector<PathPoint>& path) {
+    std::vector<HandWaypoint> way;
+    for (const auto& [time_s, place, turn] : path) {
+        const Vec3 place_m = units::metre_per_angstrom * Vec3(place.data());
+        way.push_back({time_s, place_m.x(), place_m.y(), place_m.z()});
+    }
+    return way;
+}
+
 HandScript plan_hand(const SceneDescription& scene, const World& world, double half_width_m,
                      std::size_t slot) {
     const HandTables tables = list_hands(scene).at(slot);
@@ -123,10 +132,7 @@ HandScript plan_hand(const SceneDescription& scene, const World& world, double h
             break;
         case Stroke::Lead:
             script.leads = true;
-            for (const auto& [time_s, place, turn] : hand.path) {
-                const Vec3 place_m = units::metre_per_angstrom * Vec3(place.data());
-                script.path.push_back({time_s, place_m.x(), place_m.y(), place_m.z()});
-            }
+            script.path = plan_lead(hand.path);
             break;
     }
     script.kick_N_s = hand.kick_N_s;

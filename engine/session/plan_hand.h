@@ -5,6 +5,7 @@
 #include "scene/description.h"
 
 #include <cstddef>
+#include <vector>
 
 namespace palpa {
 
@@ -15,5 +16,8 @@ namespace palpa {
 // `slot`: of the hand, 0 the first.
 HandScript plan_hand(const SceneDescription& scene, const World& world, double half_width_m,
                      std::size_t slot = 0);
+
+// What a hand leads, Å, as a script has it, m.
+std::vector<HandWaypoint> plan_lead(const std::vector<PathPoint>& path);
 
 }  // namespace palpa

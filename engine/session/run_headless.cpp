@@ -511,7 +511,8 @@ std::vector<LockstepHand> build_hands(const SceneDescription& scene, const World
     return hands;
 }
 
-// What edits have made of the coupling.
+}  // namespace
+
 void renew_servos(const World& world, std::span<LockstepHand> hands) {
     const SceneDescription& scene = world.resource<SceneFile>().scene;
     for (LockstepHand& hand : hands) {
@@ -520,6 +521,8 @@ void renew_servos(const World& world, std::span<LockstepHand> hands) {
         if (hand.servo.guarded) hand.servo.guarded->revision = revision + 1;
     }
 }
+
+namespace {
 
 std::vector<LocalContactModel> list_contacts(const World& world) {
     std::vector<LocalContactModel> contacts;

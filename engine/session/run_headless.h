@@ -52,6 +52,9 @@ ServoSettings build_servo_settings(const SceneDescription& scene, const World& w
 ServoSettings build_servo_settings(const SceneDescription& scene, const World& world,
                                    const DeviceSpec& device);
 
+// Gives the hands what edits have made of the coupling; their servos glide to it.
+void renew_servos(const World& world, std::span<LockstepHand> hands);
+
 // Throws LoadError where this device must not be run with that period of the simulation: a real one
 // with motors, beyond `longest_real_period_s`.
 void check_period(const DeviceSpec& device, double period_s);

@@ -127,7 +127,9 @@ void Overlay::add_tick(const ServoTick& tick) {
     force_gain_ = tick.force_gain;
     history_.add(last_);
     // Nothing that an empty hand could do.
-    if (!tick.contact.is_still) lesson_.update(last_, settings_.coupling.mode);
+    if (tick.contact.is_still) return;
+    lesson_.update(last_, settings_.coupling.mode, measured_);
+    if (!lesson_.steps().empty()) lesson_curve_.add(last_);
 }
 
 void Overlay::change_settings(const LiveSettings& settings, std::vector<Command>& commands) {
@@ -252,6 +254,7 @@ ScreenArea Overlay::free_area(float width, float height) const {
 void Overlay::draw(const Readout& readout, const OverlayStatus& status,
                    std::vector<Command>& commands, std::vector<Action>& actions) {
     forget_refused(readout);
+    measured_ = readout.lesson.values;
     selects_ = status.selects;
     if (shows_overlays_) {
         draw_scene(readout, status, commands, actions);
@@ -264,7 +267,7 @@ void Overlay::draw(const Readout& readout, const OverlayStatus& status,
         const ImVec2 screen = ImGui::GetIO().DisplaySize;
         draw_playback_panel(*readout.playback, free_area(screen.x, screen.y), commands);
     } else if (shows_lesson_ && !lesson_.steps().empty()) {
-        draw_lesson();
+        draw_lesson(readout);
     }
     if (shows_overlays_) draw_legend_panel(status.legend, legend_area());
     draw_warnings(readout, status);
@@ -291,7 +294,7 @@ bool Overlay::close_something() {
     return std::exchange(shows_help_, false);
 }
 
-void Overlay::draw_lesson() {
+void Overlay::draw_lesson(const Readout& readout) {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     const ScreenArea area = free_area(screen.x, screen.y);
     const float width =
@@ -305,19 +308,30 @@ void Overlay::draw_lesson() {
     if (lesson_.is_done()) {
         ImGui::TextWrapped("All %d steps are done. L hides this.", static_cast<int>(count));
     } else {
-        draw_lesson_step(count);
+        draw_lesson_step(readout, count);
     }
-    if (ImGui::SmallButton("from the beginning")) lesson_.restart();
+    if (ImGui::SmallButton("from the beginning")) {
+        lesson_.restart();
+        lesson_curve_.clear();
+    }
     ImGui::End();
 }
 
-void Overlay::draw_lesson_step(std::size_t count) {
+void Overlay::draw_lesson_step(const Readout& readout, std::size_t count) {
     const LessonStepDescription& step = lesson_.steps()[lesson_.current()];
-    ImGui::TextDisabled("%s", fmt::format("step {} of {}", lesson_.current() + 1, count).c_str());
+    std::string head = fmt::format("step {} of {}", lesson_.current() + 1, count);
+    if (const auto value = lesson_.value()) head += ": " + describe_value(step, *value);
+    ImGui::TextDisabled("%s", head.c_str());
     ImGui::TextWrapped("%s", step.text.c_str());
     ImGui::PushStyleColor(ImGuiCol_Text, lesson_.is_step_done() ? done_colour : task_colour);
     ImGui::TextWrapped("%s%s", lesson_.is_step_done() ? "Done: " : "", step.task.c_str());
     ImGui::PopStyleColor();
+    if (step.question) {
+        const auto pressed = draw_lesson_question(*step.question, lesson_.chosen());
+        if (pressed) lesson_.answer(*pressed);
+    }
+    if (step.plot == LessonPlot::Map) draw_lesson_map(readout.lesson);
+    if (step.plot == LessonPlot::Force) lesson_curve_.draw();
     if (step.for_s > 0) {
         ImGui::ProgressBar(static_cast<float>(lesson_.share()), {-1, scaled(6)}, "");
     }

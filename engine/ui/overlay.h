@@ -5,6 +5,7 @@
 #include "session/lesson.h"
 #include "ui/history.h"
 #include "ui/layout.h"
+#include "ui/lesson_panel.h"
 #include "ui/plot.h"
 #include "ui/shortcuts.h"
 #include "ui/view_additions.h"
@@ -105,8 +106,8 @@ private:
     void draw_over_separation();
     void draw_traces(std::string_view x_label, PlotRange across);
     void fill_from_history(std::vector<double>& values, double (*value)(const Reading&));
-    void draw_lesson();
-    void draw_lesson_step(std::size_t count);
+    void draw_lesson(const Readout& readout);
+    void draw_lesson_step(const Readout& readout, std::size_t count);
     void draw_warnings(const Readout& readout, const OverlayStatus& status);
     ScreenArea legend_area() const;
     void draw_recording(double seconds) const;
@@ -139,6 +140,8 @@ private:
     double shaking_for_s_ = 0, clamped_for_s_ = 0, late_for_s_ = 0, at_wall_for_s_ = 0;
 
     Lesson lesson_;
+    std::vector<double> measured_;  // of its steps, as the last readout has it
+    LessonCurve lesson_curve_;
     History history_;
     Reading last_;
     bool has_tick_ = false, clamped_ = false, stopped_ = false;

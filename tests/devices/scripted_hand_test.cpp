@@ -53,6 +53,46 @@ TEST_CASE("a path longer than the workspace is walked in pieces, clutching betwe
     CHECK(clutched_ticks > 0);
 }
 
+TEST_CASE("a hand that is told to go on goes there from where it is", "[devices][hand]") {
+    ScriptedHand hand({.path = {{0, 0}, {1, 0.02}, {5, 0.04}}}, omni_half_workspace_m);
+    for (int i = 0; i < 1000; ++i) (void)hand.step(tick);
+    CHECK(hand.step(tick).place_m.x() == Approx(0.02).margin(1e-6));
+
+    hand.go_on({{1, -0.03}});
+    double largest_step = 0, before = 0.02;
+    ScriptedHand::Wish wish;
+    for (int i = 0; i < 1100; ++i) {
+        wish = hand.step(tick);
+        largest_step = std::max(largest_step, std::abs(wish.place_m.x() - before));
+        before = wish.place_m.x();
+    }
+    CHECK(wish.place_m.x() == -0.03);
+    CHECK(largest_step < 0.05 * 15 / 8 * tick * 1.01);
+}
+
+TEST_CASE("a hand that takes something else leads that from where it was taken",
+          "[devices][hand]") {
+    ScriptedHand hand({.path = {{0, 0}}, .leads = true}, omni_half_workspace_m);
+    Vec3 molecule_m(5e-10, 0, 0);
+    std::uint32_t start = 1;
+    const auto go = [&](int ticks) {
+        for (int i = 0; i < ticks; ++i) {
+            hand.see({molecule_m, 1e8, Vec3(hand.start_m()), start});
+            const double before = hand.start_m().x();
+            molecule_m.x() += (hand.step(tick).place_m.x() - before) / 1e8;
+        }
+    };
+    go(100);
+    CHECK(molecule_m.x() == Approx(5e-10).margin(1e-14));
+
+    hand.go_on({{1, 2e-10}}, true);
+    go(5);
+    molecule_m = Vec3(-3e-10, 0, 0);
+    start = 2;
+    go(4000);
+    CHECK(molecule_m.x() == Approx(-1e-10).margin(2e-12));
+}
+
 TEST_CASE("a kick gives its impulse within ten milliseconds after one second", "[devices][hand]") {
     HandScript script;
     script.kick_N_s = 0.005;

@@ -792,6 +792,29 @@ TEST_CASE("what saved views cannot mean is refused where it stands", "[scene][er
           "near");
 }
 
+TEST_CASE("what a step of a lesson cannot ask is refused where it stands", "[scene][errors]") {
+    const std::string step = "[lesson.one]\ntext = \"t\"\ntask = \"t\"\n";
+    const std::string question = "[lesson.one.question]\ntext = \"?\"\nanswers = [\"a\", \"b\"]\n";
+    struct Row {
+        std::string lines, what;
+    };
+    const Row row = GENERATE_COPY(values<Row>(
+        {{step, "expected one or both, or a question"},
+         {step + "at_most = 1.0\n" + question + "why = [\"x\", \"y\"]\n",
+          "has a question and a quantity with bounds"},
+         {step + question + "why = [\"x\", \"y\"]\nright = 3\n", "is 3, of 2 answers"},
+         {step + question + "why = [\"x\", \"y\", \"z\"]\n", "explains 3 of 2 answers"},
+         {step + question, "no key 'lesson.one.question.why'"},
+         {step + "at_most = 1.0\nof = [\"all\"]\n",
+          "has 1 selections, and distance_angstrom is of 0"},
+         {step + "at_most = 1.0\nquantity = \"dihedral_deg\"\nof = [\"all\"]\n",
+          "has 1 selections, and dihedral_deg is of 4"},
+         {step + "at_most = 1.0\noperator_path = [[2, 1], [1, 2]]\n", "has the time 1 after 2"}}));
+    INFO(row.lines);
+
+    CHECK_THAT(error_of(base + row.lines), Contains(row.what));
+}
+
 TEST_CASE("a flag and a list can be set over a scene", "[scene][settings]") {
     CHECK(with({"joints.methyl=true"}).joints.methyl);
     CHECK(with({"joints.rigid=[\"A 1 C N\"]"}).joints.rigid == std::vector<std::string>{"A 1 C N"});

@@ -160,6 +160,36 @@ TEST_CASE("odd values survive being written and read, to the last bit", "[scene]
     CHECK(back.lesson[1].for_s == 0.5);
 }
 
+TEST_CASE("what a step of a lesson asks, shows and does is written and read again",
+          "[scene][write]") {
+    SceneDescription scene = water();
+    scene.lesson_goal = "know";
+    scene.lesson_minutes = 1.0 / 3 + 1;
+    scene.lesson = {{"one", "text", "task", LessonQuantity::HydrogenBonds, 1.0, {}, 0},
+                    {"two", "text", "task", LessonQuantity::Distance, {}, {}, 0}};
+    scene.lesson[0].of = {"name \"OH2\"", "molecule moved"};
+    scene.lesson[0].plot = LessonPlot::Force;
+    scene.lesson[0].operator_take = "moved:1";
+    scene.lesson[0].operator_coupling = {"mode=4", "A_f=1000000000"};
+    scene.lesson[0].operator_path = {{1, {0.1 + 0.2, 0, 0}, {}}, {2, {0, -3, 1}, {}}};
+    scene.lesson[1].question = LessonQuestion{"why?", {"so", "thus"}, 2, {"no", "yes"}};
+
+    const SceneDescription back = parsed(formatted(scene));
+
+    CHECK(formatted(back) == formatted(scene));
+    CHECK(back.lesson_goal == "know");
+    CHECK(back.lesson_minutes == scene.lesson_minutes);
+    REQUIRE(back.lesson.size() == 2);
+    CHECK(back.lesson[0].quantity == LessonQuantity::HydrogenBonds);
+    CHECK(back.lesson[0].of == scene.lesson[0].of);
+    CHECK(back.lesson[0].plot == LessonPlot::Force);
+    CHECK(back.lesson[0].operator_take == "moved:1");
+    CHECK(back.lesson[0].operator_coupling.size() == 2);
+    CHECK(back.lesson[0].operator_path == scene.lesson[0].operator_path);
+    CHECK_FALSE(back.lesson[0].question);
+    CHECK(back.lesson[1].question == scene.lesson[1].question);
+}
+
 TEST_CASE("a remote engine is written and read again, without a force field", "[scene][write]") {
     SceneDescription scene = water();
     scene.force_field.files.clear();
@@ -184,6 +214,9 @@ TEST_CASE("every field is written, under its full key", "[scene][write]") {
     SceneDescription scene = water();
     scene.hand.start_angstrom = 3;
     scene.lesson = {{"STEP", "text", "task", LessonQuantity::Force, 1.0, 2.0, 0.5}};
+    scene.lesson[0].operator_coupling = {"mode=4"};
+    scene.lesson[0].question = LessonQuestion{"why?", {"a", "b"}, 2, {"no", "yes"}};
+    scene.lesson_minutes = 7;
     scene.hand.release_s = 4;
     scene.joints.within_angstrom = 8;
     scene.joints.region_angstrom = 30;

@@ -10,6 +10,7 @@
 #include "tests/support/water_run.h"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -114,6 +115,55 @@ TEST_CASE("a step can ask for what the hand feels, and for a mode as the keys co
     CHECK(mode.is_step_done());
 }
 
+TEST_CASE("a question is done by its right answer alone", "[session][lesson]") {
+    LessonStepDescription asked{"ask", "text", "task", LessonQuantity::Distance, {}, {}, 0};
+    asked.question = LessonQuestion{"why?", {"so", "thus"}, 2, {"no", "yes"}};
+    Lesson lesson({asked, step_of(LessonQuantity::Force, {}, -0.3)});
+    for (int tick = 0; tick < 4000; ++tick) lesson.update({.molecular_nN = -1}, mode_2);
+    CHECK_FALSE(lesson.is_step_done());
+    lesson.answer(0);
+    CHECK(lesson.chosen() == 0U);
+    CHECK_FALSE(lesson.is_step_done());
+    lesson.answer(1);
+    CHECK(lesson.is_step_done());
+    CHECK(lesson.go_on());
+    CHECK_FALSE(lesson.chosen());
+    lesson.answer(1);  // to no question
+    CHECK_FALSE(lesson.is_step_done());
+}
+
+TEST_CASE("what the world says counts, as soon as it is known", "[session][lesson]") {
+    Lesson lesson({step_of(LessonQuantity::Way, 2.0, {}), step_of(LessonQuantity::Work, 2.0, {})});
+    const std::vector<double> nothing{std::nan(""), 5}, done{2.5, 1};
+    lesson.update({}, mode_2, nothing);
+    CHECK_FALSE(lesson.value());
+    CHECK_FALSE(lesson.is_step_done());
+    lesson.update({}, mode_2, done);
+    CHECK(lesson.value() == 2.5);
+    CHECK(lesson.is_step_done());
+    lesson.skip();
+    lesson.update({}, mode_2, done);  // of its own step
+    CHECK_FALSE(lesson.is_step_done());
+}
+
+TEST_CASE("a ripple is of the last two seconds of the force on the hand", "[session][lesson]") {
+    Lesson lesson({step_of(LessonQuantity::Ripple, 0.3, {})});
+    Reading reading;
+    const auto shake = [&](double amplitude, int ticks) {
+        for (int tick = 0; tick < ticks; ++tick) {
+            reading.hand_N = amplitude * std::sin(2 * 3.14159265 * 20 * tick * 1e-3);
+            lesson.update(reading, mode_2);
+        }
+    };
+    shake(0.1, 1900);
+    CHECK_FALSE(lesson.value());
+    shake(0.1, 350);  // of a sine the rms is the amplitude over the root of 2
+    CHECK(*lesson.value() == Approx(0.1 / std::sqrt(2)).epsilon(0.02));
+    CHECK_FALSE(lesson.is_step_done());
+    shake(0.5, 2250);
+    CHECK(lesson.is_step_done());
+}
+
 TEST_CASE("on one axis what drives apart is positive, in three dimensions a force is a norm",
           "[session][lesson]") {
     ServoTick tick;
@@ -135,7 +185,7 @@ TEST_CASE("the emulated operator does the water scene's first lesson",
                                         "path=[[0.2, 77.5], [4, 0], [8, -20.0], [9, -20.0], [11, "
                                         "-28.3], [14, -28.3], [16, -42.0]]"};
     const Lesson lesson(test::water_scene().lesson);
-    REQUIRE(lesson.steps().size() == 5);
+    REQUIRE(lesson.steps().size() == 6);
 
     const Lesson first = play_water(path, lesson);
     INFO("stopped at " << (first.is_done() ? "the end" : first.steps()[first.current()].name));

@@ -19,6 +19,7 @@ using ProgramCommand = std::function<int()>;
 // Each adds a command to the program. Where the command line asks for it, `chosen` is what does it;
 // it must live as long as the program.
 void add_run(CLI::App& program, ProgramCommand& chosen);
+void add_lessons(CLI::App& program, ProgramCommand& chosen);
 void add_connect(CLI::App& program, ProgramCommand& chosen);
 void add_devices(CLI::App& program, ProgramCommand& chosen);
 void add_prepare(CLI::App& program, ProgramCommand& chosen);

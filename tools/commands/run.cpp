@@ -8,6 +8,7 @@
 #include "experiments/emulated_hand.h"
 #include "scene/fields.h"
 #include "scene/read_scene.h"
+#include "session/lesson_meter.h"
 #include "session/recording.h"
 #include "session/run_headless.h"
 #include "session/trajectory_recorder.h"
@@ -290,7 +291,10 @@ int run_scene(const SceneDescription& read, const RunOptions& options) {
     }
     for (std::string& note : list_playback_notes(world)) warnings.push_back(std::move(note));
     progress.wipe();
-    if (options.check_only) return print_check(scene, world, warnings, progress);
+    if (options.check_only) {
+        (void)LessonMeter(scene, world);  // throws for selections of a lesson that are none
+        return print_check(scene, world, warnings, progress);
+    }
     if (!options.headless) {
         print_warnings(list_playback_notes(world));
         return exit_code_after(open_window(scene, world, settings, options));

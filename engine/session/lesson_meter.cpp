@@ -1,0 +1,173 @@
+#include "session/lesson_meter.h"
+
+#include "core/load_error.h"
+#include "core/units.h"
+#include "molecule/measure.h"
+#include "molecule/select.h"
+#include "simulation/held.h"
+#include "simulation/select_in_world.h"
+#include "view/hydrogen_bonds.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace palpa {
+namespace {
+
+constexpr double degrees_per_radian = 180 / std::numbers::pi;
+constexpr double not_of_world = std::numeric_limits<double>::quiet_NaN();
+
+bool needs_single_atoms(LessonQuantity quantity) {
+    return quantity == LessonQuantity::Dihedral || quantity == LessonQuantity::MapCells;
+}
+
+Vec3 centre_of(const World& world, const std::vector<std::uint32_t>& atoms) {
+    Vec3 sum = Vec3::Zero();
+    for (const std::uint32_t atom : atoms) sum += world.resource<AtomTable>().positions[atom];
+    return sum / static_cast<double>(atoms.size());
+}
+
+double dihedral_deg(const World& world, const std::vector<std::vector<std::uint32_t>>& atoms,
+                    std::size_t first) {
+    const std::vector<Vec3>& places = world.resource<AtomTable>().positions;
+    const auto place = [&](std::size_t i) { return places[atoms[first + i].front()]; };
+    return degrees_per_radian * find_dihedral(place(0), place(1), place(2), place(3));
+}
+
+std::vector<std::uint32_t> list_selected(const std::vector<bool>& chosen) {
+    std::vector<std::uint32_t> atoms;
+    for (std::size_t i = 0; i < chosen.size(); ++i)
+        if (chosen[i]) atoms.push_back(static_cast<std::uint32_t>(i));
+    return atoms;
+}
+
+bool has_atom(const std::vector<std::uint32_t>& rising, std::uint32_t atom) {
+    return std::ranges::binary_search(rising, atom);
+}
+
+}  // namespace
+
+std::size_t map_cell(double phi_deg, double psi_deg) noexcept {
+    constexpr auto side = static_cast<double>(lesson_map_side);
+    const auto along = [](double angle_deg) {
+        const double cell = std::floor((angle_deg + 180) / 360 * side);
+        return static_cast<std::size_t>(std::clamp(cell, 0.0, side - 1));
+    };
+    return along(psi_deg) * lesson_map_side + along(phi_deg);
+}
+
+LessonMeter::LessonMeter(const SceneDescription& scene, const World& world)
+    : scene_(scene), starts_(scene.lesson.size()) {
+    measures_.values.assign(scene.lesson.size(), not_of_world);
+    find_atoms(world);
+    for (std::size_t i = 0; i < scene.lesson.size(); ++i) {
+        const LessonQuantity quantity = scene.lesson[i].quantity;
+        if (quantity == LessonQuantity::Way) starts_[i] = centre_of(world, atoms_[i].front());
+        if (quantity != LessonQuantity::MapCells || map_step_) continue;
+        map_step_ = i;
+        measures_.map.assign(lesson_map_side * lesson_map_side, 0);
+    }
+    if (!scene.lesson.empty()) measure(world);
+}
+
+void LessonMeter::find_atoms(const World& world) {
+    edition_ = world.resource<AtomEdition>();
+    atoms_.assign(scene_.lesson.size(), {});
+    for (std::size_t i = 0; i < scene_.lesson.size(); ++i) {
+        const LessonStepDescription& step = scene_.lesson[i];
+        const std::string key = fmt::format("lesson.{}.of", step.name);
+        for (const std::string& text : step.of) {
+            const Atoms atoms = list_selected(select_in_world(world, parse_selection(text, key)));
+            const bool is_right =
+                needs_single_atoms(step.quantity) ? atoms.size() == 1 : !atoms.empty();
+            if (!is_right) {
+                throw LoadError(
+                    scene_.place_of(key),
+                    fmt::format("'{}' selects {} atoms by \"{}\"; expected {}", key, atoms.size(),
+                                text, needs_single_atoms(step.quantity) ? "one" : "some"));
+            }
+            atoms_[i].push_back(atoms);
+        }
+        if (step.quantity == LessonQuantity::Way && step.of.empty())
+            atoms_[i].push_back(held_atoms(world, first_hand(world)));
+        if (step.quantity == LessonQuantity::Way && atoms_[i].front().empty()) {
+            throw LoadError(scene_.place_of(key),
+                            fmt::format("'{}' is not there, and the hand holds nothing; expected a "
+                                        "selection",
+                                        key));
+        }
+    }
+}
+
+void LessonMeter::measure(const World& world) {
+    if (scene_.lesson.empty()) return;
+    if (!(edition_ == world.resource<AtomEdition>())) {
+        try {
+            find_atoms(world);
+        } catch (const LoadError&) {  // what a step is of was removed: it cannot be done
+            atoms_.assign(scene_.lesson.size(), {});
+            edition_ = world.resource<AtomEdition>();
+        }
+    }
+    add_work(world);
+    if (map_step_ && !atoms_[*map_step_].empty()) visit_map(world, atoms_[*map_step_]);
+    for (std::size_t i = 0; i < scene_.lesson.size(); ++i) measures_.values[i] = value_of(world, i);
+}
+
+void LessonMeter::add_work(const World& world) {
+    const Entity hand = first_hand(world);
+    if (!world.find<Contact>(hand)) {
+        last_.reset();
+        return;
+    }
+    const ContactModel& contact = contact_of(world, hand).answer.model;
+    const Pull now{contact.molecule.place_angstrom,
+                   contact.force_newton / units::newton_per_kcal_per_mol_angstrom, contact.start};
+    if (last_ && last_->start == now.start)
+        work_ -= 0.5 * (last_->force + now.force).dot(now.place - last_->place);
+    last_ = now;
+}
+
+void LessonMeter::visit_map(const World& world, const std::vector<Atoms>& atoms) {
+    measures_.phi_deg = dihedral_deg(world, atoms, 0);
+    measures_.psi_deg = dihedral_deg(world, atoms, 1);
+    measures_.map[map_cell(measures_.phi_deg, measures_.psi_deg)] = 1;
+}
+
+double LessonMeter::count_bonds(const World& world, const std::vector<Atoms>& sides) const {
+    const auto ties = [&](const HydrogenBond& bond) {
+        return (has_atom(sides[0], bond.donor) && has_atom(sides[1], bond.acceptor)) ||
+               (has_atom(sides[1], bond.donor) && has_atom(sides[0], bond.acceptor));
+    };
+    return static_cast<double>(
+        std::ranges::count_if(find_hydrogen_bonds(world, ShownBonds::All), ties));
+}
+
+double LessonMeter::value_of(const World& world, std::size_t step) {
+    const std::vector<Atoms>& atoms = atoms_[step];
+    const LessonStepDescription& asked = scene_.lesson[step];
+    switch (asked.quantity) {
+        case LessonQuantity::Work:
+            return work_;
+        case LessonQuantity::MapCells:
+            return static_cast<double>(std::ranges::count(measures_.map, 1));
+        case LessonQuantity::Between:
+        case LessonQuantity::Dihedral:
+        case LessonQuantity::HydrogenBonds:
+        case LessonQuantity::Way:
+            break;
+        default:
+            return not_of_world;
+    }
+    if (atoms.empty()) return not_of_world;
+    if (asked.quantity == LessonQuantity::Between)
+        return (centre_of(world, atoms[1]) - centre_of(world, atoms[0])).norm();
+    if (asked.quantity == LessonQuantity::Dihedral) return dihedral_deg(world, atoms, 0);
+    if (asked.quantity == LessonQuantity::HydrogenBonds) return count_bonds(world, atoms);
+    return (centre_of(world, atoms[0]) - *starts_[step]).norm();
+}
+
+}  // namespace palpa

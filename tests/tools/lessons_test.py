@@ -1,0 +1,93 @@
+"""Every lesson: the emulated operator does it, a hand that holds still or wanders does not."""
+import json
+import os
+import pathlib
+import re
+import subprocess
+import unittest
+
+ROOT = pathlib.Path(os.environ["PALPA_ROOT"])
+PROGRAM = os.environ["PALPA_PROGRAM"]
+
+
+def palpa(*arguments):
+    return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, check=False,
+                          timeout=280)
+
+
+def lessons():
+    return json.loads(palpa("lessons", "--json").stdout)
+
+
+def play(name, *options):
+    result = palpa("lessons", "play", name, "--headless", "--json", *options)
+    return result.returncode, json.loads(result.stdout)
+
+
+class Lessons(unittest.TestCase):
+    def test_the_list_says_what_each_is_for(self):
+        listed = lessons()
+        self.assertGreaterEqual(len(listed), 6)
+        text = palpa("lessons").stdout
+        for lesson in listed:
+            with self.subTest(lesson=lesson["name"]):
+                self.assertIn(lesson["title"], text)
+                self.assertTrue(5 <= lesson["minutes"] <= 10, lesson)
+                self.assertTrue(4 <= lesson["steps"] <= 7, lesson)
+                self.assertGreater(len(lesson["goal"]), 30)
+        names = [lesson["name"] for lesson in listed]
+        page = (ROOT / "scenes/lessons.md").read_text()
+        for name in names:
+            self.assertIn(f"| {name} |", page)
+
+    def test_each_has_one_question_that_explains_every_answer(self):
+        for lesson in lessons():
+            name = lesson["name"]
+            folder, _, file = name.partition("/")
+            scene = (ROOT / "scenes" / folder / f"{file or 'scene'}.toml").read_text()
+            with self.subTest(lesson=name):
+                self.assertEqual(len(re.findall(r"^\[lesson\.\w+\.question\]$", scene, re.M)), 1)
+
+    def test_the_operator_does_every_step(self):
+        for lesson in lessons():
+            with self.subTest(lesson=lesson["name"]):
+                code, report = play(lesson["name"])
+                self.assertEqual(code, 0, report)
+                self.assertTrue(report["done"])
+                self.assertEqual(len(report["steps"]), lesson["steps"])
+                times = [step["at_s"] for step in report["steps"]]
+                self.assertEqual(times, sorted(times))
+                self.assertTrue(all(step["done"] for step in report["steps"]))
+
+    def test_a_hand_that_knows_nothing_does_none(self):
+        for lesson in lessons():
+            for options in (["--idle"], ["--random", "--seed", "7"]):
+                with self.subTest(lesson=lesson["name"], options=options):
+                    code, report = play(lesson["name"], *options)
+                    self.assertEqual(code, 1)
+                    self.assertFalse(report["done"])
+                    done = [step["done"] for step in report["steps"]]
+                    self.assertFalse(done[-1])
+                    if options == ["--idle"]:
+                        self.assertFalse(any(done), report)
+
+    def test_the_same_command_gives_the_same_lines(self):
+        first = palpa("lessons", "play", "water", "--headless")
+        self.assertEqual(first.stdout, palpa("lessons", "play", "water", "--headless").stdout)
+        self.assertRegex(first.stdout, r"approach +done +\d+\.\d\d s +[\d.]+; wanted: "
+                                       r"distance_angstrom at most 4\n")
+        self.assertIn("6 of 6 steps done in", first.stdout)
+
+    def test_what_is_wrong_is_said(self):
+        for arguments, message in ((["play", "watr"], "no lesson 'watr'; expected one of"),
+                                   (["play"], "says not which one"),
+                                   (["play", "water", "--idle"], "--headless"),
+                                   (["ply", "water"], "play")):
+            with self.subTest(arguments=arguments):
+                result = palpa("lessons", *arguments)
+                self.assertEqual(result.returncode, 2)
+                self.assertIn(message, result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
