@@ -63,6 +63,20 @@ class UpdateResults(unittest.TestCase):
                 self.assertEqual("page.md:3: cat table.txt" in result.stdout, code == 1)
                 self.assertEqual(self.page.read_text(), before)
 
+    def test_what_follows_a_table_is_no_row_of_it(self):
+        (self.root / "table.txt").write_text(TABLE + "All right.\n")
+        self.write("cat table.txt")
+        self.assertEqual(update(self.root).returncode, 0)
+        self.assertIn("| 0.9 |\n\nAll right.\n<!-- end -->", self.page.read_text())
+
+    def test_larger_inputs_may_be_missing(self):
+        self.write("cat $PALPA_DATA/table.txt")
+        for folder, lines in (("", 2), (str(self.root), 6)):
+            result = subprocess.run([SCRIPTS / "update_results"], check=False, capture_output=True,
+                                    env={**os.environ, "PALPA_ROOT": str(self.root), "PALPA_DATA": folder})
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertEqual(self.page.read_text().partition("An energy")[0].count("\n") - 3, lines)
+
     def test_words_and_rows_count(self):
         for body in (TABLE.replace("mode", "law"), TABLE + "| 7 | 1 | 1 |\n", TABLE.replace("| 6", "| guarded")):
             self.write("cat table.txt", body)
