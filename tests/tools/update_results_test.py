@@ -101,7 +101,7 @@ class UpdateResults(unittest.TestCase):
 
     def test_every_results_page_has_marked_results(self):
         for name in ("water/results.md", "hairpin/results.md", "peptide/results.md", "hiv/results.md",
-                     "hiv/unbinding.md", "hiv/few-joints.md"):
+                     "hiv/unbinding.md", "hiv/few-joints.md", "salt-bridge/results.md"):
             self.assertIn("<!-- results:", (ROOT / "scenes" / name).read_text(), name)
 
 
