@@ -77,6 +77,12 @@ class UpdateResults(unittest.TestCase):
             self.assertEqual(result.returncode, 0, result.stderr)
             self.assertEqual(self.page.read_text().partition("An energy")[0].count("\n") - 3, lines)
 
+    def test_what_is_rounded_off_is_zero(self):
+        (self.root / "table.txt").write_text("rest 3.1e-15 N\n")
+        for number, code in (("2e-16", 0), ("-3.44e-15", 0), ("3.1e-11", 1)):
+            self.write("cat table.txt", f"```\nrest {number} N\n```\n")
+            self.assertEqual(update(self.root, "--check").returncode, code)
+
     def test_words_and_rows_count(self):
         for body in (TABLE.replace("mode", "law"), TABLE + "| 7 | 1 | 1 |\n", TABLE.replace("| 6", "| guarded")):
             self.write("cat table.txt", body)
