@@ -36,6 +36,15 @@ class DocsStats(unittest.TestCase):
             self.assertEqual(result.returncode, 1)
             self.assertEqual(result.stderr, "scenes/water/README.md: 901 words, at most 900 are allowed\n")
 
+    def test_many_explained_words_are_found(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            table = "# A\n\n## Words\n\n| word | meaning |\n| --- | --- |\n" + "| a | b |\n" * 25
+            (root / "README.md").write_text(table + "\n## Limits\n\n| a | b |\n")
+            self.assertEqual(count(root).returncode, 0)
+            (root / "README.md").write_text(table + "| a | b |\n")
+            self.assertIn("explains 26 words", count(root).stderr)
+
     def test_many_readmes_are_found_and_other_pages_are_free(self):
         with tempfile.TemporaryDirectory() as folder:
             root = pathlib.Path(folder)
@@ -43,6 +52,7 @@ class DocsStats(unittest.TestCase):
                 (root / "scenes" / str(number)).mkdir(parents=True)
                 (root / "scenes" / str(number) / "README.md").write_text(words(900))
                 (root / "scenes" / str(number) / "results.md").write_text(words(2000))
+            (root / "README.md").write_text("")
             self.assertEqual(count(root).returncode, 0)
             (root / "README.md").write_text("one")
             result = count(root)
