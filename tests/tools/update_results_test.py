@@ -1,6 +1,9 @@
 """update_results: tables in pages are what their commands print, and a difference is found."""
+import importlib.machinery
+import importlib.util
 import os
 import pathlib
+import struct
 import subprocess
 import tempfile
 import unittest
@@ -109,6 +112,35 @@ class UpdateResults(unittest.TestCase):
         for name in ("water/results.md", "hairpin/results.md", "peptide/results.md", "hiv/results.md",
                      "hiv/unbinding.md", "hiv/few-joints.md", "salt-bridge/results.md"):
             self.assertIn("<!-- results:", (ROOT / "scenes" / name).read_text(), name)
+
+
+def load(name):
+    """A script as a module."""
+    loader = importlib.machinery.SourceFileLoader(name, str(SCRIPTS / name))
+    module = importlib.util.module_from_spec(importlib.util.spec_from_loader(name, loader))
+    loader.exec_module(module)
+    return module
+
+
+class Strokes(unittest.TestCase):
+    def test_hydrogen_bonds_are_near_and_straight(self):
+        is_bond = load("stroke_table").is_bond
+        donor, hydrogen = (-1.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+        for acceptor, expected in (((2.0, 0.0, 0.0), True), ((2.49, 0.0, 0.0), True), ((2.51, 0.0, 0.0), False),
+                                   ((1.1, 1.8, 0.0), True), ((0.9, 1.8, 0.0), False), ((0.0, 2.0, 0.0), False)):
+            self.assertEqual(is_bond([donor, hydrogen, acceptor], 0, 1, 2), expected, acceptor)
+
+    def test_frames_of_a_dcd_file_are_found_by_number(self):
+        def record(body):
+            return struct.pack("<i", len(body)) + body + struct.pack("<i", len(body))
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "a.dcd"
+            frames = [[(f + 0.0, f + 0.1), (f + 1.0, f + 1.1), (f + 2.0, f + 2.1)] for f in (0, 10, 20)]
+            file.write_bytes(record(b"CORD" + bytes(80)) + record(bytes(84)) + record(struct.pack("<i", 2)) +
+                             b"".join(record(struct.pack("<2f", *axis)) for frame in frames for axis in frame))
+            found = load("stroke_table").read_dcd(file, {2})
+        self.assertEqual(list(found), [2])
+        self.assertEqual([round(x, 3) for x in found[2][1]], [20.1, 21.1, 22.1])
 
 
 class Tables(unittest.TestCase):
