@@ -261,7 +261,6 @@ struct SceneDescription {
     double minutes = 0;   // that a person spends with it; 0: not stated
     std::string made_by;  // the command that makes the files it names; empty: they are there
     std::string lesson_goal;
-    std::optional<double> lesson_minutes;  // of a person
     ForceFieldDescription force_field;
     std::vector<MoleculeDescription> molecules;  // in the order of the file
     JointsDescription joints;

@@ -533,11 +533,6 @@ void visit_scene(FieldVisitor& v, SceneDescription& scene) {
         scene.made_by);
     v.text({.key = "lesson_goal", .meaning = "what one can do after its lesson"},
            scene.lesson_goal);
-    v.optional_real({.key = "lesson_minutes",
-                     .meaning = "that a person needs for it",
-                     .lowest = 1,
-                     .highest = 1e3},
-                    scene.lesson_minutes);
     visit_engine(v, scene.engine);
     const bool is_remote = scene.engine && !v.is_listing();
     visit_force_field(v, scene.force_field, !is_remote);

@@ -30,7 +30,7 @@ AccuracyController::AccuracyController(double tolerance_pN, const WorkBudget& sc
       work_budget_{std::min(scene.active, coordinates), scene.steps} {}
 
 void AccuracyController::add_step(const WorkBudget& used) noexcept {
-    // Passes and what the hand moves are there without any joint (scenes/hiv/results.md).
+    // Passes and what the hand moves are there without any joint (scenes/hiv/few-joints.md).
     constexpr double least = 0.07;
     const double share = static_cast<double>(used.active) / static_cast<double>(coordinates_);
     const double work =

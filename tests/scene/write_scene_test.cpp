@@ -164,7 +164,8 @@ TEST_CASE("what a step of a lesson asks, shows and does is written and read agai
           "[scene][write]") {
     SceneDescription scene = water();
     scene.lesson_goal = "know";
-    scene.lesson_minutes = 1.0 / 3 + 1;
+    scene.minutes = 1.0 / 3 + 1;
+    scene.level = SceneLevel::Student;
     scene.lesson = {{"one", "text", "task", LessonQuantity::HydrogenBonds, 1.0, {}, 0},
                     {"two", "text", "task", LessonQuantity::Distance, {}, {}, 0}};
     scene.lesson[0].of = {"name \"OH2\"", "molecule moved"};
@@ -178,7 +179,8 @@ TEST_CASE("what a step of a lesson asks, shows and does is written and read agai
 
     CHECK(formatted(back) == formatted(scene));
     CHECK(back.lesson_goal == "know");
-    CHECK(back.lesson_minutes == scene.lesson_minutes);
+    CHECK(back.minutes == scene.minutes);
+    CHECK(back.level == scene.level);
     REQUIRE(back.lesson.size() == 2);
     CHECK(back.lesson[0].quantity == LessonQuantity::HydrogenBonds);
     CHECK(back.lesson[0].of == scene.lesson[0].of);
@@ -216,7 +218,7 @@ TEST_CASE("every field is written, under its full key", "[scene][write]") {
     scene.lesson = {{"STEP", "text", "task", LessonQuantity::Force, 1.0, 2.0, 0.5}};
     scene.lesson[0].operator_coupling = {"mode=4"};
     scene.lesson[0].question = LessonQuestion{"why?", {"a", "b"}, 2, {"no", "yes"}};
-    scene.lesson_minutes = 7;
+    scene.minutes = 7;
     scene.hand.release_s = 4;
     scene.joints.within_angstrom = 8;
     scene.joints.region_angstrom = 30;

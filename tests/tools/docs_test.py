@@ -1,5 +1,6 @@
 """The pages' commands are commands of the program: their options and scenes exist, and those of
-READMEs that take a few seconds and need neither a window nor a device are run as they stand."""
+READMEs that take a few seconds and need neither a window nor a device are run as they stand. Links
+into pages find their heading."""
 import functools
 import os
 import pathlib
@@ -68,7 +69,28 @@ def is_runnable(line, arguments):
     return arguments[:1] == ["render"] or "--headless" in arguments or "--check" in arguments
 
 
+def anchors(text):
+    """Of a page's headings, as GitHub makes them."""
+    found = set()
+    for heading in re.findall(r"^#+ (.*)$", re.sub(r"^```.*?^```", "", text, flags=re.M | re.S), re.M):
+        words = re.sub(r"[^\w\- ]", "", re.sub(r"\]\([^)]*\)|[`\[\]]", "", heading.lower()))
+        found.add(words.replace(" ", "-"))
+    return found
+
+
 class Pages(unittest.TestCase):
+    def test_links_into_pages_find_their_heading(self):
+        seen = 0
+        for page in PAGES:
+            for target, anchor in re.findall(r"\]\(([^)#\s]*)#([^)\s]+)\)", page.read_text()):
+                if target.startswith("http"):
+                    continue
+                seen += 1
+                with self.subTest(page=str(page.relative_to(ROOT)), link=f"{target}#{anchor}"):
+                    other = page.parent / target if target else page
+                    self.assertIn(anchor, anchors(other.read_text()))
+        self.assertGreater(seen, 10)
+
     def each_command(self):
         for page in PAGES:
             text = page.read_text()

@@ -29,7 +29,7 @@ struct LessonsCommand {
 };
 
 std::string minutes_of(const SceneDescription& scene) {
-    return scene.lesson_minutes ? fmt::format("{:g} min", *scene.lesson_minutes) : "";
+    return scene.minutes > 0 ? fmt::format("{:g} min", scene.minutes) : "";
 }
 
 int print_lessons(bool json) {
@@ -38,7 +38,7 @@ int print_lessons(bool json) {
         nlohmann::ordered_json list = nlohmann::ordered_json::array();
         for (const auto& [name, scene] : lessons) {
             nlohmann::ordered_json entry{{"name", name}, {"title", scene.title}};
-            if (scene.lesson_minutes) entry["minutes"] = *scene.lesson_minutes;
+            if (scene.minutes > 0) entry["minutes"] = scene.minutes;
             entry["steps"] = scene.lesson.size();
             entry["goal"] = scene.lesson_goal;
             list.push_back(entry);
