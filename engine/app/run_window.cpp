@@ -175,6 +175,7 @@ void Sandbox::take_ticks() {
             each.felt_newton = tick.sent_newton.norm();
             if (!frame_.readout.paused) each.statistics.add(tick);
         }
+        if (options_.is_over && options_.is_over(ticks.front())) quitting_ = true;
         if (frame_.readout.paused) continue;
         overlay_.add_tick(ticks[led_]);
         if (options_.study) options_.study->add(ticks.front());

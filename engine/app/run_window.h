@@ -4,6 +4,7 @@
 #include "experiments/study_course.h"
 #include "haptics/device.h"
 #include "haptics/hand.h"
+#include "haptics/servo.h"
 #include "scene/description.h"
 #include "session/commands.h"
 #include "session/statistics.h"
@@ -87,6 +88,8 @@ struct WindowOptions {
     std::uint64_t lose_device_at = 0;  // frame at which the graphics device is given up, for tests
     StudyCourse* study = nullptr;      // the window is for this alone: no overlays, one key
     std::function<void()> on_trial{};  // after each
+    // Of each tick of the first hand: the window ends where it says so; empty: it never does.
+    std::function<bool(const ServoTick&)> is_over{};
 };
 
 // What the person wants to see after a scene.

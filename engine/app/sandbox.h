@@ -124,6 +124,7 @@ private:
     void record_or_end();
     void tell_recording_notes();
     void ask_for_export();
+    void export_readings();
     void ask_what_to_export(const std::string& ending);
     void export_coordinates(const std::string& ending, const std::vector<std::string>& molecules);
     void film_or_end();

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -45,7 +46,32 @@ void Sandbox::ask_for_export() {
                   {Key::C, "mmCIF (C)", as(".cif")},
                   {Key::G, "GRO (G)", as(".gro")},
                   {Key::S, "PSF and CRD (S)", as(".psf")},
+                  {Key::V, "CSV of forces and marks (V)", [this] { export_readings(); }},
                   {Key::Escape, "Not (Esc)"}}};
+}
+
+// The last seconds of the hand, and what the picture's marks say now.
+void Sandbox::export_readings() {
+    const std::filesystem::path file = next_file(options_.screenshots, ".csv");
+    std::filesystem::path marks = file;
+    marks.replace_filename(file.stem().string() + "-marks.csv");
+    std::string text = "x_angstrom,y_angstrom,z_angstrom,label\n";
+    for (const ViewLabel& label : frame_.labels) {
+        std::string quoted;
+        for (const char letter : label.text)
+            quoted += letter == '"' ? "\"\"" : std::string(1, letter);
+        text +=
+            fmt::format("{},{},{},\"{}\"\n", label.place.x, label.place.y, label.place.z, quoted);
+    }
+    try {
+        const std::array files{TextFile{file, format_readings(overlay_.history().samples())},
+                               TextFile{marks, text}};
+        write_text_files(files);
+        notice(fmt::format("saved {} of the last {:.0f} s, and {} with the marks of this moment",
+                           file.string(), History::seconds, marks.string()));
+    } catch (const LoadError& error) {
+        notice(error.what(), first_notice_s);
+    }
 }
 
 void Sandbox::ask_what_to_export(const std::string& ending) {

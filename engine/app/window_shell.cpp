@@ -196,6 +196,8 @@ bool WindowShell::work(const std::string& title,
         }
     });
     const SteadyClock::time_point begin = SteadyClock::now();
+    SteadyClock::time_point last_picture = begin;
+    longest_pause_ms_ = 0;
     const auto is_ready = [&] {
         return work.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
     };
@@ -211,6 +213,9 @@ bool WindowShell::work(const std::string& title,
                     progress.is_cancelled = true;
                 const std::chrono::duration<double> passed = SteadyClock::now() - begin;
                 draw_panels([&] { progress.draw(title, passed.count()); });
+                const std::chrono::duration<double, std::milli> pause =
+                    SteadyClock::now() - std::exchange(last_picture, SteadyClock::now());
+                longest_pause_ms_ = std::max(longest_pause_ms_, pause.count());
                 return !is_ready();
             },
             [] {});

@@ -84,6 +84,9 @@ public:
     // Throws what the task does.
     bool work(const std::string& title, const std::function<void(const StageFunction&)>& task);
 
+    // Of the last work: the longest time from one picture to the next.
+    double longest_pause_ms() const noexcept { return longest_pause_ms_; }
+
     // Throws GpuError with the first that validation found so far.
     void check_validation();
 
@@ -97,6 +100,7 @@ private:
     std::unique_ptr<Graphics> graphics_;
     bool must_rebuild_ = false;  // the swapchain, for draw_panels()
     bool wants_shot_ = false;
+    double longest_pause_ms_ = 0;
     std::string notice_;
     std::vector<std::string> validation_messages_;
 };

@@ -2,11 +2,14 @@
 
 #include "charmm/built_in_force_field.h"
 #include "charmm/force_field.h"
+#include "charmm/penalties.h"
+#include "core/files.h"
 #include "core/load_error.h"
 #include "core/text.h"
 #include "formats/structure.h"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <cstddef>
 #include <string_view>
 #include <utility>
@@ -27,6 +30,24 @@ void report_force_field(const ForceField& force_field, Report& report) {
         report.add(heading, std::filesystem::path(files[i]).filename().string());
     }
     for (std::string& line : describe_notes(force_field.notes)) report.warn(std::move(line));
+}
+
+// What the CGenFF program says of its own parameters.
+void report_penalties(const std::vector<std::filesystem::path>& files, Report& report) {
+    for (const std::filesystem::path& file : files) {
+        for (const CgenffPenalties& one : find_penalties(read_text_file(file))) {
+            const double highest = std::max(one.parameters, one.charges);
+            std::string text = fmt::format(
+                "{} of {}: highest penalties by CGenFF: {:.1f} of a parameter, {:.1f} of a charge",
+                one.residue, file.filename().string(), one.parameters, one.charges);
+            if (highest < fair_penalty) {
+                report.add("Ligand parameters", std::move(text));
+            } else {
+                report.warn(text + (highest < poor_penalty ? "; validate them before you measure"
+                                                           : "; they are poor: optimise them"));
+            }
+        }
+    }
 }
 
 TunedScene find_scene(const SceneRequest& request, const std::string& title,
@@ -53,6 +74,7 @@ MadeScene make_scene(const SceneRequest& request, const StageFunction& on_stage)
     const Structure structure = read_structure(request.structure);
     MadeScene made{prepare_system(force_field, structure, request.settings, on_stage), {}, {}};
     report_force_field(force_field, made.system.report);
+    report_penalties(request.force_field, made.system.report);
     const std::string origin = fmt::format("Prepared from {} by palpa prepare; see report.txt.",
                                            request.structure.filename().string());
     made.title = request.title.empty() ? origin : fmt::format("{}\n{}", request.title, origin);

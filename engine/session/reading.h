@@ -3,6 +3,9 @@
 #pragma once
 #include "haptics/servo.h"
 
+#include <span>
+#include <string>
+
 namespace palpa {
 
 struct Reading {
@@ -17,5 +20,8 @@ struct Reading {
 // On one axis a force is + where it repels, drives the molecules apart, and - where it attracts; in
 // three dimensions it is a norm.
 Reading read_tick(const ServoTick& tick) noexcept;
+
+// As CSV with a header of names and units.
+std::string format_readings(std::span<const Reading> readings);
 
 }  // namespace palpa

@@ -81,6 +81,7 @@ public:
     float plot_height() const noexcept { return plot_height_; }
 
     const LiveSettings& settings() const noexcept { return settings_; }
+    const History& history() const noexcept { return history_; }
     const Lesson& lesson() const noexcept { return lesson_; }
     bool shows_lesson() const noexcept { return shows_lesson_; }
 

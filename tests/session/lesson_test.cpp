@@ -178,6 +178,14 @@ TEST_CASE("on one axis what drives apart is positive, in three dimensions a forc
     CHECK(read_tick(tick).hand_N == 0.5);
 }
 
+TEST_CASE("readings as CSV have names, units and every digit", "[session]") {
+    const std::vector<Reading> readings{{0.1, 3.25, -0.3, 1.5, 2.5e8, -6.6}, {}};
+    CHECK(format_readings(readings) ==
+          "time_s,distance_angstrom,molecular_nN,hand_N,displacement_gain,potential_kcal_per_mol\n"
+          "0.1,3.25,-0.3,1.5,250000000,-6.6\n"
+          "0,0,0,0,0,0\n");
+}
+
 TEST_CASE("the emulated operator does the water scene's first lesson",
           "[session][lesson][coupling]") {
     // mm of the handle, 25 to 1 Å: to 3.9 Å, the strongest pull, the rest, the wall.

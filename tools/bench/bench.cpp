@@ -30,6 +30,7 @@
 #include "tools/bench/servo.h"
 #include "tools/bench/statics.h"
 #include "tools/bench/tree.h"
+#include "tools/bench/window.h"
 #include "tools/commands/command.h"
 #include "tools/commands/progress.h"
 #include "tools/report/answer.h"
@@ -181,7 +182,9 @@ int bench_command(const BenchOptions& options) {
     if (options.servo) bench_made_up_servo(rows);
     if (options.engine) bench_engine(rows);
     if (options.render && options.atoms == 0) bench_meshes(rows);
+    if (options.window) bench_window(options.scenes, rows);
     for (const std::filesystem::path& path : options.scenes) {
+        if (options.window) break;
         const SceneDescription scene = read_scene(path, options.settings);
         refuse_remote_engine(scene);
         const std::filesystem::path folder = std::filesystem::absolute(scene.file).parent_path();

@@ -20,6 +20,7 @@ struct BenchOptions {
     bool kernel = false;    // the kernels of pairs alone, likewise; needs no scene
     bool tree = false;      // passes over the assembly trees, likewise
     bool statics = false;   // ways to rest of flexible scenes, likewise
+    bool window = false;    // how long until a person feels something, likewise
     bool servo = false;     // ticks of guarded coupling, likewise; needs no scene
     bool engine = false;    // frames of a remote engine, likewise; needs no scene
     bool adaptive = false;  // few active joints in flexible scenes, likewise

@@ -145,6 +145,15 @@ void add_bench(CLI::App& program, ProgramCommand& chosen) {
         ->excludes("--kernel")
         ->excludes("--tree");
     bench
+        .add_flag("--window", options.window,
+                  "time from opening a window to the first force, of scenes, and of structures, "
+                  "which are prepared there; needs a display, instead")
+        ->excludes("--render")
+        ->excludes("--kernel")
+        ->excludes("--tree")
+        ->excludes("--servo")
+        ->needs("scenes");
+    bench
         .add_flag("--engine", options.engine,
                   "time what a frame of a remote engine costs its client")
         ->excludes("scenes");
