@@ -12,6 +12,7 @@
 #include <cmath>
 #include <memory>
 #include <system_error>
+#include <tuple>
 #include <utility>
 
 namespace palpa {
@@ -81,9 +82,10 @@ StartScreen::StartScreen(WindowShell& shell, const StartOptions& options)
     std::ranges::copy_if(options.scenes, std::back_inserter(cards_), [](const SceneEntry& scene) {
         return !scene.level.empty() && !scene.is_to_be_made;
     });
-    // What a beginner opens first stands first, lessons before others.
+    // What a beginner opens first stands first, lessons before others, short ones before long ones.
     const auto rank = [](const SceneEntry& scene) {
-        return std::pair(std::ranges::find(scene_level_names, scene.level), !scene.has_lesson);
+        return std::tuple(std::ranges::find(scene_level_names, scene.level), !scene.has_lesson,
+                          scene.minutes);
     };
     std::ranges::stable_sort(cards_, {}, rank);
     for (const SceneEntry& card : cards_) {
