@@ -13,6 +13,14 @@ void tip(const char* text) {
     ImGui::EndTooltip();
 }
 
+void fold_in_small_window(bool& folds) {
+    constexpr float least_width = 860, least_height = 520;  // pixels at the usual size of text
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    const bool is_small = screen.x < scaled(least_width) || screen.y < scaled(least_height);
+    if (is_small != folds) ImGui::SetNextWindowCollapsed(is_small);
+    folds = is_small;
+}
+
 void same_line_if_it_fits(const char* text) {
     const ImGuiStyle& style = ImGui::GetStyle();
     const float width = ImGui::CalcTextSize(text).x + 2 * style.FramePadding.x;

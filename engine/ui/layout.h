@@ -28,6 +28,11 @@ inline float panel_column(float window_width) {
 inline constexpr ImGuiWindowFlags fixed_panel =
     ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoSavedSettings;
 
+// Folds the panel that begins next where the window gets so small that panels would cover half of
+// the picture, and unfolds it where it gets larger again; a person may do otherwise in between.
+// `folds`: the panel's, as of the frame before.
+void fold_in_small_window(bool& folds);
+
 // The explanation of the item before, while the mouse rests on it.
 void tip(const char* text);
 

@@ -157,6 +157,7 @@ private:
     bool selects_ = false;                        // the panel of selections is there
 
     std::optional<std::string> device_;  // just chosen
+    bool left_folds_ = false, right_folds_ = false;  // the panels, for a small window
     bool shows_overlays_ = true, shows_lesson_ = true, shows_help_ = false;
     std::vector<double> x_, y_, z_;  // of the plots, kept for their room
 };

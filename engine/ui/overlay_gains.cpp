@@ -46,6 +46,7 @@ void Overlay::draw_right_panel(std::vector<Command>& commands) {
     const float column = panel_column(screen.x), edge = panel_edge();
     ImGui::SetNextWindowPos({screen.x - column - edge, edge});
     ImGui::SetNextWindowSize({column, screen.y - 2 * edge});
+    fold_in_small_window(right_folds_);
     const bool is_open = ImGui::Begin("Coupling", nullptr, fixed_panel);
     right_covered_ = is_open ? column + edge : 0;
     if (is_open && ImGui::BeginTabBar("right")) {

@@ -117,6 +117,7 @@ void Overlay::draw_scene(const Readout& readout, const OverlayStatus& status,
     // A title that the bar would cut stands below it.
     const bool fits = ImGui::CalcTextSize(scene_.title.c_str()).x < column - scaled(45);
     const std::string title = fmt::format("{}###scene", fits ? scene_.title : "Scene");
+    fold_in_small_window(left_folds_);
     const bool is_open = ImGui::Begin(title.c_str(), nullptr, fixed_panel);
     left_covered_ = is_open ? column + edge : 0;
     if (is_open) {

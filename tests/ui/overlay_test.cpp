@@ -220,6 +220,25 @@ TEST_CASE("a dragged slider changes a gain at once, and one undo takes the whole
     CHECK(screen.overlay.settings() == before);
 }
 
+TEST_CASE("in a small window panels are folded, and the molecule is seen", "[ui][overlay]") {
+    Screen screen;
+    for (const ImVec2 size : {ImVec2(640, 480), ImVec2(800, 500)}) {
+        INFO(size.x << " x " << size.y);
+        ImGui::GetIO().DisplaySize = {1280, 720};
+        for (int i = 0; i < 3; ++i) screen.frame();
+        const ScreenArea large = screen.overlay.free_area(1280, 720);
+        CHECK(large.width() > 0.4F * 1280);
+        ImGui::GetIO().DisplaySize = size;
+        for (int i = 0; i < 3; ++i) screen.frame();
+        CHECK(screen.overlay.free_area(size.x, size.y).width() > 0.9F * size.x);
+        CHECK(ImGui::FindWindowByName("Coupling")->Collapsed);
+    }
+    // A person may look at one nevertheless.
+    ImGui::SetWindowCollapsed("Coupling", false);
+    for (int i = 0; i < 3; ++i) screen.frame();
+    CHECK_FALSE(ImGui::FindWindowByName("Coupling")->Collapsed);
+}
+
 TEST_CASE("nothing is cut off, and the picture's middle is covered by no panel", "[ui][overlay]") {
     const auto size =
         GENERATE(ImVec2(900, 600), ImVec2(1280, 720), ImVec2(1366, 768), ImVec2(1920, 1080));
