@@ -159,8 +159,10 @@ private:
     static std::string help_of_program(const CLI::App& program) {
         std::string page =
             "Palpa: feel molecules\n\n"
-            "  palpa                   opens a window with all scenes; without a display, lists them\n"
-            "  palpa FILE              opens a scene, or prepares and opens a structure (.pdb, .cif)\n"
+            "  palpa                   opens a window with all scenes; without a display, lists "
+            "them\n"
+            "  palpa FILE              opens a scene, or prepares and opens a structure (.pdb, "
+            ".cif)\n"
             "  palpa COMMAND [ARGUMENT ...]\n"
             "  palpa help COMMAND      explains one of these:\n";
         std::vector<std::string> groups;

@@ -148,9 +148,10 @@ ShellOptions shell_options(const RunOptions& options, PreferencesFile& preferenc
             .screenshots = options.screenshots};
 }
 
-std::optional<NextScreen> show_scene(WindowShell& shell, PreferencesFile& preferences,
-                                     const SceneDescription& scene, const World& world,
-                                     EmulatedOmniSettings settings, const RunOptions& options) {
+std::optional<NextScreen> show_scene(const std::function<WindowShell&()>& shell,
+                                     PreferencesFile& preferences, const SceneDescription& scene,
+                                     const World& world, EmulatedOmniSettings settings,
+                                     const RunOptions& options) {
     if (!settings.hand) settings.hand = hand_model(HandGrip::Medium);  // a window needs somebody
     if (!options.play) give_to_mouse(settings);
     WindowDevices devices(settings, preferences);
@@ -170,7 +171,7 @@ std::optional<NextScreen> show_scene(WindowShell& shell, PreferencesFile& prefer
         return describe_saved(saver.save(as_set(scene, state)));
     };
     const WindowReport report = run_window(
-        shell, scene, *first.device,
+        shell(), scene, *first.device,
         {.view = first_view,
          .screenshots = options.screenshots,
          .last_shot = options.last_shot,
@@ -203,9 +204,13 @@ std::optional<NextScreen> show_scene(WindowShell& shell, PreferencesFile& prefer
 int open_window(const SceneDescription& scene, const World& world,
                 const EmulatedOmniSettings& settings, const RunOptions& options) {
     PreferencesFile preferences(find_preferences_file());
-    WindowShell shell(shell_options(options, preferences));
-    follow_screens(shell, preferences, options,
-                   show_scene(shell, preferences, scene, world, settings, options));
+    std::optional<WindowShell> shell;
+    const auto open_shell = [&]() -> WindowShell& {
+        return shell.emplace(shell_options(options, preferences));
+    };
+    std::optional<NextScreen> next =
+        show_scene(open_shell, preferences, scene, world, settings, options);
+    if (next) follow_screens(*shell, preferences, options, std::move(next));
     return 0;
 }
 

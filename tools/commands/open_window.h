@@ -8,6 +8,7 @@
 #include "scene/description.h"
 #include "tools/commands/run.h"
 
+#include <functional>
 #include <optional>
 
 namespace palpa {
@@ -18,9 +19,11 @@ void check_window_options(const RunOptions& options);
 // Of the window that a run opens.
 ShellOptions shell_options(const RunOptions& options, PreferencesFile& preferences);
 
-// One scene in a window that is open. Prints its summary; returns what the person goes on to.
-// `world`: as loaded, to plan by; `settings`: of the emulated device. Throws LoadError, GpuError.
-std::optional<NextScreen> show_scene(WindowShell& shell, PreferencesFile& preferences,
+// One scene in a window, which `shell` gives once devices are opened. Prints its summary; returns
+// what the person goes on to. `world`: as loaded, to plan by; `settings`: of the emulated device.
+// Throws LoadError, GpuError.
+std::optional<NextScreen> show_scene(const std::function<WindowShell&()>& shell,
+                                     PreferencesFile& preferences,
                                      const SceneDescription& scene, const World& world,
                                      EmulatedOmniSettings settings, const RunOptions& options);
 

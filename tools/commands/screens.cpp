@@ -112,7 +112,8 @@ std::optional<NextScreen> show_files(WindowShell& shell, PreferencesFile& prefer
         settings = build_emulated_omni(scene, world);
     });
     if (!is_loaded) return NextScreen{};
-    return show_scene(shell, preferences, scene, world, settings, options);
+    return show_scene([&]() -> WindowShell& { return shell; }, preferences, scene, world, settings,
+                      options);
 }
 
 }  // namespace
