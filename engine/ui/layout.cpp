@@ -1,5 +1,7 @@
 #include "ui/layout.h"
 
+#include "core/translate.h"
+
 #include <imgui_internal.h>
 
 namespace palpa {
@@ -11,6 +13,10 @@ void tip(const char* text) {
     ImGui::TextUnformatted(text);
     ImGui::PopTextWrapPos();
     ImGui::EndTooltip();
+}
+
+std::string labelled(const char* english) {
+    return std::string(translated(english)) + "###" + english;
 }
 
 void same_line_if_it_fits(const char* text) {
