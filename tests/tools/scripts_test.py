@@ -24,7 +24,7 @@ class Scripts(unittest.TestCase):
                      "scripts/check_windows", "scripts/make_manual", "scripts/check_skips",
                      "scripts/compare_peers",
                      "scripts/compare_tl3", "scripts/mutate", "scripts/plot_adaptive",
-                     "scripts/plot_study"):
+                     "scripts/plot_study", "scripts/update_translations"):
             with self.subTest(tool=name):
                 result = run(ROOT / "tools" / name, "--help")
                 self.assertEqual(result.returncode, 0)

@@ -4,6 +4,8 @@
 #include "simulation/held.h"
 #include "simulation/load.h"
 #include "simulation/step.h"
+#include "tests/support/in_language.h"
+#include "tests/support/skip.h"
 #include "tests/support/water_scene.h"
 #include "ui/backend.h"
 #include "ui/question.h"
@@ -220,10 +222,10 @@ TEST_CASE("a dragged slider changes a gain at once, and one undo takes the whole
     CHECK(screen.overlay.settings() == before);
 }
 
-TEST_CASE("nothing is cut off, and the picture's middle is covered by no panel", "[ui][overlay]") {
-    const auto size =
-        GENERATE(ImVec2(900, 600), ImVec2(1280, 720), ImVec2(1366, 768), ImVec2(1920, 1080));
-    const auto action = GENERATE(Action::Guarded, Action::Mode1, Action::ToggleHelp);
+namespace {
+
+// And the picture's middle is covered by no panel.
+void check_nothing_is_cut_off(ImVec2 size, Action action) {
     INFO(size.x << " x " << size.y << ", action " << static_cast<int>(action));
     Screen screen;
     ImGui::GetIO().DisplaySize = size;
@@ -245,7 +247,7 @@ TEST_CASE("nothing is cut off, and the picture's middle is covered by no panel",
         CHECK(
             (window->ScrollbarY || window->ContentSize.y <= window->InnerRect.GetHeight() + 0.5F));
         const bool is_above =
-            action == Action::ToggleHelp && window->Name == std::string("Keys and mouse");
+            action == Action::ToggleHelp && window->ID == ImHashStr("###Keys and mouse");
         if (is_above || (window->Flags & ImGuiWindowFlags_ChildWindow) != 0) continue;
         constexpr float rounding = 1;  // places are whole pixels
         const bool covers = area.Min.x < free.right - rounding &&
@@ -263,6 +265,24 @@ TEST_CASE("nothing is cut off, and the picture's middle is covered by no panel",
     }
 }
 
+}  // namespace
+
+TEST_CASE("nothing is cut off, and the picture's middle is covered by no panel", "[ui][overlay]") {
+    const auto size =
+        GENERATE(ImVec2(900, 600), ImVec2(1280, 720), ImVec2(1366, 768), ImVec2(1920, 1080));
+    const auto action = GENERATE(Action::Guarded, Action::Mode1, Action::ToggleHelp);
+    check_nothing_is_cut_off(size, action);
+}
+
+TEST_CASE("nothing is cut off in German", "[ui][overlay][translate]") {
+    const test::InLanguage german("de");
+    if (!german.is_there()) return test::skip("no German catalogue");
+    const auto size =
+        GENERATE(ImVec2(900, 600), ImVec2(1280, 720), ImVec2(1366, 768), ImVec2(1920, 1080));
+    const auto action = GENERATE(Action::Guarded, Action::Mode1, Action::ToggleHelp);
+    check_nothing_is_cut_off(size, action);
+}
+
 TEST_CASE("the legend of colours stands above what is below the picture", "[ui][overlay]") {
     const auto size = GENERATE(ImVec2(900, 600), ImVec2(1280, 720), ImVec2(1920, 1080));
     const bool plays = GENERATE(false, true);
@@ -274,7 +294,7 @@ TEST_CASE("the legend of colours stands above what is below the picture", "[ui][
     for (int i = 0; i < 4; ++i) screen.frame();
 
     const ImGuiWindow* const legend = ImGui::FindWindowByName("##legend");
-    const ImGuiWindow* const below = ImGui::FindWindowByName(plays ? "Trajectory" : "Lesson");
+    const ImGuiWindow* const below = ImGui::FindWindowByName(plays ? "###Trajectory" : "###Lesson");
     REQUIRE(legend);
     REQUIRE(below);
     REQUIRE(below->Active);
@@ -304,7 +324,7 @@ TEST_CASE("the help breaks its lines where a screen is narrow, and keys only whe
     screen.overlay.perform(Action::ToggleHelp, screen.commands);
     for (int i = 0; i < 4; ++i) screen.frame();
 
-    ImGuiWindow& window = *ImGui::FindWindowByName("Keys and mouse");
+    ImGuiWindow& window = *ImGui::FindWindowByName("###Keys and mouse");
     CHECK(window.Rect().Min.x >= 0);
     CHECK(window.Rect().Max.x <= row.size.x);
     CHECK(window.Rect().Max.y <= row.size.y);
