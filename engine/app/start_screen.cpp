@@ -32,10 +32,12 @@ fs::path picture_of(const SceneEntry& scene) {
     return fs::path(scene.file).replace_extension(".png");
 }
 
+// What a scene's level may be.
+[[maybe_unused]] constexpr std::array levels{
+    for_translation("beginner"), for_translation("student"), for_translation("researcher")};
+
 // As describe_effort() says it.
 std::string translated_effort(const SceneEntry& scene) {
-    (void)std::array{for_translation("beginner"), for_translation("student"),
-                     for_translation("researcher")};
     std::vector<std::string> parts;
     if (scene.has_lesson) parts.emplace_back(translated("lesson"));
     if (!scene.level.empty()) parts.emplace_back(translated(scene.level.c_str()));

@@ -11,7 +11,7 @@ VARIABLES = ("LANGUAGE", "LC_ALL", "LC_MESSAGES", "LANG")
 
 def language(**variables):
     kept = {name: value for name, value in os.environ.items() if name not in VARIABLES}
-    result = subprocess.run([BIN / "ui_tests", "the environment's language, printed"],
+    result = subprocess.run([BIN / "ui_tests", "the environment chooses the language"],
                             env={**kept, **variables}, capture_output=True, text=True)
     line, = (line for line in result.stdout.splitlines() if line.startswith("in use: "))
     return line.removeprefix("in use: ")

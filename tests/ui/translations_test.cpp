@@ -84,7 +84,7 @@ TEST_CASE("the help is German, and letters of keys stay", "[ui][translate]") {
 }
 
 // Run by language_test.py, which sets the environment: what is chosen first cannot be unchosen.
-TEST_CASE("the environment's language, printed", "[.][translate]") {
+TEST_CASE("the environment chooses the language", "[.][translate]") {
     CHECK(choose_language(""));
     std::printf("in use: %s, %s\n", language_in_use().c_str(), translated("water"));
 }
