@@ -249,11 +249,13 @@ std::optional<fs::path> open_structure(WindowShell& shell, std::span<const fs::p
     const std::size_t warnings = made->system.report.warnings().size();
     std::string text = format_translated("{} atoms. Written to {}",
                                          made->system.structure.names.size(), results.string());
+    text += "\n";
     text += has_scene
-                ? format_translated("\nIn your hand: {}.", made->scene.in_hand)
-                : std::string(translated("\nNo scene could be made of it; the warnings say why."));
-    text += fmt::format(
-        fmt::runtime(translated_plural("\n{} warning.", "\n{} warnings.", warnings)), warnings);
+                ? format_translated("In your hand: {}.", made->scene.in_hand)
+                : std::string(translated("No scene could be made of it; the warnings say why."));
+    text +=
+        "\n" + fmt::format(fmt::runtime(translated_plural("{} warning.", "{} warnings.", warnings)),
+                           warnings);
     text += "\n\n" + made->system.report.to_text();
     if (!show_report(shell, text, has_scene)) return std::nullopt;
     return results / "scene.toml";

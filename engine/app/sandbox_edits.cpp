@@ -219,14 +219,15 @@ std::string Sandbox::describe_atom(std::uint32_t atom) const {
     const auto add = [&](AtomScope scope, const char* takes) {
         const std::string address = address_of(*frame_.atoms, atom, scope);
         if (address.empty()) return;
+        text += "\n";
         text += address == in_hand().held_address
-                    ? format_translated("\n{} is in hand", address)
+                    ? format_translated("{} is in hand", address)
                     : fmt::format(fmt::runtime(translated(takes)), address);
     };
-    add(AtomScope::Molecule, for_translation("\nclick takes {}"));
-    add(AtomScope::Residue, for_translation("\nShift+click takes {} by a spring"));
-    add(AtomScope::Atom, for_translation("\nCtrl+click takes {} by a spring"));
-    text += translated("\nAlt+click or right click names it");
+    add(AtomScope::Molecule, for_translation("click takes {}"));
+    add(AtomScope::Residue, for_translation("Shift+click takes {} by a spring"));
+    add(AtomScope::Atom, for_translation("Ctrl+click takes {} by a spring"));
+    text += "\n" + std::string(translated("Alt+click or right click names it"));
     return text;
 }
 
