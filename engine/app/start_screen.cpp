@@ -6,6 +6,7 @@
 #include "core/translate.h"
 #include "render/picture_sheet.h"
 #include "ui/file_browser.h"
+#include "ui/language_list.h"
 #include "ui/layout.h"
 
 #include <fmt/format.h>
@@ -14,7 +15,6 @@
 #include <array>
 #include <cmath>
 #include <memory>
-#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -72,7 +72,6 @@ private:
     void draw_recovered();
     void draw_recent();
     void draw_devices();
-    void draw_languages();
     void choose_device(const std::string& name);
     void load_pictures();
     void save_shot(const WindowShot& shot);
@@ -323,7 +322,9 @@ void StartScreen::draw_side() {
     draw_recovered();
     draw_recent();
     draw_devices();
-    draw_languages();
+    ImGui::Separator();
+    if (const std::optional<std::string> language = draw_language_list(languages_))
+        notice_ = shell_.change_language(*language);
     ImGui::Separator();
     if (ImGui::Button(labelled("Quit (Esc)").c_str())) is_over_ = true;
 }
@@ -382,26 +383,6 @@ void StartScreen::draw_devices() {
                   ? translated("No haptic device was found: choose yours above to see what is "
                                "missing. The mouse works without one; sound makes force heard.")
                   : format_translated("Found: {}.", found).c_str());
-}
-
-// Each is called as those who speak it call it.
-void StartScreen::draw_languages() {
-    if (languages_.size() < 2) return;
-    ImGui::Separator();
-    // Without the English word who chose a wrong one would not find the way back.
-    const char* const heading = translated("Language");
-    const bool is_english = std::string_view(heading) == "Language";
-    ImGui::TextUnformatted(is_english ? heading : fmt::format("{} (Language)", heading).c_str());
-    const std::string code = language_in_use();
-    const auto present = std::ranges::find(languages_, code, &Language::code);
-    ImGui::SetNextItemWidth(-1);
-    if (!ImGui::BeginCombo("##language", present == languages_.end() ? "" : present->name.c_str()))
-        return;
-    for (const Language& language : languages_) {
-        if (ImGui::Selectable(language.name.c_str(), language.code == code))
-            notice_ = shell_.change_language(language.code);
-    }
-    ImGui::EndCombo();
 }
 
 void StartScreen::choose_device(const std::string& name) {

@@ -2,15 +2,22 @@
 #include "core/translate.h"
 #include "tests/support/in_language.h"
 #include "tests/support/skip.h"
+#include "ui/backend.h"
+#include "ui/language_list.h"
 #include "ui/layout.h"
 #include "ui/shortcuts.h"
 
+#include <imgui.h>
+#include <imgui_internal.h>
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <clocale>
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 using namespace palpa;
 
@@ -81,6 +88,50 @@ TEST_CASE("the help is German, and letters of keys stay", "[ui][translate]") {
     CHECK(does("P") == "Pause, weiter");
     CHECK(does("Strg+S") == "Szene wie eingestellt in neue Datei speichern");
     CHECK(does("Strg+Umschalt+Z, Strg+Y") == "wiederholen");
+}
+
+TEST_CASE("who chooses a language from the list has its words at once", "[ui][translate]") {
+    const test::InLanguage english("en");
+    const std::vector<Language> languages{{"en", "English"}, {"de", "Deutsch"}};
+    if (list_languages().size() < 2) return test::skip(no_catalogue);
+    ImGui::CreateContext();
+    ImGuiIO& io = ImGui::GetIO();
+    io.IniFilename = nullptr;
+    io.DisplaySize = {640, 480};
+    io.DeltaTime = 1 / 60.0F;
+    set_ui_style(1);
+    unsigned char* pixels = nullptr;
+    int width = 0, height = 0;
+    io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
+    std::optional<std::string> chosen;
+    const auto frame = [&] {
+        ImGui::NewFrame();
+        ImGui::SetNextWindowPos({0, 0});
+        ImGui::SetNextWindowSize({300, 200});
+        ImGui::Begin("list");
+        if (auto code = draw_language_list(languages)) chosen = std::move(code);
+        ImGui::End();
+        ImGui::Render();
+    };
+    const auto click = [&](float y) {
+        io.MousePos = {60, y};
+        frame();
+        io.MouseDown[0] = true;
+        frame();
+        io.MouseDown[0] = false;
+        frame();
+        frame();
+    };
+    const auto& open = ImGui::GetCurrentContext()->OpenPopupStack;
+    for (float y = 20; y < 100 && open.empty(); y += 6) click(y);
+    REQUIRE(open.Size == 1);
+    REQUIRE(open.back().Window);
+    // German is the last of it.
+    click(open.back().Window->Rect().Max.y - ImGui::GetFontSize());
+    ImGui::DestroyContext();
+    REQUIRE(chosen == "de");
+    CHECK(choose_language(*chosen));
+    CHECK(translated("Language") == std::string("Sprache"));
 }
 
 // Run by language_test.py, which sets the environment: what is chosen first cannot be unchosen.
