@@ -1,6 +1,7 @@
 #include "app/film_recorder.h"
 
 #include "core/load_error.h"
+#include "core/translate.h"
 #include "platform/thread.h"
 
 #include <fmt/format.h>
@@ -88,12 +89,12 @@ void FilmRecorder::run() {
     try {
         write_pictures();
         const FilmEnd end = film_.finish();
-        said = end.is_film ? fmt::format("{}: a film of {} pictures", settings_.file.string(),
-                                         film_.frame_count())
-                           : fmt::format("{}: {} pictures; {}", end.folder.string(),
-                                         film_.frame_count(), end.why);
+        said = end.is_film ? format_translated("{}: a film of {} pictures", settings_.file.string(),
+                                               film_.frame_count())
+                           : format_translated("{}: {} pictures; {}", end.folder.string(),
+                                               film_.frame_count(), end.why);
     } catch (const LoadError& error) {
-        said = fmt::format("no film: {}", error.what());
+        said = format_translated("no film: {}", error.what());
     }
     const std::lock_guard lock(mutex_);
     outcome_ = said;

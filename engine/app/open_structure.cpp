@@ -2,6 +2,7 @@
 
 #include "core/load_error.h"
 #include "core/text.h"
+#include "core/translate.h"
 #include "experiments/make_scene.h"
 #include "scene/find_scene.h"
 #include "ui/file_browser.h"
@@ -70,6 +71,7 @@ fs::path find_free_folder(const fs::path& below, const fs::path& structure) {
     }
 }
 
+// With an English title.
 void begin_page(const char* title) {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     const float edge = panel_edge();
@@ -77,7 +79,7 @@ void begin_page(const char* title) {
                       std::min(scaled(700), screen.y - 2 * edge)};
     ImGui::SetNextWindowPos({0.5F * (screen.x - size.x), 0.5F * (screen.y - size.y)});
     ImGui::SetNextWindowSize(size);
-    ImGui::Begin(title, nullptr, fixed_panel | ImGuiWindowFlags_NoCollapse);
+    ImGui::Begin(labelled(title).c_str(), nullptr, fixed_panel | ImGuiWindowFlags_NoCollapse);
 }
 
 // Leaves room for a row of buttons below.
@@ -124,15 +126,15 @@ private:
 
     void browse() {
         std::error_code error;
-        browser_.open("Parameters of a ligand (CHARMM stream file)", {".str", ".rtf", ".prm"},
-                      fs::current_path(error));
+        browser_.open(translated("Parameters of a ligand (CHARMM stream file)"),
+                      {".str", ".rtf", ".prm"}, fs::current_path(error));
     }
 
     void draw() {
-        begin_page("Not in the force field");
+        begin_page(for_translation("Not in the force field"));
         std::string text;
         for (const UnknownResidue& one : residues_) {
-            text += fmt::format(
+            text += format_translated(
                 "{}{}: {} atoms, {} of them ({})\n  {}\n\n", one.name,
                 one.meaning.empty() ? "" : fmt::format(" ({})", one.meaning), one.atoms,
                 one.where.size(),
@@ -141,22 +143,22 @@ private:
                           ", "),
                 one.advice);
         }
-        text +=
+        text += translated(
             "Leave them out: the structure is prepared without them.\n"
             "Approximate: types, charges and parameters by likeness to known residues; good "
             "enough to feel a shape, not to measure.\n"
             "Parameter file: a CHARMM stream file (.str) with the residue, as the CGenFF server "
-            "(cgenff.com) writes it.";
+            "(cgenff.com) writes it.");
         draw_long_text(text);
-        if (ImGui::Button("Leave them out (L)")) remedy_ = Remedy::Omit;
+        if (ImGui::Button(labelled("Leave them out (L)").c_str())) remedy_ = Remedy::Omit;
         ImGui::SameLine();
         ImGui::BeginDisabled(!may_approximate_);
-        if (ImGui::Button("Approximate (A)")) remedy_ = Remedy::Approximate;
+        if (ImGui::Button(labelled("Approximate (A)").c_str())) remedy_ = Remedy::Approximate;
         ImGui::EndDisabled();
         ImGui::SameLine();
-        if (ImGui::Button("Parameter file... (P)")) browse();
+        if (ImGui::Button(labelled("Parameter file... (P)").c_str())) browse();
         ImGui::SameLine();
-        if (ImGui::Button("Cancel (Esc)")) remedy_ = Remedy::None;
+        if (ImGui::Button(labelled("Cancel (Esc)").c_str())) remedy_ = Remedy::None;
         ImGui::End();
         if (const std::optional<fs::path> file = browser_.draw()) {
             files_.push_back(*file);
@@ -176,13 +178,13 @@ private:
 bool show_report(WindowShell& shell, const std::string& text, bool has_scene) {
     std::optional<bool> goes_on;
     const auto draw = [&] {
-        begin_page("What was decided");
+        begin_page(for_translation("What was decided"));
         draw_long_text(text);
         ImGui::BeginDisabled(!has_scene);
-        if (ImGui::Button("Feel it (Enter)")) goes_on = true;
+        if (ImGui::Button(labelled("Feel it (Enter)").c_str())) goes_on = true;
         ImGui::EndDisabled();
         ImGui::SameLine();
-        if (ImGui::Button("Back (Esc)")) goes_on = false;
+        if (ImGui::Button(labelled("Back (Esc)").c_str())) goes_on = false;
         ImGui::End();
     };
     shell.run(
@@ -202,7 +204,8 @@ bool show_report(WindowShell& shell, const std::string& text, bool has_scene) {
 
 // Nothing where it was cancelled.
 std::optional<MadeScene> make_with_remedies(WindowShell& shell, SceneRequest request) {
-    const std::string title = "Preparing " + request.structure.filename().string();
+    const std::string title =
+        format_translated("Preparing {}", request.structure.filename().string());
     for (;;) {
         MadeScene made;
         std::optional<UnknownResidues> unknown;
@@ -244,12 +247,16 @@ std::optional<fs::path> open_structure(WindowShell& shell, std::span<const fs::p
     write_prepared(made->system, results, made->title, made->scene.files);
     const bool has_scene = !made->scene.files.empty();
     const std::size_t warnings = made->system.report.warnings().size();
-    std::string text = fmt::format("{} atoms. Written to {}", made->system.structure.names.size(),
-                                   results.string());
-    text += has_scene ? fmt::format("\nIn your hand: {}.", made->scene.in_hand)
-                      : std::string("\nNo scene could be made of it; the warnings say why.");
-    text += fmt::format("\n{} warning{}.\n\n{}", warnings, warnings == 1 ? "" : "s",
-                        made->system.report.to_text());
+    std::string text = format_translated("{} atoms. Written to {}",
+                                         made->system.structure.names.size(), results.string());
+    text += "\n";
+    text += has_scene
+                ? format_translated("In your hand: {}.", made->scene.in_hand)
+                : std::string(translated("No scene could be made of it; the warnings say why."));
+    text +=
+        "\n" + fmt::format(fmt::runtime(translated_plural("{} warning.", "{} warnings.", warnings)),
+                           warnings);
+    text += "\n\n" + made->system.report.to_text();
     if (!show_report(shell, text, has_scene)) return std::nullopt;
     return results / "scene.toml";
 }

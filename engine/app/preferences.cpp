@@ -57,13 +57,15 @@ bool read_recent(const toml::node& value, Preferences& preferences) {
     return true;
 }
 
-constexpr std::array<Preference, 5> known_keys{{
+constexpr std::array<Preference, 6> known_keys{{
     {"device", read_text<&Preferences::device>,
      "device is no text; expected a name as --device takes it"},
     {"sound", read_sound, "sound is no truth value; expected true or false"},
     {"scene", read_recent, "scene is no text; expected the file or folder of a scene"},
     {"recent", read_recent, "recent is no list of texts; expected files of scenes"},
     {"text_scale", read_text_scale, "text_scale is no number from 0.5 to 4"},
+    {"language", read_text<&Preferences::language>,
+     "language is no text; expected the code of one, such as \"de\" or \"en\""},
 }};
 
 TextPlace place_in(const std::string& file, const toml::source_region& source) {
@@ -113,6 +115,7 @@ std::string format_preferences(const Preferences& preferences) {
         table.insert("recent", std::move(recent));
     }
     if (preferences.text_scale) table.insert("text_scale", *preferences.text_scale);
+    if (preferences.language) table.insert("language", *preferences.language);
     std::ostringstream text;
     text << "# What was chosen in Palpa's window.\n" << table << "\n";
     return text.str();

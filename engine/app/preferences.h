@@ -9,10 +9,11 @@
 namespace palpa {
 
 struct Preferences {
-    std::optional<std::string> device{};  // as --device takes it
-    std::optional<bool> sound{};          // the felt force as a tone
-    std::vector<std::string> recent{};    // scenes that were opened, absolute, the newest first
-    std::optional<double> text_scale{};   // of the window's text, over the display's own
+    std::optional<std::string> device{};    // as --device takes it
+    std::optional<bool> sound{};            // the felt force as a tone
+    std::vector<std::string> recent{};      // scenes that were opened, absolute, the newest first
+    std::optional<double> text_scale{};     // of the window's text, over the display's own
+    std::optional<std::string> language{};  // of the window, "de"; else as the environment says
 
     friend bool operator==(const Preferences&, const Preferences&) = default;
 };

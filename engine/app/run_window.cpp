@@ -3,6 +3,7 @@
 #include "app/sandbox.h"
 #include "app/screenshots.h"
 #include "core/load_error.h"
+#include "core/translate.h"
 #include "render/picture.h"
 #include "session/run_headless.h"
 #include "ui/caption.h"
@@ -100,7 +101,7 @@ WindowReport Sandbox::run() {
             frame();
             return !quitting_;
         },
-        [this] { notice("the graphics device was lost, and is back"); });
+        [this] { notice(translated("the graphics device was lost, and is back")); });
     WindowReport report{{},   overlay_.settings(), frame_ms_.size(),
                         0,    scale_.value(),      overlay_.lesson().steps_done(),
                         next_};
@@ -271,7 +272,7 @@ void Sandbox::save(const WindowShot& shot) {
         return;
     }
     try {
-        notice(fmt::format("saved {}", save_screenshot(options_.screenshots, shot).string()));
+        notice(format_translated("saved {}", save_screenshot(options_.screenshots, shot).string()));
     } catch (const LoadError& error) {
         notice(error.what());
     }
@@ -287,10 +288,12 @@ WindowReport run_window(WindowShell& shell, const SceneDescription& scene, Devic
                         const WindowOptions& options) {
     const std::vector<WindowHand> hands = list_window_hands(device, options);
     std::unique_ptr<LiveSession> session;
-    const bool is_loaded = shell.work("Opening " + scene.title, [&](const StageFunction& on_stage) {
-        session = std::make_unique<LiveSession>(scene, options.view, list_devices(hands), nullptr,
-                                                options.server, options.playback, on_stage);
-    });
+    const bool is_loaded = shell.work(
+        format_translated("Opening {}", scene.title), [&](const StageFunction& on_stage) {
+            session =
+                std::make_unique<LiveSession>(scene, options.view, list_devices(hands), nullptr,
+                                              options.server, options.playback, on_stage);
+        });
     WindowReport report;
     if (is_loaded) {
         report = Sandbox(shell, std::move(session), scene, device, options).run();

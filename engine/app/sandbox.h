@@ -93,8 +93,7 @@ private:
     void save_for_crash();
     void note_saved();
     template <typename Value>
-    void choose_next(Value ViewSettings::* choice, std::span<const std::string_view> names,
-                     std::string_view said);
+    void choose_next(Value ViewSettings::* choice, std::size_t count, const char* said);
     // That of the mouse and of clicks, and that of the arrow keys: the same where there is one.
     WindowHand& hand() { return hands_[led_]; }
     const WindowHand& hand() const { return hands_[led_]; }

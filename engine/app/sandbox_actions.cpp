@@ -2,7 +2,9 @@
 #include "app/sandbox.h"
 
 #include "core/load_error.h"
+#include "core/translate.h"
 #include "ui/playback_panel.h"
+#include "ui/shown_names.h"
 #include "view/first_view.h"
 
 #include <fmt/format.h>
@@ -37,15 +39,15 @@ void Sandbox::give(const Answer& answer) {
     if (then) then();
 }
 
-// Shows the molecules by the next of the values that `choice` may have.
+// Shows the molecules by the next of the `count` values that `choice` may have; `said`: an English
+// format of what is told of it.
 template <typename Value>
-void Sandbox::choose_next(Value ViewSettings::* choice, std::span<const std::string_view> names,
-                          std::string_view said) {
-    const std::size_t next = (static_cast<std::size_t>(view_.*choice) + 1) % names.size();
+void Sandbox::choose_next(Value ViewSettings::* choice, std::size_t count, const char* said) {
+    const std::size_t next = (static_cast<std::size_t>(view_.*choice) + 1) % count;
     ViewSettings view = view_;
     view.*choice = static_cast<Value>(next);
     show_as(view);
-    notice(fmt::format("{} {}", said, names[next]));
+    notice(fmt::format(fmt::runtime(translated(said)), shown_name(static_cast<Value>(next))));
 }
 
 bool Sandbox::save_scene() {
@@ -53,7 +55,7 @@ bool Sandbox::save_scene() {
     try {
         const std::string file = options_.save(describe_state());
         note_saved();
-        notice(fmt::format("saved {}", file), first_notice_s);
+        notice(format_translated("saved {}", file), first_notice_s);
         return true;
     } catch (const LoadError& error) {
         notice(error.what(), first_notice_s);
@@ -72,13 +74,17 @@ void Sandbox::ask_to_leave(const std::string& how, std::optional<NextScreen> nex
     };
     if (options_.study || !options_.save || is_saved()) return leave();
     question_ = {
-        "The settings, or what is added to the view, were changed and are not saved.",
-        {{Key::S, fmt::format("Save and {} (S)", how),
+        translated("The settings, or what is added to the view, were changed and are not saved."),
+        {{Key::S,
+          how == "quit" ? translated("Save and quit (S)") : translated("Save and go on (S)"),
           [this, leave] {
               if (save_scene()) leave();
           }},
-         {Key::Q, fmt::format("{} without saving (Q)", how == "quit" ? "Quit" : "Go on"), leave},
-         {Key::Escape, "Stay (Esc)"}}};
+         {Key::Q,
+          how == "quit" ? translated("Quit without saving (Q)")
+                        : translated("Go on without saving (Q)"),
+          leave},
+         {Key::Escape, translated("Stay (Esc)")}}};
 }
 
 // On standard error too, where it stays.
@@ -94,12 +100,13 @@ void Sandbox::record_or_end() {
         if (session_.recorded_s()) {
             session_.end_recording();
             tell_recording_notes();
-            notice(fmt::format("recorded {0}; palpa replay {0} plays it", recorded_in_.string()),
-                   first_notice_s);
+            notice(
+                format_translated("recorded {0}; palpa replay {0} plays it", recorded_in_.string()),
+                first_notice_s);
         } else {
             recorded_in_ = next_recording(options_.screenshots);
             session_.begin_recording(recorded_in_, false, options_.trajectory);
-            notice(fmt::format("recording into {}", recorded_in_.string()));
+            notice(format_translated("recording into {}", recorded_in_.string()));
         }
     } catch (const LoadError& error) {
         notice(error.what(), first_notice_s);
@@ -137,10 +144,12 @@ void Sandbox::perform(Action action) {
     }
     switch (action) {
         case Action::NextRepresentation:
-            choose_next(&ViewSettings::representation, representation_names, "shown as");
+            choose_next(&ViewSettings::representation, representation_names.size(),
+                        for_translation("shown as {}"));
             break;
         case Action::NextColouring:
-            choose_next(&ViewSettings::colouring, colouring_names, "coloured by");
+            choose_next(&ViewSettings::colouring, colouring_names.size(),
+                        for_translation("coloured by {}"));
             break;
         case Action::OtherHand:
             exchange_hands();

@@ -2,6 +2,7 @@
 #include "app/sandbox.h"
 
 #include "core/load_error.h"
+#include "core/translate.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -26,9 +27,9 @@ void Sandbox::look_for_devices() {
     if (!is_wanted_there) {
         refusal_.clear();
         if (!devices_.wanted.empty() && !std::exchange(has_looked_, true) && notice_.empty()) {
-            notice(
-                fmt::format("{} is not there; until it is: {}", devices_.wanted, devices_.current),
-                first_notice_s);
+            notice(format_translated("{} is not there; until it is: {}", devices_.wanted,
+                                     devices_.current),
+                   first_notice_s);
         }
     } else if (change_device(devices_.wanted)) {  // or it is tried again: a node may open later
         devices_.wanted.clear();
@@ -53,7 +54,7 @@ bool Sandbox::change_device(const std::string& name) {
     first.mouse_reach_m = next.mouse_reach_m;
     first.wish_m = first.handle_m = Vec3::Zero();
     devices_.current = name;
-    notice(fmt::format("device: {}", first.device->spec().name));
+    notice(format_translated("device: {}", first.device->spec().name));
     return true;
 }
 
@@ -62,7 +63,8 @@ bool Sandbox::choose_device(const std::string& name) {
     if (name != devices_.current && !change_device(name)) return false;
     devices_.wanted.clear();
     if (is_stand_in(name)) {
-        notice(fmt::format("{}, for this session; D goes back", hands_.front().device->spec().name),
+        notice(format_translated("{}, for this session; D goes back",
+                                 hands_.front().device->spec().name),
                first_notice_s);
         return true;
     }
@@ -85,11 +87,12 @@ void Sandbox::ask_for_stand_in() {
                                     [](const DeviceOffer& offer) { return offer.is_stand_in; });
     if (found == devices_.offers.end() || found->name == devices_.current) return;
     question_ = {
-        "No other device was found ('palpa devices' says why). Take an emulated one for "
-        "this session: " +
-            found->summary + "?",
-        {{Key::Y, "Yes (Y)", [this, name = found->name] { (void)choose_device(name); }},
-         {Key::Escape, "No (Esc)"}}};
+        format_translated(
+            "No other device was found ('palpa devices' says why). Take an emulated one for "
+            "this session: {}?",
+            found->summary),
+        {{Key::Y, translated("Yes (Y)"), [this, name = found->name] { (void)choose_device(name); }},
+         {Key::Escape, translated("No (Esc)")}}};
 }
 
 // What is there and cannot be used is said, and passed over.
@@ -122,7 +125,7 @@ bool Sandbox::switch_sound(bool is_on) {
     try {
         speaker_.emplace();
     } catch (const SoundError& error) {
-        notice(fmt::format("{}: no tone", error.what()), first_notice_s);
+        notice(format_translated("{}: no tone", error.what()), first_notice_s);
         return false;
     }
     return true;
@@ -130,8 +133,8 @@ bool Sandbox::switch_sound(bool is_on) {
 
 void Sandbox::choose_sound() {
     if (!switch_sound(!speaker_)) return;
-    notice(speaker_ ? "sound on: the higher and louder the tone, the stronger the force"
-                    : "sound off");
+    notice(speaker_ ? translated("sound on: the higher and louder the tone, the stronger the force")
+                    : translated("sound off"));
     if (!options_.sound.remember) return;
     try {
         options_.sound.remember(speaker_.has_value());
@@ -146,7 +149,7 @@ void Sandbox::play_force() {
     if (speaker_->is_there())
         return speaker_->play(tone_of(frame_.readout.paused ? 0 : hand().felt_newton));
     speaker_.reset();
-    notice("the sound output has gone away: no tone", first_notice_s);
+    notice(translated("the sound output has gone away: no tone"), first_notice_s);
 }
 
 }  // namespace palpa

@@ -4,6 +4,7 @@
 #include "app/start_screen.h"
 #include "core/load_error.h"
 #include "core/text.h"
+#include "core/translate.h"
 #include "scene/find_scene.h"
 #include "simulation/molecules.h"
 #include "simulation/sources.h"
@@ -49,8 +50,9 @@ std::vector<Vec3> find_shape(const AddEdit& edit, const LiveFrame& frame) {
 // How far from the middle of what is seen.
 std::string describe_way(double angstrom, const OrbitCamera& camera) {
     const double seen = camera.distance * std::tan(0.5 * camera.vertical_angle);
-    if (angstrom < 0.6 * seen) return "near the middle of the picture";
-    return fmt::format("{:.0f} Å from the middle of the picture (A shows everything)", angstrom);
+    if (angstrom < 0.6 * seen) return translated("near the middle of the picture");
+    return format_translated("{:.0f} Å from the middle of the picture (A shows everything)",
+                             angstrom);
 }
 
 }  // namespace
@@ -138,10 +140,11 @@ void Sandbox::ask_about_dropped(const std::vector<std::filesystem::path>& files)
     // A topology belongs to what is added, and is none of what is prepared.
     if (std::ranges::none_of(files, can_be_opened) || std::ranges::any_of(files, is_topology))
         return add_panel_.open(files);
-    question_ = {fmt::format("{}: what is to be done with it?", files[0].filename().string()),
-                 {{Key::A, "Add it to this scene (A)", [this, files] { add_panel_.open(files); }},
-                  {Key::O, "Open it as a scene of its own (O)", open},
-                  {Key::Escape, "Nothing (Esc)"}}};
+    question_ = {format_translated("{}: what is to be done with it?", files[0].filename().string()),
+                 {{Key::A, translated("Add it to this scene (A)"),
+                   [this, files] { add_panel_.open(files); }},
+                  {Key::O, translated("Open it as a scene of its own (O)"), open},
+                  {Key::Escape, translated("Nothing (Esc)")}}};
 }
 
 void Sandbox::add(AddEdit wanted) {
@@ -151,13 +154,14 @@ void Sandbox::add(AddEdit wanted) {
     const std::vector<Vec3> one{Vec3::Zero()};
     const Newcomer newcomer = shape.empty() ? Newcomer{one, gap_of_unknown} : Newcomer{shape, gap};
     const std::optional<Vec3> found = find_room(frame_.places, newcomer, camera_);
-    if (!found) return notice("there is no room near what is looked at", first_notice_s);
+    if (!found)
+        return notice(translated("there is no room near what is looked at"), first_notice_s);
     const Vec3& place = *found;
     std::ranges::copy(place, wanted.at_angstrom.begin());
     const double way = (place - as_double(camera_.target)).norm();
     announced_ = {wanted.name, true, frame_.readout.refused_edits,
-                  fmt::format("{} was added {}; a click takes it, Ctrl+Z undoes", wanted.name,
-                              describe_way(way, camera_))};
+                  format_translated("{} was added {}; a click takes it, Ctrl+Z undoes", wanted.name,
+                                    describe_way(way, camera_))};
     edit(std::move(wanted));
     overlay_.note_edit();
 }
@@ -165,9 +169,10 @@ void Sandbox::add(AddEdit wanted) {
 void Sandbox::remove_held() {
     const std::string molecule = molecule_in_hand();
     if (molecule.empty())
-        return notice("nothing is in hand that could be removed: click on an atom first");
+        return notice(
+            translated("nothing is in hand that could be removed: click on an atom first"));
     announced_ = {molecule, false, frame_.readout.refused_edits,
-                  fmt::format("{} was removed; Ctrl+Z brings it back", molecule)};
+                  format_translated("{} was removed; Ctrl+Z brings it back", molecule)};
     edit(RemoveEdit{molecule});
     overlay_.note_edit();
 }
@@ -189,7 +194,7 @@ void Sandbox::tell_what_is_held() {
     const bool is_first = held_address_.empty() && !has_first_picture_;
     held_address_ = in_hand().held_address;
     if (is_first || held_address_.empty()) return;
-    notice(fmt::format("in hand: {}; Ctrl+Z undoes, G lets go", held_address_));
+    notice(format_translated("in hand: {}; Ctrl+Z undoes, G lets go", held_address_));
 }
 
 // What lies under a mouse that rests; asking the graphics device for it now and then costs little.
@@ -211,17 +216,18 @@ void Sandbox::watch_hover(const Input& input, bool is_free) {
 
 std::string Sandbox::describe_atom(std::uint32_t atom) const {
     std::string text = to_string(frame_.atoms->names[atom]);
-    const auto add = [&](std::string_view keys, AtomScope scope, std::string_view how) {
+    const auto add = [&](AtomScope scope, const char* takes) {
         const std::string address = address_of(*frame_.atoms, atom, scope);
         if (address.empty()) return;
+        text += "\n";
         text += address == in_hand().held_address
-                    ? fmt::format("\n{} is in hand", address)
-                    : fmt::format("\n{} takes {}{}", keys, address, how);
+                    ? format_translated("{} is in hand", address)
+                    : fmt::format(fmt::runtime(translated(takes)), address);
     };
-    add("click", AtomScope::Molecule, "");
-    add("Shift+click", AtomScope::Residue, " by a spring");
-    add("Ctrl+click", AtomScope::Atom, " by a spring");
-    text += "\nAlt+click or right click names it";
+    add(AtomScope::Molecule, for_translation("click takes {}"));
+    add(AtomScope::Residue, for_translation("Shift+click takes {} by a spring"));
+    add(AtomScope::Atom, for_translation("Ctrl+click takes {} by a spring"));
+    text += "\n" + std::string(translated("Alt+click or right click names it"));
     return text;
 }
 

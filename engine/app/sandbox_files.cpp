@@ -2,6 +2,7 @@
 #include "app/sandbox.h"
 #include "core/files.h"
 #include "core/load_error.h"
+#include "core/translate.h"
 #include "session/coordinates.h"
 
 #include <fmt/format.h>
@@ -41,13 +42,13 @@ void Sandbox::ask_for_export() {
     const auto as = [this](const char* ending) {
         return [this, ending] { ask_what_to_export(ending); };
     };
-    question_ = {"Save coordinates, as they are now, as",
+    question_ = {translated("Save coordinates, as they are now, as"),
                  {{Key::P, "PDB (P)", as(".pdb")},
                   {Key::C, "mmCIF (C)", as(".cif")},
                   {Key::G, "GRO (G)", as(".gro")},
-                  {Key::S, "PSF and CRD (S)", as(".psf")},
-                  {Key::V, "CSV of forces and marks (V)", [this] { export_readings(); }},
-                  {Key::Escape, "Not (Esc)"}}};
+                  {Key::S, translated("PSF and CRD (S)"), as(".psf")},
+                  {Key::V, translated("CSV of forces and marks (V)"), [this] { export_readings(); }},
+                  {Key::Escape, translated("Not (Esc)")}}};
 }
 
 // The last seconds of the hand, and what the picture's marks say now.
@@ -77,12 +78,12 @@ void Sandbox::export_readings() {
 void Sandbox::ask_what_to_export(const std::string& ending) {
     const std::string in_hand = molecule_in_hand();
     if (in_hand.empty()) return export_coordinates(ending, {});
-    question_ = {
-        "Save coordinates of",
-        {{Key::A, "all that is shown (A)", [this, ending] { export_coordinates(ending, {}); }},
-         {Key::H, fmt::format("{} in hand (H)", in_hand),
-          [this, ending, in_hand] { export_coordinates(ending, {in_hand}); }},
-         {Key::Escape, "Not (Esc)"}}};
+    question_ = {translated("Save coordinates of"),
+                 {{Key::A, translated("all that is shown (A)"),
+                   [this, ending] { export_coordinates(ending, {}); }},
+                  {Key::H, format_translated("{} in hand (H)", in_hand),
+                   [this, ending, in_hand] { export_coordinates(ending, {in_hand}); }},
+                  {Key::Escape, translated("Not (Esc)")}}};
 }
 
 void Sandbox::export_coordinates(const std::string& ending,
@@ -92,7 +93,7 @@ void Sandbox::export_coordinates(const std::string& ending,
         const std::filesystem::path file = next_file(options_.screenshots, ending);
         const std::vector<std::uint32_t> atoms = select_atoms(world, molecules);
         write_text_files(format_coordinates(world, atoms, file, title_));
-        notice(fmt::format("saved {}: {} atoms", file.string(), atoms.size()));
+        notice(format_translated("saved {}: {} atoms", file.string(), atoms.size()));
     } catch (const LoadError& error) {
         notice(error.what(), first_notice_s);
     }
@@ -119,13 +120,13 @@ void Sandbox::tell_of_film() {
         film_.reset();
         notice(*outcome, first_notice_s);
     } else if (film_->is_ended()) {
-        notice(fmt::format("making {}: {} pictures are still to be written", filmed_in_.string(),
-                           film_->waiting()),
+        notice(format_translated("making {}: {} pictures are still to be written",
+                                 filmed_in_.string(), film_->waiting()),
                while_it_lasts_s);
     } else {
-        notice(
-            fmt::format("filming {}: {:.0f} s; M ends it", filmed_in_.string(), film_->filmed_s()),
-            while_it_lasts_s);
+        notice(format_translated("filming {}: {:.0f} s; M ends it", filmed_in_.string(),
+                                 film_->filmed_s()),
+               while_it_lasts_s);
     }
 }
 

@@ -1,6 +1,7 @@
 // What mouse, keys and devices do with the view and the hands.
 #include "app/sandbox.h"
 
+#include "core/translate.h"
 #include "core/units.h"
 #include "view/build_frame.h"
 
@@ -161,12 +162,13 @@ void Sandbox::rest_all() {
 
 void Sandbox::exchange_hands() {
     if (hands_.size() < 2)
-        return notice("this scene has one hand; [second.grab] in its file gives it another");
+        return notice(
+            translated("this scene has one hand; [second.grab] in its file gives it another"));
     led_ = by_keys();
     held_address_ = in_hand().held_address;
-    notice(fmt::format("mouse and clicks: the {} hand ({}); arrow keys: the other one",
-                       led_ == 0 ? "first" : "second",
-                       held_address_.empty() ? "nothing in it" : held_address_));
+    notice(format_translated("mouse and clicks: the {} hand ({}); arrow keys: the other one",
+                             led_ == 0 ? translated("first") : translated("second"),
+                             held_address_.empty() ? translated("nothing in it") : held_address_));
 }
 
 // A study shows nothing of it.

@@ -1,6 +1,7 @@
 // Views that are saved, the way from one to the next, and the tour of them.
 #include "app/sandbox.h"
 #include "core/load_error.h"
+#include "core/translate.h"
 #include "molecule/select.h"
 #include "view/saved_views.h"
 
@@ -58,12 +59,13 @@ void Sandbox::go_to(std::size_t number) {
 
 void Sandbox::go_to_next_view() {
     if (!has_frame_) return;
-    if (saved_views_.empty()) return notice("no view is saved yet: Shift+W saves this one");
+    if (saved_views_.empty())
+        return notice(translated("no view is saved yet: Shift+W saves this one"));
     go_to(at_view_ ? (*at_view_ + 1) % saved_views_.size() : 0);
     if (!framed_problem_.empty()) return notice(framed_problem_);
     if (!tour_)
-        notice(fmt::format("{} ({} of {})", saved_views_[*at_view_].name, *at_view_ + 1,
-                           saved_views_.size()));
+        notice(format_translated("{} ({} of {})", saved_views_[*at_view_].name, *at_view_ + 1,
+                                 saved_views_.size()));
 }
 
 // Around what the view before looked at.
@@ -85,8 +87,8 @@ void Sandbox::add_view() {
         set_camera(saved, camera, frame_.places, {}, free_room());
     }
     tour_.reset();
-    notice(
-        fmt::format("saved as {}; W shows saved views, Ctrl+S writes them to a file", saved.name));
+    notice(format_translated("saved as {}; W shows saved views, Ctrl+S writes them to a file",
+                             saved.name));
     saved_views_.push_back(std::move(saved));
     at_view_ = saved_views_.size() - 1;
 }

@@ -2,6 +2,7 @@
 #include "app/sandbox.h"
 #include "core/load_error.h"
 #include "core/text.h"
+#include "core/translate.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -44,10 +45,10 @@ void Sandbox::select(const std::string& expression) {
         const World world = session_.copy_world();  // may be ahead of the frame that is shown
         std::vector<bool> chosen = select_as_seen(world, expression);
         if (std::ranges::find(chosen, true) == chosen.end()) {
-            selection_.problem =
-                selected_.empty()
-                    ? "selects no atoms"
-                    : fmt::format("selects no atoms; {} is still selected", selection_.expression);
+            selection_.problem = selected_.empty()
+                                     ? translated("selects no atoms")
+                                     : format_translated("selects no atoms; {} is still selected",
+                                                         selection_.expression);
             return;
         }
         selection_ = {expression, describe_count(*list_atoms(world), chosen), {}};
@@ -128,10 +129,10 @@ void Sandbox::pin(std::uint32_t atom) {
     const std::string name = to_string(frame_.atoms->names[atom]);
     if (before == additions.labels.end()) {
         additions.labels.push_back(expression);
-        notice(fmt::format("{} is labelled; Alt+click again removes the label", name));
+        notice(format_translated("{} is labelled; Alt+click again removes the label", name));
     } else {
         additions.labels.erase(before);
-        notice(fmt::format("label of {} removed", name));
+        notice(format_translated("label of {} removed", name));
     }
     overlay_.set_additions(std::move(additions));
 }
@@ -143,7 +144,7 @@ void Sandbox::look_at_selected_or_ligand() {
     std::vector<SphereShape> balls;
     for (std::size_t i = 0; i < std::min(wanted.size(), frame_.places.size()); ++i)
         if (wanted[i]) balls.push_back({frame_.places[i], 1.7F});
-    if (balls.empty()) return notice("nothing is selected, and there is no ligand");
+    if (balls.empty()) return notice(translated("nothing is selected, and there is no ligand"));
     OrbitCamera camera = camera_;
     frame_shapes(camera, balls, free_room());
     zoom(camera, room_around);

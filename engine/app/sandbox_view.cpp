@@ -2,6 +2,7 @@
 #include "app/sandbox.h"
 
 #include "core/load_error.h"
+#include "core/translate.h"
 #include "view/build_frame.h"
 #include "view/first_view.h"
 
@@ -71,13 +72,14 @@ void Sandbox::look_at_grabbed() {
 
 void Sandbox::look_at_grabbed_or_all() {
     if (!looks_at_grabbed_ && in_hand().held.count == 0) {
-        notice("nothing is in hand");
+        notice(translated("nothing is in hand"));
     } else if (looks_at_grabbed_) {
         look_at_all();
-        notice("everything is shown");
+        notice(translated("everything is shown"));
     } else {
         look_at_grabbed();
-        notice("what stands in front of the molecule in hand is left out; F shows everything");
+        notice(translated(
+            "what stands in front of the molecule in hand is left out; F shows everything"));
     }
 }
 

@@ -2,13 +2,16 @@
 
 #include "core/load_error.h"
 #include "core/text.h"
+#include "core/translate.h"
 #include "render/picture_sheet.h"
 #include "ui/file_browser.h"
+#include "ui/language_list.h"
 #include "ui/layout.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <system_error>
@@ -27,6 +30,19 @@ const ImVec4 problem_colour{0.70F, 0.10F, 0.05F, 1};
 
 fs::path picture_of(const SceneEntry& scene) {
     return fs::path(scene.file).replace_extension(".png");
+}
+
+// What a scene's level may be.
+[[maybe_unused]] constexpr std::array levels{
+    for_translation("beginner"), for_translation("student"), for_translation("researcher")};
+
+// As describe_effort() says it.
+std::string translated_effort(const SceneEntry& scene) {
+    std::vector<std::string> parts;
+    if (scene.has_lesson) parts.emplace_back(translated("lesson"));
+    if (!scene.level.empty()) parts.emplace_back(translated(scene.level.c_str()));
+    if (scene.minutes > 0) parts.push_back(format_translated("{:.0f} minutes", scene.minutes));
+    return fmt::format("{}", fmt::join(parts, ", "));
 }
 
 // Where a picture of a card goes, and what of it is seen, in pixels of the window.
@@ -73,6 +89,7 @@ private:
     std::size_t columns_ = 1;
     std::string device_, problem_, notice_;
     FileBrowser browser_;
+    std::vector<Language> languages_ = list_languages();
     bool is_over_ = false;
     std::optional<NextScreen> next_;
 };
@@ -181,7 +198,8 @@ void StartScreen::open(const fs::path& file) { next_ = {{file}}; }
 
 void StartScreen::browse() {
     std::error_code error;
-    browser_.open("Open a structure or a scene", list_endings(), fs::current_path(error));
+    browser_.open(translated("Open a structure or a scene"), list_endings(),
+                  fs::current_path(error));
 }
 
 void StartScreen::describe() {
@@ -208,11 +226,11 @@ void StartScreen::describe() {
 
 void StartScreen::draw_header() {
     ImGui::SetWindowFontScale(1.6F);
-    ImGui::TextUnformatted("Palpa: feel molecules");
+    ImGui::TextUnformatted(translated("Palpa: feel molecules"));
     ImGui::SetWindowFontScale(1);
     ImGui::TextDisabled(
-        "Choose a scene, or open a structure of your own. In a scene: hold Space "
-        "and move the mouse to pull; H lists all keys.");
+        "%s", translated("Choose a scene, or open a structure of your own. In a scene: hold Space "
+                         "and move the mouse to pull; H lists all keys."));
     if (!problem_.empty()) {
         ImGui::PushStyleColor(ImGuiCol_Text, problem_colour);
         ImGui::TextWrapped("%s", problem_.c_str());
@@ -234,7 +252,8 @@ void StartScreen::draw_cards() {
         draw_card(i, width);
     }
     if (cards_.empty())
-        ImGui::TextWrapped("No scenes came with this program; open a structure of your own.");
+        ImGui::TextWrapped(
+            "%s", translated("No scenes came with this program; open a structure of your own."));
 }
 
 void StartScreen::draw_card(std::size_t number, float width) {
@@ -273,7 +292,7 @@ void StartScreen::draw_card(std::size_t number, float width) {
         y += font->CalcTextSizeA(height, width, width - 2 * pad, text.c_str()).y;
     };
     write(scene.title, size, IM_COL32(20, 25, 40, 255));
-    write(describe_effort(scene), small, IM_COL32(50, 95, 160, 255));
+    write(translated_effort(scene), small, IM_COL32(50, 95, 160, 255));
     write(scene.about, small, IM_COL32(70, 75, 85, 255));
     ImGui::EndGroup();
     if (ImGui::IsItemHovered())
@@ -282,33 +301,38 @@ void StartScreen::draw_card(std::size_t number, float width) {
 }
 
 void StartScreen::draw_side() {
-    if (ImGui::Button("Open a file... (O)", {-1, 0})) browse();
+    if (ImGui::Button(labelled("Open a file... (O)").c_str(), {-1, 0})) browse();
     ImGui::TextWrapped(
-        "PDB or mmCIF (also .gz), CHARMM coordinates, or a scene; or drop one here. "
-        "A structure is completed first, which takes a few seconds.");
+        "%s",
+        translated("PDB or mmCIF (also .gz), CHARMM coordinates, or a scene; or drop one here. "
+                   "A structure is completed first, which takes a few seconds."));
     draw_recovered();
     draw_recent();
     draw_devices();
     ImGui::Separator();
-    if (ImGui::Button("Quit (Esc)")) is_over_ = true;
+    if (const std::optional<std::string> language = draw_language_list(languages_))
+        notice_ = shell_.change_language(*language);
+    ImGui::Separator();
+    if (ImGui::Button(labelled("Quit (Esc)").c_str())) is_over_ = true;
 }
 
 void StartScreen::draw_recovered() {
     if (options_.recovered.empty()) return;
     ImGui::Separator();
-    ImGui::TextUnformatted("Not saved when Palpa ended");
+    ImGui::TextUnformatted(translated("Not saved when Palpa ended"));
     for (const fs::path& file : options_.recovered) {
         if (ImGui::Selectable(file.stem().string().c_str())) open(file);
-        tip(fmt::format("{}\nCtrl+S saves it as a scene of its own; remove the file to forget it",
-                        file.string())
+        tip(format_translated(
+                "{}\nCtrl+S saves it as a scene of its own; remove the file to forget it",
+                file.string())
                 .c_str());
     }
 }
 
 void StartScreen::draw_recent() {
     ImGui::Separator();
-    ImGui::TextUnformatted("Opened before");
-    if (options_.recent.empty()) ImGui::TextDisabled("nothing yet");
+    ImGui::TextUnformatted(translated("Opened before"));
+    if (options_.recent.empty()) ImGui::TextDisabled("%s", translated("nothing yet"));
     for (std::size_t i = 0; i < options_.recent.size(); ++i) {
         const fs::path& file = options_.recent[i];
         // Scenes mostly have the same name; their folders tell them apart.
@@ -324,13 +348,14 @@ void StartScreen::draw_recent() {
 
 void StartScreen::draw_devices() {
     ImGui::Separator();
-    ImGui::TextUnformatted("In your hand");
+    ImGui::TextUnformatted(translated("In your hand"));
     ImGui::SetNextItemWidth(-1);
     if (ImGui::BeginCombo("##device", device_.c_str(), ImGuiComboFlags_HeightLarge)) {
         for (const DeviceOffer& offer : options_.devices) {
             if (offer.is_stand_in) continue;
-            const std::string text = fmt::format(
-                "{}{}\n  {}", offer.name, offer.is_there ? "" : " (not found)", offer.summary);
+            const std::string text =
+                fmt::format("{}{}\n  {}", offer.name,
+                            offer.is_there ? "" : translated(" (not found)"), offer.summary);
             if (ImGui::Selectable(text.c_str(), offer.name == device_)) choose_device(offer.name);
         }
         ImGui::EndCombo();
@@ -340,10 +365,11 @@ void StartScreen::draw_devices() {
         if (offer.is_stand_in || !offer.is_there || offer.name == "mouse") continue;
         found += (found.empty() ? "" : ", ") + offer.name;
     }
-    ImGui::TextWrapped("%s", found.empty()
-                                 ? "No haptic device was found: choose yours above to see what is "
-                                   "missing. The mouse works without one; sound makes force heard."
-                                 : fmt::format("Found: {}.", found).c_str());
+    ImGui::TextWrapped(
+        "%s", found.empty()
+                  ? translated("No haptic device was found: choose yours above to see what is "
+                               "missing. The mouse works without one; sound makes force heard.")
+                  : format_translated("Found: {}.", found).c_str());
 }
 
 void StartScreen::choose_device(const std::string& name) {

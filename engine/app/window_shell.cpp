@@ -3,6 +3,7 @@
 #include "app/screenshots.h"
 #include "core/interrupt.h"
 #include "core/load_error.h"
+#include "core/translate.h"
 #include "platform/thread.h"
 #include "render/picture.h"
 #include "ui/layout.h"
@@ -55,8 +56,8 @@ public:
             ImGui::ProgressBar(static_cast<float>(share_.value_or(0)), {-1, scaled(8)}, "");
         }
         if (is_cancelled) {
-            ImGui::TextDisabled("cancelling");
-        } else if (ImGui::Button("Cancel (Esc)")) {
+            ImGui::TextDisabled("%s", translated("cancelling"));
+        } else if (ImGui::Button(labelled("Cancel (Esc)").c_str())) {
             is_cancelled = true;
         }
         ImGui::End();
@@ -66,7 +67,7 @@ public:
 
 private:
     std::mutex mutex_;
-    std::string stage_{"beginning"};
+    std::string stage_{translated("beginning")};
     std::optional<double> share_;
 };
 
@@ -94,6 +95,7 @@ WindowShell::WindowShell(const ShellOptions& options)
     : options_(options),
       text_scale_(options.text_scale.scale),
       window_(options.title, options.width, options.height) {
+    (void)choose_language(options.language.code);
     if (options.grows) window_.grow_with_display();
     // Drawing, which may be done by threads of the driver, comes after feeling.
     lower_priority();
@@ -142,7 +144,19 @@ std::string WindowShell::change_text_scale(double scale) {
             return error.what();
         }
     }
-    return fmt::format("text: {:.0f} %", 100 * text_scale_);
+    return format_translated("text: {:.0f} %", 100 * text_scale_);
+}
+
+std::string WindowShell::change_language(const std::string& code) {
+    if (!choose_language(code))
+        return fmt::format("this system has no texts in the language '{}'", code);
+    if (!options_.language.remember) return {};
+    try {
+        options_.language.remember(code);
+    } catch (const LoadError& error) {
+        return error.what();
+    }
+    return {};
 }
 
 const Input& WindowShell::poll() {

@@ -30,11 +30,17 @@ struct TextScaleChoice {
     std::function<void(double)> remember{};  // what the person chose; throws LoadError
 };
 
+struct LanguageChoice {
+    std::string code{};  // to begin with; empty: as the environment says
+    std::function<void(const std::string&)> remember{};  // what the person chose; throws LoadError
+};
+
 struct ShellOptions {
     std::string title{"Palpa"};
     std::uint32_t width = 1280, height = 800;
     bool grows = true;  // with the display's scale: nobody asked for that size in pixels
     TextScaleChoice text_scale{};
+    LanguageChoice language{};
     bool validation = false;                 // of all that Vulkan is told
     std::filesystem::path screenshots{"."};  // folder
 };
@@ -64,6 +70,9 @@ public:
     // Sets the graphics up again with text so large, as far as the window has room for it; returns
     // what the person is told of it.
     std::string change_text_scale(double scale);
+
+    // Of all text from the next frame on; returns what the person is told of it, if anything.
+    std::string change_language(const std::string& code);
 
     // Calls `frame` at most `most_frames_per_s` times a second until it returns false, or a signal
     // asks the program to end. A device that is lost is set up again, and `on_lost` called.

@@ -1,5 +1,7 @@
 #include "haptics/safety.h"
 
+#include "core/translate.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -250,43 +252,57 @@ std::string_view words(SafetyStage stage) noexcept {
         case SafetyStage::None:
             return "";
         case SafetyStage::Slewed:
-            return "The force changes faster than the device may: it follows a little later.";
+            return for_translation(
+                "The force changes faster than the device may: it follows a little later.");
         case SafetyStage::Clamped:
-            return "The force is larger than the limit: push less, or choose a smaller force gain.";
+            return for_translation(
+                "The force is larger than the limit: push less, or choose a smaller force gain.");
         case SafetyStage::ThermalLimit:
-            return "The motors are warm and the force is limited: let them rest for a while.";
+            return for_translation(
+                "The motors are warm and the force is limited: let them rest for a while.");
         case SafetyStage::Engaging:
-            return "The force is coming back: hold the handle, in two seconds it is there in full.";
+            return for_translation(
+                "The force is coming back: hold the handle, in two seconds it is there in full.");
         case SafetyStage::Waiting:
-            return "The force is off: move the molecule to where it feels nothing, then it "
-                   "returns.";
+            return for_translation(
+                "The force is off: move the molecule to where it feels nothing, then it "
+                "returns.");
         case SafetyStage::Disengaged:
-            return "The force is switched off: go on, and it returns.";
+            return for_translation("The force is switched off: go on, and it returns.");
         case SafetyStage::Ending:
-            return "The program ends and takes the force away: hold the handle.";
+            return for_translation("The program ends and takes the force away: hold the handle.");
         case SafetyStage::Stale:
-            return "The simulation is too slow or stands still, so the force fades: wait, or let "
-                   "fewer joints move.";
+            return for_translation(
+                "The simulation is too slow or stands still, so the force fades: wait, or let "
+                "fewer joints move.");
         case SafetyStage::CoolDown:
-            return "The device says that its motors are too warm, so the force fades: let them "
-                   "rest until it returns.";
+            return for_translation(
+                "The device says that its motors are too warm, so the force fades: let them "
+                "rest until it returns.");
         case SafetyStage::TooFast:
-            return "The handle was faster than the limit, so the force is off: move it slowly.";
+            return for_translation(
+                "The handle was faster than the limit, so the force is off: move it slowly.");
         case SafetyStage::Late:
-            return "The force loop was late, so the force is off: close other programs.";
+            return for_translation(
+                "The force loop was late, so the force is off: close other programs.");
         case SafetyStage::Frozen:
-            return "The device reports no motion although the force changes, so the force is off: "
-                   "move the handle, or plug the device in again.";
+            return for_translation(
+                "The device reports no motion although the force changes, so the force is off: "
+                "move the handle, or plug the device in again.");
         case SafetyStage::Jump:
-            return "The handle's position jumped, so the force is off: check the cable and "
-                   "calibrate the device.";
+            return for_translation(
+                "The handle's position jumped, so the force is off: check the cable and "
+                "calibrate the device.");
         case SafetyStage::Refused:
-            return "The device found the force too large or too sudden and let go: move the handle "
-                   "slowly, then it returns.";
+            return for_translation(
+                "The device found the force too large or too sudden and let go: move the handle "
+                "slowly, then it returns.");
         case SafetyStage::Unplugged:
-            return "The device does not answer, so the force is off: check cable and power.";
+            return for_translation(
+                "The device does not answer, so the force is off: check cable and power.");
         case SafetyStage::NotFinite:
-            return "The computed force was no number, so the force stays off: reset the scene.";
+            return for_translation(
+                "The computed force was no number, so the force stays off: reset the scene.");
     }
     return "";
 }

@@ -1,6 +1,7 @@
 #include "ui/add_panel.h"
 
 #include "core/text.h"
+#include "core/translate.h"
 #include "molecule/residue_kinds.h"
 #include "ui/layout.h"
 #include "ui/text_field.h"
@@ -42,6 +43,11 @@ std::string as_base(std::string_view text) {
 
 bool is_topology(const std::filesystem::path& file) {
     return in_lower_case(file.extension().string()) == ".psf";
+}
+
+std::string describe(const std::string& name, std::size_t atoms) {
+    const char* const text = translated_plural("{}   ({} atom)", "{}   ({} atoms)", atoms);
+    return fmt::format(fmt::runtime(text), name, atoms);
 }
 
 bool is_name(const std::string& text) {
@@ -106,11 +112,12 @@ std::optional<AddEdit> AddPanel::draw(const AtomDirectory& atoms) {
     ImGui::SetNextWindowSizeConstraints({width, 0}, {width, screen.y - top - edge});
     ImGui::SetNextWindowSize({width, 0});
     ImGui::SetNextWindowBgAlpha(1);
-    ImGui::Begin("Add a molecule", &is_open_, fixed_panel | ImGuiWindowFlags_NoCollapse);
+    ImGui::Begin(labelled("Add a molecule").c_str(), &is_open_,
+                 fixed_panel | ImGuiWindowFlags_NoCollapse);
     ImGui::BringWindowToDisplayFront(ImGui::GetCurrentWindow());
-    choose_origin(Origin::Residue, "a residue of the force field");
-    choose_origin(Origin::Copy, "a copy of a molecule");
-    choose_origin(Origin::Files, "from a file");
+    choose_origin(Origin::Residue, for_translation("a residue of the force field"));
+    choose_origin(Origin::Copy, for_translation("a copy of a molecule"));
+    choose_origin(Origin::Files, for_translation("from a file"));
     ImGui::Separator();
     if (origin_ == Origin::Residue) choose_residue(atoms);
     if (origin_ == Origin::Copy) choose_copy(atoms);
@@ -118,10 +125,10 @@ std::optional<AddEdit> AddPanel::draw(const AtomDirectory& atoms) {
     name_it(atoms);
     const std::string problem = find_problem(atoms);
     ImGui::BeginDisabled(!problem.empty());
-    const bool is_asked = ImGui::Button("Add (Enter)") || wants_add_;
+    const bool is_asked = ImGui::Button(labelled("Add (Enter)").c_str()) || wants_add_;
     ImGui::EndDisabled();
     ImGui::SameLine();
-    const bool is_done = ImGui::Button("Close (Esc)");
+    const bool is_done = ImGui::Button(labelled("Close (Esc)").c_str());
     ImGui::PushStyleColor(ImGuiCol_Text, problem_colour);
     ImGui::TextWrapped("%s", problem.empty() ? " " : problem.c_str());
     ImGui::PopStyleColor();
@@ -134,7 +141,7 @@ std::optional<AddEdit> AddPanel::draw(const AtomDirectory& atoms) {
 }
 
 void AddPanel::choose_origin(Origin origin, const char* text) {
-    if (!ImGui::RadioButton(text, origin_ == origin)) return;
+    if (!ImGui::RadioButton(labelled(text).c_str(), origin_ == origin)) return;
     origin_ = origin;
     has_own_name_ = false;
     wants_focus_ = true;
@@ -165,7 +172,7 @@ void AddPanel::choose_from(std::span<const std::string> names, std::string& chos
 
 void AddPanel::choose_residue(const AtomDirectory& atoms) {
     if (wants_focus_) ImGui::SetKeyboardFocusHere();
-    const bool is_new_search = type_text("##search", "search by name", search_);
+    const bool is_new_search = type_text("##search", translated("search by name"), search_);
     const std::string wanted = in_lower_case(trimmed(search_));
     std::vector<std::string> names, texts;
     for (const auto& [name, residue] : atoms.force_field->residues) {
@@ -173,7 +180,7 @@ void AddPanel::choose_residue(const AtomDirectory& atoms) {
             continue;
         const std::size_t count = residue.atoms.size();
         names.push_back(name);
-        texts.push_back(fmt::format("{}   ({} atom{})", name, count, count == 1 ? "" : "s"));
+        texts.push_back(describe(name, count));
     }
     // What a person typed in full is meant, wherever else it occurs.
     const auto same = std::ranges::find(names, wanted, in_lower_case);
@@ -186,26 +193,25 @@ void AddPanel::choose_copy(const AtomDirectory& atoms) {
     std::vector<std::string> names, texts;
     for (const AtomDirectory::Entry& entry : atoms.molecules) {
         names.push_back(entry.molecule);
-        texts.push_back(fmt::format("{}   ({} atom{})", entry.molecule, entry.atoms.count,
-                                    entry.atoms.count == 1 ? "" : "s"));
+        texts.push_back(describe(entry.molecule, entry.atoms.count));
     }
     choose_from(names, copy_of_, texts);
 }
 
 void AddPanel::choose_files() {
-    ImGui::TextUnformatted("structure: .crd, .pdb or .cif");
+    ImGui::TextUnformatted(translated("structure: .crd, .pdb or .cif"));
     if (wants_focus_) ImGui::SetKeyboardFocusHere();
-    (void)type_text("##structure", "a path, or drop a file on the window", structure_);
-    ImGui::TextUnformatted("types and charges: .psf");
-    (void)type_text("##topology", "none: of the force field's residues", topology_);
-    ImGui::TextUnformatted("segment or chain");
-    (void)type_text("##segment", "only where the file has several", segment_);
+    (void)type_text("##structure", translated("a path, or drop a file on the window"), structure_);
+    ImGui::TextUnformatted(translated("types and charges: .psf"));
+    (void)type_text("##topology", translated("none: of the force field's residues"), topology_);
+    ImGui::TextUnformatted(translated("segment or chain"));
+    (void)type_text("##segment", translated("only where the file has several"), segment_);
 }
 
 void AddPanel::name_it(const AtomDirectory& atoms) {
-    ImGui::TextUnformatted("name of the new molecule");
+    ImGui::TextUnformatted(translated("name of the new molecule"));
     if (!has_own_name_) name_ = find_free_name(atoms, find_base());
-    (void)type_text("##name", "a name", name_);
+    (void)type_text("##name", translated("a name"), name_);
     // Under way the text is the library's, so that nobody else may change it.
     if (ImGui::IsItemActive()) has_own_name_ = true;
 }
@@ -229,22 +235,24 @@ std::filesystem::path AddPanel::path_of(const std::string& file) const {
 std::string AddPanel::find_problem(const AtomDirectory& atoms) const {
     if (origin_ == Origin::Residue && residue_.empty())
         return atoms.force_field->residues.empty()
-                   ? "the scene's force field has no residues"
-                   : "no residue of the scene's force field is called so";
-    if (origin_ == Origin::Copy && !find_molecule(atoms, copy_of_)) return "choose a molecule";
+                   ? translated("the scene's force field has no residues")
+                   : translated("no residue of the scene's force field is called so");
+    if (origin_ == Origin::Copy && !find_molecule(atoms, copy_of_))
+        return translated("choose a molecule");
     if (origin_ == Origin::Files) {
-        if (path_of(structure_).empty()) return "name a structure file";
+        if (path_of(structure_).empty()) return translated("name a structure file");
         for (const std::string& file : {structure_, topology_}) {
             std::error_code error;
             const std::filesystem::path path = path_of(file);
             if (!path.empty() && !std::filesystem::is_regular_file(path, error))
-                return fmt::format("there is no file {}", printable(path.string()));
+                return format_translated("there is no file {}", printable(path.string()));
         }
     }
     const std::string name(trimmed(name_));
-    if (name.empty()) return "give it a name";
-    if (!is_name(name)) return "a name has no ':'";
-    if (find_molecule(atoms, name)) return fmt::format("there is a molecule {} already", name);
+    if (name.empty()) return translated("give it a name");
+    if (!is_name(name)) return translated("a name has no ':'");
+    if (find_molecule(atoms, name))
+        return format_translated("there is a molecule {} already", name);
     return {};
 }
 

@@ -1,6 +1,7 @@
 #include "ui/file_browser.h"
 
 #include "core/files.h"
+#include "core/translate.h"
 #include "ui/layout.h"
 #include "ui/text_field.h"
 
@@ -63,7 +64,7 @@ void FileBrowser::go_to(const fs::path& folder) {
     std::error_code error;
     const fs::path whole = fs::weakly_canonical(fs::absolute(folder, error), error);
     if (!fs::is_directory(whole, error)) {
-        problem_ = fmt::format("{} is no folder that can be read", folder.string());
+        problem_ = format_translated("{} is no folder that can be read", folder.string());
         return;
     }
     folder_ = whole;
@@ -87,16 +88,16 @@ std::optional<fs::path> FileBrowser::choose(const fs::path& path) {
         return std::nullopt;
     }
     if (fs::exists(path, error)) return path;
-    problem_ = fmt::format("{} does not exist", path.string());
+    problem_ = format_translated("{} does not exist", path.string());
     return std::nullopt;
 }
 
 void FileBrowser::draw_places() {
-    if (ImGui::Button("Up")) go_to(folder_.parent_path());
+    if (ImGui::Button(labelled("Up").c_str())) go_to(folder_.parent_path());
     ImGui::SameLine();
-    if (ImGui::Button("Home")) go_to(home_folder());
+    if (ImGui::Button(labelled("Home").c_str())) go_to(home_folder());
     ImGui::SameLine();
-    if (ImGui::Checkbox("all files", &shows_all_)) go_to(folder_);
+    if (ImGui::Checkbox(labelled("all files").c_str(), &shows_all_)) go_to(folder_);
 }
 
 std::optional<fs::path> FileBrowser::draw_entries() {
@@ -120,7 +121,7 @@ std::optional<fs::path> FileBrowser::draw_entries() {
             }
             if (i == chosen_ && steps_ != 0) ImGui::SetScrollHereY();
         }
-        if (entries_.empty()) ImGui::TextDisabled("no such files here");
+        if (entries_.empty()) ImGui::TextDisabled("%s", translated("no such files here"));
         ImGui::EndListBox();
     }
     steps_ = 0;
@@ -139,7 +140,7 @@ std::optional<fs::path> FileBrowser::draw() {
     ImGui::BringWindowToDisplayFront(ImGui::GetCurrentWindow());
     draw_places();
     std::optional<fs::path> wanted;
-    if (type_text("##path", "a path", typed_, ImGuiInputTextFlags_EnterReturnsTrue)) {
+    if (type_text("##path", translated("a path"), typed_, ImGuiInputTextFlags_EnterReturnsTrue)) {
         wanted = fs::path(typed_);
         wants_enter_ = false;
     }
@@ -147,11 +148,12 @@ std::optional<fs::path> FileBrowser::draw() {
     if (std::optional<fs::path> opened = draw_entries()) wanted = folder_ / *opened;
     const bool may_open = chosen_ < entries_.size();
     ImGui::BeginDisabled(!may_open);
-    const bool is_asked = ImGui::Button("Open (Enter)") || (wants_enter_ && !types);
+    const bool is_asked =
+        ImGui::Button(labelled("Open (Enter)").c_str()) || (wants_enter_ && !types);
     ImGui::EndDisabled();
     if (is_asked && may_open && !wanted) wanted = folder_ / entries_[chosen_].name;
     ImGui::SameLine();
-    if (ImGui::Button("Cancel (Esc)")) is_open_ = false;
+    if (ImGui::Button(labelled("Cancel (Esc)").c_str())) is_open_ = false;
     if (!problem_.empty()) ImGui::TextWrapped("%s", problem_.c_str());
     ImGui::End();
     wants_enter_ = false;

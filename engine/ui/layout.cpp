@@ -1,5 +1,7 @@
 #include "ui/layout.h"
 
+#include "core/translate.h"
+
 #include <imgui_internal.h>
 
 namespace palpa {
@@ -19,6 +21,10 @@ void fold_in_small_window(bool& folds) {
     const bool is_small = screen.x < scaled(least_width) || screen.y < scaled(least_height);
     if (is_small != folds) ImGui::SetNextWindowCollapsed(is_small);
     folds = is_small;
+}
+
+std::string labelled(const char* english) {
+    return std::string(translated(english)) + "###" + english;
 }
 
 void same_line_if_it_fits(const char* text) {

@@ -2,6 +2,7 @@
 #pragma once
 #include <imgui.h>
 #include <algorithm>
+#include <string>
 
 namespace palpa {
 
@@ -35,6 +36,10 @@ void fold_in_small_window(bool& folds);
 
 // The explanation of the item before, while the mouse rests on it.
 void tip(const char* text);
+
+// The text of a button or the title of a panel in the window's language. Its ID, and the name by
+// which ImGui::FindWindowByName knows the panel, are the same in each.
+std::string labelled(const char* english);
 
 // On the line of the item before where a button with this text has room there.
 void same_line_if_it_fits(const char* text);

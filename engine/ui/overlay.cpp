@@ -1,5 +1,6 @@
 #include "ui/overlay.h"
 
+#include "core/translate.h"
 #include "haptics/gains.h"
 #include "haptics/hand.h"
 #include "session/run_headless.h"
@@ -30,7 +31,7 @@ namespace {
 
 constexpr ImU32 task_colour = IM_COL32(20, 90, 190, 255);
 constexpr ImU32 done_colour = IM_COL32(20, 130, 70, 255);
-constexpr const char* lesson_panel = "Lesson";
+constexpr const char* lesson_panel = for_translation("Lesson");
 constexpr double least_overtravel_m = 0.5e-3;  // at the wall, that counts
 
 // Keys and what they do, twice beside each other.
@@ -280,7 +281,7 @@ ScreenArea Overlay::legend_area() const {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     ScreenArea area = free_area(screen.x, screen.y);
     for (const char* const name : {lesson_panel, playback_panel, selection_panel}) {
-        const ImGuiWindow* const panel = ImGui::FindWindowByName(name);
+        const ImGuiWindow* const panel = ImGui::FindWindowByName(labelled(name).c_str());
         if (panel && panel->Active) area.bottom = std::min(area.bottom, panel->Pos.y);
     }
     return area;
@@ -303,14 +304,15 @@ void Overlay::draw_lesson(const Readout& readout) {
                             ImGuiCond_Always, {0.5F, 1});
     ImGui::SetNextWindowSizeConstraints({width, 0}, {width, 0.6F * screen.y});
     ImGui::SetNextWindowSize({width, 0});
-    ImGui::Begin(lesson_panel, nullptr, fixed_panel);
+    ImGui::Begin(labelled(lesson_panel).c_str(), nullptr, fixed_panel);
     const std::size_t count = lesson_.steps().size();
     if (lesson_.is_done()) {
-        ImGui::TextWrapped("All %d steps are done. L hides this.", static_cast<int>(count));
+        ImGui::TextWrapped(translated("All %d steps are done. L hides this."),
+                           static_cast<int>(count));
     } else {
         draw_lesson_step(readout, count);
     }
-    if (ImGui::SmallButton("from the beginning")) {
+    if (ImGui::SmallButton(labelled("from the beginning").c_str())) {
         lesson_.restart();
         lesson_curve_.clear();
     }
@@ -319,12 +321,13 @@ void Overlay::draw_lesson(const Readout& readout) {
 
 void Overlay::draw_lesson_step(const Readout& readout, std::size_t count) {
     const LessonStepDescription& step = lesson_.steps()[lesson_.current()];
-    std::string head = fmt::format("step {} of {}", lesson_.current() + 1, count);
+    std::string head = format_translated("step {} of {}", lesson_.current() + 1, count);
     if (const auto value = lesson_.value()) head += ": " + describe_value(step, *value);
     ImGui::TextDisabled("%s", head.c_str());
     ImGui::TextWrapped("%s", step.text.c_str());
     ImGui::PushStyleColor(ImGuiCol_Text, lesson_.is_step_done() ? done_colour : task_colour);
-    ImGui::TextWrapped("%s%s", lesson_.is_step_done() ? "Done: " : "", step.task.c_str());
+    ImGui::TextWrapped("%s%s", lesson_.is_step_done() ? translated("Done: ") : "",
+                       step.task.c_str());
     ImGui::PopStyleColor();
     if (step.question) {
         const auto pressed = draw_lesson_question(*step.question, lesson_.chosen());
@@ -337,8 +340,11 @@ void Overlay::draw_lesson_step(const Readout& readout, std::size_t count) {
     }
     if (lesson_.can_go_on()) {
         const bool is_last = lesson_.current() + 1 == count;
-        if (ImGui::Button(is_last ? "Finish (Enter)" : "Next (Enter)")) lesson_.go_on();
-    } else if (ImGui::SmallButton("skip")) {
+        if (ImGui::Button(labelled(is_last ? for_translation("Finish (Enter)")
+                                           : for_translation("Next (Enter)"))
+                              .c_str()))
+            lesson_.go_on();
+    } else if (ImGui::SmallButton(labelled("skip").c_str())) {
         lesson_.skip();
     }
     ImGui::SameLine();
@@ -352,46 +358,51 @@ void Overlay::draw_warnings(const Readout& readout, const OverlayStatus& status)
         left_s -= ImGui::GetIO().DeltaTime;
         if (left_s > 0) warnings.push_back(text());
     };
-    if (stopped_) warnings.emplace_back("a force was not finite: no force until you reset (R)");
+    if (stopped_)
+        warnings.emplace_back(translated("a force was not finite: no force until you reset (R)"));
     const bool feels = readout.holds_something && !stopped_;
-    if (reason_ != SafetyStage::None && feels) warnings.emplace_back(words(reason_));
+    if (reason_ != SafetyStage::None && feels)
+        warnings.emplace_back(translated(words(reason_).data()));
     if (stage_ >= SafetyStage::ThermalLimit && stage_ != reason_ && feels)
-        warnings.emplace_back(words(stage_));
+        warnings.emplace_back(translated(words(stage_).data()));
     warn(shaking_for_s_, is_shaking(readout), [&] {
-        return fmt::format(
+        return format_translated(
             "this setting vibrates: K > B/(1.5 T_s). This hand keeps {:.3g} N/m calm at T_s = {} "
             "ms. Shorten the period, raise A_d, or lower the force gain.",
             stiffness_limit_, settings_.period_ms);
     });
-    warn(clamped_for_s_, clamped_,
-         [&] { return fmt::format("the force is cut off at {} N", settings_.coupling.clamp_N); });
+    warn(clamped_for_s_, clamped_, [&] {
+        return format_translated("the force is cut off at {} N", settings_.coupling.clamp_N);
+    });
     warn(late_for_s_, readout.step_ms > settings_.period_ms, [&] {
-        return fmt::format("steps take longer than their period of {} ms: the force comes late",
-                           settings_.period_ms);
+        return format_translated(
+            "steps take longer than their period of {} ms: the force comes late",
+            settings_.period_ms);
     });
     warn(at_wall_for_s_, is_guarded() && overtravel_m_ > least_overtravel_m, [&] {
-        return fmt::format(
+        return format_translated(
             "at the wall: an atom is pushed with {:.3g} nN, and the molecule goes no further; draw "
             "the hand back {:.0f} mm to come off it",
             settings_.coupling.stop_nN, std::ceil(1e3 * overtravel_m_));
     });
     if (went_through_) {
-        warnings.emplace_back("the molecule was pushed through the other one: R brings it back");
+        warnings.emplace_back(
+            translated("the molecule was pushed through the other one: R brings it back"));
     }
     if (!readout.problem.empty()) warnings.push_back(readout.problem);
     if (!readout.engine.empty()) warnings.push_back(readout.engine);
     if (!readout.edit_under_way.empty())
-        warnings.push_back(fmt::format("{}: being prepared", readout.edit_under_way));
-    if (readout.paused) warnings.emplace_back("paused: P goes on");
+        warnings.push_back(format_translated("{}: being prepared", readout.edit_under_way));
+    if (readout.paused) warnings.emplace_back(translated("paused: P goes on"));
     if (!status.notice.empty()) warnings.push_back(status.notice);
-    warnings.emplace_back(!readout.holds_something
-                              ? "nothing is in hand: click on an atom to take its molecule; H: all "
-                                "keys"
-                          : !status.has_mouse_hand
-                              ? fmt::format("device: {}; H: all keys", status.device_name)
-                          : status.holding ? "in hand: move the mouse; the wheel goes in and out"
-                                           : "hold Space and move the mouse to pull the molecule, "
-                                             "or use the arrow keys; H: all keys");
+    warnings.emplace_back(
+        !readout.holds_something
+            ? translated("nothing is in hand: click on an atom to take its molecule; H: all "
+                         "keys")
+        : !status.has_mouse_hand ? format_translated("device: {}; H: all keys", status.device_name)
+        : status.holding         ? translated("in hand: move the mouse; the wheel goes in and out")
+                                 : translated("hold Space and move the mouse to pull the molecule, "
+                                                      "or use the arrow keys; H: all keys"));
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     const ScreenArea area = free_area(screen.x, screen.y);
     const float width = std::max(scaled(240), area.width() - 2 * panel_edge());
@@ -421,7 +432,7 @@ void Overlay::draw_recording(double seconds) const {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     const ScreenArea area = free_area(screen.x, screen.y);
     const auto whole = static_cast<int>(seconds);
-    const std::string text = fmt::format("recording {}:{:02}", whole / 60, whole % 60);
+    const std::string text = format_translated("recording {}:{:02}", whole / 60, whole % 60);
     const ImVec2 size = ImGui::CalcTextSize(text.c_str());
     const float radius = 0.4F * size.y;
     const ImVec2 corner{area.right - panel_edge() - size.x, area.bottom - panel_edge() - size.y};
@@ -441,7 +452,8 @@ void Overlay::draw_help() {
     ImGui::SetNextWindowSizeConstraints({0, 0}, {screen.x - 2 * edge, screen.y - 2 * edge});
     ImGui::SetNextWindowFocus();
     ImGui::SetNextWindowBgAlpha(1);
-    ImGui::Begin("Keys and mouse", &shows_help_, fixed_panel | ImGuiWindowFlags_AlwaysAutoResize);
+    ImGui::Begin(labelled("Keys and mouse").c_str(), &shows_help_,
+                 fixed_panel | ImGuiWindowFlags_AlwaysAutoResize);
     const bool fits = table.width() <= widest;
     if (!fits) table.shrink(widest);
     constexpr ImGuiTableFlags tight = ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_NoPadOuterX;

@@ -1,4 +1,5 @@
 // The panel at the right: the laws of the coupling, and what happened.
+#include "core/translate.h"
 #include "haptics/gains.h"
 #include "session/run_headless.h"
 #include "simulation/coupling.h"
@@ -29,10 +30,13 @@ struct Touch {
     const char* explanation;
 };
 constexpr std::array touches{
-    Touch{"waters", 20, 1e3,
-          "20 pN to 1 nN: dispersion and single hydrogen bonds; strong contacts feel alike"},
-    Touch{"pockets", 100, 5e3, "100 pN to 5 nN: what holds a ligand"},
-    Touch{"walls", 1e3, 5e4, "1 to 50 nN: the shape of hard walls; bonds are not noticed"}};
+    Touch{for_translation("waters"), 20, 1e3,
+          for_translation(
+              "20 pN to 1 nN: dispersion and single hydrogen bonds; strong contacts feel alike")},
+    Touch{for_translation("pockets"), 100, 5e3,
+          for_translation("100 pN to 5 nN: what holds a ligand")},
+    Touch{for_translation("walls"), 1e3, 5e4,
+          for_translation("1 to 50 nN: the shape of hard walls; bonds are not noticed")}};
 constexpr double touch_ratio = 50;        // of the strongest to the weakest
 constexpr double least_clamp_newton = 3;  // that a range needs
 
@@ -47,18 +51,18 @@ void Overlay::draw_right_panel(std::vector<Command>& commands) {
     ImGui::SetNextWindowPos({screen.x - column - edge, edge});
     ImGui::SetNextWindowSize({column, screen.y - 2 * edge});
     fold_in_small_window(right_folds_);
-    const bool is_open = ImGui::Begin("Coupling", nullptr, fixed_panel);
+    const bool is_open = ImGui::Begin(labelled("Coupling").c_str(), nullptr, fixed_panel);
     right_covered_ = is_open ? column + edge : 0;
     if (is_open && ImGui::BeginTabBar("right")) {
-        if (ImGui::BeginTabItem("gains")) {
+        if (ImGui::BeginTabItem(labelled("gains").c_str())) {
             draw_gains(commands);
             ImGui::EndTabItem();
         }
-        if (ImGui::BeginTabItem("over time")) {
+        if (ImGui::BeginTabItem(labelled("over time").c_str())) {
             draw_over_time();
             ImGui::EndTabItem();
         }
-        if (ImGui::BeginTabItem("over separation")) {
+        if (ImGui::BeginTabItem(labelled("over separation").c_str())) {
             draw_over_separation();
             ImGui::EndTabItem();
         }
@@ -90,10 +94,16 @@ void Overlay::draw_gains(std::vector<Command>& commands) {
     const std::array force_points{
         PlotPoint{now_nN, hand_force(laws.force, now_nN * 1e-9), now_colour}};
     draw_plot("force gain",
-              {"F_m (nN)", "force on the hand (N)", forces, {-3.2, 3.2}, force_lines, force_points},
+              {"F_m (nN)",
+               translated("force on the hand (N)"),
+               forces,
+               {-3.2, 3.2},
+               force_lines,
+               force_points},
               height);
-    tip("Eq. 2: F_h = a1 atan(d1 F) + a2 [atan(d2 (F - F_0)) + atan(d2 (F + F_0))]; the point is "
-        "where you are. Steep for weak forces, flat for strong ones, never cut off.");
+    tip(translated(
+        "Eq. 2: F_h = a1 atan(d1 F) + a2 [atan(d2 (F - F_0)) + atan(d2 (F + F_0))]; the point is "
+        "where you are. Steep for weak forces, flat for strong ones, never cut off."));
     const std::array gain_lines{PlotLine{x_, z_, gain_colour, "A_d"}};
     const std::array gain_points{PlotPoint{
         now_nN,
@@ -105,10 +115,12 @@ void Overlay::draw_gains(std::vector<Command>& commands) {
     if (is_guarded())
         gains.high = std::max(gains.high, 1.1 * cm_per_angstrom(last_.displacement_gain));
     draw_plot("displacement gain",
-              {"F_m (nN)", "handle per molecule (cm/Å)", forces, gains, gain_lines, gain_points},
+              {"F_m (nN)", translated("handle per molecule (cm/Å)"), forces, gains, gain_lines,
+               gain_points},
               height);
-    tip("Eq. 3: A_d = A_dmin + b [atan((|F| - F_off) g) - atan(-F_off g)]: far from everything the "
-        "molecule goes far for a little travel of the handle, in contact it goes slowly.");
+    tip(translated(
+        "Eq. 3: A_d = A_dmin + b [atan((|F| - F_off) g) - atan(-F_off g)]: far from everything the "
+        "molecule goes far for a little travel of the handle, in contact it goes slowly."));
     const LiveSettings before = settings_;
     const float top = ImGui::GetCursorPosY();
     draw_gain_sliders();
@@ -121,10 +133,10 @@ void Overlay::slide(const char* label, double& value, double low, double high, c
     ImGui::SetNextItemWidth(-scaled(75));
     const LiveSettings before = settings_;
     ImGui::SliderScalar(
-        label, ImGuiDataType_Double, &value, &low, &high, format,
+        labelled(label).c_str(), ImGuiDataType_Double, &value, &low, &high, format,
         ImGuiSliderFlags_AlwaysClamp | (logarithmic ? ImGuiSliderFlags_Logarithmic : 0));
     remember_edit(before);
-    tip(explanation);
+    tip(translated(explanation));
 }
 
 void Overlay::remember_edit(const LiveSettings& before) {
@@ -152,39 +164,46 @@ void Overlay::draw_gain_sliders() {
     if (has_range) {
         // Its sliders stand below.
     } else if (is_perceptual) {
-        slide("F_lo", c.F_lo_pN, 1, 1000, "%.0f pN", true,
-              "molecular force that is felt as 0.3 N, pN; the law is linear below");
-        slide("F_hi", c.F_hi_nN, 0.1, 100, "%.2f nN", true,
-              "molecular force that is felt as 3 N, nN; between, equally many noticeable steps a "
-              "decade");
+        slide(
+            "F_lo", c.F_lo_pN, 1, 1000, "%.0f pN", true,
+            for_translation("molecular force that is felt as 0.3 N, pN; the law is linear below"));
+        slide(
+            "F_hi", c.F_hi_nN, 0.1, 100, "%.2f nN", true,
+            for_translation(
+                "molecular force that is felt as 3 N, nN; between, equally many noticeable steps a "
+                "decade"));
         c.F_hi_nN = std::max(c.F_hi_nN, 2.1e-3 * c.F_lo_pN);
     } else if (variable_force) {
         slide("A_f max", c.A_f_max, 0.1e9, 50e9, "%.3g", true,
-              "A_fmax of eq. 2: gain of weak forces, N on the hand per N on the molecule");
+              for_translation(
+                  "A_fmax of eq. 2: gain of weak forces, N on the hand per N on the molecule"));
         slide("A_f min", c.A_f_min, 0.01e9, 5e9, "%.3g", true,
-              "A_fmin of eq. 2: gain of strong forces, N/N");
-        slide("F_h1", c.F_h1_N, 0.1, 2.9, "%.2f N", false,
-              "F_h1 of eq. 2, N: where the weak forces' part of the curve tends to");
+              for_translation("A_fmin of eq. 2: gain of strong forces, N/N"));
+        slide(
+            "F_h1", c.F_h1_N, 0.1, 2.9, "%.2f N", false,
+            for_translation("F_h1 of eq. 2, N: where the weak forces' part of the curve tends to"));
         slide("F_h2", c.F_h2_N, 0.2, 3.3, "%.2f N", false,
-              "F_h2 of eq. 2, N: where the strongest forces tend to; above F_h1");
+              for_translation("F_h2 of eq. 2, N: where the strongest forces tend to; above F_h1"));
         slide("F_0", c.F_0_nN, 0.0, 10, "%.2f nN", false,
-              "F_0 of eq. 2, nN: between weak and strong forces");
+              for_translation("F_0 of eq. 2, nN: between weak and strong forces"));
         c.F_h2_N = std::max(c.F_h2_N, 1.05 * c.F_h1_N);
         c.A_f_max = std::max(c.A_f_max, c.A_f_min);
     } else if (c.mode != CouplingMode::NoForce) {
-        slide("A_f", c.A_f, 0.01e9, 50e9, "%.3g", true, "constant force gain F_h/F_m, N/N");
+        slide("A_f", c.A_f, 0.01e9, 50e9, "%.3g", true,
+              for_translation("constant force gain F_h/F_m, N/N"));
     }
     if (variable_displacement) {
         slide("A_d max", c.A_d_max, 0.01e9, 10e9, "%.3g", true,
-              "A_dmax of eq. 3: handle metres per molecule metre in contact");
+              for_translation("A_dmax of eq. 3: handle metres per molecule metre in contact"));
         slide("A_d min", c.A_d_min, 0.0005e9, 1e9, "%.3g", true,
-              "A_dmin of eq. 3: handle metres per molecule metre far away");
+              for_translation("A_dmin of eq. 3: handle metres per molecule metre far away"));
         slide("F_off", c.F_off_pN, 1, 500, "%.0f pN", true,
-              "F_off of eq. 3, pN: molecular force where near begins");
+              for_translation("F_off of eq. 3, pN: molecular force where near begins"));
         c.A_d_max = std::max(c.A_d_max, c.A_d_min);
     } else {
         slide("A_d", c.A_d, 0.005e9, 10e9, "%.3g", true,
-              "constant displacement gain, handle metres per molecule metre; 0.25e9 is 2.5 cm/Å");
+              for_translation("constant displacement gain, handle metres per molecule metre; "
+                              "0.25e9 is 2.5 cm/Å"));
     }
     if (is_guarded()) choose_range();
 }
@@ -199,28 +218,34 @@ void Overlay::choose_touch() {
         c.feel_pN = range;
     };
     ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted("feel");
+    ImGui::TextUnformatted(translated("feel"));
     for (const Touch& touch : touches) {
-        same_line_if_it_fits(touch.name);
-        if (ImGui::SmallButton(touch.name)) set({{touch.weakest_pN, touch.strongest_pN}});
-        tip(touch.explanation);
+        same_line_if_it_fits(translated(touch.name));
+        if (ImGui::SmallButton(labelled(touch.name).c_str()))
+            set({{touch.weakest_pN, touch.strongest_pN}});
+        tip(translated(touch.explanation));
     }
-    same_line_if_it_fits("as the scene");
-    if (ImGui::SmallButton("as the scene")) set(scene_.coupling.feel_pN);
-    tip("the range that the scene's file states, or its force law where it states none");
+    same_line_if_it_fits(translated("as the scene"));
+    if (ImGui::SmallButton(labelled("as the scene").c_str())) set(scene_.coupling.feel_pN);
+    tip(translated(
+        "the range that the scene's file states, or its force law where it states none"));
     if (!c.feel_pN) return;
     double weakest = (*c.feel_pN)[0];
-    slide("touch", weakest, touches.front().weakest_pN, touches.back().weakest_pN, "from %.0f pN",
-          true, "left: weak forces are felt; right: only strong ones; up to 50 times as strong");
+    slide(for_translation("touch"), weakest, touches.front().weakest_pN, touches.back().weakest_pN,
+          translated("from %.0f pN"), true,
+          for_translation(
+              "left: weak forces are felt; right: only strong ones; up to 50 times as strong"));
     if (weakest != (*c.feel_pN)[0]) c.feel_pN = {weakest, touch_ratio * weakest};
 }
 
 void Overlay::choose_laws() {
     CouplingDescription& c = settings_.coupling;
-    const std::string laws = fmt::format(
-        "laws: {}, {}, {}###laws", force_law_names[static_cast<std::size_t>(c.force_law)],
-        displacement_law_names[static_cast<std::size_t>(c.displacement_law)],
-        workspace_names[static_cast<std::size_t>(c.workspace)]);
+    const std::string laws =
+        format_translated("laws: {}, {}, {}",
+                          force_law_names[static_cast<std::size_t>(c.force_law)],
+                          displacement_law_names[static_cast<std::size_t>(c.displacement_law)],
+                          workspace_names[static_cast<std::size_t>(c.workspace)]) +
+        "###laws";
     if (!ImGui::TreeNode(laws.c_str())) return;
     const auto choose = [&](const char* label, const auto& names, auto& choice, const char* text) {
         const LiveSettings before = settings_;
@@ -228,24 +253,32 @@ void Overlay::choose_laws() {
         std::vector<const char*> items;
         for (const std::string_view name : names) items.push_back(name.data());
         ImGui::SetNextItemWidth(-scaled(75));
-        if (ImGui::Combo(label, &i, items.data(), static_cast<int>(items.size()))) {
+        if (ImGui::Combo(labelled(label).c_str(), &i, items.data(),
+                         static_cast<int>(items.size()))) {
             undo_.push_back(before);
             redo_.clear();
             choice = static_cast<std::remove_reference_t<decltype(choice)>>(i);
         }
-        tip(text);
+        tip(translated(text));
     };
-    choose("force", force_law_names, c.force_law,
-           "force law: eq. 2 as printed, or calibrated to its slopes, a constant gain, or equal "
-           "noticeable steps for each decade");
-    choose("travel", displacement_law_names, c.displacement_law,
-           "displacement law: eq. 3 that sees stiff places too, as printed, or a constant gain");
-    choose("raised", gain_shape_names, c.gain_shape,
-           "where A_d is raised for the cap: in all directions, or, a tensor, in those that are "
-           "stiff, so that sliding along a wall goes faster");
-    choose("reach", workspace_names, c.workspace,
-           "how far places are reached: the clutch alone; outside a bubble the molecule goes on by "
-           "itself; or the handle drifts back to its centre while it moves");
+    choose(
+        for_translation("force"), force_law_names, c.force_law,
+        for_translation(
+            "force law: eq. 2 as printed, or calibrated to its slopes, a constant gain, or equal "
+            "noticeable steps for each decade"));
+    choose(
+        for_translation("travel"), displacement_law_names, c.displacement_law,
+        for_translation(
+            "displacement law: eq. 3 that sees stiff places too, as printed, or a constant gain"));
+    choose(
+        for_translation("raised"), gain_shape_names, c.gain_shape,
+        for_translation(
+            "where A_d is raised for the cap: in all directions, or, a tensor, in those that are "
+            "stiff, so that sliding along a wall goes faster"));
+    choose(for_translation("reach"), workspace_names, c.workspace,
+           for_translation("how far places are reached: the clutch alone; outside a bubble the "
+                           "molecule goes on by "
+                           "itself; or the handle drifts back to its centre while it moves"));
     ImGui::TreePop();
 }
 
@@ -254,25 +287,28 @@ void Overlay::choose_range() {
     CouplingDescription& c = settings_.coupling;
     const LiveSettings before = settings_;
     bool has_range = c.feel_pN.has_value();
-    if (c.clamp_N >= least_clamp_newton && ImGui::Checkbox("feel a range", &has_range)) {
+    if (c.clamp_N >= least_clamp_newton &&
+        ImGui::Checkbox(labelled("feel a range").c_str(), &has_range)) {
         undo_.push_back(before);
         redo_.clear();
         c.feel_pN.reset();
         if (has_range) c.feel_pN = {c.F_lo_pN, 1e3 * c.F_hi_nN};
     }
-    tip("what must be felt, in place of a force law: the weakest force as 0.3 N, the strongest as "
-        "2.7 N");
+    tip(translated(
+        "what must be felt, in place of a force law: the weakest force as 0.3 N, the strongest as "
+        "2.7 N"));
     if (c.feel_pN) {
         auto& [weakest, strongest] = *c.feel_pN;
-        slide("weakest", weakest, lowest_pN, highest_pN, "%.0f pN", true,
-              "molecular force that is felt as 0.3 N or more");
-        slide("strongest", strongest, lowest_pN, highest_pN, "%.0f pN", true,
-              "molecular force that is felt as 2.7 N");
+        slide(for_translation("weakest"), weakest, lowest_pN, highest_pN, "%.0f pN", true,
+              for_translation("molecular force that is felt as 0.3 N or more"));
+        slide(for_translation("strongest"), strongest, lowest_pN, highest_pN, "%.0f pN", true,
+              for_translation("molecular force that is felt as 2.7 N"));
         strongest = std::max(strongest, least_ratio * weakest);
     }
     if (c.feel_within_pN) {
-        slide("within", *c.feel_within_pN, lowest_pN, highest_pN, "%.0f pN", true,
-              "how far forces may be from what all joints would give; active joints follow");
+        slide(for_translation("within"), *c.feel_within_pN, lowest_pN, highest_pN, "%.0f pN", true,
+              for_translation(
+                  "how far forces may be from what all joints would give; active joints follow"));
     }
 }
 
@@ -293,26 +329,26 @@ void Overlay::draw_traces(std::string_view x_label, PlotRange across) {
                    x_.empty() ? std::span<const PlotPoint>() : points},
                   plot_height_ + plot_label_height(!label.empty()));
     };
-    draw("F_m", "", "force on the molecule, F_m (nN)", 0.2, molecule_colour,
+    draw("F_m", "", translated("force on the molecule, F_m (nN)"), 0.2, molecule_colour,
          [](const Reading& r) { return r.molecular_nN; });
-    tip("nN; on one axis + repels and - attracts");
-    draw("F_h", "", "force on the hand, F_h (N)", 0.5, hand_colour,
+    tip(translated("nN; on one axis + repels and - attracts"));
+    draw("F_h", "", translated("force on the hand, F_h (N)"), 0.5, hand_colour,
          [](const Reading& r) { return r.hand_N; });
-    tip("N, as sent to the device");
-    draw("A_d", x_label, "displacement gain, A_d (cm/Å)", 0.2, gain_colour,
+    tip(translated("N, as sent to the device"));
+    draw("A_d", x_label, translated("displacement gain, A_d (cm/Å)"), 0.2, gain_colour,
          [](const Reading& r) { return cm_per_angstrom(r.displacement_gain); });
-    tip("A_d = dx_handle/dx_molecule; 1 cm/Å is 1e8");
+    tip(translated("A_d = dx_handle/dx_molecule; 1 cm/Å is 1e8"));
 }
 
 void Overlay::draw_over_time() {
     fill_from_history(x_, [](const Reading& r) { return r.time_s; });
     const double now = x_.empty() ? 0 : x_.back();
-    draw_traces("time (s)", {now - History::seconds, now + 0.02 * History::seconds});
+    draw_traces(translated("time (s)"), {now - History::seconds, now + 0.02 * History::seconds});
 }
 
 void Overlay::draw_over_separation() {
     fill_from_history(x_, [](const Reading& r) { return r.distance_angstrom; });
-    draw_traces("separation (Å)", range_around(x_, 1));
+    draw_traces(translated("separation (Å)"), range_around(x_, 1));
 }
 
 void Overlay::fill_from_history(std::vector<double>& values, double (*value)(const Reading&)) {

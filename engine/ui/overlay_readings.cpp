@@ -1,4 +1,5 @@
 // The panel at the left: what the scene is, the run, and what is measured.
+#include "core/translate.h"
 #include "haptics/gains.h"
 #include "haptics/hand.h"
 #include "simulation/coupling.h"
@@ -19,12 +20,13 @@
 namespace palpa {
 namespace {
 
-constexpr std::array<const char*, 6> mode_texts{"1  variable force, variable displacement",
-                                                "2  variable force, constant displacement",
-                                                "3  constant force, variable displacement",
-                                                "4  constant force, constant displacement",
-                                                "5  no force",
-                                                "6  guarded"};
+constexpr std::array<const char*, 6> mode_texts{
+    for_translation("1  variable force, variable displacement"),
+    for_translation("2  variable force, constant displacement"),
+    for_translation("3  constant force, variable displacement"),
+    for_translation("4  constant force, constant displacement"),
+    for_translation("5  no force"),
+    for_translation("6  guarded")};
 
 // One line of the readings: a name, a value, and what it is when the mouse rests on it.
 void reading(const char* name, const std::string& value, const char* explanation) {
@@ -48,28 +50,32 @@ bool begin_readings(const char* id) {
 const char* doing(bool on_axis, double force) {
     constexpr double rounding = 1e-6;
     if (!on_axis || std::abs(force) < rounding) return "";
-    return force > 0 ? ", repels" : ", attracts";
+    return force > 0 ? translated(", repels") : translated(", attracts");
 }
 
 // Which water is around the molecules, and what that leaves out.
 void show_solvent(Solvent solvent, bool is_remote) {
     if (is_remote) {
-        return reading("water", "the engine's",
-                       "A remote engine moves the atoms, with its own force field, temperature and "
-                       "water.");
+        return reading(
+            translated("water"), translated("the engine's"),
+            translated("A remote engine moves the atoms, with its own force field, temperature and "
+                       "water."));
     }
     if (solvent == Solvent::None) {
-        return reading("water", "none: vacuum",
-                       "Molecules are in vacuum. Nothing screens charges, so that ionic groups "
+        return reading(
+            translated("water"), translated("none: vacuum"),
+            translated("Molecules are in vacuum. Nothing screens charges, so that ionic groups "
                        "attract and repel each other far too strongly; nothing is gained from "
-                       "water. force_field.solvent of the scene says so.");
+                       "water. force_field.solvent of the scene says so."));
     }
-    reading("water", "implicit, EEF1-SB",
+    reading(
+        translated("water"), translated("implicit, EEF1-SB"),
+        translated(
             "EEF1-SB (Bottaro et al. 2013): each atom gains from water, less what the atoms around "
             "take of its shell; ionic groups are neutral, and charges act through a dielectric of "
             "1.5 r. It leaves out salt, surface tension, polarisation and viscosity, and knows no "
             "inside and outside: a salt bridge is nearly nothing; catalytic pairs of acids and "
-            "metal sites are poor. Energies are no free energies of binding.");
+            "metal sites are poor. Energies are no free energies of binding."));
 }
 
 // Residues whose parameters nobody has fitted.
@@ -81,28 +87,33 @@ void show_approximate(const std::vector<MoleculeDescription>& molecules) {
         }
     }
     if (names.empty()) return;
-    reading("approximate", fmt::format("{}", fmt::join(names, ", ")),
+    reading(
+        translated("approximate"), fmt::format("{}", fmt::join(names, ", ")),
+        translated(
             "Types, charges and parameters of these residues are guesses by likeness to CGenFF's "
             "model compounds (palpa prepare --approximate-ligands): forces on and by them are "
             "rough. For real ones send the molecule to the CGenFF server (cgenff.com) and give "
-            "its stream file to palpa prepare with --parameters.");
+            "its stream file to palpa prepare with --parameters."));
 }
 
 void switch_sound(const OverlayStatus& status, std::vector<Action>& actions) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
-    ImGui::TextUnformatted("sound");
-    tip("S. The force on the hand as a tone: higher and louder is stronger, nothing is silence. "
-        "The choice is remembered.");
+    ImGui::TextUnformatted(translated("sound"));
+    tip(translated(
+        "S. The force on the hand as a tone: higher and louder is stronger, nothing is silence. "
+        "The choice is remembered."));
     ImGui::TableNextColumn();
     bool sounds = status.sounds;
-    if (ImGui::Checkbox("force as a tone", &sounds)) actions.push_back(Action::ToggleSound);
+    if (ImGui::Checkbox(labelled("force as a tone").c_str(), &sounds))
+        actions.push_back(Action::ToggleSound);
 }
 
+// Both texts are English.
 void button(const char* text, const char* explanation, Action action,
             std::vector<Action>& actions) {
-    if (ImGui::Button(text)) actions.push_back(action);
-    tip(explanation);
+    if (ImGui::Button(labelled(text).c_str())) actions.push_back(action);
+    tip(translated(explanation));
 }
 
 }  // namespace
@@ -116,86 +127,100 @@ void Overlay::draw_scene(const Readout& readout, const OverlayStatus& status,
     ImGui::SetNextWindowSize({column, 0});
     // A title that the bar would cut stands below it.
     const bool fits = ImGui::CalcTextSize(scene_.title.c_str()).x < column - scaled(45);
-    const std::string title = fmt::format("{}###scene", fits ? scene_.title : "Scene");
+    const std::string title = fmt::format("{}###scene", fits ? scene_.title : translated("Scene"));
     fold_in_small_window(left_folds_);
     const bool is_open = ImGui::Begin(title.c_str(), nullptr, fixed_panel);
     left_covered_ = is_open ? column + edge : 0;
     if (is_open) {
         if (!fits) ImGui::TextWrapped("%s", scene_.title.c_str());
-        if (!scene_.about.empty() && ImGui::CollapsingHeader("About")) {
+        if (!scene_.about.empty() && ImGui::CollapsingHeader(labelled("About").c_str())) {
             ImGui::TextWrapped("%s", scene_.about.c_str());
         }
         draw_buttons(readout, status.recorded_s.has_value(), actions);
         choose_mode(commands);
         draw_readings(readout, status, actions);
-        if (ImGui::CollapsingHeader("Machine")) draw_machine(readout, status);
+        if (ImGui::CollapsingHeader(labelled("Machine").c_str())) draw_machine(readout, status);
     }
     ImGui::End();
 }
 
 void Overlay::draw_buttons(const Readout& readout, bool is_recording,
                            std::vector<Action>& actions) {
-    button(readout.paused ? "Go on" : "Pause",
-           "P. While paused nothing moves, and the hand feels nothing.", Action::PauseOrGo,
-           actions);
-    same_line_if_it_fits("Step");
-    button("Step", "Full stop key. One step of the simulation, then pause.", Action::StepOnce,
-           actions);
-    same_line_if_it_fits("Reset");
-    button("Reset", "R. Molecules and view go back to their start; the settings stay.",
+    button(readout.paused ? for_translation("Go on") : for_translation("Pause"),
+           for_translation("P. While paused nothing moves, and the hand feels nothing."),
+           Action::PauseOrGo, actions);
+    same_line_if_it_fits(translated("Step"));
+    button(for_translation("Step"),
+           for_translation("Full stop key. One step of the simulation, then pause."),
+           Action::StepOnce, actions);
+    same_line_if_it_fits(translated("Reset"));
+    button(for_translation("Reset"),
+           for_translation("R. Molecules and view go back to their start; the settings stay."),
            Action::Reset, actions);
-    same_line_if_it_fits("Open");
-    button("Open", "Ctrl+O. Another scene, or a structure of your own.", Action::StartScreen,
-           actions);
-    same_line_if_it_fits("Save");
-    button("Save", "Ctrl+S. Writes the scene with these settings to a file of its own.",
+    same_line_if_it_fits(translated("Open"));
+    button(for_translation("Open"),
+           for_translation("Ctrl+O. Another scene, or a structure of your own."),
+           Action::StartScreen, actions);
+    same_line_if_it_fits(translated("Save"));
+    button(for_translation("Save"),
+           for_translation("Ctrl+S. Writes the scene with these settings to a file of its own."),
            Action::Save, actions);
-    same_line_if_it_fits("Picture");
-    button("Picture", "F12. A screenshot.", Action::Screenshot, actions);
-    same_line_if_it_fits("Film");
-    button("Film", "M. Films the window, until M again.", Action::Film, actions);
-    same_line_if_it_fits("Coordinates");
-    button("Coordinates", "E. Saves what is shown, or in hand: PDB, mmCIF, GRO, PSF and CRD.",
+    same_line_if_it_fits(translated("Picture"));
+    button(for_translation("Picture"), for_translation("F12. A screenshot."), Action::Screenshot,
+           actions);
+    same_line_if_it_fits(translated("Film"));
+    button(for_translation("Film"), for_translation("M. Films the window, until M again."),
+           Action::Film, actions);
+    same_line_if_it_fits(translated("Coordinates"));
+    button(for_translation("Coordinates"),
+           for_translation("E. Saves what is shown, or in hand: PDB, mmCIF, GRO, PSF and CRD."),
            Action::Export, actions);
-    same_line_if_it_fits(is_recording ? "End recording" : "Record");
-    button(is_recording ? "End recording" : "Record",
-           "F9. Writes what happens to a new folder, from which palpa replay plays it again.",
+    same_line_if_it_fits(
+        translated(is_recording ? for_translation("End recording") : for_translation("Record")));
+    button(is_recording ? for_translation("End recording") : for_translation("Record"),
+           for_translation(
+               "F9. Writes what happens to a new folder, from which palpa replay plays it again."),
            Action::Record, actions);
-    same_line_if_it_fits("Add");
-    button("Add", "Insert. A molecule more: a residue, a copy, or from a file.", Action::Add,
-           actions);
-    same_line_if_it_fits("Remove");
-    button("Remove", "Delete. The molecule in hand goes; Ctrl+Z brings it back.", Action::Remove,
-           actions);
-    same_line_if_it_fits("Keys");
-    button("Keys", "H. All keys.", Action::ToggleHelp, actions);
+    same_line_if_it_fits(translated("Add"));
+    button(for_translation("Add"),
+           for_translation("Insert. A molecule more: a residue, a copy, or from a file."),
+           Action::Add, actions);
+    same_line_if_it_fits(translated("Remove"));
+    button(for_translation("Remove"),
+           for_translation("Delete. The molecule in hand goes; Ctrl+Z brings it back."),
+           Action::Remove, actions);
+    same_line_if_it_fits(translated("Keys"));
+    button(for_translation("Keys"), for_translation("H. All keys."), Action::ToggleHelp, actions);
 }
 
 void Overlay::choose_mode(std::vector<Command>& commands) {
     ImGui::SetNextItemWidth(-1);
     const auto mode = static_cast<std::size_t>(settings_.coupling.mode);
-    if (ImGui::BeginCombo("##mode", mode_texts[mode])) {
+    if (ImGui::BeginCombo("##mode", translated(mode_texts[mode]))) {
         for (std::size_t i = 0; i < mode_texts.size(); ++i) {
-            if (ImGui::Selectable(mode_texts[i], i == mode)) {
+            if (ImGui::Selectable(labelled(mode_texts[i]).c_str(), i == mode)) {
                 set_mode(static_cast<CouplingMode>(i), commands);
             }
         }
         ImGui::EndCombo();
     }
-    tip("The paper's five modes, keys 1 to 5, and guarded coupling, 6: there the servo moves the "
+    tip(translated(
+        "The paper's five modes, keys 1 to 5, and guarded coupling, 6: there the servo moves the "
         "molecule itself, in the field around it, a thousand times a second. The force gain is "
-        "F_h/F_m, the displacement gain A_d = dx_handle/dx_molecule.");
+        "F_h/F_m, the displacement gain A_d = dx_handle/dx_molecule."));
     int period = static_cast<int>(std::lround(settings_.period_ms));
     const LiveSettings before = settings_;
     ImGui::SetNextItemWidth(-scaled(70));
-    if (ImGui::SliderInt("period", &period, 1, 100, "%d ms", ImGuiSliderFlags_Logarithmic)) {
+    if (ImGui::SliderInt(labelled("period").c_str(), &period, 1, 100, "%d ms",
+                         ImGuiSliderFlags_Logarithmic)) {
         LiveSettings settings = settings_;
         settings.period_ms = std::clamp(period, 1, 1000);
         change_settings(settings, commands);
     }
     remember_edit(before);
-    tip("T_s, ms: how often the simulation answers the hand. In the paper's modes the hand feels a "
-        "force that is one period old, and held for one: the longer, the more it vibrates.");
+    tip(translated(
+        "T_s, ms: how often the simulation answers the hand. In the paper's modes the hand feels a "
+        "force that is one period old, and held for one: the longer, the more it vibrates."));
 }
 
 void Overlay::draw_readings(const Readout& readout, const OverlayStatus& status,
@@ -204,15 +229,17 @@ void Overlay::draw_readings(const Readout& readout, const OverlayStatus& status,
     draw_forces(readout.contact);
     draw_gain_readings(readout.contact);
     draw_comparison(readout);
-    reading(has_flexible_ ? "energy of all" : "energy",
+    reading(has_flexible_ ? translated("energy of all") : translated("energy"),
             fmt::format("{:.3f} kcal/mol", readout.contact.potential_kcal_per_mol),
-            has_flexible_ ? "Of all molecules, bonded terms too, kcal/mol"
-                          : "Of the molecule in hand with all others: Lennard-Jones and Coulomb, "
-                            "kcal/mol");
+            has_flexible_
+                ? translated("Of all molecules, bonded terms too, kcal/mol")
+                : translated("Of the molecule in hand with all others: Lennard-Jones and Coulomb, "
+                             "kcal/mol"));
     show_solvent(scene_.force_field.solvent, scene_.engine.has_value());
     show_approximate(scene_.molecules);
     if (status.devices.empty()) {
-        reading("device", status.device_name, "what the force is sent to, 1000 times a second");
+        reading(translated("device"), status.device_name,
+                translated("what the force is sent to, 1000 times a second"));
     } else {
         choose_device(status);
     }
@@ -222,76 +249,99 @@ void Overlay::draw_readings(const Readout& readout, const OverlayStatus& status,
 
 void Overlay::draw_forces(const ContactModel& contact) const {
     const bool on_axis = contact.active_freedom == 1;
-    reading("separation", fmt::format("{:.3f} Å", last_.distance_angstrom),
-            "Distance of the reference atoms, Å");
-    reading("force, molecule",
+    reading(translated("separation"), fmt::format("{:.3f} Å", last_.distance_angstrom),
+            translated("Distance of the reference atoms, Å"));
+    reading(translated("force, molecule"),
             fmt::format("{:.4f} nN{}", std::abs(last_.molecular_nN),
                         doing(on_axis, last_.molecular_nN)),
-            "|F_m|, nN, on the molecule in hand");
-    reading("force, hand",
-            fmt::format("{:.3f} N{}", std::abs(last_.hand_N), doing(on_axis, last_.hand_N)),
-            "F_h = f(F_m), N, as sent to the device; eq. 2 of the paper in modes 1 and 2");
+            translated("|F_m|, nN, on the molecule in hand"));
+    reading(
+        translated("force, hand"),
+        fmt::format("{:.3f} N{}", std::abs(last_.hand_N), doing(on_axis, last_.hand_N)),
+        translated("F_h = f(F_m), N, as sent to the device; eq. 2 of the paper in modes 1 and 2"));
     if (has_flexible_) {
-        reading(
-            "relaxation", "not complete",
-            "The surroundings follow the hand by a few steps and are not at rest meanwhile: the "
-            "force can be several times that of surroundings at rest. Measured in "
-            "scenes/hiv/results.md.");
+        reading(translated("relaxation"), translated("not complete"),
+                translated("The surroundings follow the hand by a few steps and are not at rest "
+                           "meanwhile: the "
+                           "force can be several times that of surroundings at rest. Measured in "
+                           "scenes/hiv/results.md."));
     }
     if (!on_axis && scene_.grab.atom.empty()) {  // a spring turns nothing
-        reading("torque", fmt::format("{:.3g} nN Å", 1e19 * contact.torque_newton_metre.norm()),
-                "On the molecule in hand about its centre of mass. No motor plays it, so a "
-                "molecule that is turned between the way in and the way out can give the hand "
-                "energy.");
+        reading(translated("torque"),
+                fmt::format("{:.3g} nN Å", 1e19 * contact.torque_newton_metre.norm()),
+                translated(
+                    "On the molecule in hand about its centre of mass. No motor plays it, so a "
+                    "molecule that is turned between the way in and the way out can give the hand "
+                    "energy."));
     }
 }
 
 void Overlay::draw_gain_readings(const ContactModel& contact) const {
     const CouplingLaws laws = build_coupling_laws(settings_.coupling);
     const double felt = is_guarded() ? felt_N_per_m_ : felt_stiffness(laws, contact);
-    reading("stiffness felt", fmt::format("{:.4g} of {:.4g} N/m", felt, stiffness_limit_),
+    reading(
+        translated("stiffness felt"),
+        format_translated("{:.4g} of {:.4g} N/m", felt, stiffness_limit_),
+        translated(
             "K = (dF_h/dF_m) k / A_d, N/m. Guarded: of the cap, half of what the device keeps "
             "calm; A_d is raised until it holds. Else of the largest K that the hand keeps calm: "
-            "about B/(1.5 T_s), found from the eigenvalues of hand, device, period and delay.");
-    reading("displ. gain", fmt::format("{:.2f} cm/Å", cm_per_angstrom(last_.displacement_gain)),
+            "about B/(1.5 T_s), found from the eigenvalues of hand, device, period and delay."));
+    reading(
+        translated("displ. gain"),
+        fmt::format("{:.2f} cm/Å", cm_per_angstrom(last_.displacement_gain)),
+        translated(
             "A_d = dx_handle/dx_molecule, centimetres of the handle for an Å of the molecule; 1 "
-            "cm/Å is 1e8. Eq. 3 of the paper in modes 1 and 3");
-    reading("force gain", fmt::format("{:.3g}", force_gain_), "A_f = F_h/F_m, N/N");
-    reading("work on hand", fmt::format("{:+.2f} mJ", 1e3 * hand_energy_J_),
+            "cm/Å is 1e8. Eq. 3 of the paper in modes 1 and 3"));
+    reading(translated("force gain"), fmt::format("{:.3g}", force_gain_),
+            translated("A_f = F_h/F_m, N/N"));
+    reading(
+        translated("work on hand"), fmt::format("{:+.2f} mJ", 1e3 * hand_energy_J_),
+        translated(
             "Energy given to the hand so far, mJ: over a way there and back it should not be above "
-            "0.");
+            "0."));
     if (is_guarded()) {
-        reading("overtravel", fmt::format("{:.1f} mm", 1e3 * overtravel_m_),
-                fmt::format("The contact force reached {:.3g} nN (coupling.stop_nN), so the "
-                            "molecule stopped. Move back by this much before it follows again.",
-                            settings_.coupling.stop_nN)
-                    .c_str());
+        reading(
+            translated("overtravel"), fmt::format("{:.1f} mm", 1e3 * overtravel_m_),
+            format_translated("The contact force reached {:.3g} nN (coupling.stop_nN), so the "
+                              "molecule stopped. Move back by this much before it follows again.",
+                              settings_.coupling.stop_nN)
+                .c_str());
     }
 }
 
 void Overlay::draw_machine(const Readout& readout, const OverlayStatus& status) {
     if (!begin_readings("machine")) return;
     const int freedom = readout.contact.active_freedom;
-    reading("moving", fmt::format("{} degree{} of freedom", freedom, freedom == 1 ? "" : "s"),
-            "Degrees of freedom that a step may move");
-    reading("hand", std::string(grip_names[static_cast<std::size_t>(scene_.hand.grip)]),
-            "The grip on the emulated handle; hand.grip of the scene");
-    reading("step", fmt::format("{:.3f} ms of {} ms", readout.step_ms, settings_.period_ms),
-            "Wall time of the last simulation step, and the declared period");
-    reading("drawing", fmt::format("{:.1f} ms, scale {:.2f}", status.frame_ms, status.render_scale),
-            "Time of a frame. Where the machine cannot hold 30 Hz, effects are left out first, "
-            "then the picture is drawn smaller.");
+    reading(
+        translated("moving"),
+        fmt::format(fmt::runtime(translated_plural("{} degree of freedom", "{} degrees of freedom",
+                                                   static_cast<std::size_t>(freedom))),
+                    freedom),
+        translated("Degrees of freedom that a step may move"));
+    reading(translated("hand"), std::string(grip_names[static_cast<std::size_t>(scene_.hand.grip)]),
+            translated("The grip on the emulated handle; hand.grip of the scene"));
+    reading(translated("step"),
+            format_translated("{:.3f} ms of {} ms", readout.step_ms, settings_.period_ms),
+            translated("Wall time of the last simulation step, and the declared period"));
+    reading(translated("drawing"),
+            format_translated("{:.1f} ms, scale {:.2f}", status.frame_ms, status.render_scale),
+            translated(
+                "Time of a frame. Where the machine cannot hold 30 Hz, effects are left out first, "
+                "then the picture is drawn smaller."));
     const double ticks = 1e3 * last_.time_s;
-    reading("servo",
-            fmt::format("{:.2f} % of ticks missed{}",
-                        ticks > 0 ? 100 * static_cast<double>(status.servo.overruns) / ticks : 0.0,
-                        !status.servo.real_time ? ", ordinary priority"
-                        : !status.servo.locked  ? ", memory not locked"
-                                                : ""),
+    reading(
+        translated("servo"),
+        format_translated(
+            "{:.2f} % of ticks missed{}",
+            ticks > 0 ? 100 * static_cast<double>(status.servo.overruns) / ticks : 0.0,
+            !status.servo.real_time ? translated(", ordinary priority")
+            : !status.servo.locked  ? translated(", memory not locked")
+                                    : ""),
+        translated(
             "A force is sent every millisecond. Where the system was late, a tick was missed, and "
             "the device kept the force before. Without real-time priority or locked memory that "
             "happens more often: allow rtprio 50 and memlock for yourself in "
-            "/etc/security/limits.conf.");
+            "/etc/security/limits.conf."));
     ImGui::EndTable();
     ImGui::TextDisabled("%s", status.gpu_name.c_str());
 }
@@ -299,15 +349,16 @@ void Overlay::draw_machine(const Readout& readout, const OverlayStatus& status) 
 void Overlay::choose_device(const OverlayStatus& status) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
-    ImGui::TextUnformatted("device");
-    tip("What the force is sent to, 1000 times a second. D takes the next one that is there. The "
-        "choice is remembered; a device that was unplugged is taken again when it is back.");
+    ImGui::TextUnformatted(translated("device"));
+    tip(translated(
+        "What the force is sent to, 1000 times a second. D takes the next one that is there. The "
+        "choice is remembered; a device that was unplugged is taken again when it is back."));
     ImGui::TableNextColumn();
     ImGui::SetNextItemWidth(-1);
     if (!ImGui::BeginCombo("##device", status.device.c_str())) return;
     for (const DeviceOffer& offer : status.devices) {
         const std::string text =
-            fmt::format("{}{}", offer.name, offer.is_there ? "" : " (not seen)");
+            fmt::format("{}{}", offer.name, offer.is_there ? "" : translated(" (not seen)"));
         if (ImGui::Selectable(text.c_str(), offer.name == status.device)) device_ = offer.name;
         tip(offer.summary.c_str());
     }
@@ -319,24 +370,28 @@ void Overlay::draw_comparison(const Readout& readout) {
     const CouplingDescription& c = settings_.coupling;
     if (const auto range = c.feel_pN; range && is_guarded()) {
         reading(
-            "to be felt",
-            fmt::format("{:.4g} to {:.4g} pN, A_d x {:.2f}", (*range)[0], (*range)[1], cap_ratio_),
-            "Molecular forces that are felt as 0.3 N or more and 2.7 N or less, and how much "
-            "A_d is raised at this moment so that the stiffness felt stays under its cap: by "
-            "so much less the molecule goes.");
+            translated("to be felt"),
+            format_translated("{:.4g} to {:.4g} pN, A_d x {:.2f}", (*range)[0], (*range)[1],
+                              cap_ratio_),
+            translated(
+                "Molecular forces that are felt as 0.3 N or more and 2.7 N or less, and how much "
+                "A_d is raised at this moment so that the stiffness felt stays under its cap: by "
+                "so much less the molecule goes."));
     }
     if (!readout.error_pN) return;
     std::string error = fmt::format("{:.3g} pN", *readout.error_pN);
     if (const auto within_pN = c.feel_within_pN)
-        error += fmt::format(" of {:.4g} pN allowed", *within_pN);
+        error += format_translated(" of {:.4g} pN allowed", *within_pN);
     if (readout.work_budget.steps > 0)
-        error += fmt::format(", {} joints move", readout.work_budget.active);
+        error += format_translated(", {} joints move", readout.work_budget.active);
     if (const double age = readout.contact.model_age_angstrom; std::isfinite(age))
-        error += fmt::format(", model {:.2f} Å old", age);
-    reading("error", error,
+        error += format_translated(", model {:.2f} Å old", age);
+    reading(
+        translated("error"), error,
+        translated(
             "By how much the force differs from what it were if all joints relaxed completely on "
             "all pairs, as estimated; and how far the hand has gone from where the model of the "
-            "force was made.");
+            "force was made."));
 }
 
 }  // namespace palpa

@@ -1,5 +1,7 @@
 #include "ui/playback_panel.h"
 
+#include "core/translate.h"
+
 #include <fmt/format.h>
 #include <imgui.h>
 #include <algorithm>
@@ -11,7 +13,7 @@ namespace {
 constexpr float slowest = 0.5F, fastest = 500;  // frames a second
 
 std::string describe_frame(const PlaybackState& state) {
-    std::string text = fmt::format("%d of {}", state.frames);
+    std::string text = format_translated("%d of {}", state.frames);
     if (state.time_ps) text += fmt::format(" ({:.6g} ps)", *state.time_ps);
     return text;
 }
@@ -31,13 +33,17 @@ void draw_playback_panel(const PlaybackState& state, const ScreenArea& area,
         std::min(std::max(area.width() - 2 * panel_edge(), scaled(260)), scaled(620));
     ImGui::SetNextWindowPos({0.5F * (area.left + area.right), bottom}, ImGuiCond_Always, {0.5F, 1});
     ImGui::SetNextWindowSize({width, 0});
-    ImGui::Begin(playback_panel, nullptr, fixed_panel);
-    if (ImGui::Button(state.is_paused ? "Play (T)" : "Stop here (T)"))
+    ImGui::Begin(labelled(playback_panel).c_str(), nullptr, fixed_panel);
+    if (ImGui::Button(labelled(state.is_paused ? for_translation("Play (T)")
+                                               : for_translation("Stop here (T)"))
+                          .c_str()))
         commands.emplace_back(play_or_pause(state));
-    tip("T. A frame is frozen while it stands: the hand feels the forces in it, and moves what it "
-        "holds from where it stands.");
+    tip(translated(
+        "T. A frame is frozen while it stands: the hand feels the forces in it, and moves what it "
+        "holds from where it stands."));
     ImGui::SameLine();
-    if (ImGui::Button("From the beginning (Shift+T)")) commands.emplace_back(play_from_start());
+    if (ImGui::Button(labelled("From the beginning (Shift+T)").c_str()))
+        commands.emplace_back(play_from_start());
 
     int frame = static_cast<int>(state.frame) + 1;
     ImGui::SetNextItemWidth(-1);
@@ -46,14 +52,14 @@ void draw_playback_panel(const PlaybackState& state, const ScreenArea& area,
         commands.emplace_back(PlaybackOrder{
             .paused = true, .frames_per_s = {}, .frame = static_cast<std::size_t>(frame - 1)});
     }
-    tip("The frame that is shown. Who moves it stops there.");
+    tip(translated("The frame that is shown. Who moves it stops there."));
     auto speed = static_cast<float>(state.frames_per_s);
     ImGui::SetNextItemWidth(-1);
-    if (ImGui::SliderFloat("##speed", &speed, slowest, fastest, "%.1f frames a second",
+    if (ImGui::SliderFloat("##speed", &speed, slowest, fastest, translated("%.1f frames a second"),
                            ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp)) {
         commands.emplace_back(PlaybackOrder{.paused = {}, .frames_per_s = speed, .frame = {}});
     }
-    tip("How fast it plays.");
+    tip(translated("How fast it plays."));
     if (!state.problem.empty()) ImGui::TextWrapped("%s", state.problem.c_str());
     ImGui::End();
 }

@@ -1,5 +1,6 @@
 // The panel under the picture while a trajectory is played.
 #pragma once
+#include "core/translate.h"
 #include "session/commands.h"
 #include "ui/layout.h"
 
@@ -7,7 +8,7 @@
 
 namespace palpa {
 
-inline constexpr const char* playback_panel = "Trajectory";  // its title
+inline constexpr const char* playback_panel = for_translation("Trajectory");  // its title
 
 // Describes it to the overlay library, in the middle of `area`: play and pause, which frame, how
 // fast. What the person asks for is appended.

@@ -1,7 +1,9 @@
 #include "ui/selection_panel.h"
 
 #include "core/text.h"
+#include "core/translate.h"
 #include "molecule/select.h"
+#include "ui/shown_names.h"
 #include "ui/text_field.h"
 
 #include <fmt/format.h>
@@ -17,24 +19,21 @@ namespace {
 
 constexpr ImU32 wrong_colour = IM_COL32(165, 40, 15, 255);
 
-const char* text_of(std::string_view name) { return name.data(); }  // names are literals
-
-// A button; beside the one before, where there is room.
+// A button with an English text; beside the one before, where there is room.
 bool button(const char* text, bool is_first = false) {
-    if (!is_first) same_line_if_it_fits(text);
-    return ImGui::Button(text);
+    if (!is_first) same_line_if_it_fits(translated(text));
+    return ImGui::Button(labelled(text).c_str());
 }
 
 std::string describe(const ViewLayer& layer) {
-    return fmt::format("{} of {}",
-                       representation_names[static_cast<std::size_t>(layer.representation)],
-                       layer.of.empty() ? "all" : layer.of);
+    return format_translated("{} of {}", shown_name(layer.representation),
+                             layer.of.empty() ? translated("all") : layer.of);
 }
 
 // A line of the list; whether it is to be removed.
 bool is_removed(const std::string& text) {
     ImGui::PushID(text.c_str());
-    const bool pressed = ImGui::SmallButton("remove");
+    const bool pressed = ImGui::SmallButton(labelled("remove").c_str());
     ImGui::PopID();
     ImGui::SameLine();
     ImGui::TextWrapped("%s", text.c_str());
@@ -71,7 +70,8 @@ SelectionOrder SelectionPanel::draw(const SelectionStatus& status, const ViewAdd
                             {0.5F, 1});
     ImGui::SetNextWindowSizeConstraints({width, 0}, {width, 0.45F * screen});
     ImGui::SetNextWindowSize({width, 0});
-    ImGui::Begin(selection_panel, &is_open_, fixed_panel | ImGuiWindowFlags_NoCollapse);
+    ImGui::Begin(labelled(selection_panel).c_str(), &is_open_,
+                 fixed_panel | ImGuiWindowFlags_NoCollapse);
     type_expression(status, order);
     ImGui::BeginDisabled(status.expression.empty());
     choose_look();
@@ -86,7 +86,7 @@ SelectionOrder SelectionPanel::draw(const SelectionStatus& status, const ViewAdd
 void SelectionPanel::type_expression(const SelectionStatus& status, SelectionOrder& order) {
     if (std::exchange(wants_focus_, false)) ImGui::SetKeyboardFocusHere();
     const std::string before = text_;
-    (void)type_text("##expression", "protein and within 5 of ligand", text_,
+    (void)type_text("##expression", translated("protein and within 5 of ligand"), text_,
                     ImGuiInputTextFlags_AutoSelectAll);
     if (ImGui::IsItemActive()) awaits_keys_ = false;
     const bool is_typed = ImGui::IsItemActive() || ImGui::IsItemDeactivated();
@@ -104,7 +104,7 @@ void SelectionPanel::type_expression(const SelectionStatus& status, SelectionOrd
     } else {
         const std::string hint(selection_examples);
         ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
-        ImGui::TextWrapped("Enter selects: %s; or Ctrl+drag a box", hint.c_str());
+        ImGui::TextWrapped(translated("Enter selects: %s; or Ctrl+drag a box"), hint.c_str());
         ImGui::PopStyleColor();
     }
 }
@@ -113,17 +113,17 @@ void SelectionPanel::choose_look() {
     const float half = 0.5F * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
     ImGui::SetNextItemWidth(half);
     const auto shape = static_cast<std::size_t>(representation_);
-    if (ImGui::BeginCombo("##representation", text_of(representation_names[shape]))) {
+    if (ImGui::BeginCombo("##representation", shown_name(representation_))) {
         for (std::size_t i = 0; i < representation_names.size(); ++i)
-            if (ImGui::Selectable(text_of(representation_names[i]), i == shape))
+            if (ImGui::Selectable(shown_name(static_cast<Representation>(i)), i == shape))
                 representation_ = static_cast<Representation>(i);
         ImGui::EndCombo();
     }
     ImGui::SameLine();
     ImGui::SetNextItemWidth(half);
-    constexpr const char* usual = "coloured as all";
+    const char* const usual = translated("coloured as all");
     const auto name = [](Colouring colouring) {
-        return fmt::format("by {}", colouring_names[static_cast<std::size_t>(colouring)]);
+        return format_translated("by {}", shown_name(colouring));
     };
     if (ImGui::BeginCombo("##colour", colouring_ ? name(*colouring_).c_str() : usual)) {
         if (ImGui::Selectable(usual, !colouring_)) colouring_.reset();
@@ -147,15 +147,15 @@ void SelectionPanel::draw_buttons(const SelectionStatus& status, const ViewAddit
                                           .colouring = colouring_});
     };
     const auto hide = [&] { add_new(changed.hidden, status.expression); };
-    if (button("Add this look", true)) add_layer();
-    tip("drawn in this representation in addition");
-    if (button("Show only this look")) hide(), add_layer();
-    tip("drawn in this representation alone");
-    if (button("Hide")) hide();
-    if (button("Label")) add_new(changed.labels, status.expression);
-    tip("labels its residues, or a single atom");
-    if (button("Look at it")) order.focus = true;
-    if (button("Clear (Esc)")) order.select = "";
+    if (button(for_translation("Add this look"), true)) add_layer();
+    tip(translated("drawn in this representation in addition"));
+    if (button(for_translation("Show only this look"))) hide(), add_layer();
+    tip(translated("drawn in this representation alone"));
+    if (button(for_translation("Hide"))) hide();
+    if (button(for_translation("Label"))) add_new(changed.labels, status.expression);
+    tip(translated("labels its residues, or a single atom"));
+    if (button(for_translation("Look at it"))) order.focus = true;
+    if (button(for_translation("Clear (Esc)"))) order.select = "";
     if (changed != additions) order.additions = std::move(changed);
 }
 
@@ -173,8 +173,8 @@ void SelectionPanel::list_additions(const ViewAdditions& additions, SelectionOrd
     };
     if (additions != ViewAdditions()) ImGui::Separator();
     list(changed.layers, [](const ViewLayer& layer) { return describe(layer); });
-    list(changed.hidden, [](const std::string& text) { return "hidden: " + text; });
-    list(changed.labels, [](const std::string& text) { return "named: " + text; });
+    list(changed.hidden, [](const std::string& text) { return translated("hidden: ") + text; });
+    list(changed.labels, [](const std::string& text) { return translated("named: ") + text; });
     if (changed != additions) order.additions = std::move(changed);
 }
 

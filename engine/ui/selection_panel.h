@@ -1,5 +1,6 @@
 // The panel "Select": which atoms, and what is done with them.
 #pragma once
+#include "core/translate.h"
 #include "scene/choices.h"
 #include "ui/layout.h"
 #include "ui/view_additions.h"
@@ -10,7 +11,7 @@
 
 namespace palpa {
 
-inline constexpr const char* selection_panel = "Select";
+inline constexpr const char* selection_panel = for_translation("Select");
 
 // What is selected at the moment.
 struct SelectionStatus {

@@ -1,79 +1,104 @@
 #include "ui/shortcuts.h"
 
+#include "core/translate.h"
+
 #include <array>
 
 namespace palpa {
 namespace {
 
 constexpr std::array list = std::to_array<Shortcut>({
-    {Key::P, false, Action::PauseOrGo, "P", "pause, go on"},
-    {Key::Period, false, Action::StepOnce, ".", "one single step"},
-    {Key::R, false, Action::Reset, "R", "molecules and view back to the start"},
-    {Key::Z, true, Action::Undo, "Ctrl+Z", "undo a change, or what was taken"},
-    {Key::Z, true, Action::Redo, "Ctrl+Shift+Z", "do it again", true},
-    {Key::Y, true, Action::Redo, "Ctrl+Y", "do it again"},
-    {Key::G, false, Action::LetGo, "G", "let go of what is in hand"},
-    {Key::X, false, Action::OtherHand, "X", "mouse and clicks: the other of two hands"},
-    {Key::Insert, false, Action::Add, "Insert", "add a molecule"},
-    {Key::Delete, false, Action::Remove, "Delete", "remove the molecule in hand"},
-    {Key::F9, false, Action::Record, "F9", "record the session; end the recording"},
-    {Key::T, false, Action::PlayTrajectory, "T", "trajectory: play, stop here"},
-    {Key::T, false, Action::TrajectoryStart, "Shift+T", "trajectory: from the beginning", true},
-    {Key::Digit1, false, Action::Mode1, "1", "variable force and displacement gain"},
-    {Key::Digit2, false, Action::Mode2, "2", "variable force gain"},
-    {Key::Digit3, false, Action::Mode3, "3", "variable displacement gain"},
-    {Key::Digit4, false, Action::Mode4, "4", "constant gains"},
-    {Key::Digit5, false, Action::Mode5, "5", "no force"},
-    {Key::Digit6, false, Action::Guarded, "6", "guarded coupling"},
-    {Key::O, true, Action::StartScreen, "Ctrl+O", "open another scene, or a file of your own"},
-    {Key::S, true, Action::Save, "Ctrl+S", "save the scene as set, to a new file"},
-    {Key::V, false, Action::NextRepresentation, "V", "another representation"},
-    {Key::C, false, Action::NextColouring, "C", "other colours"},
-    {Key::F, false, Action::Focus, "F", "the molecule in hand alone; all again"},
-    {Key::F, true, Action::Select, "Ctrl+F", "select atoms, by an expression"},
-    {Key::F, false, Action::FocusSelected, "Shift+F", "look at what is selected, or the ligand",
+    {Key::P, false, Action::PauseOrGo, "P", for_translation("pause, go on")},
+    {Key::Period, false, Action::StepOnce, ".", for_translation("one single step")},
+    {Key::R, false, Action::Reset, "R", for_translation("molecules and view back to the start")},
+    {Key::Z, true, Action::Undo, for_translation("Ctrl+Z"),
+     for_translation("undo a change, or what was taken")},
+    {Key::Z, true, Action::Redo, for_translation("Ctrl+Shift+Z"), for_translation("do it again"),
      true},
-    {Key::Home, false, Action::FirstView, "Home", "the first view"},
-    {Key::W, false, Action::NextView, "W", "the next saved view"},
-    {Key::W, false, Action::AddView, "Shift+W", "save this view; Ctrl+S writes it", true},
-    {Key::U, false, Action::Tour, "U", "start or end a tour of the saved views"},
-    {Key::A, false, Action::FrameAll, "A", "look at everything"},
-    {Key::O, false, Action::ToggleOverlay, "O", "overlays on, off"},
-    {Key::Tab, false, Action::ToggleOverlay, "Tab", "overlays on, off"},
-    {Key::Enter, false, Action::NextLessonStep, "Enter", "next step of the lesson"},
-    {Key::N, false, Action::NextLessonStep, "N", "next step of the lesson"},
-    {Key::L, false, Action::ToggleLesson, "L", "lesson on, off"},
-    {Key::H, false, Action::ToggleHelp, "H", "this list"},
-    {Key::F1, false, Action::ToggleHelp, "F1", "this list"},
-    {Key::D, false, Action::NextDevice, "D", "another device"},
-    {Key::S, false, Action::ToggleSound, "S", "force as a tone on, off"},
-    {Key::Plus, true, Action::LargerText, "Ctrl++", "larger text"},
-    {Key::Minus, true, Action::SmallerText, "Ctrl+-", "smaller text"},
-    {Key::Digit0, true, Action::UsualText, "Ctrl+0", "text as large as usual"},
-    {Key::F12, false, Action::Screenshot, "F12", "screenshot"},
-    {Key::M, false, Action::Film, "M", "film the window; end the film"},
-    {Key::E, false, Action::Export, "E", "save coordinates for other programs"},
-    {Key::F5, false, Action::RestartGraphics, "F5", "set the graphics up again"},
-    {Key::Escape, false, Action::Quit, "Esc", "close a list, end a selection; quit"},
+    {Key::Y, true, Action::Redo, for_translation("Ctrl+Y"), for_translation("do it again")},
+    {Key::G, false, Action::LetGo, "G", for_translation("let go of what is in hand")},
+    {Key::X, false, Action::OtherHand, "X",
+     for_translation("mouse and clicks: the other of two hands")},
+    {Key::Insert, false, Action::Add, for_translation("Insert"), for_translation("add a molecule")},
+    {Key::Delete, false, Action::Remove, for_translation("Delete"),
+     for_translation("remove the molecule in hand")},
+    {Key::F9, false, Action::Record, "F9",
+     for_translation("record the session; end the recording")},
+    {Key::T, false, Action::PlayTrajectory, "T", for_translation("trajectory: play, stop here")},
+    {Key::T, false, Action::TrajectoryStart, for_translation("Shift+T"),
+     for_translation("trajectory: from the beginning"), true},
+    {Key::Digit1, false, Action::Mode1, "1",
+     for_translation("variable force and displacement gain")},
+    {Key::Digit2, false, Action::Mode2, "2", for_translation("variable force gain")},
+    {Key::Digit3, false, Action::Mode3, "3", for_translation("variable displacement gain")},
+    {Key::Digit4, false, Action::Mode4, "4", for_translation("constant gains")},
+    {Key::Digit5, false, Action::Mode5, "5", for_translation("no force")},
+    {Key::Digit6, false, Action::Guarded, "6", for_translation("guarded coupling")},
+    {Key::O, true, Action::StartScreen, for_translation("Ctrl+O"),
+     for_translation("open another scene, or a file of your own")},
+    {Key::S, true, Action::Save, for_translation("Ctrl+S"),
+     for_translation("save the scene as set, to a new file")},
+    {Key::V, false, Action::NextRepresentation, "V", for_translation("another representation")},
+    {Key::C, false, Action::NextColouring, "C", for_translation("other colours")},
+    {Key::F, false, Action::Focus, "F", for_translation("the molecule in hand alone; all again")},
+    {Key::F, true, Action::Select, for_translation("Ctrl+F"),
+     for_translation("select atoms, by an expression")},
+    {Key::F, false, Action::FocusSelected, for_translation("Shift+F"),
+     for_translation("look at what is selected, or the ligand"), true},
+    {Key::Home, false, Action::FirstView, for_translation("Home"),
+     for_translation("the first view")},
+    {Key::W, false, Action::NextView, "W", for_translation("the next saved view")},
+    {Key::W, false, Action::AddView, for_translation("Shift+W"),
+     for_translation("save this view; Ctrl+S writes it"), true},
+    {Key::U, false, Action::Tour, "U", for_translation("start or end a tour of the saved views")},
+    {Key::A, false, Action::FrameAll, "A", for_translation("look at everything")},
+    {Key::O, false, Action::ToggleOverlay, "O", for_translation("overlays on, off")},
+    {Key::Tab, false, Action::ToggleOverlay, "Tab", for_translation("overlays on, off")},
+    {Key::Enter, false, Action::NextLessonStep, "Enter",
+     for_translation("next step of the lesson")},
+    {Key::N, false, Action::NextLessonStep, "N", for_translation("next step of the lesson")},
+    {Key::L, false, Action::ToggleLesson, "L", for_translation("lesson on, off")},
+    {Key::H, false, Action::ToggleHelp, "H", for_translation("this list")},
+    {Key::F1, false, Action::ToggleHelp, "F1", for_translation("this list")},
+    {Key::D, false, Action::NextDevice, "D", for_translation("another device")},
+    {Key::S, false, Action::ToggleSound, "S", for_translation("force as a tone on, off")},
+    {Key::Plus, true, Action::LargerText, for_translation("Ctrl++"),
+     for_translation("larger text")},
+    {Key::Minus, true, Action::SmallerText, for_translation("Ctrl+-"),
+     for_translation("smaller text")},
+    {Key::Digit0, true, Action::UsualText, for_translation("Ctrl+0"),
+     for_translation("text as large as usual")},
+    {Key::F12, false, Action::Screenshot, "F12", for_translation("screenshot")},
+    {Key::M, false, Action::Film, "M", for_translation("film the window; end the film")},
+    {Key::E, false, Action::Export, "E", for_translation("save coordinates for other programs")},
+    {Key::F5, false, Action::RestartGraphics, "F5", for_translation("set the graphics up again")},
+    {Key::Escape, false, Action::Quit, "Esc",
+     for_translation("close a list, end a selection; quit")},
 });
 
 constexpr std::array gesture_list = std::to_array<Gesture>({
-    {"click on an atom", "take its molecule in hand"},
-    {"Shift+click", "hold its residue by a spring"},
-    {"Ctrl+click", "hold this atom by a spring"},
-    {"hold Space, move the mouse", "take the molecule in hand and pull it"},
-    {"hold Space, turn the wheel", "push it away from you, draw it near"},
-    {"arrows, Page up, Page down", "pull it, or what the second hand holds; with Shift slowly"},
-    {"drag", "turn the view"},
-    {"right drag, Shift+drag", "shift the view"},
-    {"wheel", "nearer to what is under the cursor, farther"},
-    {"Ctrl+drag", "select what is in the box; Shift adds"},
-    {"rest on an atom", "its name"},
-    {"Alt+click, right click", "label an atom; again removes it"},
-    {"double click on an atom", "look at it"},
-    {"Ctrl+click on a slider", "type a number"},
-    {"drop a file on the window", "add the molecule in it, or open it"},
+    {for_translation("click on an atom"), for_translation("take its molecule in hand")},
+    {for_translation("Shift+click"), for_translation("hold its residue by a spring")},
+    {for_translation("Ctrl+click"), for_translation("hold this atom by a spring")},
+    {for_translation("hold Space, move the mouse"),
+     for_translation("take the molecule in hand and pull it")},
+    {for_translation("hold Space, turn the wheel"),
+     for_translation("push it away from you, draw it near")},
+    {for_translation("arrows, Page up, Page down"),
+     for_translation("pull it, or what the second hand holds; with Shift slowly")},
+    {for_translation("drag"), for_translation("turn the view")},
+    {for_translation("right drag, Shift+drag"), for_translation("shift the view")},
+    {for_translation("wheel"), for_translation("nearer to what is under the cursor, farther")},
+    {for_translation("Ctrl+drag"), for_translation("select what is in the box; Shift adds")},
+    {for_translation("rest on an atom"), for_translation("its name")},
+    {for_translation("Alt+click, right click"), for_translation("label an atom; again removes it")},
+    {for_translation("double click on an atom"), for_translation("look at it")},
+    {for_translation("Ctrl+click on a slider"), for_translation("type a number")},
+    {for_translation("drop a file on the window"),
+     for_translation("add the molecule in it, or open it")},
 });
+
+std::string in_language(std::string_view literal) { return translated(literal.data()); }
 
 }  // namespace
 
@@ -94,14 +119,14 @@ std::optional<Action> find_action(Key key, bool control, bool shift) noexcept {
 std::vector<HelpLine> list_help() {
     std::vector<HelpLine> lines;
     for (const Gesture& gesture : gesture_list) {
-        lines.push_back({std::string(gesture.name), std::string(gesture.does)});
+        lines.push_back({in_language(gesture.name), in_language(gesture.does)});
     }
     const Shortcut* before = nullptr;
     for (const Shortcut& shortcut : list) {
         if (before && before->action == shortcut.action) {
-            lines.back().keys += ", " + std::string(shortcut.name);
+            lines.back().keys += ", " + in_language(shortcut.name);
         } else {
-            lines.push_back({std::string(shortcut.name), std::string(shortcut.does)});
+            lines.push_back({in_language(shortcut.name), in_language(shortcut.does)});
         }
         before = &shortcut;
     }

@@ -77,7 +77,7 @@ std::span<const Gesture> gestures() noexcept;
 
 std::optional<Action> find_action(Key key, bool control, bool shift = false) noexcept;
 
-// All of it, for the help: the keys of one action together.
+// All of it, for the help, in its language: the keys of one action together.
 struct HelpLine {
     std::string keys, does;
 };

@@ -13,8 +13,10 @@ using namespace palpa;
 using Catch::Contains;
 
 TEST_CASE("preferences read as they were written", "[tools][preferences]") {
-    const Preferences odd{
-        .device = "a \"b\"\n", .sound = GENERATE(true, false), .recent = {"/a 'b'", "c"}};
+    const Preferences odd{.device = "a \"b\"\n",
+                          .sound = GENERATE(true, false),
+                          .recent = {"/a 'b'", "c"},
+                          .language = "de"};
 
     CHECK(parse_preferences("device = \"omni\"", "p.toml") == Preferences{.device = "omni"});
     CHECK(parse_preferences("sound = true", "p.toml") == Preferences{.sound = true});
@@ -36,9 +38,10 @@ TEST_CASE("preferences that are wrong say where", "[tools][preferences]") {
     CHECK_THAT(told("text_scale = \"2\""), Contains("text_scale is no number from 0.5 to 4"));
     CHECK_THAT(told("text_scale = 4.1"), Contains("p.toml:1:14: text_scale is no number"));
     CHECK_THAT(told("text_scale = 0.4"), Contains("text_scale is no number from 0.5 to 4"));
+    CHECK_THAT(told("language = 1"), Contains("p.toml:1:12: language is no text"));
     CHECK_THAT(told("devise = \"omni\""),
                Contains("p.toml:1:10: unknown key 'devise'") &&
-                   Contains("device, sound, scene, recent, text_scale") &&
+                   Contains("device, sound, scene, recent, text_scale, language") &&
                    Contains("did you mean 'device'"));
 }
 

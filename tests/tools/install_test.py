@@ -82,6 +82,8 @@ class Install(unittest.TestCase):
                      "share/palpa/force-field/charmm36.txt"):
             with self.subTest(name=name):
                 self.assertTrue((self.prefix / name).is_file())
+        catalogue = "locale/de/LC_MESSAGES/palpa.mo"
+        self.assertEqual((self.prefix / "share/palpa" / catalogue).is_file(), (BUILD / catalogue).is_file())
         self.assertEqual((self.prefix / "lib/udev/rules.d/70-palpa.rules").read_bytes(),
                          (ROOT / "devices" / "udev" / "70-palpa.rules").read_bytes())
         # Scenes whose molecules are made in the source tree stay there.

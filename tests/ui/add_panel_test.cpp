@@ -69,7 +69,7 @@ struct Dialog {
         io.MouseDown[0] = false;
         frames();
     }
-    const ImGuiWindow& window() const { return *ImGui::FindWindowByName("Add a molecule"); }
+    const ImGuiWindow& window() const { return *ImGui::FindWindowByName("###Add a molecule"); }
     // The first of the three circles, and those below it.
     void choose(int origin) {
         const ImRect area = window().Rect();

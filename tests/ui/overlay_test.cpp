@@ -4,6 +4,8 @@
 #include "simulation/held.h"
 #include "simulation/load.h"
 #include "simulation/step.h"
+#include "tests/support/in_language.h"
+#include "tests/support/skip.h"
 #include "tests/support/water_scene.h"
 #include "ui/backend.h"
 #include "ui/question.h"
@@ -231,18 +233,18 @@ TEST_CASE("in a small window panels are folded, and the molecule is seen", "[ui]
         ImGui::GetIO().DisplaySize = size;
         for (int i = 0; i < 3; ++i) screen.frame();
         CHECK(screen.overlay.free_area(size.x, size.y).width() > 0.9F * size.x);
-        CHECK(ImGui::FindWindowByName("Coupling")->Collapsed);
+        CHECK(ImGui::FindWindowByName("###Coupling")->Collapsed);
     }
     // A person may look at one nevertheless.
-    ImGui::SetWindowCollapsed("Coupling", false);
+    ImGui::SetWindowCollapsed("###Coupling", false);
     for (int i = 0; i < 3; ++i) screen.frame();
-    CHECK_FALSE(ImGui::FindWindowByName("Coupling")->Collapsed);
+    CHECK_FALSE(ImGui::FindWindowByName("###Coupling")->Collapsed);
 }
 
-TEST_CASE("nothing is cut off, and the picture's middle is covered by no panel", "[ui][overlay]") {
-    const auto size =
-        GENERATE(ImVec2(900, 600), ImVec2(1280, 720), ImVec2(1366, 768), ImVec2(1920, 1080));
-    const auto action = GENERATE(Action::Guarded, Action::Mode1, Action::ToggleHelp);
+namespace {
+
+// And the picture's middle is covered by no panel.
+void check_nothing_is_cut_off(ImVec2 size, Action action) {
     INFO(size.x << " x " << size.y << ", action " << static_cast<int>(action));
     Screen screen;
     ImGui::GetIO().DisplaySize = size;
@@ -264,7 +266,7 @@ TEST_CASE("nothing is cut off, and the picture's middle is covered by no panel",
         CHECK(
             (window->ScrollbarY || window->ContentSize.y <= window->InnerRect.GetHeight() + 0.5F));
         const bool is_above =
-            action == Action::ToggleHelp && window->Name == std::string("Keys and mouse");
+            action == Action::ToggleHelp && window->ID == ImHashStr("###Keys and mouse");
         if (is_above || (window->Flags & ImGuiWindowFlags_ChildWindow) != 0) continue;
         constexpr float rounding = 1;  // places are whole pixels
         const bool covers = area.Min.x < free.right - rounding &&
@@ -282,6 +284,24 @@ TEST_CASE("nothing is cut off, and the picture's middle is covered by no panel",
     }
 }
 
+}  // namespace
+
+TEST_CASE("nothing is cut off, and the picture's middle is covered by no panel", "[ui][overlay]") {
+    const auto size =
+        GENERATE(ImVec2(900, 600), ImVec2(1280, 720), ImVec2(1366, 768), ImVec2(1920, 1080));
+    const auto action = GENERATE(Action::Guarded, Action::Mode1, Action::ToggleHelp);
+    check_nothing_is_cut_off(size, action);
+}
+
+TEST_CASE("nothing is cut off in German", "[ui][overlay][translate]") {
+    const test::InLanguage german("de");
+    if (!german.is_there()) return test::skip("no German catalogue");
+    const auto size =
+        GENERATE(ImVec2(900, 600), ImVec2(1280, 720), ImVec2(1366, 768), ImVec2(1920, 1080));
+    const auto action = GENERATE(Action::Guarded, Action::Mode1, Action::ToggleHelp);
+    check_nothing_is_cut_off(size, action);
+}
+
 TEST_CASE("the legend of colours stands above what is below the picture", "[ui][overlay]") {
     const auto size = GENERATE(ImVec2(900, 600), ImVec2(1280, 720), ImVec2(1920, 1080));
     const bool plays = GENERATE(false, true);
@@ -293,7 +313,7 @@ TEST_CASE("the legend of colours stands above what is below the picture", "[ui][
     for (int i = 0; i < 4; ++i) screen.frame();
 
     const ImGuiWindow* const legend = ImGui::FindWindowByName("##legend");
-    const ImGuiWindow* const below = ImGui::FindWindowByName(plays ? "Trajectory" : "Lesson");
+    const ImGuiWindow* const below = ImGui::FindWindowByName(plays ? "###Trajectory" : "###Lesson");
     REQUIRE(legend);
     REQUIRE(below);
     REQUIRE(below->Active);
@@ -323,7 +343,7 @@ TEST_CASE("the help breaks its lines where a screen is narrow, and keys only whe
     screen.overlay.perform(Action::ToggleHelp, screen.commands);
     for (int i = 0; i < 4; ++i) screen.frame();
 
-    ImGuiWindow& window = *ImGui::FindWindowByName("Keys and mouse");
+    ImGuiWindow& window = *ImGui::FindWindowByName("###Keys and mouse");
     CHECK(window.Rect().Min.x >= 0);
     CHECK(window.Rect().Max.x <= row.size.x);
     CHECK(window.Rect().Max.y <= row.size.y);

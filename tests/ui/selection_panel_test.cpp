@@ -70,7 +70,9 @@ struct SelectionScreen {
         frame();
         frame();
     }
-    ImRect panel_area() const { return ImGui::FindWindowByName(selection_panel)->Rect(); }
+    ImRect panel_area() const {
+        return ImGui::FindWindowByName(labelled(selection_panel).c_str())->Rect();
+    }
     // Clicks all over the panel's lower part until something has happened; it may grow meanwhile.
     template <class Test>
     bool click_until(const Test& is_done) {
@@ -183,7 +185,7 @@ TEST_CASE("the panel of selections fits windows and text of any size", "[ui][sel
         screen.additions.labels.push_back("molecule protease_a and resid 25 and name CA");
     for (int i = 0; i < 4; ++i) screen.frame();
 
-    const ImGuiWindow& window = *ImGui::FindWindowByName(selection_panel);
+    const ImGuiWindow& window = *ImGui::FindWindowByName(labelled(selection_panel).c_str());
     CHECK(window.Rect().Min.x >= 0);
     CHECK(window.Rect().Max.x <= row.size.x);
     CHECK(window.Rect().Min.y >= 0.5F * row.size.y);

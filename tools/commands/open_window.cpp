@@ -61,6 +61,15 @@ TextScaleChoice build_text_scale(PreferencesFile& preferences) {
             }};
 }
 
+LanguageChoice build_language(PreferencesFile& preferences) {
+    return {.code = preferences.now().language.value_or(""),
+            .remember = [&preferences](const std::string& code) {
+                Preferences chosen = preferences.now();
+                chosen.language = code;
+                preferences.keep(chosen);
+            }};
+}
+
 Existing check_shot(const RunOptions& options) {
     return options.last_shot ? check_output(*options.last_shot, picture_mark, options.overwrites)
                              : Existing::Refuse;
@@ -144,6 +153,7 @@ ShellOptions shell_options(const RunOptions& options, PreferencesFile& preferenc
             .height = options.height,
             .grows = !options.has_size,
             .text_scale = build_text_scale(preferences),
+            .language = build_language(preferences),
             .validation = options.validation,
             .screenshots = options.screenshots};
 }

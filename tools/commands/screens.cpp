@@ -6,6 +6,7 @@
 #include "app/start_screen.h"
 #include "app/window_devices.h"
 #include "core/load_error.h"
+#include "core/translate.h"
 #include "devices/open_device.h"
 #include "experiments/emulated_hand.h"
 #include "scene/find_scene.h"
@@ -60,10 +61,11 @@ std::string choose_device(const std::string& name, PreferencesFile& preferences)
     const OpenedDevice opened = maker.open(request);
     for (const DeviceCheck& check : opened.checks) {
         if (check.outcome == CheckOutcome::Failed)
-            return fmt::format("{}: {}; {}. Until then the mouse is used.", check.layer,
-                               check.found, check.remedy);
+            return format_translated("{}: {}; {}. Until then the mouse is used.", check.layer,
+                                     check.found, check.remedy);
     }
-    return opened.device ? fmt::format("{} is ready.", opened.device->spec().name) : std::string();
+    return opened.device ? format_translated("{} is ready.", opened.device->spec().name)
+                         : std::string();
 }
 
 StartOptions build_start(PreferencesFile& preferences, const RunOptions& options,
@@ -107,10 +109,11 @@ std::optional<NextScreen> show_files(WindowShell& shell, PreferencesFile& prefer
     const SceneDescription scene = read_scene(*file, settings_over);
     World world;
     EmulatedOmniSettings settings;
-    const bool is_loaded = shell.work("Opening " + scene.title, [&](const StageFunction& on_stage) {
-        world = load_world(scene, on_stage);
-        settings = build_emulated_omni(scene, world);
-    });
+    const bool is_loaded = shell.work(format_translated("Opening {}", scene.title),
+                                      [&](const StageFunction& on_stage) {
+                                          world = load_world(scene, on_stage);
+                                          settings = build_emulated_omni(scene, world);
+                                      });
     if (!is_loaded) return NextScreen{};
     return show_scene([&]() -> WindowShell& { return shell; }, preferences, scene, world, settings,
                       options);
