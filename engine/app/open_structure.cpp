@@ -60,8 +60,8 @@ SceneRequest build_request(std::span<const fs::path> files) {
 
 // NAME, NAME-2 and so on, of which there is none.
 fs::path find_free_folder(const fs::path& below, const fs::path& structure) {
-    fs::path name = structure.filename();
-    while (name.has_extension()) name = name.stem();  // of "1abc.pdb.gz" both
+    fs::path name = structure.stem();
+    if (upper_case(structure.extension().string()) == ".GZ") name = name.stem();
     if (name.empty()) name = "structure";
     for (int number = 1;; ++number) {
         fs::path folder =
@@ -96,8 +96,14 @@ enum class Remedy { None, Omit, Approximate, Files };
 
 class UnknownPage {
 public:
-    UnknownPage(WindowShell& shell, std::span<const UnknownResidue> residues, bool may_approximate)
-        : shell_(shell), residues_(residues), may_approximate_(may_approximate) {}
+    // `problem`: of the files that were tried last; `folder`: where to look for others.
+    UnknownPage(WindowShell& shell, std::span<const UnknownResidue> residues, bool may_approximate,
+                const std::string& problem, fs::path folder)
+        : shell_(shell),
+          residues_(residues),
+          may_approximate_(may_approximate),
+          problem_(problem),
+          folder_(std::move(folder)) {}
 
     Remedy run(std::vector<fs::path>& files) {
         shell_.run(frames_per_s, [this] { return frame(); }, [] {});
@@ -125,14 +131,13 @@ private:
     }
 
     void browse() {
-        std::error_code error;
         browser_.open(translated("Parameters of a ligand (CHARMM stream file)"),
-                      {".str", ".rtf", ".prm"}, fs::current_path(error));
+                      {".str", ".rtf", ".prm"}, folder_);
     }
 
     void draw() {
         begin_page(for_translation("Not in the force field"));
-        std::string text;
+        std::string text = problem_.empty() ? std::string() : problem_ + "\n\n";
         for (const UnknownResidue& one : residues_) {
             text += format_translated(
                 "{}{}: {} atoms, {} of them ({})\n  {}\n\n", one.name,
@@ -169,6 +174,8 @@ private:
     WindowShell& shell_;
     std::span<const UnknownResidue> residues_;
     bool may_approximate_;
+    const std::string& problem_;
+    const fs::path folder_;
     FileBrowser browser_;
     std::vector<fs::path> files_;
     std::optional<Remedy> remedy_;
@@ -202,37 +209,53 @@ bool show_report(WindowShell& shell, const std::string& text, bool has_scene) {
     return goes_on.value_or(false);
 }
 
-// Nothing where it was cancelled.
+void apply(Remedy remedy, std::span<const UnknownResidue> residues, PrepareSettings& settings) {
+    if (remedy == Remedy::Approximate) settings.approximates_ligands = true;
+    if (remedy != Remedy::Omit) return;
+    for (const UnknownResidue& one : residues) settings.without.push_back(one.name);
+}
+
+// Nothing where it was cancelled. Of parameter files that are wrong the page says so and asks
+// again.
 std::optional<MadeScene> make_with_remedies(WindowShell& shell, SceneRequest request) {
     const std::string title =
         format_translated("Preparing {}", request.structure.filename().string());
+    std::optional<UnknownResidues> unknown;
+    std::vector<fs::path> tried;  // files that the person chose last
     for (;;) {
         MadeScene made;
-        std::optional<UnknownResidues> unknown;
+        bool lacks_something = false;
+        std::string problem;
         const bool is_done = shell.work(title, [&](const StageFunction& on_stage) {
             try {
                 made = make_scene(request, on_stage);
             } catch (const UnknownResidues& error) {
+                lacks_something = true;
                 unknown = error;
+            } catch (const LoadError& error) {
+                if (tried.empty()) throw;
+                problem = error.what();
             }
         });
         if (!is_done) return std::nullopt;
-        if (!unknown) return made;
+        if (!lacks_something && problem.empty()) return made;
         if (!unknown->is_all()) throw LoadError(*unknown);
-        const bool may_approximate = !request.settings.approximates_ligands;
-        switch (UnknownPage(shell, unknown->residues(), may_approximate).run(request.force_field)) {
-            case Remedy::None:
-                return std::nullopt;
-            case Remedy::Omit:
-                for (const UnknownResidue& one : unknown->residues())
-                    request.settings.without.push_back(one.name);
-                break;
-            case Remedy::Approximate:
-                request.settings.approximates_ligands = true;
-                break;
-            case Remedy::Files:
-                break;
+        if (!problem.empty()) {
+            std::erase_if(request.force_field, [&](const fs::path& file) {
+                return std::ranges::find(tried, file) != tried.end();
+            });
+        } else if (!tried.empty()) {
+            problem = format_translated("{} has no residue of that name.",
+                                        tried.front().filename().string());
         }
+        tried.clear();
+        const Remedy remedy =
+            UnknownPage(shell, unknown->residues(), !request.settings.approximates_ligands, problem,
+                        request.structure.parent_path())
+                .run(tried);
+        if (remedy == Remedy::None) return std::nullopt;
+        apply(remedy, unknown->residues(), request.settings);
+        request.force_field.insert(request.force_field.end(), tried.begin(), tried.end());
     }
 }
 
@@ -257,7 +280,11 @@ std::optional<fs::path> open_structure(WindowShell& shell, std::span<const fs::p
         "\n" + fmt::format(fmt::runtime(translated_plural("{} warning.", "{} warnings.", warnings)),
                            warnings);
     text += "\n\n" + made->system.report.to_text();
-    if (!show_report(shell, text, has_scene)) return std::nullopt;
+    if (!show_report(shell, text, has_scene)) {
+        std::error_code error;
+        fs::remove_all(results, error);  // it was made just now
+        return std::nullopt;
+    }
     return results / "scene.toml";
 }
 

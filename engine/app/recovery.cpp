@@ -38,29 +38,34 @@ std::optional<std::uint64_t> find_process(const fs::path& file) {
 
 }  // namespace
 
-RecoveryFile::RecoveryFile() : file_(find_folder()) {}
+RecoveryFile::RecoveryFile() : folder_(find_folder()) {}
 
-RecoveryFile::~RecoveryFile() {
-    std::error_code error;
-    if (file_ && file_->has_extension()) fs::remove(*file_, error);
+void RecoveryFile::forget() noexcept {
+    if (file_) forget_recovered(*file_);
+    file_.reset();
 }
 
 void RecoveryFile::save(const SceneDescription& scene) noexcept {
-    if (!file_) return;
+    if (!folder_) return;
     try {
-        if (!file_->has_extension()) {
-            fs::create_directories(*file_);
-            *file_ /= fmt::format("{}-{}.toml", scene.file.parent_path().filename().string(),
-                                  own_process_number());
-        }
+        fs::create_directories(*folder_);
+        const fs::path file =
+            *folder_ / fmt::format("{}-{}.toml", scene.file.parent_path().filename().string(),
+                                   own_process_number());
         const auto whole = [](const fs::path& named) {
             return fs::absolute(named).lexically_normal().generic_string();
         };
-        write_text_file(*file_, "# Kept for a crash.\n" + format_scene(scene, whole),
+        write_text_file(file, "# Kept for a crash.\n" + format_scene(scene, whole),
                         Existing::Replace);
-    } catch (const std::exception&) {
-        file_.reset();
+        file_ = file;
+    } catch (const std::exception&) {  // a full disk may have room the next time
+        return;
     }
+}
+
+void forget_recovered(const fs::path& file) noexcept {
+    std::error_code error;
+    fs::remove(file, error);
 }
 
 std::vector<fs::path> list_recovered() {

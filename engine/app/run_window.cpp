@@ -102,6 +102,7 @@ WindowReport Sandbox::run() {
             return !quitting_;
         },
         [this] { notice(translated("the graphics device was lost, and is back")); });
+    window_.capture_cursor(false);  // that Space may have
     WindowReport report{{},   overlay_.settings(), frame_ms_.size(),
                         0,    scale_.value(),      overlay_.lesson().steps_done(),
                         next_};

@@ -74,7 +74,7 @@ void Sandbox::ask_to_leave(const std::string& how, std::optional<NextScreen> nex
     };
     if (options_.study || !options_.save || is_saved()) return leave();
     question_ = {
-        translated("The settings, or what is added to the view, were changed and are not saved."),
+        translated("What was changed is not saved."),
         {{Key::S,
           how == "quit" ? translated("Save and quit (S)") : translated("Save and go on (S)"),
           [this, leave] {

@@ -1,7 +1,6 @@
 // What a person takes, adds and removes.
 #include "app/sandbox.h"
 
-#include "app/start_screen.h"
 #include "core/load_error.h"
 #include "core/text.h"
 #include "core/translate.h"
@@ -130,7 +129,7 @@ void Sandbox::take_dropped(const Input& input) {
 
 void Sandbox::ask_about_dropped(const std::vector<std::filesystem::path>& files) {
     const auto is_scene = [](const std::filesystem::path& file) {
-        return can_be_opened(file) && !is_structure(file) && file.extension() != ".gz";
+        return can_be_opened(file) && !is_structure(file);
     };
     const auto is_topology = [](const std::filesystem::path& file) {
         return upper_case(file.extension().string()) == ".PSF";

@@ -42,13 +42,14 @@ void Sandbox::ask_for_export() {
     const auto as = [this](const char* ending) {
         return [this, ending] { ask_what_to_export(ending); };
     };
-    question_ = {translated("Save coordinates, as they are now, as"),
-                 {{Key::P, "PDB (P)", as(".pdb")},
-                  {Key::C, "mmCIF (C)", as(".cif")},
-                  {Key::G, "GRO (G)", as(".gro")},
-                  {Key::S, translated("PSF and CRD (S)"), as(".psf")},
-                  {Key::V, translated("CSV of forces and marks (V)"), [this] { export_readings(); }},
-                  {Key::Escape, translated("Not (Esc)")}}};
+    question_ = {
+        translated("Save coordinates, as they are now, as"),
+        {{Key::P, "PDB (P)", as(".pdb")},
+         {Key::C, "mmCIF (C)", as(".cif")},
+         {Key::G, "GRO (G)", as(".gro")},
+         {Key::S, translated("PSF and CRD (S)"), as(".psf")},
+         {Key::V, translated("CSV of forces and marks (V)"), [this] { export_readings(); }},
+         {Key::Escape, translated("Not (Esc)")}}};
 }
 
 // The last seconds of the hand, and what the picture's marks say now.

@@ -54,6 +54,9 @@ struct CardPicture {
 class StartScreen {
 public:
     StartScreen(WindowShell& shell, const StartOptions& options);
+    StartScreen(const StartScreen&) = delete;
+    StartScreen& operator=(const StartScreen&) = delete;
+    ~StartScreen() { drop_pictures(); }
     std::optional<NextScreen> run();
 
 private:
@@ -74,6 +77,7 @@ private:
     void draw_devices();
     void choose_device(const std::string& name);
     void load_pictures();
+    void drop_pictures();
 
     WindowShell& shell_;
     const StartOptions& options_;
@@ -86,6 +90,7 @@ private:
     std::size_t chosen_ = 0;  // cards, then recent files
     bool moved_ = false;      // the choice, by keys
     bool mouse_moved_ = false;
+    bool closes_list_ = false;
     std::size_t columns_ = 1;
     std::string device_, problem_, notice_;
     FileBrowser browser_;
@@ -138,6 +143,15 @@ bool StartScreen::frame() {
     return !is_over_ && !next_;
 }
 
+// The last frame may still use them.
+void StartScreen::drop_pictures() {
+    try {
+        if (sheet_ && shell_.graphics()) shell_.graphics()->swapchain.wait();
+    } catch (const GpuError&) {  // a device that was lost uses nothing
+    }
+    sheet_.reset();
+}
+
 // Again where the graphics device was set up again.
 void StartScreen::load_pictures() {
     Graphics* const graphics = shell_.graphics();
@@ -150,7 +164,7 @@ void StartScreen::take_input() {
     if (shell_.window().should_close()) is_over_ = true;
     const Input& input = shell_.poll();
     if (input.rescaled) {
-        sheet_.reset();
+        drop_pictures();
         shell_.restart_graphics();
     }
     mouse_moved_ = input.mouse_dx != 0 || input.mouse_dy != 0;
@@ -164,7 +178,7 @@ void StartScreen::press(const KeyPress& press) {
         return browser_.press(press.key);
     }
     const auto scale_text = [&](double scale) {
-        sheet_.reset();
+        drop_pictures();
         notice_ = shell_.change_text_scale(scale);
     };
     if (press.control && press.key == Key::Plus) return scale_text(shell_.text_scale() * text_step);
@@ -178,7 +192,11 @@ void StartScreen::press(const KeyPress& press) {
     if (press.key == Key::Up) move(-row);
     if (press.key == Key::Enter || press.key == Key::Space) open_chosen();
     if (press.key == Key::O) browse();
-    if (press.key == Key::Escape || press.key == Key::Q) is_over_ = true;
+    if (press.key == Key::Escape && ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup)) {
+        closes_list_ = true;
+    } else if (press.key == Key::Escape || press.key == Key::Q) {
+        is_over_ = true;
+    }
 }
 
 void StartScreen::move(int by) {
@@ -221,7 +239,7 @@ void StartScreen::describe() {
     ImGui::EndChild();
     ImGui::End();
     if (const std::optional<fs::path> file = browser_.draw()) open(*file);
-    moved_ = false;
+    moved_ = closes_list_ = false;
 }
 
 void StartScreen::draw_header() {
@@ -351,6 +369,7 @@ void StartScreen::draw_devices() {
     ImGui::TextUnformatted(translated("In your hand"));
     ImGui::SetNextItemWidth(-1);
     if (ImGui::BeginCombo("##device", device_.c_str(), ImGuiComboFlags_HeightLarge)) {
+        if (closes_list_) ImGui::CloseCurrentPopup();
         for (const DeviceOffer& offer : options_.devices) {
             if (offer.is_stand_in) continue;
             const std::string text =
@@ -382,16 +401,6 @@ void StartScreen::choose_device(const std::string& name) {
 }
 
 }  // namespace
-
-std::vector<std::string> list_endings() {
-    return {".pdb", ".ent", ".cif", ".mmcif", ".crd", ".cor", ".toml"};
-}
-
-bool can_be_opened(const fs::path& file) {
-    const std::string ending = upper_case(file.extension().string());
-    if (ending == ".GZ") return is_structure(file.stem());
-    return is_structure(file) || ending == ".TOML";
-}
 
 std::optional<NextScreen> show_start_screen(WindowShell& shell, const StartOptions& options) {
     return StartScreen(shell, options).run();

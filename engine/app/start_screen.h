@@ -24,11 +24,6 @@ struct StartOptions {
     std::string problem{};  // why the last file could not be opened
 };
 
-// Whether a file of this name can be opened: a scene or a structure.
-bool can_be_opened(const std::filesystem::path& file);
-// The endings of such files, in lower case.
-std::vector<std::string> list_endings();
-
 // Until the person chooses; nothing: they quit. Throws GpuError.
 std::optional<NextScreen> show_start_screen(WindowShell& shell, const StartOptions& options);
 

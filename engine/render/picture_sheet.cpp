@@ -2,12 +2,16 @@
 
 #include "core/assertion.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 
 namespace palpa {
 namespace {
+
+// What every device can have (maxImageDimension2D).
+constexpr std::uint32_t largest_side = 4096;
 
 VkImageMemoryBarrier change_layout(VkImage image, VkImageLayout from, VkImageLayout to) {
     VkImageMemoryBarrier barrier{};
@@ -47,14 +51,23 @@ PictureSheet::PictureSheet(GpuDevice& device, std::span<const Picture> pictures)
     : each_{}, count_(pictures.size()) {
     if (pictures.empty()) return;
     each_ = {pictures[0].width, pictures[0].height};
-    const std::size_t bytes = 4 * static_cast<std::size_t>(each_.width) * each_.height;
-    const Buffer staging(device, bytes * count_, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
-                         BufferPlace::Readback);
+    columns_ = std::max(1U, largest_side / each_.width);
+    const auto rows = (static_cast<std::uint32_t>(count_) + columns_ - 1) / columns_;
+    const VkExtent2D all{each_.width * columns_, each_.height * rows};
+    if (all.width > largest_side || all.height > largest_side)
+        throw GpuError("the pictures are larger than every graphics device can have them");
+    const std::size_t row_bytes = 4 * static_cast<std::size_t>(each_.width);
+    const Buffer staging(device, row_bytes * columns_ * all.height,
+                         VK_BUFFER_USAGE_TRANSFER_SRC_BIT, BufferPlace::Readback);
     for (std::size_t i = 0; i < count_; ++i) {
-        PALPA_ASSERT(pictures[i].rgba.size() == bytes);
-        std::memcpy(staging.mapped().data() + i * bytes, pictures[i].rgba.data(), bytes);
+        PALPA_ASSERT(pictures[i].rgba.size() == row_bytes * each_.height);
+        const std::size_t first_row = i / columns_ * each_.height;
+        for (std::size_t y = 0; y < each_.height; ++y) {
+            const std::size_t to = ((first_row + y) * columns_ + i % columns_) * row_bytes;
+            std::memcpy(staging.mapped().data() + to, pictures[i].rgba.data() + y * row_bytes,
+                        row_bytes);
+        }
     }
-    const VkExtent2D all{each_.width, each_.height * static_cast<std::uint32_t>(count_)};
     image_ = Image(device, all, VK_FORMAT_R8G8B8A8_UNORM,
                    VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
                        VK_IMAGE_USAGE_SAMPLED_BIT,  // a view needs one that a shader could use
@@ -66,10 +79,11 @@ void PictureSheet::record(VkCommandBuffer commands, std::size_t number, VkImage 
                           const PixelBox& to, const PixelBox& within) const {
     const PixelBox shown = common(to, within);
     if (number >= count_ || to.is_empty() || shown.is_empty()) return;
-    const auto row = static_cast<int>(number * each_.height);
+    const auto column = static_cast<int>(number % columns_ * each_.width);
+    const auto row = static_cast<int>(number / columns_ * each_.height);
     const auto source_x = [&](int x) {
-        return static_cast<int>(
-            std::lround(static_cast<double>(x - to.left) * each_.width / to.width()));
+        return column + static_cast<int>(std::lround(static_cast<double>(x - to.left) *
+                                                     each_.width / to.width()));
     };
     const auto source_y = [&](int y) {
         return row + static_cast<int>(

@@ -12,7 +12,8 @@ namespace palpa {
 
 class PictureSheet {
 public:
-    // All of the same size, at most a few thousand rows together. Throws GpuError.
+    // All of the same size, at most 4096 pixels either way together in rows of several. Throws
+    // GpuError.
     PictureSheet(GpuDevice& device, std::span<const Picture> pictures);
 
     std::size_t size() const noexcept { return count_; }
@@ -25,7 +26,8 @@ public:
 private:
     VkExtent2D each_;  // pixels
     std::size_t count_;
-    Image image_;  // one below the other
+    std::uint32_t columns_ = 1;
+    Image image_;  // side by side, row by row
 };
 
 }  // namespace palpa

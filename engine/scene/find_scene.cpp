@@ -102,10 +102,7 @@ void refuse_other_files(const fs::path& file) {
                         "(.pdb, .cif, .crd)");
     }
     if (ending == ".GZ") {
-        throw LoadError({file.string()},
-                        is_structure(file.stem())
-                            ? "is a structure, not a scene; " + prepare_hint(file)
-                            : std::string("is compressed, unpack it first (gunzip)"));
+        throw LoadError({file.string()}, "is compressed, unpack it first (gunzip)");
     }
 }
 
@@ -185,8 +182,17 @@ std::vector<fs::path> own_scene_folders() {
 bool is_structure(const fs::path& file) {
     constexpr std::array<std::string_view, 6> endings{".PDB",   ".ENT", ".CIF",
                                                       ".MMCIF", ".CRD", ".COR"};
-    const std::string ending = upper_case(file.extension().string());
+    std::string ending = upper_case(file.extension().string());
+    if (ending == ".GZ") ending = upper_case(file.stem().extension().string());
     return std::find(endings.begin(), endings.end(), ending) != endings.end();
+}
+
+bool can_be_opened(const fs::path& file) {
+    return is_structure(file) || upper_case(file.extension().string()) == ".TOML";
+}
+
+std::vector<std::string> list_endings() {
+    return {".pdb", ".ent", ".cif", ".mmcif", ".crd", ".cor", ".toml"};
 }
 
 std::vector<SceneEntry> list_scenes(const fs::path& folder) {

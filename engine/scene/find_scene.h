@@ -30,8 +30,13 @@ std::vector<std::filesystem::path> own_scene_folders();
 // left out.
 std::vector<SceneEntry> list_scenes(const std::filesystem::path& folder);
 
-// Whether the file's ending is that of a structure: .pdb, .cif, .crd and others.
+// Whether the file's ending is that of a structure: .pdb, .cif, .crd and others, also with .gz.
 bool is_structure(const std::filesystem::path& file);
+
+// Whether a file of this name can be opened: a scene (.toml) or a structure; and the endings of
+// such files, in lower case, without .gz.
+bool can_be_opened(const std::filesystem::path& file);
+std::vector<std::string> list_endings();
 
 // The scene file that is meant by a folder, a file or the name of one of our own scenes. Throws
 // LoadError where there is none, with what is near: other scenes, or the command that makes a scene

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 namespace palpa {
 namespace {
@@ -62,7 +63,9 @@ std::size_t map_cell(double phi_deg, double psi_deg) noexcept {
 LessonMeter::LessonMeter(const SceneDescription& scene, const World& world)
     : scene_(scene), starts_(scene.lesson.size()) {
     measures_.values.assign(scene.lesson.size(), not_of_world);
-    find_atoms(world);
+    atoms_.resize(scene.lesson.size());
+    edition_ = world.resource<AtomEdition>();
+    for (std::size_t i = 0; i < scene.lesson.size(); ++i) find_atoms(world, i);
     for (std::size_t i = 0; i < scene.lesson.size(); ++i) {
         const LessonQuantity quantity = scene.lesson[i].quantity;
         if (quantity == LessonQuantity::Way) starts_[i] = centre_of(world, atoms_[i].front());
@@ -73,43 +76,45 @@ LessonMeter::LessonMeter(const SceneDescription& scene, const World& world)
     if (!scene.lesson.empty()) measure(world);
 }
 
-void LessonMeter::find_atoms(const World& world) {
-    edition_ = world.resource<AtomEdition>();
-    atoms_.assign(scene_.lesson.size(), {});
-    for (std::size_t i = 0; i < scene_.lesson.size(); ++i) {
-        const LessonStepDescription& step = scene_.lesson[i];
-        const std::string key = fmt::format("lesson.{}.of", step.name);
-        for (const std::string& text : step.of) {
-            const Atoms atoms = list_selected(select_in_world(world, parse_selection(text, key)));
-            const bool is_right =
-                needs_single_atoms(step.quantity) ? atoms.size() == 1 : !atoms.empty();
-            if (!is_right) {
-                throw LoadError(
-                    scene_.place_of(key),
-                    fmt::format("'{}' selects {} atoms by \"{}\"; expected {}", key, atoms.size(),
-                                text, needs_single_atoms(step.quantity) ? "one" : "some"));
-            }
-            atoms_[i].push_back(atoms);
+// Throws LoadError where the step is of nothing that is there.
+void LessonMeter::find_atoms(const World& world, std::size_t i) {
+    atoms_[i].clear();
+    const LessonStepDescription& step = scene_.lesson[i];
+    const std::string key = fmt::format("lesson.{}.of", step.name);
+    std::vector<Atoms> found;
+    for (const std::string& text : step.of) {
+        const Atoms atoms = list_selected(select_in_world(world, parse_selection(text, key)));
+        const bool is_right =
+            needs_single_atoms(step.quantity) ? atoms.size() == 1 : !atoms.empty();
+        if (!is_right) {
+            throw LoadError(
+                scene_.place_of(key),
+                fmt::format("'{}' selects {} atoms by \"{}\"; expected {}", key, atoms.size(), text,
+                            needs_single_atoms(step.quantity) ? "one" : "some"));
         }
-        if (step.quantity == LessonQuantity::Way && step.of.empty())
-            atoms_[i].push_back(held_atoms(world, first_hand(world)));
-        if (step.quantity == LessonQuantity::Way && atoms_[i].front().empty()) {
-            throw LoadError(scene_.place_of(key),
-                            fmt::format("'{}' is not there, and the hand holds nothing; expected a "
-                                        "selection",
-                                        key));
-        }
+        found.push_back(atoms);
     }
+    if (step.quantity == LessonQuantity::Way && step.of.empty())
+        found.push_back(held_atoms(world, first_hand(world)));
+    if (step.quantity == LessonQuantity::Way && found.front().empty()) {
+        throw LoadError(scene_.place_of(key),
+                        fmt::format("'{}' is not there, and the hand holds nothing; expected a "
+                                    "selection",
+                                    key));
+    }
+    atoms_[i] = std::move(found);
 }
 
 void LessonMeter::measure(const World& world) {
     if (scene_.lesson.empty()) return;
     if (!(edition_ == world.resource<AtomEdition>())) {
-        try {
-            find_atoms(world);
-        } catch (const LoadError&) {  // what a step is of was removed: it cannot be done
-            atoms_.assign(scene_.lesson.size(), {});
-            edition_ = world.resource<AtomEdition>();
+        edition_ = world.resource<AtomEdition>();
+        for (std::size_t i = 0; i < scene_.lesson.size(); ++i) {
+            try {
+                find_atoms(world, i);
+            } catch (const LoadError&) {  // what the step is of was removed: it cannot be done
+                continue;
+            }
         }
     }
     add_work(world);

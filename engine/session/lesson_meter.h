@@ -45,7 +45,7 @@ public:
 private:
     using Atoms = std::vector<std::uint32_t>;
 
-    void find_atoms(const World& world);
+    void find_atoms(const World& world, std::size_t step);
     void add_work(const World& world);
     double value_of(const World& world, std::size_t step);
     double count_bonds(const World& world, const std::vector<Atoms>& sides) const;

@@ -184,6 +184,7 @@ void LiveSimulation::obey(const Reset& reset) {
     try {
         World start = load_world(as_live(scene_));
         carry_playback(world_, start);
+        lesson_ = LessonMeter(scene_, start);
         world_ = std::move(start);
     } catch (const LoadError& error) {  // the files changed meanwhile: what runs, runs on
         readout_.problem = error.what();
@@ -193,7 +194,6 @@ void LiveSimulation::obey(const Reset& reset) {
     draft_.reset();
     readout_.edit_under_way.clear();
     edits_ = EditPlayer(scene_);
-    lesson_ = LessonMeter(scene_, world_);
     time_s_ = 0;
     ++edition_;
     readout_.problem.clear();

@@ -72,7 +72,9 @@ void FileBrowser::go_to(const fs::path& folder) {
     problem_.clear();
     entries_.clear();
     chosen_ = 0;
-    for (const fs::path& path : list_folder(whole, most_entries)) {
+    const std::vector<fs::path> paths = list_folder(whole, most_entries);
+    is_cut_off_ = paths.size() == most_entries;
+    for (const fs::path& path : paths) {
         const std::string name = path.filename().string();
         if (name.starts_with('.')) continue;
         const bool is_folder = fs::is_directory(path, error);
@@ -121,6 +123,7 @@ std::optional<fs::path> FileBrowser::draw_entries() {
             }
             if (i == chosen_ && steps_ != 0) ImGui::SetScrollHereY();
         }
+        if (is_cut_off_) ImGui::TextDisabled("%s", translated("more files: type the name above"));
         if (entries_.empty()) ImGui::TextDisabled("%s", translated("no such files here"));
         ImGui::EndListBox();
     }
@@ -141,7 +144,8 @@ std::optional<fs::path> FileBrowser::draw() {
     draw_places();
     std::optional<fs::path> wanted;
     if (type_text("##path", translated("a path"), typed_, ImGuiInputTextFlags_EnterReturnsTrue)) {
-        wanted = fs::path(typed_);
+        // A relative path is one from the folder that is shown.
+        wanted = typed_.starts_with("~/") ? home_folder() / typed_.substr(2) : folder_ / typed_;
         wants_enter_ = false;
     }
     const bool types = ImGui::IsItemActive();

@@ -45,7 +45,8 @@ private:
     std::string problem_;  // of the folder, or of what was typed
     std::vector<Entry> entries_;
     std::size_t chosen_ = 0;
-    int steps_ = 0;  // down
+    int steps_ = 0;            // down
+    bool is_cut_off_ = false;  // the folder has more
     bool shows_all_ = false, wants_enter_ = false;
 };
 

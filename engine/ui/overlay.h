@@ -156,7 +156,7 @@ private:
     float left_covered_ = 0, right_covered_ = 0;  // pixels, by the panels
     bool selects_ = false;                        // the panel of selections is there
 
-    std::optional<std::string> device_;  // just chosen
+    std::optional<std::string> device_;              // just chosen
     bool left_folds_ = false, right_folds_ = false;  // the panels, for a small window
     bool shows_overlays_ = true, shows_lesson_ = true, shows_help_ = false;
     std::vector<double> x_, y_, z_;  // of the plots, kept for their room

@@ -38,8 +38,9 @@ TEST_CASE("what was not saved is offered once the program that kept it is gone",
         const SceneDescription read = read_scene(list_recovered().front(), settings);
         CHECK(read.title == "changed");
         CHECK(read.molecules.size() == scene.molecules.size());
+        file.forget();
     }
-    // A program that ends as it should leaves nothing.
+    // Of a program that ends as it should nothing stays.
     CHECK(std::distance(fs::directory_iterator(recovered), fs::directory_iterator()) == 1);
     before ? setenv("XDG_DATA_HOME", kept.c_str(), 1) : unsetenv("XDG_DATA_HOME");
 }

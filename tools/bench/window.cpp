@@ -62,10 +62,11 @@ void feel(WindowShell& shell, const fs::path& file) {
     const SceneDescription scene = read_scene(file);
     World world;
     EmulatedOmniSettings settings;
-    (void)shell.work("Opening " + scene.title, [&](const StageFunction& on_stage) {
+    const bool is_loaded = shell.work("Opening " + scene.title, [&](const StageFunction& on_stage) {
         world = load_world(scene, on_stage);
         settings = build_emulated_omni(scene, world);
     });
+    if (!is_loaded) throw LoadError({file.string()}, "was cancelled");
     if (!settings.hand) settings.hand = hand_model(HandGrip::Medium);
     EmulatedOmni device(settings);
     WindowOptions options;
@@ -85,7 +86,7 @@ void bench_window(const std::vector<fs::path>& files, std::vector<BenchRow>& row
         rows.push_back({name + "/window", {seconds_since(begin)}, "s"});
         const WorkFolder folder;
         fs::path scene = named;
-        if (is_structure(named) || named.extension() == ".gz") {
+        if (is_structure(named)) {
             scene = prepare(shell, named, folder.path / "scene");
             rows.push_back({name + "/prepared", {seconds_since(begin)}, "s"});
             rows.push_back(

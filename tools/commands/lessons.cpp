@@ -48,9 +48,10 @@ int print_lessons(bool json) {
     }
     fmt::print("Lessons\n");
     for (const auto& [name, scene] : lessons) {
-        fmt::print("  {:<14} {}: {} steps, {}\n  {:<14} {}\n", printable(name),
-                   printable(scene.title), scene.lesson.size(), minutes_of(scene), "",
-                   printable(scene.lesson_goal));
+        const std::string minutes = minutes_of(scene);
+        fmt::print("  {:<14} {}: {} steps{}{}\n  {:<14} {}\n", printable(name),
+                   printable(scene.title), scene.lesson.size(), minutes.empty() ? "" : ", ",
+                   minutes, "", printable(scene.lesson_goal));
     }
     fmt::print(
         "\n"

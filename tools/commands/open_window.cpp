@@ -5,8 +5,10 @@
 #include "app/save_scene.h"
 #include "app/window_devices.h"
 #include "core/files.h"
+#include "core/interrupt.h"
 #include "core/load_error.h"
 #include "core/shell_word.h"
+#include "core/translate.h"
 #include "experiments/emulated_hand.h"
 #include "haptics/hand.h"
 #include "render/picture.h"
@@ -17,6 +19,7 @@
 #include "view/first_view.h"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -102,7 +105,13 @@ SceneDescription as_set(const SceneDescription& scene, const SceneState& state) 
     set.coupling = state.settings.coupling;
     set.period_ms = state.settings.period_ms;
     set.view = state.view;
-    set.edits.insert(set.edits.begin(), state.edits.begin(), state.edits.end());
+    // Behind the scene's own, on which they may build.
+    double last_s = 0;
+    for (const EditDescription& edit : scene.edits) last_s = std::max(last_s, edit.at_s);
+    for (EditDescription edit : state.edits) {
+        edit.at_s = std::max(edit.at_s, last_s);
+        set.edits.push_back(std::move(edit));
+    }
     return set;
 }
 
@@ -158,30 +167,44 @@ ShellOptions shell_options(const RunOptions& options, PreferencesFile& preferenc
             .screenshots = options.screenshots};
 }
 
-std::optional<NextScreen> show_scene(const std::function<WindowShell&()>& shell,
+std::optional<NextScreen> show_scene(std::optional<WindowShell>& shell,
                                      PreferencesFile& preferences, const SceneDescription& scene,
                                      const World& world, EmulatedOmniSettings settings,
                                      const RunOptions& options) {
     if (!settings.hand) settings.hand = hand_model(HandGrip::Medium);  // a window needs somebody
     if (!options.play) give_to_mouse(settings);
     WindowDevices devices(settings, preferences);
-    const WindowDevice first =
-        devices.open_first(options.play ? std::optional<std::string>("emulated") : options.device);
-    if (!devices.notice().empty()) fmt::print(stderr, "warning: {}\n", devices.notice());
+    WindowDevice first, second;
     HandOrders second_orders;
-    const WindowDevice second = open_second_of(scene, world, options, second_orders, devices);
-    if (preferences.can_keep()) remember_scene(scene.file, preferences);
+    const auto open_devices = [&] {
+        first = devices.open_first(options.play ? std::optional<std::string>("emulated")
+                                                : options.device);
+        second = open_second_of(scene, world, options, second_orders, devices);
+    };
+    if (!shell) {  // what is wrong with a device is known before a window opens
+        open_devices();
+        shell.emplace(shell_options(options, preferences));
+    } else if (!shell->work(translated("Opening the device"),
+                            [&](const StageFunction& /*on_stage*/) { open_devices(); })) {
+        return NextScreen{};
+    }
+    if (!devices.notice().empty()) fmt::print(stderr, "warning: {}\n", devices.notice());
     ServeChoice serve = options.serve;
     serve.options.may_pause = false;  // somebody may have a device in the hand
     const std::unique_ptr<FrameServer> server = open_server(serve, world, !options.json);
-    SceneSaver saver(scene.file, options.screenshots);
+    const bool is_from_crash = is_recovered(scene.file);
+    SceneSaver saver(is_from_crash ? options.screenshots / "recovered.toml" : scene.file,
+                     options.screenshots);
     const ViewSettings first_view = first_settings(scene.view, world);
     RecoveryFile recovery;
     const auto save = [&](const SceneState& state) {
-        return describe_saved(saver.save(as_set(scene, state)));
+        std::string where = describe_saved(saver.save(as_set(scene, state)));
+        recovery.forget();
+        if (is_from_crash) forget_recovered(scene.file);
+        return where;
     };
     const WindowReport report = run_window(
-        shell(), scene, *first.device,
+        *shell, scene, *first.device,
         {.view = first_view,
          .screenshots = options.screenshots,
          .last_shot = options.last_shot,
@@ -202,6 +225,9 @@ std::optional<NextScreen> show_scene(const std::function<WindowShell&()>& shell,
          .notice = devices.notice(),
          .server = server.get(),
          .lose_device_at = options.lose_device_at});
+    if (report.frames == 0 && report.next) return report.next;  // it was not loaded
+    if (noted_interrupt() == 0) recovery.forget();
+    if (preferences.can_keep() && !is_from_crash) remember_scene(scene.file, preferences);
     const SceneDescription played = find_played(scene, report, options.play);
     if (options.json) {
         fmt::print("{}", format_summary(played, report.summary));
@@ -215,12 +241,8 @@ int open_window(const SceneDescription& scene, const World& world,
                 const EmulatedOmniSettings& settings, const RunOptions& options) {
     PreferencesFile preferences(find_preferences_file());
     std::optional<WindowShell> shell;
-    const auto open_shell = [&]() -> WindowShell& {
-        return shell.emplace(shell_options(options, preferences));
-    };
-    std::optional<NextScreen> next =
-        show_scene(open_shell, preferences, scene, world, settings, options);
-    if (next) follow_screens(*shell, preferences, options, std::move(next));
+    follow_screens(shell, preferences, options,
+                   show_scene(shell, preferences, scene, world, settings, options));
     return 0;
 }
 

@@ -8,7 +8,6 @@
 #include "scene/description.h"
 #include "tools/commands/run.h"
 
-#include <functional>
 #include <optional>
 
 namespace palpa {
@@ -19,13 +18,13 @@ void check_window_options(const RunOptions& options);
 // Of the window that a run opens.
 ShellOptions shell_options(const RunOptions& options, PreferencesFile& preferences);
 
-// One scene in a window, which `shell` gives once devices are opened. Prints its summary; returns
-// what the person goes on to. `world`: as loaded, to plan by; `settings`: of the emulated device.
-// Throws LoadError, GpuError.
-std::optional<NextScreen> show_scene(const std::function<WindowShell&()>& shell,
-                                     PreferencesFile& preferences,
-                                     const SceneDescription& scene, const World& world,
-                                     EmulatedOmniSettings settings, const RunOptions& options);
+// One scene in the window, which is opened where there is none, after devices. Prints its summary;
+// returns what the person goes on to. `world`: as loaded, to plan by; `settings`: of the emulated
+// device. Throws LoadError, GpuError.
+std::optional<NextScreen> show_scene(std::optional<WindowShell>& shell,
+                                     PreferencesFile& preferences, const SceneDescription& scene,
+                                     const World& world, EmulatedOmniSettings settings,
+                                     const RunOptions& options);
 
 // A window for this scene, and for what the person goes on to. Returns the exit code. Throws
 // LoadError, PlatformError, GpuError.

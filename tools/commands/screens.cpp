@@ -5,6 +5,7 @@
 #include "app/recovery.h"
 #include "app/start_screen.h"
 #include "app/window_devices.h"
+#include "core/interrupt.h"
 #include "core/load_error.h"
 #include "core/translate.h"
 #include "devices/open_device.h"
@@ -24,14 +25,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Of later scenes in the same window: what was said of the first one's is not theirs.
+// Of later scenes in the same window; most options are the first scene's alone.
 RunOptions options_of_later(const RunOptions& first) {
     RunOptions later;
     later.device = first.device;
     later.second = first.second;
     later.sound = first.sound;
     later.screenshots = first.screenshots;
-    later.validation = first.validation;
+    later.json = first.json;
     return later;
 }
 
@@ -49,23 +50,24 @@ std::vector<DeviceOffer> list_offers() {
     return offers;
 }
 
-// What is missing of a device that was chosen; it is remembered all the same, and taken as soon as
-// it is there.
+// What is missing of a device that was chosen, which is taken as soon as it is there.
 std::string choose_device(const std::string& name, PreferencesFile& preferences) {
+    const DeviceMaker& maker = device_maker_called(name);
+    OpenedDevice opened;
+    if (!maker.is_emulated && !maker.needs_window) {
+        const DeviceRequest request;
+        opened = maker.open(request);
+    }
     Preferences chosen = preferences.now();
     chosen.device = name;
     preferences.keep(chosen);
-    const DeviceMaker& maker = device_maker_called(name);
-    if (maker.is_emulated) return {};
-    const DeviceRequest request;
-    const OpenedDevice opened = maker.open(request);
+    if (opened.device) return format_translated("{} is ready.", opened.device->spec().name);
     for (const DeviceCheck& check : opened.checks) {
         if (check.outcome == CheckOutcome::Failed)
             return format_translated("{}: {}; {}. Until then the mouse is used.", check.layer,
                                      check.found, check.remedy);
     }
-    return opened.device ? format_translated("{} is ready.", opened.device->spec().name)
-                         : std::string();
+    return {};
 }
 
 StartOptions build_start(PreferencesFile& preferences, const RunOptions& options,
@@ -93,15 +95,18 @@ fs::path prepared_folder(const RunOptions& options) {
 // Nothing where the person changed their mind.
 std::optional<fs::path> find_scene_of(WindowShell& shell, const std::vector<fs::path>& files,
                                       const RunOptions& options) {
-    const bool is_scene =
-        files.size() == 1 && !is_structure(files[0]) && files[0].extension() != ".gz";
-    if (is_scene) return find_scene_file(files[0]);
+    if (files.size() == 1 && !is_structure(files[0])) return find_scene_file(files[0]);
+    for (const fs::path& file : files) {
+        if (file.extension() == ".toml")
+            throw LoadError({file.string()}, "is a scene; expected it alone, without other files");
+    }
     return open_structure(shell, files, prepared_folder(options));
 }
 
-std::optional<NextScreen> show_files(WindowShell& shell, PreferencesFile& preferences,
+std::optional<NextScreen> show_files(std::optional<WindowShell>& shell,
+                                     PreferencesFile& preferences,
                                      const std::vector<fs::path>& files, RunOptions options) {
-    const std::optional<fs::path> file = find_scene_of(shell, files, options);
+    const std::optional<fs::path> file = find_scene_of(*shell, files, options);
     if (!file) return NextScreen{};
     options.scene = *file;
     std::vector<std::string> settings_over;
@@ -109,25 +114,27 @@ std::optional<NextScreen> show_files(WindowShell& shell, PreferencesFile& prefer
     const SceneDescription scene = read_scene(*file, settings_over);
     World world;
     EmulatedOmniSettings settings;
-    const bool is_loaded = shell.work(format_translated("Opening {}", scene.title),
-                                      [&](const StageFunction& on_stage) {
-                                          world = load_world(scene, on_stage);
-                                          settings = build_emulated_omni(scene, world);
-                                      });
+    const bool is_loaded = shell->work(format_translated("Opening {}", scene.title),
+                                       [&](const StageFunction& on_stage) {
+                                           world = load_world(scene, on_stage);
+                                           settings = build_emulated_omni(scene, world);
+                                       });
     if (!is_loaded) return NextScreen{};
-    return show_scene([&]() -> WindowShell& { return shell; }, preferences, scene, world, settings,
-                      options);
+    return show_scene(shell, preferences, scene, world, settings, options);
 }
 
 }  // namespace
 
-void follow_screens(WindowShell& shell, PreferencesFile& preferences, const RunOptions& options,
-                    std::optional<NextScreen> next) {
-    const RunOptions later = options_of_later(options);
+void follow_screens(std::optional<WindowShell>& shell, PreferencesFile& preferences,
+                    const RunOptions& options, std::optional<NextScreen> next) {
+    RunOptions later = options_of_later(options);
+    const std::optional<std::string> before = preferences.now().device;
     std::string problem;
     while (next) {
+        // What a person chose in the window counts more than the command line.
+        if (preferences.now().device != before) later.device.reset();
         if (next->files.empty()) {
-            next = show_start_screen(shell, build_start(preferences, later, std::move(problem)));
+            next = show_start_screen(*shell, build_start(preferences, later, std::move(problem)));
             problem.clear();
             continue;
         }
@@ -142,9 +149,10 @@ void follow_screens(WindowShell& shell, PreferencesFile& preferences, const RunO
 
 int open_screens(const std::vector<fs::path>& files, const RunOptions& options) {
     PreferencesFile preferences(find_preferences_file());
-    WindowShell shell(shell_options(options, preferences));
+    std::optional<WindowShell> shell;
+    shell.emplace(shell_options(options, preferences));
     follow_screens(shell, preferences, options, NextScreen{files});
-    return 0;
+    return exit_code_after(0);
 }
 
 }  // namespace palpa

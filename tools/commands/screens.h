@@ -17,7 +17,7 @@ namespace palpa {
 int open_screens(const std::vector<std::filesystem::path>& files, const RunOptions& options = {});
 
 // From a scene on, in a window that is open, until the person quits.
-void follow_screens(WindowShell& shell, PreferencesFile& preferences, const RunOptions& options,
-                    std::optional<NextScreen> next);
+void follow_screens(std::optional<WindowShell>& shell, PreferencesFile& preferences,
+                    const RunOptions& options, std::optional<NextScreen> next);
 
 }  // namespace palpa

@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <system_error>
 
@@ -63,7 +64,12 @@ int start_command() {
 bool is_file_to_open(const std::string& argument) { return can_be_opened(argument); }
 
 int open_command(const std::vector<std::string>& files) {
-    for (const std::string& file : files) (void)read_text_file(file);  // or say why not
+    for (const std::string& file : files) {
+        if (file.starts_with('-'))
+            throw LoadError({file},
+                            "is an option; 'palpa run SCENE' takes options, 'palpa FILE' none");
+        if (!std::ifstream(file)) throw LoadError({file}, "cannot be read; is it there?");
+    }
     if (!has_display()) {
         throw LoadError({files[0]},
                         "needs a display to be opened; without one 'palpa prepare FILE -o FOLDER' "
