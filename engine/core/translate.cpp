@@ -15,6 +15,11 @@
 #endif
 
 namespace palpa {
+namespace {
+
+constexpr const char* english = "en";
+
+}  // namespace
 
 #ifdef __GLIBC__
 namespace {
@@ -22,8 +27,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* domain = "palpa";
-// The code of the language that a catalogue is written in stands where it translates this.
-constexpr const char* code_of_language = "en";
 
 // Installed, or in a build; empty where there is none.
 fs::path find_catalogues() {
@@ -76,15 +79,15 @@ void follow_environment() {
 
 void follow_choice(const std::string& code) {
     set_wish(code);
-    if (code == code_of_language) return;
+    if (code == english) return;
     // In the plain locale the library translates nothing, whatever is wanted.
     if (is_plain(std::setlocale(LC_MESSAGES, ""))) std::setlocale(LC_MESSAGES, "C.UTF-8");
 }
 
 }  // namespace
 
-const char* translated(const char* english) {
-    return *english == '\0' ? english : dgettext(domain, english);
+const char* translated(const char* text) {
+    return *text == '\0' ? text : dgettext(domain, text);  // "" is the catalogue's header
 }
 
 const char* translated_plural(const char* one, const char* many, std::size_t count) {
@@ -105,31 +108,29 @@ bool choose_language(const std::string& code) {
 
 namespace {
 
-bool has_catalogue(const std::string& code) { return code.empty(); }
-
-constexpr const char* code_of_language = "en";
+bool has_catalogue(const std::string& /*code*/) { return false; }
 
 }  // namespace
 
-const char* translated(const char* english) { return english; }
+const char* translated(const char* text) { return text; }
 
 const char* translated_plural(const char* one, const char* many, std::size_t count) {
     return count == 1 ? one : many;
 }
 
-bool choose_language(const std::string& code) { return code.empty() || code == code_of_language; }
+bool choose_language(const std::string& code) { return code.empty() || code == english; }
 
 #endif
 
 std::vector<Language> list_languages() {
-    std::vector<Language> languages{{code_of_language, "English"}, {"de", "Deutsch"}};
+    std::vector<Language> languages{{english, "English"}, {"de", "Deutsch"}};
     std::erase_if(languages, [](const Language& language) {
-        return language.code != code_of_language && !has_catalogue(language.code);
+        return language.code != english && !has_catalogue(language.code);
     });
     return languages;
 }
 
-// A catalogue translates the code itself.
+// A catalogue translates the code of English by its own.
 std::string language_in_use() { return translated("en"); }
 
 }  // namespace palpa
