@@ -35,7 +35,8 @@ class StartScreen(unittest.TestCase):
             [PROGRAM, *map(str, arguments)], cwd=self.folder, text=True, stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             env={**os.environ, "DISPLAY": display.name, "XDG_CONFIG_HOME": str(self.folder),
-                 "XDG_DATA_HOME": str(self.folder / "data")})
+                 "XDG_DATA_HOME": str(self.folder / "data"),
+                 "VK_INSTANCE_LAYERS": "VK_LAYER_KHRONOS_validation"})
 
     def find_window(self, display, name):
         return subprocess.run(["xdotool", "search", "--onlyvisible", "--name", f"^{name}$"],
@@ -62,6 +63,7 @@ class StartScreen(unittest.TestCase):
         display.do("key", "Escape")
         out, err = self.program.communicate(timeout=60)
         self.assertEqual(self.program.returncode, 0, err)
+        self.assertNotIn("Validation Error", out + err)
         return out
 
     def count_greens(self, picture):
@@ -143,9 +145,31 @@ class StartScreen(unittest.TestCase):
             self.wait_until((scene / "scene-2.toml").exists, "the saved scene")
             self.end(display)
         self.assertIn("add = {", (scene / "scene-2.toml").read_text())
-        checked = subprocess.run([PROGRAM, "run", scene / "scene-2.toml", "--headless", "--seconds",
-                                  "0.1"], capture_output=True, text=True)
-        self.assertEqual(checked.returncode, 0, checked.stderr)
+        self.check_that_it_plays(scene / "scene-2.toml")
+
+        # What is changed then comes behind what the scene does by itself.
+        self.shots = 0
+        for shot in self.folder.glob("palpa-*.png"):
+            shot.unlink()
+        with Display() as display:
+            self.start(display, scene / "scene-2.toml")
+            self.wait_for(display, "Palpa - Two waters")
+            self.screenshot(display)
+            display.do("key", "Delete")
+            self.screenshot(display)
+            self.screenshot(display)
+            display.do("key", "ctrl+s")
+            self.wait_until((scene / "scene-2-2.toml").exists, "the saved scene")
+            self.end(display)
+        text = (scene / "scene-2-2.toml").read_text()
+        self.assertIn("remove = ", text)
+        self.assertLess(text.index("add = {"), text.index("remove = "))
+        self.check_that_it_plays(scene / "scene-2-2.toml")
+
+    def check_that_it_plays(self, scene):
+        played = subprocess.run([PROGRAM, "run", scene, "--headless", "--seconds", "0.1"],
+                                capture_output=True, text=True)
+        self.assertEqual(played.returncode, 0, played.stderr)
 
     def test_a_file_that_is_none_is_explained_on_the_start_screen(self):
         (self.folder / "broken.toml").write_text("title = 3\n")

@@ -346,7 +346,7 @@ class Session(unittest.TestCase):
             self.assertEqual(self.count_waters(display), 3)
             display.do("key", "F9")
             self.wait_until((recording / "summary.json").exists, "the end of the recording")
-            self.quit(display)
+            self.quit(display, changed=True)
 
         edits = self.edits_of(recording)
         self.assertEqual([edit.split("\n")[4].split(" = ")[0] for edit in edits],
@@ -366,7 +366,7 @@ class Session(unittest.TestCase):
             self.wait_until(lambda: self.is_shaded(display), "the question")
             display.do("key", "a", "key", "Return")
             self.wait_for_waters(display, 3)
-            self.quit(display)
+            self.quit(display, changed=True)
         dropped.unlink()
 
         self.assertEqual(len(self.edits_of(recording)), 1)
