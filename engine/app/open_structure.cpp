@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double frames_per_s = 60;
+constexpr double page_frames_per_s = 60;
 
 bool has_ending(const fs::path& file, std::span<const std::string_view> endings) {
     return std::ranges::find(endings, upper_case(file.extension().string())) != endings.end();
@@ -106,7 +106,7 @@ public:
           folder_(std::move(folder)) {}
 
     Remedy run(std::vector<fs::path>& files) {
-        shell_.run(frames_per_s, [this] { return frame(); }, [] {});
+        shell_.run(page_frames_per_s, [this] { return frame(); }, [] {});
         files.insert(files.end(), files_.begin(), files_.end());
         return remedy_.value_or(Remedy::None);
     }
@@ -195,7 +195,7 @@ bool show_report(WindowShell& shell, const std::string& text, bool has_scene) {
         ImGui::End();
     };
     shell.run(
-        frames_per_s,
+        page_frames_per_s,
         [&] {
             if (shell.window().should_close()) return false;
             for (const KeyPress& press : shell.poll().pressed) {

@@ -16,8 +16,8 @@ namespace {
 constexpr ImU32 visited_colour = IM_COL32(60, 130, 210, 170);
 constexpr ImU32 map_line_colour = IM_COL32(120, 120, 120, 255);
 constexpr ImU32 here_colour = IM_COL32(210, 60, 40, 255);
-constexpr ImU32 right_colour = IM_COL32(20, 130, 70, 255);
-constexpr ImU32 wrong_colour = IM_COL32(180, 60, 30, 255);
+constexpr ImU32 right_answer_colour = IM_COL32(20, 130, 70, 255);
+constexpr ImU32 wrong_answer_colour = IM_COL32(180, 60, 30, 255);
 constexpr ImU32 curve_colour = IM_COL32(190, 50, 40, 255);
 
 // In the order of LessonQuantity.
@@ -64,7 +64,7 @@ std::optional<std::size_t> draw_lesson_question(const LessonQuestion& question,
     }
     if (!chosen || *chosen >= question.why.size()) return pressed;
     const bool is_right = *chosen + 1 == static_cast<std::size_t>(question.right);
-    ImGui::PushStyleColor(ImGuiCol_Text, is_right ? right_colour : wrong_colour);
+    ImGui::PushStyleColor(ImGuiCol_Text, is_right ? right_answer_colour : wrong_answer_colour);
     ImGui::TextWrapped("%c: %s %s", static_cast<char>('A' + static_cast<int>(*chosen)),
                        is_right ? "Right." : "Not so.", question.why[*chosen].c_str());
     ImGui::PopStyleColor();
