@@ -129,7 +129,9 @@ void Overlay::draw_scene(const Readout& readout, const OverlayStatus& status,
     const bool fits = ImGui::CalcTextSize(scene_.title.c_str()).x < column - scaled(45);
     const std::string title = fmt::format("{}###scene", fits ? scene_.title : translated("Scene"));
     fold_in_small_window(left_folds_);
-    const bool is_open = ImGui::Begin(title.c_str(), nullptr, fixed_panel);
+    // A panel that fits its height is laid out also where it is folded.
+    const bool is_open =
+        ImGui::Begin(title.c_str(), nullptr, fixed_panel) && !ImGui::IsWindowCollapsed();
     left_covered_ = is_open ? column + edge : 0;
     if (is_open) {
         if (!fits) ImGui::TextWrapped("%s", scene_.title.c_str());

@@ -181,7 +181,7 @@ TEST_CASE("panels stay in the window with text twice as large, and without a fon
     const ScreenArea free = screen.overlay.free_area(row.size.x, row.size.y);
     CHECK(free.width() >= 0.15F * row.size.x);
     for (const ImGuiWindow* const window : ImGui::GetCurrentContext()->Windows) {
-        if (!window->WasActive || window->IsFallbackWindow) continue;
+        if (window->Collapsed || !window->WasActive || window->IsFallbackWindow) continue;
         INFO(window->Name);
         const ImRect area = window->Rect();
         CHECK(area.Min.x >= 0);

@@ -193,6 +193,7 @@ std::optional<NextScreen> show_scene(std::optional<WindowShell>& shell,
     serve.options.may_pause = false;  // somebody may have a device in the hand
     const std::unique_ptr<FrameServer> server = open_server(serve, world, !options.json);
     const bool is_from_crash = is_recovered(scene.file);
+    if (preferences.can_keep() && !is_from_crash) remember_scene(scene.file, preferences);
     SceneSaver saver(is_from_crash ? options.screenshots / "recovered.toml" : scene.file,
                      options.screenshots);
     const ViewSettings first_view = first_settings(scene.view, world);
@@ -227,7 +228,6 @@ std::optional<NextScreen> show_scene(std::optional<WindowShell>& shell,
          .lose_device_at = options.lose_device_at});
     if (report.frames == 0 && report.next) return report.next;  // it was not loaded
     if (noted_interrupt() == 0) recovery.forget();
-    if (preferences.can_keep() && !is_from_crash) remember_scene(scene.file, preferences);
     const SceneDescription played = find_played(scene, report, options.play);
     if (options.json) {
         fmt::print("{}", format_summary(played, report.summary));
