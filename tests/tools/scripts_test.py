@@ -25,7 +25,7 @@ class Scripts(unittest.TestCase):
                      "scripts/compare_peers",
                      "scripts/compare_tl3", "scripts/csv_table", "scripts/docs_stats", "scripts/mutate",
                      "scripts/plot_adaptive", "scripts/run_table", "scripts/stroke_table", "scripts/update_results",
-                     "scripts/plot_study"):
+                     "scripts/plot_study", "scripts/package", "scripts/try_packages"):
             with self.subTest(tool=name):
                 result = run(ROOT / "tools" / name, "--help")
                 self.assertEqual(result.returncode, 0)
