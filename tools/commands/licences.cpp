@@ -75,8 +75,8 @@ void print_licences_json(const std::vector<std::string>& about) {
 void print_licences(const std::vector<std::string>& about) {
     fmt::print("Palpa {} is under the MIT licence. It uses\n\n", version_name);
     for (const Library& library : libraries) {
-        fmt::print("  {:<20} {:<12} {:<14} {:<42} {}\n", library.name, version_of(library),
-                   library.licence, library.home, library.use);
+        fmt::print("  {:<20} {:<9} {:<22} {:<46} {}\n", library.name, version_of(library),
+                   library.use, library.home, library.licence);
     }
     fmt::print("\nThe force field has terms of its own:\n\n");
     for (const std::string& line : about) fmt::print("  {}\n", line);
