@@ -272,7 +272,8 @@ std::string_view flexible_waters(std::string_view top) {
     return top.find("FLEXIBLE") == std::string_view::npos ? "" : "define = -DFLEXIBLE\n";
 }
 
-std::string format_run(const RunSystem& system, const RunOptions& options, std::string_view top) {
+std::string format_run(const RunSystem& system, const EngineRunOptions& options,
+                       std::string_view top) {
     return fmt::format(
                "; {}: dynamics. Written by palpa engine.\nintegrator = md\ndt = {:.6g}\n"
                "nsteps = {}\n{}nstlist = 20\nnstcalcenergy = 20\nnstenergy = 500\nnstlog = 500\n"
@@ -304,7 +305,7 @@ void add_group(std::string& text, std::string_view name, const std::vector<std::
             fmt::format("{}{}", atoms[i] + 1, i % 15 == 14 || i + 1 == atoms.size() ? '\n' : ' ');
 }
 
-std::string format_index(const RunSystem& system, const RunOptions& options) {
+std::string format_index(const RunSystem& system, const EngineRunOptions& options) {
     std::vector<std::uint32_t> all(system.positions.size());
     for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
     std::string text = "; Written by palpa engine.\n";
@@ -313,7 +314,7 @@ std::string format_index(const RunSystem& system, const RunOptions& options) {
     return text;
 }
 
-std::string format_start(const RunOptions& options) {
+std::string format_start(const EngineRunOptions& options) {
     return fmt::format(
         "#!/bin/sh\n# Starts GROMACS, which waits for a client at port {0}. Written by palpa "
         "engine.\n"
@@ -350,7 +351,7 @@ std::vector<Vec3> gromacs_positions(const RunSystem& system) {
     return positions;
 }
 
-std::vector<TextFile> format_gromacs(const RunSystem& system, const RunOptions& options) {
+std::vector<TextFile> format_gromacs(const RunSystem& system, const EngineRunOptions& options) {
     const std::string top = format_top(system);
     std::vector<TextFile> files{{"system.gro", format_places(system)},
                                 {"system.top", top},

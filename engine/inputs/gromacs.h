@@ -22,7 +22,7 @@ namespace palpa {
 // The Coulomb constant is the system's, by way of epsilon-r: GROMACS's own is 138.935458 kJ nm
 // mol^-1 e^-2. Throws LoadError for what GROMACS lacks: cross-terms of other than five atoms in a
 // row, or of maps of different sizes.
-std::vector<TextFile> format_gromacs(const RunSystem& system, const RunOptions& options);
+std::vector<TextFile> format_gromacs(const RunSystem& system, const EngineRunOptions& options);
 
 // The places of the atoms in system.gro, Å.
 std::vector<Vec3> gromacs_positions(const RunSystem& system);

@@ -352,8 +352,8 @@ std::string format_ids(const std::vector<std::uint32_t>& atoms) {
     return text;
 }
 
-std::string format_input(const RunSystem& system, const RunOptions& options, const Terms& terms,
-                         const AtomKinds& kinds) {
+std::string format_input(const RunSystem& system, const EngineRunOptions& options,
+                         const Terms& terms, const AtomKinds& kinds) {
     const bool has_maps = !system.topology.cmap_terms.empty();
     constexpr std::int64_t most_steps = 2'000'000'000;  // of one command, in 32 bits
     std::string text = fmt::format(
@@ -394,7 +394,7 @@ std::string format_input(const RunSystem& system, const RunOptions& options, con
                       options.temperature, system.box ? "no" : "yes");
 }
 
-std::string format_start_line(const RunOptions& options) {
+std::string format_start_line(const EngineRunOptions& options) {
     return fmt::format(
         "#!/bin/sh\n# Starts LAMMPS, which waits for a client at port {}. Written by "
         "palpa engine.\ncd \"$(dirname \"$0\")\" && exec ${{LAMMPS:-lmp}} -in run.in "
@@ -404,7 +404,7 @@ std::string format_start_line(const RunOptions& options) {
 
 }  // namespace
 
-std::vector<TextFile> format_lammps(const RunSystem& system, const RunOptions& options) {
+std::vector<TextFile> format_lammps(const RunSystem& system, const EngineRunOptions& options) {
     const Terms terms = list_terms_of(system);
     const AtomKinds kinds = find_kinds(system);
     std::vector<TextFile> files{{"system.data", format_data(system, terms, kinds)},

@@ -22,6 +22,6 @@ namespace palpa {
 // LAMMPS would never take a force. Throws LoadError for what LAMMPS lacks: dihedrals whose phase
 // is no whole degree, impropers about another angle than 0 or 180 degrees, more than six maps or
 // maps of other than 24 x 24 points, cross-terms of other than five atoms in a row.
-std::vector<TextFile> format_lammps(const RunSystem& system, const RunOptions& options);
+std::vector<TextFile> format_lammps(const RunSystem& system, const EngineRunOptions& options);
 
 }  // namespace palpa

@@ -77,7 +77,7 @@ Topology reordered(const Topology& from, const std::vector<std::uint32_t>& order
 
 }  // namespace
 
-double timestep_of(const RunOptions& options) noexcept {
+double timestep_of(const EngineRunOptions& options) noexcept {
     return options.timestep.value_or(options.flexible ? 1.0 : 2.0);
 }
 

@@ -21,7 +21,7 @@ struct RunSystem {
     double coulomb_constant = units::charmm_coulomb_constant;  // kcal Å/mol/e^2
 };
 
-struct RunOptions {
+struct EngineRunOptions {
     std::uint16_t port = 8888;  // on which the engine waits for a client
     // Atoms that the engine sends and the client may pull, by index in the order of the files,
     // rising; empty: all.
@@ -33,7 +33,7 @@ struct RunOptions {
     std::int64_t steps = -1;  // -1: until the client ends it
 };
 
-double timestep_of(const RunOptions& options) noexcept;  // fs
+double timestep_of(const EngineRunOptions& options) noexcept;  // fs
 
 // The same system with the atoms of each molecule behind each other, molecules in the order of
 // their first atoms. Engines number atoms so. Throws LoadError where a system cannot be run: no

@@ -14,7 +14,7 @@ using test::load_error_of;
 namespace {
 
 std::string lammps_file(const RunSystem& system, const std::string& name,
-                        const RunOptions& options = {}) {
+                        const EngineRunOptions& options = {}) {
     const auto files = format_lammps(system, options);
     const auto found =
         std::ranges::find(files, name, [](const TextFile& f) { return f.path.string(); });
@@ -48,7 +48,7 @@ TEST_CASE("bonds to hydrogens and waters are rigid in LAMMPS", "[inputs][lammps]
     const RunSystem waters = in_run_order(test::mixed_waters());
     CHECK_THAT(lammps_file(waters, "run.in"), Contains("shake 1e-6 100 0 b 1 a 1"));
     CHECK_THAT(lammps_file(test::four_in_a_row(), "run.in"), !Contains("shake"));
-    RunOptions options;
+    EngineRunOptions options;
     options.sent = {0, 1, 2, 5};
     CHECK_THAT(lammps_file(waters, "run.in", options), Contains("group sent id 1:3 6:6\n"));
 }

@@ -80,7 +80,8 @@ void bench_window(const std::vector<fs::path>& files, std::vector<BenchRow>& row
     for (const fs::path& named : files) {
         const std::string name = named.generic_string();
         const SteadyClock::time_point begin = SteadyClock::now();
-        WindowShell shell{ShellOptions{}};
+        const ShellOptions shell_options;
+        WindowShell shell(shell_options);
         rows.push_back({name + "/window", {seconds_since(begin)}, "s"});
         const WorkFolder folder;
         fs::path scene = named;

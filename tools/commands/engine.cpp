@@ -161,7 +161,7 @@ void write_folder(const EngineOptions& options, std::vector<TextFile> files) {
 int write_input(const EngineOptions& options) {
     const RunSystem system = read_system(options);
     const bool is_gromacs = options.what == "gromacs";
-    RunOptions run = options.run;
+    EngineRunOptions run = options.run;
     run.sent = find_sent(options, system);
     std::vector<TextFile> files =
         is_gromacs ? format_gromacs(system, run) : format_lammps(system, run);

@@ -18,7 +18,7 @@ struct EngineOptions {
     std::vector<std::filesystem::path> toppar;
     std::string box;                // "A,B,C", Å; empty: vacuum
     std::vector<std::string> send;  // segments; none: all atoms
-    RunOptions run;
+    EngineRunOptions run;
     std::size_t waters = 216;  // of a box, before some are left out
     std::filesystem::path folder;
     bool overwrites = false;  // earlier files of this command
