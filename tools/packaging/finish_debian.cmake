@@ -1,6 +1,7 @@
 # For cpack: what Debian wants besides the installed files: copyright, changelog, compressed pages.
 file(GLOB_RECURSE manual "${CPACK_TEMPORARY_INSTALL_DIRECTORY}/palpa.1")
 file(GLOB_RECURSE licence "${CPACK_TEMPORARY_INSTALL_DIRECTORY}/LICENSE")
+list(FILTER licence INCLUDE REGEX "/doc/palpa/LICENSE$")
 if(NOT manual OR NOT licence)
     message(FATAL_ERROR "no palpa.1 or LICENSE below ${CPACK_TEMPORARY_INSTALL_DIRECTORY}")
 endif()
