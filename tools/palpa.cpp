@@ -1,13 +1,13 @@
 // The program: reads the command line, calls one command, turns errors into exit codes.
 #include "core/interrupt.h"
 #include "core/load_error.h"
-#include "core/version.h"
 #include "gpu/device.h"
 #include "simulation/remote_engine.h"
 #include "tools/commands/command.h"
 #include "tools/commands/command_line.h"
 #include "tools/commands/run.h"
 #include "tools/commands/start.h"
+#include "tools/commands/version.h"
 #include "window/window.h"
 
 #include <fmt/format.h>
@@ -38,6 +38,7 @@ void add_commands(CLI::App& program, palpa::ProgramCommand& chosen) {
     palpa::add_export(program, chosen);
     palpa::add_select(program, chosen);
     palpa::add_energy(program, chosen);
+    palpa::add_licences(program, chosen);
     palpa::add_engine(program, chosen);
     palpa::add_bench(program, chosen);
     palpa::add_report(program, chosen);
@@ -56,7 +57,7 @@ std::optional<int> parse(CLI::App& program, const std::vector<std::string>& argu
         program.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
         return std::nullopt;
     } catch (const CLI::CallForVersion&) {
-        fmt::print("{} ({})\n", palpa::version_name, palpa::commit_name);
+        fmt::print("{}", palpa::describe_version());
         return 0;
     } catch (const CLI::Success& success) {  // --help
         return program.exit(success);
@@ -70,8 +71,7 @@ int run_program(const std::vector<std::string>& arguments) {
     CLI::App program("Palpa: feel molecules", "palpa");
     program.formatter(palpa::build_help_formatter());
     program.set_help_flag("-h,--help", "print this");
-    program.set_version_flag("--version",
-                             std::string(palpa::version_name) + " (" + palpa::commit_name + ")");
+    program.set_version_flag("--version", "");  // describe_version() has the words
     palpa::ProgramCommand chosen;
     add_commands(program, chosen);
     if (arguments.empty()) return palpa::start_command();

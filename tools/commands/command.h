@@ -30,6 +30,7 @@ void add_render(CLI::App& program, ProgramCommand& chosen);
 void add_export(CLI::App& program, ProgramCommand& chosen);
 void add_select(CLI::App& program, ProgramCommand& chosen);
 void add_energy(CLI::App& program, ProgramCommand& chosen);
+void add_licences(CLI::App& program, ProgramCommand& chosen);
 void add_engine(CLI::App& program, ProgramCommand& chosen);
 void add_bench(CLI::App& program, ProgramCommand& chosen);
 void add_report(CLI::App& program, ProgramCommand& chosen);

@@ -1,0 +1,47 @@
+#include "tools/commands/version.h"
+
+#include "core/machine.h"
+#include "core/version.h"
+#include "field/processor.h"
+#include "gpu/device.h"
+
+#include <fmt/format.h>
+
+namespace palpa {
+namespace {
+
+std::string name_compiler() {
+#if defined(__clang__)
+    return "Clang " __clang_version__;
+#elif defined(__GNUC__)
+    return "GCC " __VERSION__;
+#elif defined(_MSC_VER)
+    return fmt::format("MSVC {}", _MSC_VER);
+#else
+    return "unknown";
+#endif
+}
+
+std::string name_vulkan_device() {
+    try {
+        return GpuDevice(GpuOptions{}).name();
+    } catch (const GpuError& error) {
+        std::string why = error.what();  // of several devices a line each
+        for (char& letter : why) letter = letter == '\n' ? ' ' : letter;
+        return "none: " + why;
+    }
+}
+
+}  // namespace
+
+std::string describe_version() {
+    return fmt::format(
+        "{} ({})\n"
+        "compiler   {}\n"
+        "processor  {} kernels, {}\n"
+        "Vulkan     {}\n",
+        version_name, commit_name, name_compiler(), list_processor_kinds().front(), machine_name(),
+        name_vulkan_device());
+}
+
+}  // namespace palpa

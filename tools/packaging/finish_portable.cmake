@@ -1,0 +1,9 @@
+# For cpack: libraries and a README into the portable archive.
+file(GLOB_RECURSE program "${CPACK_TEMPORARY_INSTALL_DIRECTORY}/palpa")
+list(FILTER program INCLUDE REGEX "/bin/palpa$")
+if(NOT program)
+    message(FATAL_ERROR "no bin/palpa below ${CPACK_TEMPORARY_INSTALL_DIRECTORY}")
+endif()
+get_filename_component(folder ${program}/../.. ABSOLUTE)
+execute_process(COMMAND ${CMAKE_CURRENT_LIST_DIR}/make_portable ${folder} ${CPACK_PACKAGE_VERSION}
+    COMMAND_ERROR_IS_FATAL ANY)
