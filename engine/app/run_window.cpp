@@ -79,6 +79,7 @@ Sandbox::Sandbox(WindowShell& shell, std::unique_ptr<LiveSession> session,
         throw LoadError({options.screenshots.string()},
                         "is no folder; expected one for screenshots");
     }
+    frame_.hands.resize(hands_.size());  // until the first frame they are empty
     window_.set_title("Palpa - " + scene.title);
     if (options.sound.is_on) (void)switch_sound(true);
     if (options.record) {
