@@ -227,7 +227,8 @@ void ForceDimension::run() noexcept {
         }
         tick();
         if (!settings_.is_paced) continue;
-        due = std::max(due + period, Clock::now() - period);  // what is late is not made up for
+        due = std::max(due + period,
+                       Clock::now() - period);  // ticks that were missed are not repeated
         std::this_thread::sleep_until(due);
     }
     if (id_) stop();
@@ -258,7 +259,7 @@ void ForceDimension::tick() noexcept {
     bool answers = take_pose(reading);
     if (ticks_ % status_ticks == 0) look_at_status();
     const State state = state_;
-    Vec3 force = find_force();
+    Vec3 force = forces_.take(spec_.peak_force_newton);
     if (state != State::Ready || !answers) force.setZero();
     const Vec3 told = turn_of_axes().transpose() * force;
     answers = library_.set_force(told.x(), told.y(), told.z(), *id_) >= 0 && answers;
@@ -296,17 +297,6 @@ bool ForceDimension::take_pose(DeviceReading& reading) noexcept {
         Quat(Mat3(turn_of_axes() * turn * turn_of_axes().transpose())).normalized();
     reading.valid = true;
     return true;
-}
-
-// The servo's newest one, as long as it lives; never more than the motors give.
-Vec3 ForceDimension::find_force() noexcept {
-    force_age_ticks_ = forces_.read(force_newton_) ? 0 : force_age_ticks_ + 1;
-    if (!force_newton_.allFinite()) return Vec3::Zero();
-    const double faded = static_cast<double>(force_age_ticks_ - stale_ticks) / fade_ticks;
-    const double norm = force_newton_.stableNorm();
-    const double share = std::clamp(1 - faded, 0.0, 1.0);
-    return force_newton_ *
-           (norm > spec_.peak_force_newton ? share * spec_.peak_force_newton / norm : share);
 }
 
 // Of its own accord a device switches its motors off: by its button, or where the handle was too

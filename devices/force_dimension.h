@@ -8,6 +8,7 @@
 #pragma once
 #include "core/mailbox.h"
 #include "devices/device_check.h"
+#include "devices/fading_force.h"
 #include "devices/force_dimension_library.h"
 #include "haptics/device.h"
 
@@ -43,9 +44,6 @@ bool is_force_dimension_there(const DeviceRequest& request);
 // Made by open_force_dimension().
 class ForceDimension final : public Device {
 public:
-    // Of a force that no newer one follows, because the servo died: after how many ticks it
-    // begins to fade, and in how many it is gone.
-    static constexpr int stale_ticks = 20, fade_ticks = 50;
     // So many ticks in a row fail until the device counts as lost; the status is asked for every
     // so many; after so many the motors are asked for again where the device let go of its own.
     static constexpr int lost_ticks = 20, status_ticks = 50, refused_ticks = 1000;
@@ -69,7 +67,6 @@ private:
     void run() noexcept;
     void tick() noexcept;
     bool take_pose(DeviceReading& reading) noexcept;  // false where the device does not answer
-    Vec3 find_force() noexcept;
     void look_at_status() noexcept;
     void start() noexcept;
     void stop() noexcept;
@@ -79,7 +76,7 @@ private:
     const ForceDimensionSettings settings_;
     const DeviceSpec spec_;
 
-    Mailbox<Vec3> forces_;
+    FadingForce forces_;
     Mailbox<DeviceReading> readings_;
     std::atomic<State> state_{State::Ready};
     std::atomic<bool> is_closing_{false};
@@ -89,8 +86,6 @@ private:
     bool has_wrist_ = false;
     std::uint64_t ticks_ = 0;
     int failed_ticks_ = 0, refused_left_ticks_ = 0;
-    Vec3 force_newton_ = Vec3::Zero();  // the newest that came
-    int force_age_ticks_ = 0;
 
     // the servo
     DeviceReading last_;

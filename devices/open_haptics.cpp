@@ -345,7 +345,7 @@ hd::Code OpenHaptics::tick() noexcept {
 
     library_.begin_frame(handle_);
     DeviceReading reading = take_reading();
-    Vec3 force = find_force();
+    Vec3 force = forces_.take(spec_.peak_force_newton);
     const bool is_closing = is_closing_;
     if (!is_calibrated || is_without_force || is_closing) force.setZero();
     library_.set_doublev(hd::current_force, force.data());
@@ -404,17 +404,6 @@ DeviceReading OpenHaptics::take_reading() noexcept {
     reading.orientation = Quat(axes).normalized();
     reading.valid = true;
     return reading;
-}
-
-// The servo's newest one, as long as it lives; never more than the motors give.
-Vec3 OpenHaptics::find_force() noexcept {
-    force_age_ticks_ = forces_.read(force_newton_) ? 0 : force_age_ticks_ + 1;
-    if (!force_newton_.allFinite()) return Vec3::Zero();
-    const double faded = static_cast<double>(force_age_ticks_ - stale_ticks) / fade_ticks;
-    const double norm = force_newton_.stableNorm();
-    const double share = std::clamp(1 - faded, 0.0, 1.0);
-    return force_newton_ *
-           (norm > spec_.peak_force_newton ? share * spec_.peak_force_newton / norm : share);
 }
 
 bool OpenHaptics::take_errors() noexcept {

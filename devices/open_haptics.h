@@ -7,6 +7,7 @@
 #pragma once
 #include "core/mailbox.h"
 #include "devices/device_check.h"
+#include "devices/fading_force.h"
 #include "devices/open_haptics_library.h"
 #include "haptics/device.h"
 
@@ -43,9 +44,6 @@ bool is_omni_there(const DeviceRequest& request);
 // Made by open_haptics(). The library serves one device a process; a second one is not opened.
 class OpenHaptics final : public Device {
 public:
-    // Of a force that no newer one follows, because the servo died: after how many ticks it
-    // begins to fade, and in how many it is gone.
-    static constexpr int stale_ticks = 20, fade_ticks = 50;
     // Without force after the last error: the device lets go, then the safety chain begins anew.
     static constexpr int warm_ticks = 1000, refused_ticks = 100;
 
@@ -72,7 +70,6 @@ private:
     hd::Code tick() noexcept;
     bool update_calibration() noexcept;  // true where positions can be believed
     DeviceReading take_reading() noexcept;
-    Vec3 find_force() noexcept;
     bool take_errors() noexcept;  // false where the reading is not to be believed
     // The third one.
     void keep();
@@ -87,7 +84,7 @@ private:
     hd::Schedule schedule_ = 0;
     int calibration_style_ = hd::inkwell;
 
-    Mailbox<Vec3> forces_;
+    FadingForce forces_;
     Mailbox<DeviceReading> readings_;
     std::atomic<State> state_{State::Starting};
     std::atomic<hd::Code> last_error_{hd::success};
@@ -97,8 +94,6 @@ private:
 
     // the library's thread
     std::uint64_t ticks_ = 0;
-    Vec3 force_newton_ = Vec3::Zero();  // the newest that came
-    int force_age_ticks_ = 0;
     int warm_left_ticks_ = 0, refused_left_ticks_ = 0;  // still without force
 
     // the servo

@@ -42,9 +42,9 @@ public:
     };
     void see(const Sight& sight) noexcept;
 
-    // From now on it follows this path, whose times count from now, in place of what is left of its
-    // own. One that leads goes there from where its path had the molecule; `takes_anew`: it is
-    // about to hold something else, and places are counted from where that is.
+    // From now on it follows this path, whose times count from now, in place of its own. One that
+    // leads goes there from where its path had the molecule; `takes_anew`: it is about to hold
+    // something else, and places are counted from where that is.
     void go_on(const std::vector<HandWaypoint>& path, bool takes_anew = false);
 
     // Moves on by one tick.

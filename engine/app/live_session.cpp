@@ -67,20 +67,10 @@ std::vector<std::optional<std::string>> read_files(const LiveEvent& event) {
     return contents;
 }
 
-// A spring holds an atom or a residue.
-std::string find_held_address(const World& world, Entity hand, const AtomDirectory& atoms) {
-    const Grip* const grip = world.find<Grip>(hand);
-    if (!grip) return {};
-    const std::uint32_t first = held_range(world, hand).first;
-    if (grip->atoms.empty()) return address_of(atoms, first, AtomScope::Molecule);
-    return address_of(atoms, first + grip->atoms.front(),
-                      grip->atoms.size() == 1 ? AtomScope::Atom : AtomScope::Residue);
-}
-
 LiveHand show_hand(const World& world, Entity hand, const AtomDirectory& atoms) {
     const bool holds = world.find<Grip>(hand) != nullptr;
     return {held_range(world, hand), holds ? held_place(world, hand) : Vec3(Vec3::Zero()),
-            find_held_address(world, hand, atoms), contact_of(world, hand).answer.model};
+            held_address(world, hand, atoms), contact_of(world, hand).answer.model};
 }
 
 // Layers, labels and what is hidden that cannot be evaluated in this world.

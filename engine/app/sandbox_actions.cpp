@@ -40,7 +40,7 @@ void Sandbox::give(const Answer& answer) {
 }
 
 // Shows the molecules by the next of the `count` values that `choice` may have; `said`: an English
-// format of what is told of it.
+// format of the notice.
 template <typename Value>
 void Sandbox::choose_next(Value ViewSettings::* choice, std::size_t count, const char* said) {
     const std::size_t next = (static_cast<std::size_t>(view_.*choice) + 1) % count;

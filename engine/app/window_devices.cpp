@@ -69,15 +69,21 @@ WindowDevice WindowDevices::open(const std::string& name) {
             maker.is_led ? mouse_reach_m(request_.emulated) : 0};
 }
 
-DeviceMenu WindowDevices::menu() {
-    DeviceMenu menu;
+std::vector<DeviceOffer> list_device_offers(const DeviceRequest& request) {
+    std::vector<DeviceOffer> offers;
     for (const DeviceMaker& maker : device_makers()) {
         if (!maker.file.empty()) continue;
-        menu.offers.push_back({.name = std::string(maker.name),
-                               .summary = std::string(maker.summary),
-                               .is_there = is_there(maker, request_),
-                               .is_stand_in = maker.is_emulated && !maker.needs_window});
+        offers.push_back({.name = std::string(maker.name),
+                          .summary = std::string(maker.summary),
+                          .is_there = is_there(maker, request),
+                          .is_stand_in = maker.is_emulated && !maker.needs_window});
     }
+    return offers;
+}
+
+DeviceMenu WindowDevices::menu() {
+    DeviceMenu menu;
+    menu.offers = list_device_offers(request_);
     menu.current = current_;
     menu.wanted = wanted_;
     menu.is_there = [this](const std::string& name) {

@@ -14,6 +14,9 @@ namespace palpa {
 // has asked for it.
 inline constexpr const char* first_device = "mouse";
 
+// Those that a person may choose from, and whether each is there.
+std::vector<DeviceOffer> list_device_offers(const DeviceRequest& request);
+
 // One window's. It and the preferences must outlive the window.
 class WindowDevices {
 public:

@@ -41,7 +41,7 @@ struct ShellOptions {
     bool grows = true;  // with the display's scale: nobody asked for that size in pixels
     TextScaleChoice text_scale{};
     LanguageChoice language{};
-    bool validation = false;                 // of all that Vulkan is told
+    bool validation = false;                 // of all calls of Vulkan
     std::filesystem::path screenshots{"."};  // folder
 };
 
@@ -68,10 +68,10 @@ public:
 
     double text_scale() const noexcept { return text_scale_; }
     // Sets the graphics up again with text so large, as far as the window has room for it; returns
-    // what the person is told of it.
+    // a notice for the person.
     std::string change_text_scale(double scale);
 
-    // Of all text from the next frame on; returns what the person is told of it, if anything.
+    // Of all text from the next frame on; returns a notice for the person, if any.
     std::string change_language(const std::string& code);
 
     // Calls `frame` at most `most_frames_per_s` times a second until it returns false, or a signal

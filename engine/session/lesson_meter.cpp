@@ -117,6 +117,7 @@ void LessonMeter::measure(const World& world) {
             }
         }
     }
+    bonds_.reset();
     add_work(world);
     if (map_step_ && !atoms_[*map_step_].empty()) visit_map(world, atoms_[*map_step_]);
     for (std::size_t i = 0; i < scene_.lesson.size(); ++i) measures_.values[i] = value_of(world, i);
@@ -142,13 +143,13 @@ void LessonMeter::visit_map(const World& world, const std::vector<Atoms>& atoms)
     measures_.map[map_cell(measures_.phi_deg, measures_.psi_deg)] = 1;
 }
 
-double LessonMeter::count_bonds(const World& world, const std::vector<Atoms>& sides) const {
+double LessonMeter::count_bonds(const World& world, const std::vector<Atoms>& sides) {
+    if (!bonds_) bonds_ = find_hydrogen_bonds(world, ShownBonds::All);
     const auto ties = [&](const HydrogenBond& bond) {
         return (has_atom(sides[0], bond.donor) && has_atom(sides[1], bond.acceptor)) ||
                (has_atom(sides[1], bond.donor) && has_atom(sides[0], bond.acceptor));
     };
-    return static_cast<double>(
-        std::ranges::count_if(find_hydrogen_bonds(world, ShownBonds::All), ties));
+    return static_cast<double>(std::ranges::count_if(*bonds_, ties));
 }
 
 double LessonMeter::value_of(const World& world, std::size_t step) {

@@ -4,6 +4,7 @@
 #include "math/vec.h"
 #include "scene/description.h"
 #include "simulation/resources.h"
+#include "view/hydrogen_bonds.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -48,7 +49,7 @@ private:
     void find_atoms(const World& world, std::size_t step);
     void add_work(const World& world);
     double value_of(const World& world, std::size_t step);
-    double count_bonds(const World& world, const std::vector<Atoms>& sides) const;
+    double count_bonds(const World& world, const std::vector<Atoms>& sides);
     void visit_map(const World& world, const std::vector<Atoms>& atoms);
 
     SceneDescription scene_;
@@ -61,7 +62,8 @@ private:
         std::uint32_t start = 0;
     };
     std::optional<Pull> last_;
-    double work_ = 0;  // kcal/mol
+    double work_ = 0;                                 // kcal/mol
+    std::optional<std::vector<HydrogenBond>> bonds_;  // of this step, where one is asked for
     LessonMeasures measures_;
 };
 

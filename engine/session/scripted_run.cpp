@@ -32,22 +32,11 @@ std::string one_line(const Json& json) {
 
 Json as_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
-// As edits write it; nothing where the hand holds nothing.
-std::optional<std::string> find_held_address(const World& world, Entity hand) {
-    const AtomRange range = held_range(world, hand);
-    if (range.count == 0) return std::nullopt;
-    const std::shared_ptr<const AtomDirectory> directory = list_atoms(world);
-    const std::vector<std::uint32_t>& at_spring = grip_of(world, hand).atoms;
-    if (at_spring.empty()) return address_of(*directory, range.first, AtomScope::Molecule);
-    return address_of(*directory, range.first + at_spring.front(),
-                      at_spring.size() == 1 ? AtomScope::Atom : AtomScope::Residue);
-}
-
 Json read_hand(const World& world, Entity hand, const ServoTick& tick) {
-    const std::optional<std::string> held = find_held_address(world, hand);
+    const std::string held = held_address(world, hand, *list_atoms(world));
     Json json;
-    json["holds"] = held ? Json(*held) : Json();
-    json["distance_angstrom"] = held ? Json(read_tick(tick).distance_angstrom) : Json();
+    json["holds"] = held.empty() ? Json() : Json(held);
+    json["distance_angstrom"] = !held.empty() ? Json(read_tick(tick).distance_angstrom) : Json();
     json["molecule_nN"] = as_json(1e9 * tick.contact.force_newton);
     json["hand_N"] = as_json(tick.sent_newton);
     json["handle_mm"] = as_json(1e3 * tick.reading.position_m);

@@ -1,5 +1,7 @@
 #include "simulation/atom_directory.h"
 
+#include "simulation/held.h"
+
 #include "simulation/components.h"
 #include "simulation/resources.h"
 
@@ -52,6 +54,15 @@ std::string address_of(const AtomDirectory& directory, std::uint32_t atom, AtomS
             return found->molecule + ":" + name.number + " " + name.atom;
     }
     return found->molecule;
+}
+
+std::string held_address(const World& world, Entity hand, const AtomDirectory& atoms) {
+    const Grip* const grip = world.find<Grip>(hand);
+    if (!grip) return {};
+    const std::uint32_t first = held_range(world, hand).first;
+    if (grip->atoms.empty()) return address_of(atoms, first, AtomScope::Molecule);
+    return address_of(atoms, first + grip->atoms.front(),
+                      grip->atoms.size() == 1 ? AtomScope::Atom : AtomScope::Residue);
 }
 
 }  // namespace palpa

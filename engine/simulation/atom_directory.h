@@ -41,4 +41,8 @@ enum class AtomScope { Molecule, Residue, Atom };
 // is no such atom.
 std::string address_of(const AtomDirectory& directory, std::uint32_t atom, AtomScope scope);
 
+// What the hand holds, as an edit takes it: a molecule, or at a spring an atom or a residue; empty:
+// nothing.
+std::string held_address(const World& world, Entity hand, const AtomDirectory& directory);
+
 }  // namespace palpa

@@ -197,11 +197,11 @@ TEST_CASE("an omega's force that no servo renews is gone after 70 ticks",
     StubbedOmega omega;
     omega.device().write(Vec3(1, 0, 0));
 
-    omega.stub.step(1 + ForceDimension::stale_ticks);
+    omega.stub.step(1 + FadingForce::stale_ticks);
     CHECK(omega.motors().y() == 1);
-    omega.stub.step(ForceDimension::fade_ticks / 2);
+    omega.stub.step(FadingForce::fade_ticks / 2);
     CHECK(omega.motors().y() == Approx(0.5));
-    omega.stub.step(ForceDimension::fade_ticks / 2);
+    omega.stub.step(FadingForce::fade_ticks / 2);
     CHECK(omega.motors() == Vec3::Zero());
     (void)omega.tick(Vec3(0, 1, 0));
     CHECK(omega.motors() == Vec3(0, 0, 1));
@@ -306,7 +306,7 @@ TEST_CASE("a device that waits for its calibration has no reading and no force",
     CHECK(omega.motors() == Vec3(0, 1, 0));
 }
 
-TEST_CASE("without an omega the layer that failed is told, with what mends it",
+TEST_CASE("without an omega the report names the layer that failed, and a remedy",
           "[devices][force-dimension]") {
     ForceDimensionStub& stub = test::load_force_dimension_stub();
     std::string library = PALPA_FORCE_DIMENSION_STUB, layer, told, remedy;
@@ -338,7 +338,7 @@ TEST_CASE("without an omega the layer that failed is told, with what mends it",
     CHECK(stub.devices_opened() == 0);
 }
 
-TEST_CASE("an omega that is plugged in is told where the library is missing",
+TEST_CASE("an omega that is plugged in is reported with the library that is missing",
           "[devices][force-dimension]") {
     const test::TemporaryFolder folder;
     const std::filesystem::path device = folder.path() / "sys/bus/usb/devices/1-2";

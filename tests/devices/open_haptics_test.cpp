@@ -149,11 +149,11 @@ TEST_CASE("a force that no servo renews is gone after 70 ticks", "[devices][open
     StubbedOmni omni;
     omni.device().write(Vec3(1, 0, 0));
 
-    omni.stub.step(1 + OpenHaptics::stale_ticks);
+    omni.stub.step(1 + FadingForce::stale_ticks);
     CHECK(omni.motors().x() == 1);
-    omni.stub.step(OpenHaptics::fade_ticks / 2);
+    omni.stub.step(FadingForce::fade_ticks / 2);
     CHECK(omni.motors().x() == Approx(0.5));
-    omni.stub.step(OpenHaptics::fade_ticks / 2);
+    omni.stub.step(FadingForce::fade_ticks / 2);
     CHECK(omni.motors() == Vec3::Zero());
     omni.stub.step(1000);
     CHECK(omni.motors() == Vec3::Zero());
@@ -219,7 +219,7 @@ TEST_CASE("a device that is lost is opened again by itself", "[devices][open-hap
     CHECK(omni.motors() == Vec3(0.5, 0, 0));
 }
 
-TEST_CASE("while a device is away the person is told, and closing does not wait for it",
+TEST_CASE("while a device is away the status says so, and closing does not wait for it",
           "[devices][open-haptics]") {
     StubbedOmni omni;
     omni.stub.plug(false);
@@ -277,7 +277,7 @@ TEST_CASE("a calibration that fails leaves readings invalid and the handle free"
     CHECK_FALSE(omni.device().status().empty());
 }
 
-TEST_CASE("without a device the layer that failed is told, with what mends it",
+TEST_CASE("without a device the report names the layer that failed, and a remedy",
           "[devices][open-haptics]") {
     OpenHapticsStub& stub = test::load_open_haptics_stub();
     std::string library = PALPA_OPEN_HAPTICS_STUB, layer, told;
@@ -306,7 +306,7 @@ TEST_CASE("without a device the layer that failed is told, with what mends it",
     CHECK(stub.devices_opened() == 0);
 }
 
-TEST_CASE("a device that is plugged in is told where the library is missing",
+TEST_CASE("a device that is plugged in is reported with the library that is missing",
           "[devices][open-haptics]") {
     const test::TemporaryFolder folder;
     std::filesystem::create_directories(folder.path() / "sys/bus/usb/devices/1-2");

@@ -53,7 +53,7 @@ TEST_CASE("a path longer than the workspace is walked in pieces, clutching betwe
     CHECK(clutched_ticks > 0);
 }
 
-TEST_CASE("a hand that is told to go on goes there from where it is", "[devices][hand]") {
+TEST_CASE("a hand with a new path follows it from where it is", "[devices][hand]") {
     ScriptedHand hand({.path = {{0, 0}, {1, 0.02}, {5, 0.04}}}, omni_half_workspace_m);
     for (int i = 0; i < 1000; ++i) (void)hand.step(tick);
     CHECK(hand.step(tick).place_m.x() == Approx(0.02).margin(1e-6));

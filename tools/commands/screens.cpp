@@ -36,20 +36,6 @@ RunOptions options_of_later(const RunOptions& first) {
     return later;
 }
 
-std::vector<DeviceOffer> list_offers() {
-    std::vector<DeviceOffer> offers;
-    const DeviceRequest request;
-    for (const DeviceMaker& maker : device_makers()) {
-        if (!maker.file.empty()) continue;
-        const bool is_there = maker.is_emulated || !maker.is_there || maker.is_there(request);
-        offers.push_back({.name = std::string(maker.name),
-                          .summary = std::string(maker.summary),
-                          .is_there = is_there,
-                          .is_stand_in = maker.is_emulated && !maker.needs_window});
-    }
-    return offers;
-}
-
 // What is missing of a device that was chosen, which is taken as soon as it is there.
 std::string choose_device(const std::string& name, PreferencesFile& preferences) {
     const DeviceMaker& maker = device_maker_called(name);
@@ -72,8 +58,9 @@ std::string choose_device(const std::string& name, PreferencesFile& preferences)
 
 StartOptions build_start(PreferencesFile& preferences, const RunOptions& options,
                          std::string problem) {
+    const DeviceRequest request;
     StartOptions start{
-        .devices = list_offers(),
+        .devices = list_device_offers(request),
         .device = options.device.value_or(preferences.now().device.value_or(first_device)),
         .choose_device =
             [&preferences](const std::string& name) { return choose_device(name, preferences); },
