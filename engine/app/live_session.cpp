@@ -4,11 +4,7 @@
 #include "core/load_error.h"
 #include "platform/thread.h"
 #include "session/run_headless.h"
-#include "simulation/held.h"
 #include "simulation/resources.h"
-#include "simulation/select_in_world.h"
-#include "view/first_view.h"
-#include "view/legend.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -67,35 +63,6 @@ std::vector<std::optional<std::string>> read_files(const LiveEvent& event) {
     return contents;
 }
 
-LiveHand show_hand(const World& world, Entity hand, const AtomDirectory& atoms) {
-    const bool holds = world.find<Grip>(hand) != nullptr;
-    return {held_range(world, hand), holds ? held_place(world, hand) : Vec3(Vec3::Zero()),
-            held_address(world, hand, atoms), contact_of(world, hand).answer.model};
-}
-
-// Layers, labels and what is hidden that cannot be evaluated in this world.
-void drop_wrong_selections(const World& world, ViewSettings& view) {
-    const std::vector<SecondaryStructure> any(world.resource<AtomTable>().size());
-    const auto is_wrong_selection = [&](const Selection& selection) {
-        try {
-            (void)select_in_world(world, selection, any);
-            return false;
-        } catch (const LoadError&) {
-            return true;
-        }
-    };
-    const auto is_wrong = [&](const std::string& text) {
-        return !text.empty() && is_wrong_selection(parse_selection(text));
-    };
-    std::erase_if(view.layers, [&](const ViewLayer& layer) { return is_wrong(layer.of); });
-    std::erase_if(view.labels, is_wrong);
-    std::erase_if(view.hidden, is_wrong);
-    std::erase_if(view.marks.measures, [&](const std::string& text) {
-        const std::vector<Selection> selections = parse_measure(text, "view.measure");
-        return std::ranges::any_of(selections, is_wrong_selection);
-    });
-}
-
 }  // namespace
 
 // To the servos' mailboxes.
@@ -137,13 +104,10 @@ LiveSession::LiveSession(const SceneDescription& scene, const ViewSettings& view
       ticks_(std::make_unique<Ticks>()),
       journal_queue_(devices.size(), line_->posted()),
       plays_(playback.has_value()),
-      view_(view),
+      frame_builder_(scene, simulation_, view),
       poses_(devices.size()),
-      atoms_(list_atoms(simulation_.world())),
-      framed_(framed_atoms(scene.view, simulation_.world())),
       recorder_(scene, simulation_.devices()) {
     for (HandOrder& order : orders_) order.granted_ticks = ticks_of(scene.period_ms);
-    builder_.follow(simulation_.world(), view_.marks);
     start_servo();
     simulation_thread_ = std::thread([this] { run_simulation(); });
     recorder_thread_ = std::thread([this] { run_recorder(); });
@@ -408,10 +372,8 @@ void LiveSession::play(const LiveEvent& event) {
 }
 
 void LiveSession::obey(const Command& command) {
-    if (const auto* const view = std::get_if<ViewSettings>(&command)) {
-        view_ = *view;
-        return;
-    }
+    if (const auto* const view = std::get_if<ViewSettings>(&command))
+        return frame_builder_.show_as(*view);
     if (const auto* const order = std::get_if<PlaybackOrder>(&command))
         return simulation_.order(*order);
     if (const auto* const edit = std::get_if<EditDescription>(&command)) {
@@ -482,39 +444,7 @@ void LiveSession::change_device(const DeviceEvent& change, const LiveDevice& dev
 }
 
 void LiveSession::post_frame_if_wanted() {
-    if (!frame_wanted_.exchange(false)) return;
-    const World& world = simulation_.world();
-    if (edition_ != simulation_.edition()) {
-        edition_ = simulation_.edition();
-        atoms_ = list_atoms(world);
-        edits_ = std::make_shared<const std::vector<EditDescription>>(simulation_.list_edits());
-    }
-    LiveFrame frame{{}, {}, atoms_, {}, framed_, {}, {}, simulation_.readout(), edits_};
-    const std::vector<Vec3>& positions = world.resource<AtomTable>().positions;
-    frame.places.resize(positions.size());
-    std::ranges::transform(positions, frame.places.begin(), as_float);
-    std::vector<ContactModel> contacts;
-    for (const Entity hand : find_hands(world)) {
-        frame.hands.push_back(show_hand(world, hand, *atoms_));
-        contacts.push_back(frame.hands.back().contact);
-    }
-    try {
-        frame.picture = builder_.build(world, contacts, view_, &frame.labels);
-    } catch (const LoadError&) {  // a layer names a molecule that an edit removed
-        drop_wrong_selections(world, view_);
-        frame.picture = builder_.build(world, contacts, view_, &frame.labels);
-    }
-    frame.legend = find_legend(world, view_);
-    frame.readout.holds_something = frame.hands.front().held.count > 0;
-    frame.readout.contact = contacts.front();
-    const AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();
-    frame.readout.error_pN = find_error_estimate(world);
-    if (adaptive && adaptive->accuracy) {
-        frame.readout.error_pN = adaptive->accuracy->error();
-        frame.readout.work_budget = adaptive->accuracy->work_budget();
-    }
-    frame.readout.playback = find_playback(world);
-    frames_.post(frame);
+    if (frame_wanted_.exchange(false)) frames_.post(frame_builder_.build(simulation_));
 }
 
 // ---- the journal's thread ----------------------------------------------------------------------

@@ -3,11 +3,12 @@
 // one, with the window, may ask of them and see of them.
 #pragma once
 #include "app/live_clock.h"
+#include "app/live_frame.h"
+#include "app/window_session.h"
 #include "core/ring.h"
 #include "core/stage.h"
 #include "haptics/device.h"
 #include "haptics/hand.h"
-#include "render/frame_scene.h"
 #include "scene/description.h"
 #include "session/commands.h"
 #include "session/frame_server.h"
@@ -15,9 +16,6 @@
 #include "session/live_simulation.h"
 #include "session/servo_bank.h"
 #include "session/session_recorder.h"
-#include "simulation/atom_directory.h"
-#include "view/atom_colours.h"
-#include "view/build_frame.h"
 
 #include <atomic>
 #include <chrono>
@@ -42,30 +40,8 @@ struct LiveDevice {
     HandOrders* orders = nullptr;
 };
 
-// What the window shows of a hand.
-struct LiveHand {
-    AtomRange held;                        // atoms in hand, as they are picked; none: it is empty
-    Vec3 grabbed_angstrom = Vec3::Zero();  // the reference atom in hand, in the world
-    std::string held_address;              // as an edit takes it; empty: nothing is held
-    ContactModel contact;
-};
-
-// What the window shows, all of one moment between two steps.
-struct LiveFrame {
-    FrameScene picture;  // its camera is the window's business
-    std::vector<LiveHand> hands;
-    std::shared_ptr<const AtomDirectory> atoms;  // what picks mean
-    std::vector<glm::vec3> places;               // Å, of all atoms, drawn or not
-    AtomRange framed;                            // what the first view frames; none: everything
-    std::vector<ViewLabel> labels;               // of the picture
-    std::vector<LegendEntry> legend;             // of its colours
-    Readout readout;                             // its contact is the first hand's
-    // What a person made of the world and did not undo.
-    std::shared_ptr<const std::vector<EditDescription>> edits{};
-};
-
 // The devices must outlive the session, and belong to its servo thread meanwhile.
-class LiveSession {
+class LiveSession final : public WindowSession {
 public:
     // Loads the scene and starts all threads. `devices` are of the hands of the scene, in their
     // order; hands beyond these stand still. `clock`: null is the machine's. `server` serves the
@@ -81,46 +57,31 @@ public:
                 HandOrders* orders, LiveClock* clock = nullptr);
     LiveSession(const LiveSession&) = delete;
     LiveSession& operator=(const LiveSession&) = delete;
-    ~LiveSession();
+    ~LiveSession() override;
 
-    void send(const Command& command);
+    void send(const Command& command) override;
 
-    // Puts another device in a hand's place, which takes hold of the molecule where it is: no
-    // force, then quiet cycles and ramp. Waits for the step that is under way; the device before is
-    // the caller's again. Throws LoadError, and changes nothing, where the other one must not be
-    // run with the present period.
-    void change_device(Device& device, HandOrders* orders, std::size_t slot = 0);
-
-    // Where a live hand wants the handle, m.
-    void move_hand(const Vec3& target_m, std::size_t slot = 0);
-
-    // The newest frame; asks for the next one. False if none came since the last call.
-    bool read_frame(LiveFrame& frame);
-
-    // The world between two steps; waits for the one that is under way.
-    World copy_world();
-
-    // Every servo tick in its order, as long as somebody takes them out: of all hands, by slot.
-    bool pop_ticks(std::span<ServoTick> ticks) noexcept;
+    // The new device takes hold of the molecule where it is: no force, then quiet cycles and ramp.
+    // Waits for the step that is under way.
+    void change_device(Device& device, HandOrders* orders, std::size_t slot = 0) override;
+    void move_hand(const Vec3& target_m, std::size_t slot = 0) override;
+    bool read_frame(LiveFrame& frame) override;
+    World copy_world() override;
+    bool pop_ticks(std::span<ServoTick> ticks) noexcept override;
     bool pop_tick(ServoTick& tick) noexcept;  // of the first hand
     std::size_t hands() const noexcept { return devices_.size(); }
 
-    ServoHealth servo_health() const noexcept;
+    ServoHealth servo_health() const noexcept override;
 
-    // The server's notes since the last call.
-    std::vector<std::string> take_server_notes();
+    std::vector<std::string> take_server_notes() override;
 
-    // Records from now on into the folder, with the journal since the session began. Throws
-    // LoadError where a Recording would, where something is recorded already, and where a
-    // trajectory is played, which no journal has.
+    // With the journal since the session began. Throws LoadError where a trajectory is played,
+    // which no journal has.
     void begin_recording(const std::filesystem::path& folder, bool overwrites = false,
-                         const std::optional<TrajectorySettings>& trajectory = {});
-    // Throws LoadError where not all could be written.
-    void end_recording();
-    // Seconds that are recorded so far; nothing where nothing is.
-    std::optional<double> recorded_s();
-    // What a user should know of the recording, a sentence each, since the last call.
-    std::vector<std::string> take_recording_notes();
+                         const std::optional<TrajectorySettings>& trajectory = {}) override;
+    void end_recording() override;
+    std::optional<double> recorded_s() override;
+    std::vector<std::string> take_recording_notes() override;
 
 private:
     class Line;
@@ -175,17 +136,11 @@ private:
     std::atomic<bool> stopping_{false}, servo_stopping_{false}, recorder_stopping_{false};
 
     // The simulation's thread's own.
-    ViewSettings view_;
-    FrameBuilder builder_;
+    LiveFrameBuilder frame_builder_;
     std::vector<HandPose> poses_;
-    std::shared_ptr<const AtomDirectory> atoms_;
-    std::shared_ptr<const std::vector<EditDescription>> edits_ =
-        std::make_shared<std::vector<EditDescription>>();
-    std::uint64_t edition_ = 0;
     bool step_once_ = false;
     LiveClock::Moment settled_{};  // after a reset, until the hand rests
-    AtomRange framed_;
-    std::future<void> building_;  // of a long edit
+    std::future<void> building_;   // of a long edit
     std::deque<EditDescription> waiting_edits_;
 
     std::mutex recorder_mutex_;

@@ -29,6 +29,19 @@ bool has_ending(const fs::path& file, std::span<const std::string_view> endings)
     return std::ranges::find(endings, upper_case(file.extension().string())) != endings.end();
 }
 
+// Beside the topology, of the same name.
+fs::path find_coordinates(const fs::path& topology) {
+    for (const char* const ending : {".crd", ".cor", ".pdb", ".cif"}) {
+        fs::path file = fs::path(topology).replace_extension(ending);
+        std::error_code error;
+        if (fs::exists(file, error)) return file;
+    }
+    throw LoadError({topology.string()},
+                    fmt::format("has no coordinates; expected {0}.crd or {0}.pdb beside it, or "
+                                "both files dropped together",
+                                topology.stem().string()));
+}
+
 SceneRequest build_request(std::span<const fs::path> files) {
     constexpr std::array<std::string_view, 6> of_force_field{".STR", ".RTF", ".PRM",
                                                              ".TOP", ".PAR", ".INP"};
@@ -36,7 +49,9 @@ SceneRequest build_request(std::span<const fs::path> files) {
     SceneRequest request;
     request.settings.solvent.reset();  // implicit water where it covers everything
     for (const fs::path& file : files) {
-        if (has_ending(file, of_force_field)) {
+        if (is_topology(file)) {
+            request.topology = file;
+        } else if (has_ending(file, of_force_field)) {
             request.force_field.push_back(file);
         } else if (has_ending(file, of_ligands)) {
             request.settings.ligand_files.push_back(file);
@@ -49,10 +64,12 @@ SceneRequest build_request(std::span<const fs::path> files) {
                                         request.structure.filename().string()));
         }
     }
+    if (request.structure.empty() && !request.topology.empty())
+        request.structure = find_coordinates(request.topology);
     if (request.structure.empty()) {
         throw LoadError({files.empty() ? std::string() : files[0].string()},
-                        "is no structure; expected a .pdb, .cif or .crd file, and with it "
-                        "parameters of its ligands (.str)");
+                        "is no structure; expected a .pdb, .cif or .crd file, and with it a "
+                        "topology (.psf) or parameters of its ligands (.str)");
     }
     request.settings.entry = request.structure;
     return request;

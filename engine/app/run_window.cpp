@@ -1,5 +1,7 @@
 #include "app/run_window.h"
 
+#include "app/live_session.h"
+#include "app/replay_session.h"
 #include "app/sandbox.h"
 #include "app/screenshots.h"
 #include "core/load_error.h"
@@ -54,7 +56,7 @@ std::vector<LiveDevice> list_devices(std::span<const WindowHand> hands) {
 
 }  // namespace
 
-Sandbox::Sandbox(WindowShell& shell, std::unique_ptr<LiveSession> session,
+Sandbox::Sandbox(WindowShell& shell, std::unique_ptr<WindowSession> session,
                  const SceneDescription& scene, Device& device, const WindowOptions& options)
     : options_(options),
       devices_(options.devices),
@@ -106,7 +108,8 @@ WindowReport Sandbox::run() {
     window_.capture_cursor(false);  // that Space may have
     WindowReport report{{},   overlay_.settings(), frame_ms_.size(),
                         0,    scale_.value(),      overlay_.lesson().steps_done(),
-                        next_};
+                        next_,
+                        frame_.readout.replay};
     report.summary = hands_.front().statistics.summary();
     report.summary.device = hands_.front().device->spec().name;
     for (const WindowHand& other : std::span(hands_).subspan(1)) {
@@ -289,13 +292,18 @@ void Sandbox::notice(std::string text, double seconds) {
 WindowReport run_window(WindowShell& shell, const SceneDescription& scene, Device& device,
                         const WindowOptions& options) {
     const std::vector<WindowHand> hands = list_window_hands(device, options);
-    std::unique_ptr<LiveSession> session;
-    const bool is_loaded = shell.work(
-        format_translated("Opening {}", scene.title), [&](const StageFunction& on_stage) {
+    std::unique_ptr<WindowSession> session;
+    const auto load = [&](const StageFunction& on_stage) {
+        if (options.replay) {
+            session =
+                std::make_unique<ReplaySession>(*options.replay, scene, options.view, on_stage);
+        } else {
             session =
                 std::make_unique<LiveSession>(scene, options.view, list_devices(hands), nullptr,
                                               options.server, options.playback, on_stage);
-        });
+        }
+    };
+    const bool is_loaded = shell.work(format_translated("Opening {}", scene.title), load);
     WindowReport report;
     if (is_loaded) {
         report = Sandbox(shell, std::move(session), scene, device, options).run();

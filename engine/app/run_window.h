@@ -74,7 +74,9 @@ struct WindowOptions {
     bool overwrites = false;                        // a recording in it
     TrajectorySettings trajectory{};                // of recordings
     std::optional<PlaybackChoice> playback{};       // a trajectory to play
-    PadLink* pads = nullptr;                        // where game pads are posted
+    // The folder of a recorded session of this scene, which is played again: nobody takes part.
+    std::optional<std::filesystem::path> replay{};
+    PadLink* pads = nullptr;  // where game pads are posted
     DeviceMenu devices{};
     SoundChoice sound{};
     // Writes the scene with these settings, shown so, and changed so, and says where; throws
@@ -105,6 +107,7 @@ struct WindowReport {
     double render_scale = 1;  // at the end
     std::size_t lesson_steps_done = 0;
     std::optional<NextScreen> next{};  // nothing: they quit
+    std::optional<ReplayState> replay{};  // of a recorded session, as far as it was played
 };
 
 // Loads the scene and shows it in the shell's window until the person leaves it. Throws GpuError,

@@ -2,9 +2,9 @@
 // sandbox_* has what it does of one kind.
 #pragma once
 #include "app/film_recorder.h"
-#include "app/live_session.h"
 #include "app/render_scale.h"
 #include "app/run_window.h"
+#include "app/window_session.h"
 #include "app/window_shell.h"
 #include "sound/speaker.h"
 #include "ui/add_panel.h"
@@ -48,8 +48,8 @@ struct WindowHand {
 
 class Sandbox {
 public:
-    Sandbox(WindowShell& shell, std::unique_ptr<LiveSession> session, const SceneDescription& scene,
-            Device& device, const WindowOptions& options);
+    Sandbox(WindowShell& shell, std::unique_ptr<WindowSession> session,
+            const SceneDescription& scene, Device& device, const WindowOptions& options);
 
     WindowReport run();
 
@@ -147,6 +147,8 @@ private:
     void take_clicked();
     void take(const std::string& address);
     void let_go();
+    void put_back();
+    bool refuse_in_replay();
     void edit(EditAction action);
     void open_add_panel();
     void take_dropped(const Input& input);
@@ -171,8 +173,8 @@ private:
     SteadyClock::time_point next_crash_save_ = SteadyClock::now() + std::chrono::seconds(20);
     WindowShell& shell_;
     Window& window_;  // the shell's
-    const std::unique_ptr<LiveSession> owned_session_;
-    LiveSession& session_;
+    const std::unique_ptr<WindowSession> owned_session_;
+    WindowSession& session_;
     Overlay overlay_;
     const std::string title_;  // of the scene
     LiveSettings saved_;       // as the scene's file has them, or the file saved last
@@ -232,6 +234,7 @@ private:
         bool is_there = true;
         std::uint64_t refused_edits = 0;  // before it
         std::string text{};
+        bool takes = false;  // it goes into the hand
     };
     std::optional<Announced> announced_;
     std::filesystem::path recorded_in_, filmed_in_;

@@ -51,7 +51,7 @@ void Sandbox::choose_next(Value ViewSettings::* choice, std::size_t count, const
 }
 
 bool Sandbox::save_scene() {
-    if (!options_.save) return false;
+    if (refuse_in_replay() || !options_.save) return false;
     try {
         const std::string file = options_.save(describe_state());
         note_saved();
@@ -101,7 +101,9 @@ void Sandbox::record_or_end() {
             session_.end_recording();
             tell_recording_notes();
             notice(
-                format_translated("recorded {0}; palpa replay {0} plays it", recorded_in_.string()),
+                format_translated("recorded {0}; Ctrl+O, then O opens its journal.txt and plays it "
+                                  "again",
+                                  recorded_in_.string()),
                 first_notice_s);
         } else {
             recorded_in_ = next_recording(options_.screenshots);
@@ -165,6 +167,9 @@ void Sandbox::perform(Action action) {
             break;
         case Action::LetGo:
             let_go();
+            break;
+        case Action::PutBack:
+            put_back();
             break;
         case Action::Focus:
             look_at_grabbed_or_all();

@@ -40,7 +40,7 @@ bool Sandbox::change_device(const std::string& name) {
     WindowDevice next;
     try {
         next = devices_.open(name);
-        session_.change_device(*next.device, next.orders);
+        session_.change_device(*next.device, next.orders, 0);
     } catch (const LoadError& error) {
         if (error.what() != refusal_) notice(error.what(), first_notice_s);
         refusal_ = error.what();

@@ -2,7 +2,6 @@
 #include "app/sandbox.h"
 
 #include "core/load_error.h"
-#include "core/text.h"
 #include "core/translate.h"
 #include "scene/find_scene.h"
 #include "simulation/molecules.h"
@@ -93,13 +92,30 @@ void Sandbox::take_clicked() {
     if (!address.empty() && address != in_hand().held_address) take(address);
 }
 
+// What happens in a recorded session is what was recorded.
+bool Sandbox::refuse_in_replay() {
+    if (!options_.replay) return false;
+    notice(translated("a recorded session is played again: nothing can be changed in it"));
+    return true;
+}
+
 void Sandbox::take(const std::string& address) {
+    if (refuse_in_replay()) return;
     edit(TakeEdit{address});
     overlay_.note_edit();
 }
 
 void Sandbox::let_go() {
+    if (refuse_in_replay()) return;
     if (frame_.readout.holds_something) edit(LetGoEdit{});
+}
+
+void Sandbox::put_back() {
+    if (refuse_in_replay()) return;
+    if (!frame_.readout.holds_something)
+        return notice(translated("nothing is in hand that could go back: click on an atom first"));
+    edit(PutBackEdit{});
+    overlay_.note_edit();
 }
 
 // The mouse's hand stays where the handle is: it pulls at nothing else.
@@ -117,11 +133,13 @@ std::string Sandbox::molecule_in_hand() const {
 }
 
 void Sandbox::open_add_panel() {
+    if (refuse_in_replay()) return;
     if (has_frame_) add_panel_.open(*frame_.atoms, molecule_in_hand());
 }
 
 void Sandbox::take_dropped(const Input& input) {
     if (input.dropped.empty() || options_.study || question_ || !has_frame_) return;
+    if (options_.replay) return ask_to_leave("go on", NextScreen{input.dropped});
     // What lacks something on its way into the dialog goes there.
     if (add_panel_.is_open()) return add_panel_.open(input.dropped);
     ask_about_dropped(input.dropped);
@@ -129,16 +147,11 @@ void Sandbox::take_dropped(const Input& input) {
 
 void Sandbox::ask_about_dropped(const std::vector<std::filesystem::path>& files) {
     const auto is_scene = [](const std::filesystem::path& file) {
-        return can_be_opened(file) && !is_structure(file);
-    };
-    const auto is_topology = [](const std::filesystem::path& file) {
-        return upper_case(file.extension().string()) == ".PSF";
+        return can_be_opened(file) && !is_structure(file) && !is_topology(file);
     };
     const auto open = [this, files] { ask_to_leave("go on", NextScreen{files}); };
     if (std::ranges::any_of(files, is_scene)) return open();
-    // A topology belongs to what is added, and is none of what is prepared.
-    if (std::ranges::none_of(files, can_be_opened) || std::ranges::any_of(files, is_topology))
-        return add_panel_.open(files);
+    if (std::ranges::none_of(files, can_be_opened)) return add_panel_.open(files);
     question_ = {format_translated("{}: what is to be done with it?", files[0].filename().string()),
                  {{Key::A, translated("Add it to this scene (A)"),
                    [this, files] { add_panel_.open(files); }},
@@ -160,12 +173,14 @@ void Sandbox::add(AddEdit wanted) {
     const double way = (place - as_double(camera_.target)).norm();
     announced_ = {wanted.name, true, frame_.readout.refused_edits,
                   format_translated("{} was added {}; a click takes it, Ctrl+Z undoes", wanted.name,
-                                    describe_way(way, camera_))};
+                                    describe_way(way, camera_)),
+                  add_panel_.takes()};
     edit(std::move(wanted));
     overlay_.note_edit();
 }
 
 void Sandbox::remove_held() {
+    if (refuse_in_replay()) return;
     const std::string molecule = molecule_in_hand();
     if (molecule.empty())
         return notice(
@@ -182,6 +197,7 @@ void Sandbox::tell_what_was_edited() {
     const bool is_there = find_molecule(*frame_.atoms, announced_->molecule) != nullptr;
     if (is_there == announced_->is_there) {
         notice(announced_->text, first_notice_s);
+        if (announced_->takes) take(announced_->molecule);
     } else if (frame_.readout.refused_edits == announced_->refused_edits) {
         return;
     }

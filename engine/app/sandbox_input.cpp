@@ -191,7 +191,7 @@ void Sandbox::press_in_dialog(const KeyPress& press) {
                             action == Action::LargerText || action == Action::SmallerText ||
                             action == Action::UsualText;
     if (is_for_all) return perform(*action);
-    add_panel_.press(press.key);
+    add_panel_.press(press);
 }
 
 void Sandbox::press_key(const KeyPress& press) {

@@ -249,6 +249,10 @@ void StartScreen::draw_header() {
     ImGui::TextDisabled(
         "%s", translated("Choose a scene, or open a structure of your own. In a scene: hold Space "
                          "and move the mouse to pull; H lists all keys."));
+    if (options_.recent.empty())
+        ImGui::TextWrapped("%s",
+                           translated("New here? Press Enter: the first card is a tour of two "
+                                      "minutes."));
     if (!problem_.empty()) {
         ImGui::PushStyleColor(ImGuiCol_Text, problem_colour);
         ImGui::TextWrapped("%s", problem_.c_str());

@@ -6,6 +6,7 @@
 #include "core/files.h"
 #include "core/load_error.h"
 #include "core/text.h"
+#include "formats/psf.h"
 #include "formats/structure.h"
 
 #include <fmt/format.h>
@@ -72,7 +73,12 @@ MadeScene make_scene(const SceneRequest& request, const StageFunction& on_stage)
     const ForceField force_field = read_wanted_force_field(request);
     tell(on_stage, "reading the structure");
     const Structure structure = read_structure(request.structure);
-    MadeScene made{prepare_system(force_field, structure, request.settings, on_stage), {}, {}};
+    MadeScene made;
+    if (request.topology.empty()) {
+        made.system = prepare_system(force_field, structure, request.settings, on_stage);
+    } else {
+        made.system = adopt_system(force_field, read_psf(request.topology), structure);
+    }
     report_force_field(force_field, made.system.report);
     report_penalties(request.force_field, made.system.report);
     const std::string origin = fmt::format("Prepared from {} by palpa prepare; see report.txt.",

@@ -13,6 +13,7 @@ namespace palpa {
 
 struct SceneRequest {
     std::filesystem::path structure;                 // as read_structure takes it
+    std::filesystem::path topology{};                // .psf: taken as it is (adopt_system)
     std::vector<std::filesystem::path> force_field;  // files, read after the built-in one
     bool only_these_files = false;                   // in place of it
     PrepareSettings settings{};

@@ -13,6 +13,8 @@
 #include "formats/crd.h"
 #include "formats/pdb.h"
 #include "formats/psf.h"
+#include "molecule/alternatives.h"
+#include "molecule/match_atoms.h"
 #include "molecule/residue_kinds.h"
 #include "prepare/align.h"
 #include "prepare/atom_names.h"
@@ -338,6 +340,31 @@ PreparedSystem prepare_system(const ForceField& given_force_field, const Structu
         take_reduced_phosphates(result);
     }
     if (settings.align) align(result.structure, *settings.align, result.structure.positions);
+    return result;
+}
+
+PreparedSystem adopt_system(const ForceField& force_field, Connectivity connectivity,
+                            const Structure& coordinates) {
+    PreparedSystem result;
+    refuse_alternatives(coordinates);
+    result.structure.file = coordinates.file;
+    result.structure.names = connectivity.names;
+    result.structure.lines = connectivity.lines;
+    result.structure.positions = match_positions(connectivity, coordinates);
+    check_size(result.structure);
+    check_formats(result.structure);
+    result.topology = build_topology(connectivity, force_field);
+    result.connectivity = std::move(connectivity);
+    result.parameters = keep_used_parameters(force_field, result.connectivity);
+    name_elements(result);
+    const std::vector<std::uint8_t> none_added(result.structure.names.size(), 0);
+    check_coordinates(result.structure, result.topology, none_added, result.report);
+    report_charge(result);
+    result.report.add("System",
+                      fmt::format("atoms, types, charges and bonds are those of {}; nothing was "
+                                  "built, and it stands in vacuum",
+                                  result.connectivity.file));
+    warn_of_clash(result, find_closest_contact(result.topology, result.structure.positions));
     return result;
 }
 

@@ -51,6 +51,14 @@ private:
     std::shared_ptr<const std::vector<UnknownResidue>> residues_;  // copies must not throw
 };
 
+// The same of a topology that somebody has made already (.psf), with coordinates of all its atoms:
+// names, types, charges and bonds are taken as they are, nothing is built or moved, and there is no
+// implicit water, which needs other charges. Throws LoadError for atoms without a place (as
+// match_positions), parameters that are missing (build_topology), and coordinates that cannot be
+// those of the molecules (check_coordinates).
+PreparedSystem adopt_system(const ForceField& force_field, Connectivity connectivity,
+                            const Structure& coordinates);
+
 // What a topology file of the system says of itself: `title`, and before it the origin of charges
 // that are not the force field's own.
 std::string topology_title(const PreparedSystem& system, std::string_view title);

@@ -23,6 +23,10 @@ void visit_action(FieldVisitor& v, LetGoEdit& /*e*/) {
     v.mark({.key = "let_go", .meaning = "the hand holds nothing"});
 }
 
+void visit_action(FieldVisitor& v, PutBackEdit& /*e*/) {
+    v.mark({.key = "put_back", .meaning = "what it holds goes back to where it was at the start"});
+}
+
 void visit_action(FieldVisitor& v, AddEdit& e) {
     v.enter_table({.key = "add",
                    .meaning = "a new molecule: a residue of the force field, a copy, or files",

@@ -36,6 +36,12 @@ struct LetGoEdit {
     friend bool operator==(const LetGoEdit&, const LetGoEdit&) = default;
 };
 
+// The molecule that the hand holds goes back to where it was when the scene began, or when it was
+// added, in the shape it had then; the hand keeps hold of it.
+struct PutBackEdit {
+    friend bool operator==(const PutBackEdit&, const PutBackEdit&) = default;
+};
+
 // A residue of the scene's force field, a copy of a molecule, or what is in files, with its
 // reference atom there: of a residue and of files the first one.
 struct AddEdit {
@@ -110,16 +116,16 @@ struct RedoEdit {
 };
 
 using EditAction =
-    std::variant<TakeEdit, LetGoEdit, AddEdit, RemoveEdit, PinEdit, RestraintEdit, MobilityEdit,
-                 AppearanceEdit, CouplingEdit, ResetEdit, UndoEdit, RedoEdit>;
+    std::variant<TakeEdit, LetGoEdit, PutBackEdit, AddEdit, RemoveEdit, PinEdit, RestraintEdit,
+                 MobilityEdit, AppearanceEdit, CouplingEdit, ResetEdit, UndoEdit, RedoEdit>;
 
 // The files that it reads.
 std::vector<std::filesystem::path*> list_files(EditAction& action);
 
 // Their keys in a scene file, in that order.
 inline constexpr std::array<std::string_view, std::variant_size_v<EditAction>> edit_names{
-    "take",     "let_go",     "add",      "remove", "pin",  "restraint",
-    "mobility", "appearance", "coupling", "reset",  "undo", "redo"};
+    "take",     "let_go",     "put_back", "add",   "remove", "pin", "restraint",
+    "mobility", "appearance", "coupling", "reset", "undo",   "redo"};
 
 inline constexpr std::array<std::string_view, 2> edit_hand_names{"first", "second"};
 

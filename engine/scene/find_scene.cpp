@@ -187,12 +187,17 @@ bool is_structure(const fs::path& file) {
     return std::find(endings.begin(), endings.end(), ending) != endings.end();
 }
 
+bool is_topology(const fs::path& file) { return upper_case(file.extension().string()) == ".PSF"; }
+
 bool can_be_opened(const fs::path& file) {
-    return is_structure(file) || upper_case(file.extension().string()) == ".TOML";
+    return is_structure(file) || is_topology(file) || file.filename() == journal_name ||
+           upper_case(file.extension().string()) == ".TOML";
 }
 
 std::vector<std::string> list_endings() {
-    return {".pdb", ".ent", ".cif", ".mmcif", ".crd", ".cor", ".toml"};
+    return {".pdb",   ".ent",  ".cif",
+            ".mmcif", ".crd",  ".cor",
+            ".psf",   ".toml", std::string(journal_name)};
 }
 
 std::vector<SceneEntry> list_scenes(const fs::path& folder) {

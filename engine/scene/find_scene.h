@@ -2,6 +2,7 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace palpa {
@@ -33,8 +34,14 @@ std::vector<SceneEntry> list_scenes(const std::filesystem::path& folder);
 // Whether the file's ending is that of a structure: .pdb, .cif, .crd and others, also with .gz.
 bool is_structure(const std::filesystem::path& file);
 
-// Whether a file of this name can be opened: a scene (.toml) or a structure; and the endings of
-// such files, in lower case, without .gz.
+// Whether it is a topology (.psf), which is opened with its coordinates.
+bool is_topology(const std::filesystem::path& file);
+
+// Of a recorded session of a window: the journal in its folder.
+inline constexpr std::string_view journal_name = "journal.txt";
+
+// Whether a file of this name can be opened: a scene (.toml), a structure, a topology, or the
+// journal of a recorded session; and the endings of such files, in lower case, without .gz.
 bool can_be_opened(const std::filesystem::path& file);
 std::vector<std::string> list_endings();
 

@@ -35,13 +35,28 @@ struct Reset {
     // On a line, Å: where it is to start from now on, if not where it did.
     std::optional<double> start_angstrom{};
 };
+// Of a replay: where to go, how fast; what is not said stays.
+struct ReplayOrder {
+    std::optional<bool> paused{};
+    std::optional<double> speed{};  // above 0
+    std::optional<double> at_s{};   // going back plays the session anew up to there
+};
 // An edit is made at once, whatever time it says. A pull lasts until the next one.
 using Command = std::variant<LiveSettings, ViewSettings, Pause, StepOnce, Reset, EditDescription,
-                             PlaybackOrder, ClientPull>;
+                             PlaybackOrder, ReplayOrder, ClientPull>;
 
 inline EditDescription edit_now(EditAction action) {
     return {0, 0, std::move(action), {"not done"}};
 }
+
+// A recorded session that is played again.
+struct ReplayState {
+    double at_s = 0, length_s = 0;  // from the session's beginning
+    double speed = 1;               // 1: as fast as it was recorded, or as fast as it computes
+    bool is_paused = false;
+    std::string verdict;    // how many rows of its trace are the same so far
+    LiveSettings settings;  // as the person had them
+};
 
 // What a running scene says, all of one moment between two steps.
 struct Readout {
@@ -59,6 +74,7 @@ struct Readout {
     std::string engine;               // how a remote engine fares, a sentence; empty: there is none
     std::string edit_under_way;       // its key in a scene file; empty: none
     std::optional<PlaybackState> playback;  // where a trajectory is played
+    std::optional<ReplayState> replay;      // where a recorded session is played again
     LessonMeasures lesson;                  // where the scene has one
 };
 

@@ -1,7 +1,6 @@
 #include "session/play_journal.h"
 
 #include "core/load_error.h"
-#include "session/live_simulation.h"
 #include "session/servo_bank.h"
 
 #include <fmt/format.h>
@@ -67,12 +66,14 @@ private:
     std::vector<Hand> hands_;
 };
 
-class Player {
+}  // namespace
+
+class JournalPlayer::Player {
 public:
-    Player(const SceneDescription& scene, const Journal& journal)
+    Player(const SceneDescription& scene, const Journal& journal, const StageFunction& on_stage)
         : journal_(journal),
           posts_(journal.devices.size()),
-          simulation_(scene, journal.devices, posts_),
+          simulation_(scene, journal.devices, posts_, {}, on_stage),
           servos_(journal.devices.size()),
           poses_(journal.devices.size()) {}
 
@@ -94,6 +95,9 @@ public:
         }
         return servos_.ticks();
     }
+
+    const Journal& journal() const noexcept { return journal_; }
+    const LiveSimulation& simulation() const noexcept { return simulation_; }
 
 private:
     void play_event() {
@@ -125,18 +129,32 @@ private:
     std::size_t next_event_ = 0;
 };
 
-}  // namespace
-
-void play_journal(const SceneDescription& scene, const Journal& journal,
-                  const LiveTicksFunction& on_ticks, const ProgressFunction& progress) {
+JournalPlayer::JournalPlayer(const SceneDescription& scene, const Journal& journal,
+                             const StageFunction& on_stage) {
     const std::size_t hands = scene.second ? 2 : 1;
     if (journal.devices.size() > hands)
         fail(fmt::format("moves {} hands, where the scene has {}", journal.devices.size(), hands));
-    Player player(scene, journal);
+    player_ = std::make_unique<Player>(scene, journal, on_stage);
+}
+
+JournalPlayer::JournalPlayer(JournalPlayer&&) noexcept = default;
+JournalPlayer& JournalPlayer::operator=(JournalPlayer&&) noexcept = default;
+JournalPlayer::~JournalPlayer() = default;
+
+bool JournalPlayer::is_over() const noexcept { return next_ == player_->journal().ticks.size(); }
+
+std::span<const LiveTick> JournalPlayer::play_tick() { return player_->play_tick(next_++); }
+
+const LiveSimulation& JournalPlayer::simulation() const noexcept { return player_->simulation(); }
+
+void play_journal(const SceneDescription& scene, const Journal& journal,
+                  const LiveTicksFunction& on_ticks, const ProgressFunction& progress) {
+    JournalPlayer player(scene, journal);
     const std::size_t first = journal.first_recorded.value_or(journal.ticks.size());
     constexpr std::size_t between_progress = 100;
-    for (std::size_t tick = 0; tick < journal.ticks.size(); ++tick) {
-        const std::span<const LiveTick> ticks = player.play_tick(tick);
+    while (!player.is_over()) {
+        const std::size_t tick = player.next_tick();
+        const std::span<const LiveTick> ticks = player.play_tick();
         if (tick >= first) on_ticks(ticks);
         if (progress && tick % between_progress == 0)
             progress(static_cast<double>(tick) / static_cast<double>(journal.ticks.size()));

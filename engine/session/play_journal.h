@@ -3,12 +3,42 @@
 #include "scene/description.h"
 #include "session/journal.h"
 #include "session/live_events.h"
+#include "session/live_simulation.h"
 #include "session/run_headless.h"
 
+#include <cstddef>
 #include <functional>
+#include <memory>
 #include <span>
 
 namespace palpa {
+
+// Plays a session from its first moment, tick by tick. The journal must outlive it.
+class JournalPlayer {
+public:
+    // Loads the scene. Throws LoadError where it cannot be loaded, or where the journal is not one
+    // of it.
+    JournalPlayer(const SceneDescription& scene, const Journal& journal,
+                  const StageFunction& on_stage = {});
+    JournalPlayer(JournalPlayer&&) noexcept;
+    JournalPlayer& operator=(JournalPlayer&&) noexcept;
+    ~JournalPlayer();
+
+    std::size_t next_tick() const noexcept { return next_; }  // from 0
+    bool is_over() const noexcept;
+
+    // One tick of all hands, with what the simulation did before it. Throws LoadError where the
+    // journal uses what was never posted, or begins from what was never read.
+    std::span<const LiveTick> play_tick();
+
+    const LiveSimulation& simulation() const noexcept;
+
+private:
+    class Player;
+
+    std::unique_ptr<Player> player_;
+    std::size_t next_ = 0;
+};
 
 // Gets every tick of all hands that the recording holds.
 using LiveTicksFunction = std::function<void(std::span<const LiveTick>)>;

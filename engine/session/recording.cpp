@@ -7,6 +7,8 @@
 #include "core/version.h"
 #include "field/processor.h"
 #include "render/picture.h"
+#include "scene/find_scene.h"
+#include "scene/read_scene.h"
 #include "scene/write_scene.h"
 #include "session/accuracy_report.h"
 
@@ -286,6 +288,39 @@ bool is_of_trajectory(const fs::path& folder) {
 
 bool is_of_commands(const fs::path& folder) {
     return begins_with(folder / "session.toml", commands_mark);
+}
+
+bool has_journal(const fs::path& folder) {
+    std::error_code error;
+    return fs::exists(folder / journal_name, error);
+}
+
+SceneDescription read_recorded_scene(const fs::path& folder) {
+    const fs::path session = folder / "session.toml";
+    std::error_code error;
+    if (!fs::exists(session, error)) {
+        throw LoadError({folder.string()},
+                        "holds no session.toml; expected the folder of a recording (palpa run "
+                        "--record)");
+    }
+    SceneDescription scene = read_scene(session, {});
+    if (scene.engine) {
+        throw LoadError(scene.place_of("engine"),
+                        "a remote engine moved the atoms, and its frames are not in the recording; "
+                        "expected one without [engine]");
+    }
+    if (is_of_trajectory(folder)) {
+        throw LoadError({folder.string()},
+                        "a trajectory moved the atoms (--trajectory), and its frames are not in "
+                        "the recording; expected one without");
+    }
+    if (is_of_commands(folder)) {
+        throw LoadError({folder.string()},
+                        "commands drove the run (--commands), and they are not in the recording; "
+                        "expected one without, or the commands given once more to palpa run "
+                        "session.toml --headless --commands");
+    }
+    return scene;
 }
 
 InputNames::InputNames(const SceneDescription& scene) {

@@ -61,6 +61,13 @@ enum class RecordedBy { Hand, Journal, Trajectory, Commands };
 bool is_of_trajectory(const std::filesystem::path& folder);
 bool is_of_commands(const std::filesystem::path& folder);
 
+// Whether it is one of a window: with everything that devices, person and clients did.
+bool has_journal(const std::filesystem::path& folder);
+
+// The scene of a recording that can be played again. Throws LoadError where the folder holds none,
+// and where something that is not in it moved the atoms: a remote engine, a trajectory, commands.
+SceneDescription read_recorded_scene(const std::filesystem::path& folder);
+
 class Recording {
 public:
     // Makes the folder and writes session.toml and the inputs: what is needed to run the session

@@ -38,6 +38,11 @@ struct RigidShape {
     std::vector<Vec3> atoms;
 };
 
+// Its atoms' places (Å) when the scene began, or when it was added.
+struct StartPlaces {
+    std::shared_ptr<const std::vector<Vec3>> atoms;
+};
+
 // Where its atoms and bonds are from. What is bonded is read or generated when something mobile
 // asks for it.
 struct Source {

@@ -224,12 +224,15 @@ void place_atoms(World& world, AtomRange range, const Vec3& by) {
 }
 
 // Nothing that is not bonded comes as near, and from there forces would tear molecules apart.
-void check_room(const AtomTable& atoms, AtomRange added, const std::string& name) {
+// `remedy`: what would be right.
+void check_room(const AtomTable& atoms, AtomRange added, const std::string& name,
+                const std::string& remedy) {
     constexpr double nearest = 1;  // Å
     std::array<std::size_t, 2> pair{};
     double closest2 = nearest * nearest;
     for (std::uint32_t i = added.first; i < added.first + added.count; ++i) {
-        for (std::uint32_t j = 0; j < added.first; ++j) {
+        for (std::uint32_t j = 0; j < atoms.positions.size(); ++j) {
+            if (has_atom(added, j)) continue;
             const double distance2 = (atoms.positions[i] - atoms.positions[j]).squaredNorm();
             if (!(distance2 < closest2)) continue;
             closest2 = distance2;
@@ -238,10 +241,10 @@ void check_room(const AtomTable& atoms, AtomRange added, const std::string& name
     }
     if (pair[0] == pair[1]) return;
     refuse(
-        fmt::format("'{}' would be on what is there: {} is {:.2f} Å from {}; expected a place "
-                    "(at_angstrom) with {} Å or more between all atoms",
+        fmt::format("'{}' would overlap: {} is {:.2f} Å from {}; expected {} with {} Å or more "
+                    "between all atoms",
                     name, to_string(atoms.names[pair[0]]), std::sqrt(closest2),
-                    to_string(atoms.names[pair[1]]), nearest));
+                    to_string(atoms.names[pair[1]]), remedy, nearest));
 }
 
 void forget_bonded_terms(World& world) { world.set_resource(BondedTerms{}); }
@@ -306,6 +309,31 @@ void let_go(World& world, Entity hand) {
     edit_whole(world, [&](World& changed) { release(changed, hand); });
 }
 
+void put_back(World& world, Entity hand) {
+    edit_whole(world, [&](World& changed) {
+        Grip* const grip = changed.find<Grip>(hand);
+        if (!grip)
+            refuse("the hand holds nothing that could go back; expected one that holds some");
+        const Molecule& molecule = *changed.find<Molecule>(grip->molecule);
+        if (other_holder(changed, hand, grip->molecule) != Entity{}) {
+            refuse(fmt::format("the other hand holds '{}' too; expected it to let go first",
+                               molecule.name));
+        }
+        AtomTable& atoms = changed.resource<AtomTable>();
+        std::ranges::copy(*changed.find<StartPlaces>(grip->molecule)->atoms,
+                          atoms.positions.begin() + molecule.atoms.first);
+        check_room(atoms, molecule.atoms, molecule.name, "room where it was at the start");
+        const bool is_whole = grip->atoms.empty();
+        const Vec3 place = is_whole ? atoms.positions[molecule.reference_atom]
+                                    : middle_of(changed, {grip->molecule, grip->atoms});
+        grip->pose = {place - grip->anchor, Quat::Identity()};
+        *changed.find<Pose>(grip->molecule) = {atoms.positions[molecule.reference_atom],
+                                               Quat::Identity()};
+        if (changed.find<RigidShape>(grip->molecule)) set_shape(changed, grip->molecule);
+        take_hold_anew(changed, hand);
+    });
+}
+
 void add_molecule(World& world, const AddEdit& edit) {
     edit_whole(world, [&](World& changed) {
         check_name_is_new(changed, edit.name);
@@ -324,8 +352,9 @@ void add_molecule(World& world, const AddEdit& edit) {
         }
         const Vec3 at(edit.at_angstrom.data());
         place_atoms(changed, range, at - atoms.positions[reference]);
-        check_room(atoms, range, edit.name);
-        create_molecule(changed, {edit.name, range, reference}, mobility, std::move(source));
+        check_room(atoms, range, edit.name, "a place (at_angstrom)");
+        set_start_places(changed, create_molecule(changed, {edit.name, range, reference}, mobility,
+                                                  std::move(source)));
         set_interactions(changed);
         forget_bonded_terms(changed);
     });
@@ -457,6 +486,8 @@ void make(World& world, const EditDescription& edit) {
             take(world, hand_at(world, edit.hand), action);
         else if constexpr (std::is_same_v<Action, LetGoEdit>)
             let_go(world, hand_at(world, edit.hand));
+        else if constexpr (std::is_same_v<Action, PutBackEdit>)
+            put_back(world, hand_at(world, edit.hand));
         else if constexpr (std::is_same_v<Action, AddEdit>)
             add_molecule(world, action);
         else if constexpr (std::is_same_v<Action, RemoveEdit>)

@@ -18,6 +18,8 @@ namespace palpa {
 // that is fixed otherwise. A hand that lets go gives back what the molecule may do.
 void take(World& world, Entity hand, const TakeEdit& edit);
 void let_go(World& world, Entity hand);
+// Refused where something else is there now, and where another hand holds it too.
+void put_back(World& world, Entity hand);
 void add_molecule(World& world, const AddEdit& edit);
 void remove_molecule(World& world, const RemoveEdit& edit);
 void pin(World& world, const PinEdit& edit);

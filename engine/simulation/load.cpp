@@ -310,6 +310,9 @@ World load_world(const SceneDescription& scene, const StageFunction& on_stage) {
     }
     tell(on_stage, "bringing the molecule in the hand to its start");
     start_hands(scene, world);
+    std::vector<Entity> molecules;
+    world.each<Molecule>([&](Entity molecule, const Molecule&) { molecules.push_back(molecule); });
+    for (const Entity molecule : molecules) set_start_places(world, molecule);
     set_coupling(scene.coupling, world);
     (void)find_empty_selections(scene.view, world);  // throws for those that are none
     return world;

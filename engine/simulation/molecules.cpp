@@ -106,6 +106,13 @@ void set_shape(World& world, Entity entity) {
     world.set(entity, std::move(shape));
 }
 
+void set_start_places(World& world, Entity entity) {
+    const AtomRange range = world.find<Molecule>(entity)->atoms;
+    const auto first = world.resource<AtomTable>().positions.begin() + range.first;
+    world.set(entity,
+              StartPlaces{std::make_shared<const std::vector<Vec3>>(first, first + range.count)});
+}
+
 void remove_atoms(World& world, Entity entity) {
     const AtomRange gone = world.find<Molecule>(entity)->atoms;
     AtomTable& atoms = world.resource<AtomTable>();

@@ -25,6 +25,9 @@ void set_interactions(World& world);
 // A molecule moves as one piece from now on, from where it is.
 void set_shape(World& world, Entity molecule);
 
+// It starts where its atoms are now (StartPlaces).
+void set_start_places(World& world, Entity molecule);
+
 // Its atoms leave the table, and it the world; atoms behind it move up. Types are numbered as in a
 // table that never had it.
 void remove_atoms(World& world, Entity molecule);

@@ -3,6 +3,7 @@
 #include "core/text.h"
 #include "core/translate.h"
 #include "molecule/residue_kinds.h"
+#include "scene/find_scene.h"
 #include "ui/layout.h"
 #include "ui/text_field.h"
 
@@ -41,10 +42,6 @@ std::string as_base(std::string_view text) {
     return base.empty() ? "m" : base;
 }
 
-bool is_topology(const std::filesystem::path& file) {
-    return in_lower_case(file.extension().string()) == ".psf";
-}
-
 std::string describe(const std::string& name, std::size_t atoms) {
     const char* const text = translated_plural("{}   ({} atom)", "{}   ({} atoms)", atoms);
     return fmt::format(fmt::runtime(text), name, atoms);
@@ -66,7 +63,7 @@ std::string find_free_name(const AtomDirectory& atoms, const std::string& base) 
 
 void AddPanel::open() {
     is_open_ = wants_focus_ = true;
-    has_own_name_ = wants_add_ = false;
+    has_own_name_ = wants_add_ = wants_take_ = false;
     list_steps_ = 0;
 }
 
@@ -95,16 +92,16 @@ void AddPanel::close() {
     ImGui::ClearActiveID();
 }
 
-void AddPanel::press(Key key) {
-    if (key == Key::Enter) wants_add_ = true;
-    if (key == Key::Up) --list_steps_;
-    if (key == Key::Down) ++list_steps_;
+void AddPanel::press(const KeyPress& press) {
+    if (press.key == Key::Enter) wants_add_ = true, wants_take_ = press.shift;
+    if (press.key == Key::Up) --list_steps_;
+    if (press.key == Key::Down) ++list_steps_;
 }
 
 std::optional<AddEdit> AddPanel::draw(const AtomDirectory& atoms) {
     if (!is_open_) return std::nullopt;
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
-    const float edge = panel_edge(), width = std::min(scaled(440), screen.x - 2 * edge);
+    const float edge = panel_edge(), width = std::min(scaled(520), screen.x - 2 * edge);
     draw_shade();
     // It stays where it is when its height changes with what is chosen.
     const float top = std::max(edge, std::round(0.5F * (screen.y - scaled(400))));
@@ -125,7 +122,11 @@ std::optional<AddEdit> AddPanel::draw(const AtomDirectory& atoms) {
     name_it(atoms);
     const std::string problem = find_problem(atoms);
     ImGui::BeginDisabled(!problem.empty());
-    const bool is_asked = ImGui::Button(labelled("Add (Enter)").c_str()) || wants_add_;
+    takes_ = wants_take_;
+    bool is_asked = ImGui::Button(labelled("Add (Enter)").c_str()) || wants_add_;
+    ImGui::SameLine();
+    if (ImGui::Button(labelled("Add and take (Shift+Enter)").c_str())) is_asked = takes_ = true;
+    tip(translated("in hand at once, to be put where it belongs: hold Space and move the mouse"));
     ImGui::EndDisabled();
     ImGui::SameLine();
     const bool is_done = ImGui::Button(labelled("Close (Esc)").c_str());
@@ -133,7 +134,7 @@ std::optional<AddEdit> AddPanel::draw(const AtomDirectory& atoms) {
     ImGui::TextWrapped("%s", problem.empty() ? " " : problem.c_str());
     ImGui::PopStyleColor();
     ImGui::End();
-    wants_add_ = wants_focus_ = false;
+    wants_add_ = wants_take_ = wants_focus_ = false;
     list_steps_ = 0;
     const bool adds = is_asked && problem.empty();
     if (adds || is_done || !is_open_) close();

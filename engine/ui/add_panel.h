@@ -25,13 +25,15 @@ public:
     void close();
     bool is_open() const noexcept { return is_open_; }
 
-    // Enter asks for what is chosen, Up and Down choose in the list; when it is drawn the next
-    // time, so that what was typed before counts.
-    void press(Key key);
+    // Enter asks for what is chosen, with Shift to have it in hand; Up and Down choose in the list;
+    // when it is drawn the next time, so that what was typed before counts.
+    void press(const KeyPress& press);
 
     // Describes it to the overlay library. What the person asked for, still without a place: it is
     // closed then.
     std::optional<AddEdit> draw(const AtomDirectory& atoms);
+    // Whether what was asked for last goes into the hand.
+    bool takes() const noexcept { return takes_; }
 
 private:
     enum class Origin { Residue, Copy, Files };
@@ -55,7 +57,7 @@ private:
     std::string search_, residue_, copy_of_, structure_, topology_, segment_, name_;
     bool has_own_name_ = false;  // the person wrote it
     bool wants_focus_ = false;   // for the first field
-    bool wants_add_ = false;
+    bool wants_add_ = false, wants_take_ = false, takes_ = false;
     int list_steps_ = 0;  // down
 };
 

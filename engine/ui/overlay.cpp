@@ -140,7 +140,7 @@ void Overlay::change_settings(const LiveSettings& settings, std::vector<Command>
 }
 
 void Overlay::set_mode(CouplingMode mode, std::vector<Command>& commands) {
-    if (settings_.coupling.mode == mode) return;
+    if (settings_.coupling.mode == mode || is_replay_) return;
     undo_.push_back(settings_);
     redo_.clear();
     LiveSettings settings = settings_;
@@ -257,6 +257,11 @@ void Overlay::draw(const Readout& readout, const OverlayStatus& status,
     forget_refused(readout);
     measured_ = readout.lesson.values;
     selects_ = status.selects;
+    is_replay_ = readout.replay.has_value();
+    if (is_replay_ && settings_ != readout.replay->settings) {
+        settings_ = readout.replay->settings;
+        update_limit();
+    }
     if (shows_overlays_) {
         draw_scene(readout, status, commands, actions);
         draw_right_panel(commands);
@@ -264,7 +269,10 @@ void Overlay::draw(const Readout& readout, const OverlayStatus& status,
     }
     if (status.selects) {
         // The window has its panel there.
-    } else if (readout.playback) {  // in the lesson's place
+    } else if (readout.replay) {  // in the lesson's place, as the next
+        const ImVec2 screen = ImGui::GetIO().DisplaySize;
+        draw_replay_panel(*readout.replay, free_area(screen.x, screen.y), commands, actions);
+    } else if (readout.playback) {
         const ImVec2 screen = ImGui::GetIO().DisplaySize;
         draw_playback_panel(*readout.playback, free_area(screen.x, screen.y), commands);
     } else if (shows_lesson_ && !lesson_.steps().empty()) {
@@ -280,7 +288,7 @@ void Overlay::draw(const Readout& readout, const OverlayStatus& status,
 ScreenArea Overlay::legend_area() const {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     ScreenArea area = free_area(screen.x, screen.y);
-    for (const char* const name : {lesson_panel, playback_panel, selection_panel}) {
+    for (const char* const name : {lesson_panel, playback_panel, replay_panel, selection_panel}) {
         const ImGuiWindow* const panel = ImGui::FindWindowByName(labelled(name).c_str());
         if (panel && panel->Active) area.bottom = std::min(area.bottom, panel->Pos.y);
     }
@@ -396,7 +404,9 @@ void Overlay::draw_warnings(const Readout& readout, const OverlayStatus& status)
     if (readout.paused) warnings.emplace_back(translated("paused: P goes on"));
     if (!status.notice.empty()) warnings.push_back(status.notice);
     warnings.emplace_back(
-        !readout.holds_something
+        readout.replay
+            ? translated("a recorded session is played again; drag turns the view, H: all keys")
+        : !readout.holds_something
             ? translated("nothing is in hand: click on an atom to take its molecule; H: all "
                          "keys")
         : !status.has_mouse_hand ? format_translated("device: {}; H: all keys", status.device_name)

@@ -151,6 +151,7 @@ private:
     double side_ = 0;  // of the counterpart, on one axis, where the molecule began
     bool went_through_ = false;
     bool wants_pause_ = false;
+    bool is_replay_ = false;  // of a recorded session, whose settings are shown
     double force_gain_ = 0;
     float sliders_height_ = 0, plot_height_ = 0;  // pixels, as drawn last
     float left_covered_ = 0, right_covered_ = 0;  // pixels, by the panels

@@ -55,7 +55,9 @@ void Overlay::draw_right_panel(std::vector<Command>& commands) {
     right_covered_ = is_open ? column + edge : 0;
     if (is_open && ImGui::BeginTabBar("right")) {
         if (ImGui::BeginTabItem(labelled("gains").c_str())) {
+            ImGui::BeginDisabled(is_replay_);
             draw_gains(commands);
+            ImGui::EndDisabled();
             ImGui::EndTabItem();
         }
         if (ImGui::BeginTabItem(labelled("over time").c_str())) {

@@ -17,6 +17,8 @@ constexpr std::array list = std::to_array<Shortcut>({
      true},
     {Key::Y, true, Action::Redo, for_translation("Ctrl+Y"), for_translation("do it again")},
     {Key::G, false, Action::LetGo, "G", for_translation("let go of what is in hand")},
+    {Key::R, false, Action::PutBack, for_translation("Shift+R"),
+     for_translation("put what is in hand back to where it was"), true},
     {Key::X, false, Action::OtherHand, "X",
      for_translation("mouse and clicks: the other of two hands")},
     {Key::Insert, false, Action::Add, for_translation("Insert"), for_translation("add a molecule")},

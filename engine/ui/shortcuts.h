@@ -24,6 +24,7 @@ enum class Action {
     Undo,
     Redo,
     LetGo,
+    PutBack,
     OtherHand,
     Add,
     Remove,

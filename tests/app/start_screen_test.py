@@ -1,5 +1,6 @@
 """From the start screen to a structure of one's own and back, in a window under Xvfb."""
 import os
+import re
 import shutil
 import subprocess
 import tempfile
@@ -79,15 +80,15 @@ class StartScreen(unittest.TestCase):
             # The cards have pictures: ligands in them are green.
             self.assertGreater(self.count_greens(self.screenshot(display)), 100)
             display.do("key", "Return")
-            self.wait_for(display, "Palpa - Two waters")
+            self.wait_for(display, "Palpa - Tour: two minutes")
             self.screenshot(display)
             display.do("key", "ctrl+o")
             self.wait_for(display, "Palpa")
-            self.assertIn("water/scene.toml",
+            self.assertIn("water/tour.toml",
                           (self.folder / "palpa" / "preferences.toml").read_text())
             self.screenshot(display)
             out = self.end(display)
-        self.assertIn("Two waters", out)
+        self.assertIn("Tour: two minutes", out)
 
     def test_a_structure_is_dropped_prepared_felt_recorded_saved_and_opened_again(self):
         structure = self.folder / "hairpin.pdb"
@@ -124,7 +125,18 @@ class StartScreen(unittest.TestCase):
             display.drop(self.wait_for(display, "Palpa"), prepared / "scene-2.toml")
             self.wait_for(display, "Palpa - hairpin")
             self.screenshot(display)
-            self.end(display)
+            # What was recorded is played again in the window, and nobody can change it.
+            display.do("key", "ctrl+o")
+            display.drop(self.wait_for(display, "Palpa"), recording / "journal.txt")
+            self.wait_for(display, "Palpa - hairpin")
+            display.do("key", "Delete")
+            time.sleep(4)
+            self.screenshot(display)
+            out = self.end(display)
+        found = re.search(r"(\d+) of (\d+) rows compared with what was recorded: the same to the "
+                          "last digit", out)
+        self.assertTrue(found, out)
+        self.assertGreater(int(found[1]), 500)
         played = subprocess.run([PROGRAM, "replay", recording, "--verify"], capture_output=True,
                                 text=True)
         self.assertEqual(played.returncode, 0, played.stdout + played.stderr)

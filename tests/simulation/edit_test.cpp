@@ -134,6 +134,58 @@ TEST_CASE("any residue or atom can be taken by a spring, in rigid scenes too",
     CHECK((middle_of_residue(world, "resting", name) - now).norm() < (is_rigid ? 1e-12 : 1));
 }
 
+TEST_CASE("what is in hand goes back to where it was at the start, whatever was done to it",
+          "[simulation][edit]") {
+    const bool is_rigid = GENERATE(true, false);
+    const std::string what = GENERATE("resting", "resting:3 CB");
+    World world = is_rigid ? load_rigid() : load_two();
+    const std::vector<Vec3> start = world.resource<AtomTable>().positions;
+    const Entity hand = first_hand(world);
+    take(world, hand, {what});
+    ContactModel felt = local_contact_of(world).model;
+    for (int i = 1; i <= 40; ++i) felt = test::step_once(world, hand_after({0, 0.05 * i, 0}), felt);
+    const AtomRange own = held_range(world, hand);
+    const Vec3 others = world.resource<AtomTable>().positions[own.first == 0 ? own.count : 0];
+    REQUIRE((world.resource<AtomTable>().positions[own.first] - start[own.first]).norm() > 0.1);
+    const std::uint32_t hold = local_contact_of(world).model.start;
+
+    put_back(world, hand);
+
+    const std::vector<Vec3>& now = world.resource<AtomTable>().positions;
+    for (std::uint32_t i = own.first; i < own.first + own.count; ++i)
+        CHECK((now[i] - start[i]).norm() < 1e-9);
+    CHECK(now[own.first == 0 ? own.count : 0] == others);  // stays where it is
+    CHECK(local_contact_of(world).model.start != hold);    // the servo takes hold anew
+    // The hand has it still, without a pull, and leads it from there.
+    REQUIRE(world.find<Grip>(hand) != nullptr);
+    const bool is_whole = what == "resting";
+    if (!is_whole) CHECK(local_contact_of(world).model.force_newton.norm() < 1e-13);
+    const Vec3 place = held_place(world, hand);
+    (void)test::step_once(world, hand_after({0.1, 2, 0}), local_contact_of(world).model);
+    CHECK((held_place(world, hand) - place - Vec3(0.1, 0, 0)).norm() < 1e-9);
+}
+
+TEST_CASE("nothing goes back onto what is there now, or out of another hand",
+          "[simulation][edit]") {
+    World world = load_waters();
+    const Entity hand = first_hand(world);
+    const AtomRange own = held_range(world, hand);
+    const Vec3 start = world.resource<AtomTable>().positions[own.first];
+    const Vec3 by(8, 0, 0);
+    (void)test::step_once(world, hand_after(by), local_contact_of(world).model);
+    AddEdit add{"TIP3", "", "w2", {}};
+    std::ranges::copy(start, add.at_angstrom.begin());
+    add_molecule(world, add);
+    const std::string before = world_bytes(world);
+
+    CHECK_THAT(load_error_of([&] { put_back(world, hand); }),
+               Contains("'moved' would overlap") && Contains("room where it was at the start"));
+
+    CHECK(world_bytes(world) == before);
+    let_go(world, hand);
+    CHECK_THAT(load_error_of([&] { put_back(world, hand); }), Contains("the hand holds nothing"));
+}
+
 TEST_CASE("after adding and removing a molecule the world is what it was, to the byte",
           "[simulation][edit]") {
     struct Row {
@@ -463,7 +515,7 @@ TEST_CASE("nothing is added on top of what is there, and the message says where 
 
     const std::string error = load_error_of([&] { add_molecule(world, add); });
 
-    CHECK_THAT(error, Contains("'copy' would be on what is there") &&
+    CHECK_THAT(error, Contains("'copy' would overlap") &&
                           Contains(fmt::format("copy TIP3 1 {} is {:.2f} Å from {}", one, nearest,
                                                other)) &&
                           Contains("expected a place (at_angstrom) with 1 Å or more"));

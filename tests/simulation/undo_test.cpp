@@ -124,8 +124,9 @@ private:
             case 3:
                 return TakeEdit{draw_part(true)};
             case 4:
-            case 5:
                 return LetGoEdit{};
+            case 5:
+                return PutBackEdit{};
             case 6:
                 return AddEdit{"", draw_molecule(), draw_name(), draw_place()};
             case 7:

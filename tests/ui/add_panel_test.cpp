@@ -57,7 +57,7 @@ struct Dialog {
         enter();
     }
     void enter() {
-        panel.press(Key::Enter);
+        panel.press({Key::Enter});
         frames();
     }
     void click(float x, float y) {
@@ -148,15 +148,15 @@ TEST_CASE("what is typed finds a residue, and Down the one below it", "[ui][add]
         CHECK(screen.asked->residue == names[2]);
     }
     SECTION("chosen") {
-        screen.panel.press(Key::Down);
-        screen.panel.press(Key::Down);
-        screen.panel.press(Key::Up);
+        screen.panel.press({Key::Down});
+        screen.panel.press({Key::Down});
+        screen.panel.press({Key::Up});
         screen.enter();
         REQUIRE(screen.asked);
         CHECK(screen.asked->residue == names[1]);
     }
     SECTION("to the end of the list, and no farther") {
-        for (std::size_t i = 0; i < names.size() + 3; ++i) screen.panel.press(Key::Down);
+        for (std::size_t i = 0; i < names.size() + 3; ++i) screen.panel.press({Key::Down});
         screen.enter();
         REQUIRE(screen.asked);
         CHECK(screen.asked->residue == names.back());
@@ -180,7 +180,7 @@ TEST_CASE("a copy is of what is in hand, and has the name that was typed", "[ui]
         CHECK(*screen.asked == AddEdit{"", "moved", "moved2", {}});
     }
     SECTION("another") {
-        screen.panel.press(Key::Up);
+        screen.panel.press({Key::Up});
         screen.enter();
         REQUIRE(screen.asked);
         CHECK(*screen.asked == AddEdit{"", "fixed", "fixed2", {}});
@@ -293,9 +293,9 @@ TEST_CASE("a click beside the dialog reaches nothing, one on Close closes it", "
     screen.click(20, 20);
     CHECK(ImGui::GetCurrentContext()->HoveredWindow->Name == std::string("##shade"));
     CHECK(screen.panel.is_open());
-    // Close stands beside Add, at the bottom.
+    // Close stands behind the two that add, at the bottom.
     for (float y = area.Max.y; y > area.Min.y && screen.panel.is_open(); y -= 5)
-        screen.click(area.Min.x + 140, y);
+        screen.click(area.Min.x + 340, y);
     CHECK_FALSE(screen.panel.is_open());
     CHECK_FALSE(screen.asked);
 }

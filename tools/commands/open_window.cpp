@@ -1,6 +1,7 @@
 #include "tools/commands/open_window.h"
 
 #include "app/recovery.h"
+#include "app/replay_session.h"
 #include "app/run_window.h"
 #include "app/save_scene.h"
 #include "app/window_devices.h"
@@ -12,8 +13,10 @@
 #include "experiments/emulated_hand.h"
 #include "haptics/hand.h"
 #include "render/picture.h"
+#include "scene/find_scene.h"
 #include "scene/read_scene.h"
 #include "session/recording.h"
+#include "simulation/load.h"
 #include "tools/commands/print_run.h"
 #include "tools/commands/screens.h"
 #include "view/first_view.h"
@@ -233,6 +236,38 @@ std::optional<NextScreen> show_scene(std::optional<WindowShell>& shell,
         fmt::print("{}", format_summary(played, report.summary));
     } else {
         print_report(played, report);
+    }
+    return report.next;
+}
+
+std::optional<NextScreen> show_recording(WindowShell& shell, PreferencesFile& preferences,
+                                         const fs::path& folder, const RunOptions& options) {
+    const SceneDescription scene = read_recorded_scene(folder);
+    if (!has_journal(folder)) {
+        throw LoadError({folder.string()},
+                        "has no journal, so it was recorded without a window; 'palpa replay FOLDER "
+                        "--verify' plays it");
+    }
+    RecordedDevice first({.name = "recorded session"}), second({.name = "recorded session"});
+    if (preferences.can_keep()) remember_scene(folder / journal_name, preferences);
+    ViewSettings view;
+    const bool is_loaded = shell.work(
+        format_translated("Opening {}", scene.title), [&](const StageFunction& on_stage) {
+            view = first_settings(scene.view, load_world(scene, on_stage));
+        });
+    if (!is_loaded) return NextScreen{};
+    const WindowReport report = run_window(shell, scene, first,
+                                           {.view = view,
+                                            .screenshots = options.screenshots,
+                                            .last_shot = options.last_shot,
+                                            .last_shot_existing = check_shot(options),
+                                            .last_shot_s = options.last_shot_s,
+                                            .second = {scene.second ? &second : nullptr},
+                                            .replay = folder,
+                                            .sound = build_sound_choice(options, preferences)});
+    if (report.replay) {
+        fmt::print("{}: played {:.2f} of {:.2f} s\n  {}\n", folder.string(), report.replay->at_s,
+                   report.replay->length_s, report.replay->verdict);
     }
     return report.next;
 }

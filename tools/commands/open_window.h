@@ -8,6 +8,7 @@
 #include "scene/description.h"
 #include "tools/commands/run.h"
 
+#include <filesystem>
 #include <optional>
 
 namespace palpa {
@@ -25,6 +26,11 @@ std::optional<NextScreen> show_scene(std::optional<WindowShell>& shell,
                                      PreferencesFile& preferences, const SceneDescription& scene,
                                      const World& world, EmulatedOmniSettings settings,
                                      const RunOptions& options);
+
+// A recorded session of a window, played again. Throws LoadError, GpuError.
+std::optional<NextScreen> show_recording(WindowShell& shell, PreferencesFile& preferences,
+                                         const std::filesystem::path& folder,
+                                         const RunOptions& options);
 
 // A window for this scene, and for what the person goes on to. Returns the exit code. Throws
 // LoadError, PlatformError, GpuError.

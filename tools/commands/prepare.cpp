@@ -140,6 +140,7 @@ SceneRequest build_request(const PrepareOptions& options, const PrepareSettings&
     if (options.only_toppar && files.empty())
         throw LoadError({"--only-toppar"}, "expected --toppar FILE with it");
     return {.structure = options.structure,
+            .topology = options.topology,
             .force_field = std::move(files),
             .only_these_files = options.only_toppar,
             .settings = settings,
@@ -359,7 +360,8 @@ void add_prepare(CLI::App& program, ProgramCommand& chosen) {
     PrepareOptions& options = own_options<PrepareOptions>(prepare, chosen, prepare_command);
     describe(prepare, "Make scenes",
              {"palpa prepare 1hsg.pdb --without MK1 -o my-protease",
-              "palpa prepare complex.pdb -o complex --toppar ligand.str"});
+              "palpa prepare complex.pdb -o complex --toppar ligand.str",
+              "palpa prepare step1.crd --topology step1.psf -o mine"});
     prepare.add_option("structure", options.structure, ".pdb, .ent, .cif or .crd, .gz too")
         ->required();
     prepare
@@ -373,6 +375,11 @@ void add_prepare(CLI::App& program, ProgramCommand& chosen) {
         .add_option("-o,--output", options.folder,
                     "folder for system.psf, .pdb, .crd, .prm, report.txt and scene.toml")
         ->required();
+    prepare
+        .add_option("--topology", options.topology,
+                    "a .psf of all atoms of the structure: names, types, charges and bonds are "
+                    "taken as they are, nothing is built")
+        ->type_name("FILE.psf");
     add_prepare_choices(prepare, options);
     add_prepare_scene(prepare, options);
     prepare.add_option("--title", options.title, "what the files say of themselves")

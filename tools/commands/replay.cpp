@@ -5,7 +5,6 @@
 #include "core/text.h"
 #include "devices/emulated_omni.h"
 #include "experiments/emulated_hand.h"
-#include "scene/read_scene.h"
 #include "session/journal.h"
 #include "session/play_journal.h"
 #include "session/recording.h"
@@ -16,6 +15,7 @@
 #include "tools/commands/command.h"
 #include "tools/commands/progress.h"
 #include "tools/commands/run.h"
+#include "tools/commands/screens.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -30,37 +30,6 @@
 
 namespace palpa {
 namespace {
-
-SceneDescription read_session(const std::filesystem::path& folder) {
-    const std::filesystem::path session = folder / "session.toml";
-    std::error_code error;
-    if (!std::filesystem::exists(session, error)) {
-        throw LoadError({folder.string()},
-                        "holds no session.toml; expected the folder of a recording (palpa run "
-                        "--record)");
-    }
-    return read_scene(session, {});
-}
-
-// What moved the atoms and is not in the recording.
-void check_is_whole(const std::filesystem::path& folder, const SceneDescription& scene) {
-    if (scene.engine) {
-        throw LoadError(scene.place_of("engine"),
-                        "a remote engine moved the atoms, and its frames are not in the recording; "
-                        "expected one without [engine]");
-    }
-    if (is_of_trajectory(folder)) {
-        throw LoadError({folder.string()},
-                        "a trajectory moved the atoms (--trajectory), and its frames are not in "
-                        "the recording; expected one without");
-    }
-    if (is_of_commands(folder)) {
-        throw LoadError({folder.string()},
-                        "commands drove the run (--commands), and they are not in the recording; "
-                        "expected one without, or the commands given once more to palpa run "
-                        "session.toml --headless --commands");
-    }
-}
 
 void check_repeats(const SceneDescription& scene) {
     if (!scene.statics.budget_us) return;
@@ -192,16 +161,11 @@ int replay_journal(const ReplayOptions& options, const SceneDescription& scene) 
     return report(check, {recorded_s, recorded_s}, options.json);
 }
 
-bool has_journal(const std::filesystem::path& folder) {
-    std::error_code error;
-    return std::filesystem::exists(folder / "journal.txt", error);
-}
-
 }  // namespace
 
 int replay_command(const ReplayOptions& options) {
-    SceneDescription scene = read_session(options.recording);
-    check_is_whole(options.recording, scene);
+    SceneDescription scene = read_recorded_scene(options.recording);
+    if (options.window) return open_screens({options.recording});
     if (has_journal(options.recording)) return replay_journal(options, scene);
     check_no_client_pulled(options.recording);
     if (!options.verify) {
@@ -239,8 +203,13 @@ void add_replay(CLI::App& program, ProgramCommand& chosen) {
     CLI::App& replay = *program.add_subcommand(
         "replay", "Plays a recorded session again; --verify demands the same to the last digit");
     ReplayOptions& options = own_options<ReplayOptions>(replay, chosen, replay_command);
-    describe(replay, "Experiments", {"palpa replay recordings/water --verify"});
+    describe(
+        replay, "Experiments",
+        {"palpa replay recordings/water --verify", "palpa replay recordings/session --window"});
     replay.add_option("recording", options.recording, "folder of palpa run --record")->required();
+    replay.add_flag("--window", options.window,
+                    "in a window, where a recorded session of a window can be stopped and looked "
+                    "at; every row is compared there too");
     replay.add_flag("--verify", options.verify,
                     "hold every row of the trace against what is found now; exit code 1 where one "
                     "differs");

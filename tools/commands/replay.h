@@ -8,6 +8,7 @@ struct ReplayOptions {
     std::filesystem::path recording;  // folder
     bool verify = false;              // else one of the emulated hand is only played
     bool json = false;
+    bool window = false;
 };
 
 // Throws LoadError on bad input. Returns the exit code: 1 where a force or anything else that was

@@ -12,6 +12,7 @@
 #include "experiments/emulated_hand.h"
 #include "scene/find_scene.h"
 #include "scene/read_scene.h"
+#include "session/recording.h"
 #include "simulation/load.h"
 #include "tools/commands/open_window.h"
 
@@ -82,7 +83,8 @@ fs::path prepared_folder(const RunOptions& options) {
 // Nothing where the person changed their mind.
 std::optional<fs::path> find_scene_of(WindowShell& shell, const std::vector<fs::path>& files,
                                       const RunOptions& options) {
-    if (files.size() == 1 && !is_structure(files[0])) return find_scene_file(files[0]);
+    if (files.size() == 1 && !is_structure(files[0]) && !is_topology(files[0]))
+        return find_scene_file(files[0]);
     for (const fs::path& file : files) {
         if (file.extension() == ".toml")
             throw LoadError({file.string()}, "is a scene; expected it alone, without other files");
@@ -90,9 +92,20 @@ std::optional<fs::path> find_scene_of(WindowShell& shell, const std::vector<fs::
     return open_structure(shell, files, prepared_folder(options));
 }
 
+// The folder of a window's recording that the files are, if they are one.
+std::optional<fs::path> find_recording(const std::vector<fs::path>& files) {
+    if (files.size() != 1) return std::nullopt;
+    std::error_code error;
+    if (fs::is_directory(files[0], error) && has_journal(files[0])) return files[0];
+    if (files[0].filename() != journal_name) return std::nullopt;
+    return fs::absolute(files[0], error).parent_path();
+}
+
 std::optional<NextScreen> show_files(std::optional<WindowShell>& shell,
                                      PreferencesFile& preferences,
                                      const std::vector<fs::path>& files, RunOptions options) {
+    if (const std::optional<fs::path> folder = find_recording(files))
+        return show_recording(*shell, preferences, *folder, options);
     const std::optional<fs::path> file = find_scene_of(*shell, files, options);
     if (!file) return NextScreen{};
     options.scene = *file;
