@@ -119,7 +119,7 @@ class Cli(unittest.TestCase):
         (self.tmp / "mine.toml").write_text("title = 3")
         (self.tmp / "palpa" / "preferences.toml").write_text(f"recent = ['{self.tmp}/mine.toml']\n")
         result = subprocess.run([PROGRAM], capture_output=True, text=True, cwd=self.tmp,
-                                env={**clean, "DISPLAY": ":1", "XDG_CONFIG_HOME": str(self.tmp)})
+                                env={**clean, "DISPLAY": ":4711", "XDG_CONFIG_HOME": str(self.tmp)})
         self.assert_bad_input(result, "display")
         self.assertIn("palpa run water", result.stdout)
         self.assertIn("mine.toml", result.stdout)

@@ -10,7 +10,7 @@ namespace palpa {
 
 struct PrepareOptions {
     std::filesystem::path structure;
-    std::filesystem::path topology;  // empty: one is built
+    std::filesystem::path topology;                         // empty: one is built
     std::vector<std::filesystem::path> toppar, parameters;  // beside the built-in force field
     bool only_toppar = false;                               // or in place of it
     std::filesystem::path folder;
