@@ -106,10 +106,9 @@ WindowReport Sandbox::run() {
         },
         [this] { notice(translated("the graphics device was lost, and is back")); });
     window_.capture_cursor(false);  // that Space may have
-    WindowReport report{{},   overlay_.settings(), frame_ms_.size(),
-                        0,    scale_.value(),      overlay_.lesson().steps_done(),
-                        next_,
-                        frame_.readout.replay};
+    WindowReport report{{},    overlay_.settings(),  frame_ms_.size(),
+                        0,     scale_.value(),       overlay_.lesson().steps_done(),
+                        next_, frame_.readout.replay};
     report.summary = hands_.front().statistics.summary();
     report.summary.device = hands_.front().device->spec().name;
     for (const WindowHand& other : std::span(hands_).subspan(1)) {

@@ -106,7 +106,7 @@ struct WindowReport {
     double median_frame_ms = 0;
     double render_scale = 1;  // at the end
     std::size_t lesson_steps_done = 0;
-    std::optional<NextScreen> next{};  // nothing: they quit
+    std::optional<NextScreen> next{};     // nothing: they quit
     std::optional<ReplayState> replay{};  // of a recorded session, as far as it was played
 };
 

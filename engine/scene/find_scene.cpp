@@ -96,10 +96,12 @@ void refuse_other_files(const fs::path& file) {
     if (is_structure(file)) {
         throw LoadError({file.string()}, "is a structure, not a scene; " + prepare_hint(file));
     }
-    if (ending == ".PSF") {
-        throw LoadError({file.string()},
-                        "is a topology, not a scene; 'palpa prepare' makes a scene of a structure "
-                        "(.pdb, .cif, .crd)");
+    if (is_topology(file)) {
+        throw LoadError(
+            {file.string()},
+            fmt::format("is a topology, not a scene; 'palpa prepare FILE.crd --topology "
+                        "{}' makes a scene of it and its coordinates",
+                        shell_word(file.string())));
     }
     if (ending == ".GZ") {
         throw LoadError({file.string()}, "is compressed, unpack it first (gunzip)");
