@@ -245,7 +245,7 @@ TEST_CASE("single precision agrees with the reference and the held forces of sma
 }
 
 TEST_CASE("single precision agrees with the reference and the held forces of every case",
-          "[forces][fast][slow]") {
+          "[forces][fast][long]") {
     const auto folder = test::find_shared_data("reference");
     if (!folder) return;
     check_case(*folder, "water_dimer_charmm", "frames");

@@ -202,7 +202,7 @@ TEST_CASE("500 random conformations of alanine dipeptide go towards rest", "[har
 }
 
 // The paper's step takes some thousands for these; what it does in 300 is to go down.
-TEST_CASE("500 random conformations of the tetrapeptide AERA go towards rest", "[hard][slow]") {
+TEST_CASE("500 random conformations of the tetrapeptide AERA go towards rest", "[hard][long]") {
     relax_conformations("AERA", test::tetrapeptide(), 500, {0, 0, 0.5, 0.9});
 }
 
@@ -216,7 +216,7 @@ TEST_CASE("random conformations of tetrapeptides with proline and lysine go towa
                         {0, 0, 0.6, 0.85});
 }
 
-TEST_CASE("1,000 random conformations in implicit water go towards rest", "[hard][slow]") {
+TEST_CASE("1,000 random conformations in implicit water go towards rest", "[hard][long]") {
     const TorsionModel model =
         test::model_of(test::solvated(test::tetrapeptide()), {BaseFreedom::Free}, test::all_joints);
     std::cout << fmt::format("AERA in implicit water, {} degrees of freedom\n", model.coordinates);

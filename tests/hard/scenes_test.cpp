@@ -346,7 +346,7 @@ TEST_CASE("a run that rams one molecule through the other says so in words", "[h
     }
 }
 
-TEST_CASE("TL-3 started in the wall of the protease", "[hard][slow]") {
+TEST_CASE("TL-3 started in the wall of the protease", "[hard][long]") {
     for (const WayOfStepping& way : ways_of_scenes()) {
         INFO(way.name);
         Watched watched(protease, way, {"hand.start_offset_angstrom=[0, 6, 2]"});
@@ -358,7 +358,7 @@ TEST_CASE("TL-3 started in the wall of the protease", "[hard][slow]") {
     }
 }
 
-TEST_CASE("TL-3 rammed through the protease by a handle at 0.5 m/s", "[hard][slow]") {
+TEST_CASE("TL-3 rammed through the protease by a handle at 0.5 m/s", "[hard][long]") {
     for (const WayOfStepping& way : ways_of_scenes()) {
         INFO(way.name);
         Watched watched(protease, way);
@@ -374,7 +374,7 @@ TEST_CASE("TL-3 rammed through the protease by a handle at 0.5 m/s", "[hard][slo
     }
 }
 
-TEST_CASE("TL-3 in a hand that jumps by 30 Å and back", "[hard][slow]") {
+TEST_CASE("TL-3 in a hand that jumps by 30 Å and back", "[hard][long]") {
     for (const WayOfStepping& way : ways_of_scenes()) {
         INFO(way.name);
         Watched watched(protease, way);

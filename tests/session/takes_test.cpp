@@ -210,7 +210,7 @@ std::vector<EditDescription> take_all(std::vector<std::string> addresses, std::s
 }  // namespace
 
 TEST_CASE("what is taken under a force of newtons is felt gliding, and let go within the slew",
-          "[session][takes]") {
+          "[session][takes][slow]") {
     // Forces between steps are compared with those of surroundings that stand still.
     const SceneDescription scene =
         read_scene(test::in_project("scenes/water"),
@@ -292,7 +292,7 @@ TEST_CASE("all of small scenes can be taken while they run, and no force jumps",
     CHECK(taken.largest_force > 0.05);
 }
 
-TEST_CASE("of HIV protease any part can be taken while it runs", "[session][takes]") {
+TEST_CASE("of HIV protease any part can be taken while it runs", "[session][takes][slow]") {
     const std::string hiv = test::in_project("scenes/hiv/");
     const auto file =
         GENERATE_COPY(values<std::string>({hiv + "scene.toml", hiv + "two-hands.toml"}));
