@@ -2,6 +2,7 @@
 
 #include "core/load_error.h"
 #include "core/text.h"
+#include "core/translate.h"
 #include "devices/emulated_omni.h"
 #include "devices/force_dimension.h"
 #include "devices/force_joystick.h"
@@ -63,37 +64,41 @@ OpenedDevice open_script(const DeviceRequest& request) {
 
 constexpr std::array makers{
     DeviceMaker{.name = "emulated",
-                .summary = "a Phantom Omni that is not there, and a hand on it",
+                .summary = for_translation("a Phantom Omni that is not there, and a hand on it"),
                 .is_emulated = true,
                 .is_led = true,
                 .open = open_emulated},
-    DeviceMaker{.name = "mouse",
-                .summary = "mouse and keys: the force is seen as what the handle lags",
-                .is_emulated = true,
-                .is_led = true,
-                .needs_window = true,
-                .open = open_mouse},
+    DeviceMaker{
+        .name = "mouse",
+        .summary = for_translation("mouse and keys: the force is seen as what the handle lags"),
+        .is_emulated = true,
+        .is_led = true,
+        .needs_window = true,
+        .open = open_mouse},
     DeviceMaker{.name = "omni",
-                .summary = "Phantom Omni or Touch, by its maker's OpenHaptics",
+                .summary = for_translation("Phantom Omni or Touch, by its maker's OpenHaptics"),
                 .is_there = is_omni_there,
                 .open = open_omni},
-    DeviceMaker{.name = "force-dimension",
-                .summary = "omega, delta, sigma or Falcon, by Force Dimension's SDK",
-                .is_there = is_force_dimension_there,
-                .open = open_force_dimension_device},
-    DeviceMaker{.name = "spacemouse",
-                .summary = "SpaceMouse: a cap that sets the handle's speed; no force",
-                .is_there = [](const DeviceRequest&) { return is_hid_there(SpaceMouseProtocol()); },
-                .open = open_space_mouse},
-    DeviceMaker{.name = "dualsense",
-                .summary = "DualSense game pad: sticks and gyroscope, stiff triggers",
-                .is_there =
-                    [](const DeviceRequest&) {
-                        return is_hid_there(SonyPadProtocol(SonyModel::DualSense));
-                    },
-                .open = open_dualsense},
+    DeviceMaker{
+        .name = "force-dimension",
+        .summary = for_translation("omega, delta, sigma or Falcon, by Force Dimension's SDK"),
+        .is_there = is_force_dimension_there,
+        .open = open_force_dimension_device},
+    DeviceMaker{
+        .name = "spacemouse",
+        .summary = for_translation("SpaceMouse: a cap that sets the handle's speed; no force"),
+        .is_there = [](const DeviceRequest&) { return is_hid_there(SpaceMouseProtocol()); },
+        .open = open_space_mouse},
+    DeviceMaker{
+        .name = "dualsense",
+        .summary = for_translation("DualSense game pad: sticks and gyroscope, stiff triggers"),
+        .is_there =
+            [](const DeviceRequest&) {
+                return is_hid_there(SonyPadProtocol(SonyModel::DualSense));
+            },
+        .open = open_dualsense},
     DeviceMaker{.name = "dualshock4",
-                .summary = "DualShock 4 game pad: sticks and gyroscope, rumble",
+                .summary = for_translation("DualShock 4 game pad: sticks and gyroscope, rumble"),
                 .is_there =
                     [](const DeviceRequest&) {
                         return is_hid_there(SonyPadProtocol(SonyModel::DualShock4));
@@ -101,24 +106,27 @@ constexpr std::array makers{
                 .open = open_dualshock4},
     DeviceMaker{
         .name = "joystick",
-        .summary = "force-feedback joystick or wheel (HID PID): a force along one axis or two",
+        .summary = for_translation(
+            "force-feedback joystick or wheel (HID PID): a force along one axis or two"),
         .is_there = [](const DeviceRequest&) { return is_hid_there(ForceJoystickProtocol()); },
         .open = open_force_joystick},
     DeviceMaker{.name = "gamepad",
-                .summary = "Xbox-class game pad: sticks that set the handle's speed; no force",
+                .summary = for_translation(
+                    "Xbox-class game pad: sticks that set the handle's speed; no force"),
                 .needs_window = true,
                 .is_there = is_game_pad_there,
                 .open = open_game_pad},
     DeviceMaker{.name = "replay",
-                .summary = "a recorded hand, as palpa run --record left it",
+                .summary = for_translation("a recorded hand, as palpa run --record left it"),
                 .is_emulated = true,
                 .file = "FOLDER",
                 .open = open_replay},
-    DeviceMaker{.name = "script",
-                .summary = "a handle that goes where a table of times and places says",
-                .is_emulated = true,
-                .file = "FILE",
-                .open = open_script},
+    DeviceMaker{
+        .name = "script",
+        .summary = for_translation("a handle that goes where a table of times and places says"),
+        .is_emulated = true,
+        .file = "FILE",
+        .open = open_script},
 };
 
 constexpr char before_file = ':';

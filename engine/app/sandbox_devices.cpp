@@ -90,7 +90,7 @@ void Sandbox::ask_for_stand_in() {
         format_translated(
             "No other device was found ('palpa devices' says why). Take an emulated one for "
             "this session: {}?",
-            found->summary),
+            translated(found->summary.c_str())),
         {{Key::Y, translated("Yes (Y)"), [this, name = found->name] { (void)choose_device(name); }},
          {Key::Escape, translated("No (Esc)")}}};
 }

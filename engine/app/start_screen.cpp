@@ -376,9 +376,9 @@ void StartScreen::draw_devices() {
         if (closes_list_) ImGui::CloseCurrentPopup();
         for (const DeviceOffer& offer : options_.devices) {
             if (offer.is_stand_in) continue;
-            const std::string text =
-                fmt::format("{}{}\n  {}", offer.name,
-                            offer.is_there ? "" : translated(" (not found)"), offer.summary);
+            const std::string text = fmt::format("{}{}\n  {}", offer.name,
+                                                 offer.is_there ? "" : translated(" (not found)"),
+                                                 translated(offer.summary.c_str()));
             if (ImGui::Selectable(text.c_str(), offer.name == device_)) choose_device(offer.name);
         }
         ImGui::EndCombo();

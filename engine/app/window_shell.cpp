@@ -51,8 +51,9 @@ public:
         {
             const std::lock_guard lock(mutex_);
             const std::string share = share_ ? fmt::format(" ({:.0f} %)", 100 * *share_) : "";
-            ImGui::TextDisabled("%s",
-                                fmt::format("{}{}, {:.0f} s", stage_, share, seconds).c_str());
+            ImGui::TextDisabled(
+                "%s",
+                fmt::format("{}{}, {:.0f} s", translated(stage_.c_str()), share, seconds).c_str());
             ImGui::ProgressBar(static_cast<float>(share_.value_or(0)), {-1, scaled(8)}, "");
         }
         if (is_cancelled) {
@@ -67,7 +68,7 @@ public:
 
 private:
     std::mutex mutex_;
-    std::string stage_{translated("beginning")};
+    std::string stage_{for_translation("beginning")};
     std::optional<double> share_;
 };
 

@@ -6,6 +6,7 @@
 #include "core/files.h"
 #include "core/load_error.h"
 #include "core/text.h"
+#include "core/translate.h"
 #include "formats/psf.h"
 #include "formats/structure.h"
 
@@ -69,9 +70,9 @@ TunedScene find_scene(const SceneRequest& request, const std::string& title,
 }  // namespace
 
 MadeScene make_scene(const SceneRequest& request, const StageFunction& on_stage) {
-    tell(on_stage, "reading the force field");
+    tell(on_stage, for_translation("reading the force field"));
     const ForceField force_field = read_wanted_force_field(request);
-    tell(on_stage, "reading the structure");
+    tell(on_stage, for_translation("reading the structure"));
     const Structure structure = read_structure(request.structure);
     MadeScene made;
     if (request.topology.empty()) {

@@ -4,6 +4,7 @@
 #include "core/interrupt.h"
 #include "core/load_error.h"
 #include "core/machine.h"
+#include "core/translate.h"
 #include "core/work_folder.h"
 #include "devices/emulated_omni.h"
 #include "experiments/emulated_hand.h"
@@ -295,8 +296,8 @@ Played try_ways(const std::filesystem::path& folder, const StageFunction& on_sta
     for (const Vec3& way : {out, across, Vec3(out.cross(across))}) {
         tuning.rest = rest;
         take_way(way, tuning);
-        const Played played =
-            play_written(folder, "looking for the forces", {way_out_only}, on_stage, tuning);
+        const Played played = play_written(folder, for_translation("looking for the forces"),
+                                           {way_out_only}, on_stage, tuning);
         if (played.moved_angstrom > best.moved_angstrom) {
             best = played;
             best_way = way;
@@ -326,8 +327,8 @@ Played tune_coupling(const std::filesystem::path& folder, const StageFunction& o
     const Played first = try_ways(folder, on_stage, tuning);
     set_coupling(first, tuning);
     set_period(first, tuning);
-    const Played played =
-        play_written(folder, "playing the scene", {way_out_only}, on_stage, tuning);
+    const Played played = play_written(folder, for_translation("playing the scene"), {way_out_only},
+                                       on_stage, tuning);
     if (choose_period_ms(played.p99_us) > tuning.tuning.period_ms) set_period(played, tuning);
     return played;
 }
@@ -401,7 +402,7 @@ std::vector<std::string> find_rigid(const Structure& structure,
 TunedScene tune_scene(PreparedSystem& system, const std::string& grab, bool is_aligned,
                       const std::string& name, const std::string& title,
                       const StageFunction& on_stage) {
-    tell(on_stage, "choosing what the hand holds");
+    tell(on_stage, for_translation("choosing what the hand holds"));
     Tuning tuning;
     tuning.copy = copy_for_scene(system, grab);
     tuning.title = title;

@@ -10,6 +10,7 @@
 #include "core/files.h"
 #include "core/load_error.h"
 #include "core/text.h"
+#include "core/translate.h"
 #include "formats/crd.h"
 #include "formats/pdb.h"
 #include "formats/psf.h"
@@ -191,7 +192,7 @@ void relax_system(PreparedSystem& system, std::span<const std::uint8_t> is_built
     }
     const ClashReport relaxed =
         relax(system.topology, is_built, is_hydrogen, system.structure.positions,
-              [&](double share) { tell(progress, "relaxing clashes", share); });
+              [&](double share) { tell(progress, for_translation("relaxing clashes"), share); });
     constexpr std::string_view heading = "Relaxation";
     system.report.add(
         heading,
@@ -279,13 +280,13 @@ PreparedSystem prepare_system(const ForceField& given_force_field, const Structu
                               const PrepareSettings& settings, const StageFunction& progress) {
     PreparedSystem result;
     Report& report = result.report;
-    tell(progress, "choosing and naming atoms");
+    tell(progress, for_translation("choosing and naming atoms"));
     if (!structure.repeated.empty()) report.warn(structure.repeated);
     Structure chosen = choose_atoms(structure, settings, report);
     check_size(chosen);
     ApproximatedUnknown approximated;
     if (settings.approximates_ligands) {
-        tell(progress, "approximating ligands");
+        tell(progress, for_translation("approximating ligands"));
         approximated = approximate_unknown(given_force_field, chosen, settings, report);
         chosen = std::move(approximated.structure);
         result.approximate = std::move(approximated.parts);
@@ -323,11 +324,11 @@ PreparedSystem prepare_system(const ForceField& given_force_field, const Structu
     check_coordinates(result.structure, result.topology, is_added, report);
     if (!system.solvated) report_charge(result);
 
-    tell(progress, "building missing atoms");
+    tell(progress, for_translation("building missing atoms"));
     const std::vector<AtomCoordinate> coordinates =
         find_internal_coordinates(force_field, result.structure, system.settings);
     build_missing(result, coordinates);
-    tell(progress, "orienting hydrogens");
+    tell(progress, for_translation("orienting hydrogens"));
     orient(result, system.completed.added, settings);
     if (settings.relaxes) {
         relax_system(result, is_added, progress);

@@ -8,6 +8,7 @@
 #include "core/load_error.h"
 #include "core/stage.h"
 #include "core/text.h"
+#include "core/translate.h"
 #include "core/units.h"
 #include "simulation/components.h"
 #include "simulation/coupling.h"
@@ -269,12 +270,12 @@ World read_world(const SceneDescription& scene, const StageFunction& on_stage) {
     world.set_resource(StartReport{});
     world.set_resource(StepReport{});
 
-    tell(on_stage, "reading the force field");
+    tell(on_stage, for_translation("reading the force field"));
     auto force_field = std::make_shared<const ForceField>(
         with_solvent(scene.force_field, read_force_field(scene.force_field.files)));
     SourceFiles files;
     for (const MoleculeDescription& molecule : scene.molecules) {
-        tell(on_stage, "reading and typing atoms",
+        tell(on_stage, for_translation("reading and typing atoms"),
              static_cast<double>(world.entity_count()) /
                  static_cast<double>(scene.molecules.size()));
         add_molecule(scene, molecule, *force_field, files, world);
@@ -303,12 +304,12 @@ World load_world(const SceneDescription& scene, const StageFunction& on_stage) {
     }
     for (const MoleculeDescription& molecule : scene.molecules) add_anchors(scene, molecule, world);
     if (needs_mechanics(world)) {
-        tell(on_stage, "finding bonded terms");
+        tell(on_stage, for_translation("finding bonded terms"));
         bonded_terms(world);
-        tell(on_stage, "building joints and lists of neighbours");
+        tell(on_stage, for_translation("building joints and lists of neighbours"));
         relax_and_build_mechanics(world, tell_relaxing(on_stage));
     }
-    tell(on_stage, "bringing the molecule in the hand to its start");
+    tell(on_stage, for_translation("bringing the molecule in the hand to its start"));
     start_hands(scene, world);
     std::vector<Entity> molecules;
     world.each<Molecule>([&](Entity molecule, const Molecule&) { molecules.push_back(molecule); });

@@ -37,6 +37,19 @@ constexpr std::array touches{
           for_translation("100 pN to 5 nN: what holds a ligand")},
     Touch{for_translation("walls"), 1e3, 5e4,
           for_translation("1 to 50 nN: the shape of hard walls; bonds are not noticed")}};
+
+// What laws and ways to reach places may be called in scenes, for translators.
+[[maybe_unused]] constexpr std::array law_names{
+    for_translation("printed"),    for_translation("calibrated"), for_translation("constant"),
+    for_translation("perceptual"), for_translation("repaired"),   for_translation("clutch"),
+    for_translation("bubble"),     for_translation("drift"),      for_translation("scalar"),
+    for_translation("tensor")};
+
+template <class Names, class Choice>
+const char* shown_law(const Names& names, Choice choice) {
+    return translated(names[static_cast<std::size_t>(choice)].data());
+}
+
 constexpr double touch_ratio = 50;        // of the strongest to the weakest
 constexpr double least_clamp_newton = 3;  // that a range needs
 
@@ -243,17 +256,16 @@ void Overlay::choose_touch() {
 void Overlay::choose_laws() {
     CouplingDescription& c = settings_.coupling;
     const std::string laws =
-        format_translated("laws: {}, {}, {}",
-                          force_law_names[static_cast<std::size_t>(c.force_law)],
-                          displacement_law_names[static_cast<std::size_t>(c.displacement_law)],
-                          workspace_names[static_cast<std::size_t>(c.workspace)]) +
+        format_translated("laws: {}, {}, {}", shown_law(force_law_names, c.force_law),
+                          shown_law(displacement_law_names, c.displacement_law),
+                          shown_law(workspace_names, c.workspace)) +
         "###laws";
     if (!ImGui::TreeNode(laws.c_str())) return;
     const auto choose = [&](const char* label, const auto& names, auto& choice, const char* text) {
         const LiveSettings before = settings_;
         int i = static_cast<int>(choice);
         std::vector<const char*> items;
-        for (const std::string_view name : names) items.push_back(name.data());
+        for (const std::string_view name : names) items.push_back(translated(name.data()));
         ImGui::SetNextItemWidth(-scaled(75));
         if (ImGui::Combo(labelled(label).c_str(), &i, items.data(),
                          static_cast<int>(items.size()))) {

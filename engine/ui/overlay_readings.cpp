@@ -362,7 +362,7 @@ void Overlay::choose_device(const OverlayStatus& status) {
         const std::string text =
             fmt::format("{}{}", offer.name, offer.is_there ? "" : translated(" (not seen)"));
         if (ImGui::Selectable(text.c_str(), offer.name == status.device)) device_ = offer.name;
-        tip(offer.summary.c_str());
+        tip(translated(offer.summary.c_str()));
     }
     ImGui::EndCombo();
 }
