@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
 #include <system_error>
 
@@ -34,6 +35,16 @@ std::optional<std::uint64_t> find_process(const fs::path& file) {
     const std::optional<std::int64_t> number = find_integer(name.substr(dash + 1));
     if (!number || *number <= 0) return std::nullopt;
     return static_cast<std::uint64_t>(*number);
+}
+
+// Whoever has unsaved changes writes them every 20 seconds; a number may be another process's by
+// now.
+bool is_in_use(const fs::path& file, std::uint64_t process) {
+    constexpr std::chrono::minutes silence{2};
+    std::error_code error;
+    const fs::file_time_type written = fs::last_write_time(file, error);
+    return is_process_running(process) && !error &&
+           fs::file_time_type::clock::now() - written < silence;
 }
 
 }  // namespace
@@ -74,7 +85,7 @@ std::vector<fs::path> list_recovered() {
     if (!folder) return files;
     for (const fs::path& file : list_folder(*folder, most_files)) {
         const std::optional<std::uint64_t> process = find_process(file);
-        if (process && !is_process_running(*process)) files.push_back(file);
+        if (process && !is_in_use(file, *process)) files.push_back(file);
     }
     const auto written = [](const fs::path& file) {
         std::error_code error;
