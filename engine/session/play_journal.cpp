@@ -58,7 +58,8 @@ private:
     template <class Value>
     static Value take(std::map<std::uint64_t, Value>& kept, std::uint64_t number) {
         const auto found = kept.find(number);
-        if (found == kept.end()) fail(fmt::format("goes back to what was posted as {}", number));
+        if (found == kept.end())
+            fail(fmt::format("refers to result {}, which is no longer available", number));
         Value value = std::move(found->second);
         kept.erase(kept.begin(), std::next(found));
         return value;
@@ -97,7 +98,7 @@ public:
 
 private:
     void play_event() {
-        if (next_event_ == journal_.events.size()) fail("uses what no step has posted");
+        if (next_event_ == journal_.events.size()) fail("uses a result that no step has produced");
         const PlayedEvent& played = journal_.events[next_event_++];
         std::vector<HandPose> poses(poses_.size());
         for (std::size_t slot = 0; slot < poses.size(); ++slot)
@@ -111,7 +112,7 @@ private:
         std::deque<HandPose>& kept = poses_[slot];
         while (!kept.empty() && kept.front().number < number) kept.pop_front();
         if (kept.empty() || kept.front().number != number)
-            fail(fmt::format("an event begins from pose {} of hand {}, which was not yet there",
+            fail(fmt::format("an event begins from pose {} of hand {}, which does not exist yet",
                              number, slot + 1));
         return kept.front();
     }
@@ -131,7 +132,7 @@ void play_journal(const SceneDescription& scene, const Journal& journal,
                   const LiveTicksFunction& on_ticks, const ProgressFunction& progress) {
     const std::size_t hands = scene.second ? 2 : 1;
     if (journal.devices.size() > hands)
-        fail(fmt::format("moves {} hands, where the scene has {}", journal.devices.size(), hands));
+        fail(fmt::format("moves {} hands, but the scene has {}", journal.devices.size(), hands));
     Player player(scene, journal);
     const std::size_t first = journal.first_recorded.value_or(journal.ticks.size());
     constexpr std::size_t between_progress = 100;
