@@ -139,11 +139,11 @@ void check_system(const std::filesystem::path& root, std::vector<DeviceCheck>& c
 }
 
 DeviceCheck check_calibration(const std::array<int, dhd::most_status>& status, bool is_told) {
-    if (!is_told) return {"calibration", CheckOutcome::Unknown, "the library does not tell", ""};
+    if (!is_told) return {"calibration", CheckOutcome::Unknown, "the library does not say", ""};
     if (status[dhd::status_reset] == 0) return {"calibration", CheckOutcome::Ok, "done", ""};
-    return {"calibration", CheckOutcome::Failed, "the device waits for it",
-            "lead the handle to its rest place (an omega or sigma: the pole into its pit), until "
-            "the light stops blinking; pull a Falcon's grip out and push it in"};
+    return {"calibration", CheckOutcome::Failed, "the device is waiting for its calibration",
+            "move the handle to its rest position until the light stops blinking (omega or sigma: "
+            "put the end of the arm into its socket; Falcon: pull the grip out and push it in)"};
 }
 
 }  // namespace
@@ -191,15 +191,15 @@ std::string_view ForceDimension::status() const noexcept {
         case State::Ready:
             return {};
         case State::NeedsCalibration:
-            return "The device waits for its calibration: lead the handle to its rest place until "
-                   "the light stops blinking.";
+            return "The device is waiting for its calibration: move the handle to its rest "
+                   "position until the light stops blinking.";
         case State::ForceButton:
             return "The device's motors are off: press its force button.";
         case State::Refused:
-            return "The device let go of the force, since the handle was too fast or its own watch "
-                   "saw trouble; the force returns by itself.";
+            return "The device switched the force off because the handle was too fast or its own "
+                   "monitoring found a fault; the force returns by itself.";
         case State::Lost:
-            return "The device does not answer: check power and cable; it is looked for.";
+            return "The device does not answer: check power and cable. Palpa keeps looking for it.";
     }
     return {};
 }
@@ -358,9 +358,9 @@ OpenedDevice open_force_dimension(const ForceDimensionSettings& settings,
     spec.half_workspace_m = Vec3::Constant(limits.half_m);
     checks.push_back(
         {"limits", limits.is_known ? CheckOutcome::Ok : CheckOutcome::Unknown,
-         fmt::format("{} N at most, {:.0f} mm either way{}", limits.peak_newton,
-                     1e3 * limits.half_m,
-                     limits.is_known ? "" : "; an omega's, for this type is not known"),
+         fmt::format(
+             "up to {} N, {:.0f} mm in each direction{}", limits.peak_newton, 1e3 * limits.half_m,
+             limits.is_known ? "" : "; assumed values of an omega, because this type is unknown"),
          ""});
     std::array<int, dhd::most_status> status{};
     const bool is_told = library.get_status(status.data(), *id) >= 0;

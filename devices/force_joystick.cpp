@@ -135,7 +135,7 @@ bool ForceJoystickProtocol::is_ours(const HidPlace& place) const noexcept {
 std::string ForceJoystickProtocol::why_not(const HidPlace& place) const {
     if (!is_stick(place)) return "";
     const std::string lacking = ForceJoystickProtocol().use(read_report_descriptor(place.path));
-    return lacking.empty() ? "" : fmt::format("a stick without a force for us: {}", lacking);
+    return lacking.empty() ? "" : fmt::format("a joystick without a usable force: {}", lacking);
 }
 
 void ForceJoystickProtocol::describe(DeviceSpec& spec) const noexcept {
@@ -157,7 +157,7 @@ std::string ForceJoystickProtocol::use(HidBytes descriptor) {
     }
     magnitude_ = *find_field(descriptor_, HidReportKind::Output, magnitude, set_constant_force);
     if (magnitude_.logical_min >= 0 || magnitude_.logical_max <= 0) {
-        return "its magnitude has no sign";
+        return "its force magnitude has no sign";
     }
     const HidField* const button = find_field(descriptor_, HidReportKind::Input, first_button);
     button_ = button ? std::optional(*button) : std::nullopt;
@@ -254,15 +254,15 @@ DeviceCheck ForceJoystickProtocol::start_all(HidLine& line) {
     }
     axes_.erase(axes_.begin() + static_cast<std::ptrdiff_t>(playing), axes_.end());
     if (loaded == Loaded::No) {
-        return {"effects", CheckOutcome::Failed, "it does not take a constant force",
+        return {"effects", CheckOutcome::Failed, "it does not accept a constant force",
                 std::string(remedy)};
     }
     if (axes_.empty()) {
-        return {"effects", CheckOutcome::Failed, "it has no room for a constant force",
+        return {"effects", CheckOutcome::Failed, "it has no memory for a constant force effect",
                 std::string(remedy)};
     }
     return {"effects", CheckOutcome::Ok,
-            fmt::format("{} of {} axes play a force; {} stands for {} N, which is assumed",
+            fmt::format("{} of {} axes render a force; full scale {} is assumed to be {} N",
                         axes_.size(), wanted, magnitude_.logical_max, peak_newton),
             ""};
 }

@@ -36,7 +36,7 @@ DeviceReading GamePad::read() noexcept {
 
 std::string_view GamePad::status() const noexcept {
     if (link_.is_there) return {};
-    return "No game pad is plugged in that the window knows the buttons of.";
+    return "No game pad with known buttons is connected; plug one in.";
 }
 
 bool is_game_pad_there(const DeviceRequest& request) {
@@ -46,11 +46,11 @@ bool is_game_pad_there(const DeviceRequest& request) {
 OpenedDevice open_game_pad(const DeviceRequest& request) {
     if (!request.pads) {
         return {nullptr,
-                {{"window", CheckOutcome::Failed, "game pads are seen by the window alone",
+                {{"window", CheckOutcome::Failed, "only the window sees game pads",
                   "palpa run scenes/water --device gamepad"}}};
     }
     return {std::make_unique<GamePad>(*request.pads),
-            {{"window", CheckOutcome::Ok, "game pads as the window sees them", ""}}};
+            {{"window", CheckOutcome::Ok, "game pads of the window", ""}}};
 }
 
 }  // namespace palpa

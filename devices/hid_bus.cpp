@@ -84,7 +84,7 @@ bool is_in_use(const std::string& path) { return OpenPaths::all().contains(path)
 bool HidLine::open(const std::string& path) {
     close();
     if (!OpenPaths::all().add(path)) {
-        why_ = "it is in use by the other hand";
+        why_ = "the other hand uses it";
         return false;
     }
     const std::lock_guard lock(hidapi_mutex());

@@ -176,15 +176,16 @@ private:
                 global_.count = item.data;
                 break;
             case GlobalTag::ReportId:
-                if (item.data == 0 || item.data > 0xff) return fail("a report has no such number");
+                if (item.data == 0 || item.data > 0xff)
+                    return fail("a report has an invalid number");
                 global_.report = static_cast<std::uint8_t>(item.data);
                 break;
             case GlobalTag::Push:
-                if (pushed_.size() == most_pushed) return fail("too much is pushed");
+                if (pushed_.size() == most_pushed) return fail("it has too many PUSH items");
                 pushed_.push_back(global_);
                 break;
             case GlobalTag::Pop:
-                if (pushed_.empty()) return fail("it pops what was not pushed");
+                if (pushed_.empty()) return fail("it has a POP item without a PUSH");
                 global_ = pushed_.back();
                 pushed_.pop_back();
                 break;
@@ -229,14 +230,14 @@ private:
     }
 
     void open_collection(const Item& item) {
-        if (++depth_ > deepest) return fail("its collections are too deep");
+        if (++depth_ > deepest) return fail("its collections are nested too deeply");
         const HidUsage usage = local_.usages.empty() ? 0 : whole(local_.usages.front());
         out_.collections.push_back({usage, static_cast<std::uint8_t>(item.data), open_});
         open_ = static_cast<std::int32_t>(out_.collections.size()) - 1;
     }
 
     void close_collection() {
-        if (open_ < 0) return fail("it ends a collection that was not begun");
+        if (open_ < 0) return fail("it ends a collection that did not begin");
         --depth_;
         open_ = out_.collections[static_cast<std::size_t>(open_)].parent;
     }

@@ -81,7 +81,7 @@ DeviceCheck check_bus(const HidProtocol& protocol, const std::vector<HidPlace>& 
     if (ours) return {"bus", CheckOutcome::Ok, describe(*ours), ""};
     const std::string others = list_others(protocol, places);
     return {"bus", CheckOutcome::Failed,
-            fmt::format("no {} among {} inputs that the system shows{}{}", protocol.name(),
+            fmt::format("no {} among the {} input devices of the system{}{}", protocol.name(),
                         places.size(), others.empty() ? "" : "; ", others),
             "plug it in, or pair it and switch it on; 'lsusb' shows what is there"};
 }
@@ -99,12 +99,14 @@ DeviceCheck check_first_report(const HidDevice& device, bool is_talkative) {
     for (int i = 0; i < longest_ms && is_talkative && device.reports() == 0; ++i) {
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
-    if (device.understood() > 0) return {"reports", CheckOutcome::Ok, "they are understood", ""};
+    if (device.understood() > 0)
+        return {"reports", CheckOutcome::Ok, "its reports can be read", ""};
     if (!is_talkative) {
-        return {"reports", CheckOutcome::Unknown, "none yet: it is silent until it is touched", ""};
+        return {"reports", CheckOutcome::Unknown, "none yet: it sends none until it is touched",
+                ""};
     }
     return {"reports", CheckOutcome::Failed,
-            device.reports() > 0 ? "none is understood" : "none came",
+            device.reports() > 0 ? "none of its reports can be read" : "it sent no report",
             "switch it off and on; close other programs that use it"};
 }
 
@@ -115,8 +117,9 @@ HidDevice::HidDevice(std::unique_ptr<HidProtocol> protocol, HidLine line, const 
     : protocol_(std::move(protocol)), settings_(settings), line_(std::move(line)) {
     spec_.name = place.product.empty() ? std::string(protocol_->name()) : place.product;
     spec_.half_workspace_m.setConstant(RateHandle::half_box_m);
-    lost_ = fmt::format("The {} does not answer: check its cable or battery; it is looked for.",
-                        protocol_->name());
+    lost_ = fmt::format(
+        "The {} does not answer: check its cable or battery. Palpa keeps looking for it.",
+        protocol_->name());
     protocol_->describe(spec_);
     start();
     OpenHids::all().add(this);
@@ -186,9 +189,10 @@ void HidDevice::write(const Vec3& force_newton) noexcept {
 
 std::string_view HidDevice::status() const noexcept {
     if (!is_plugged_) return lost_;
-    if (has_motors() && !is_placed_) return "Move the stick a little: it has not said where it is.";
+    if (has_motors() && !is_placed_)
+        return "Move the stick a little: it has not sent its position yet.";
     if (moves_view_) {
-        return "The device moves the camera: its second button gives it back to the molecule.";
+        return "The device moves the camera now; its second button returns it to the molecule.";
     }
     return {};
 }
@@ -328,7 +332,7 @@ OpenedDevice open_hid(std::unique_ptr<HidProtocol> protocol, const HidSettings& 
     std::vector<DeviceCheck>& checks = opened.checks;
     const std::string version = hidapi_version();
     if (version.empty()) {
-        checks.push_back({"library", CheckOutcome::Failed, "hidapi does not start",
+        checks.push_back({"library", CheckOutcome::Failed, "the library hidapi cannot be started",
                           "install libhidapi-hidraw0"});
         return opened;
     }
@@ -347,7 +351,7 @@ OpenedDevice open_hid(std::unique_ptr<HidProtocol> protocol, const HidSettings& 
                                    : "plug it in again; close other programs that use it"});
         return opened;
     }
-    checks.push_back({"open", CheckOutcome::Ok, "it is ours", ""});
+    checks.push_back({"open", CheckOutcome::Ok, "this program uses it", ""});
     DeviceCheck begun = protocol->begin(line, *ours);
     if (!begun.layer.empty()) checks.push_back(std::move(begun));
     if (checks.back().outcome == CheckOutcome::Failed) return opened;

@@ -30,7 +30,7 @@ OpenedDevice open_emulated(const DeviceRequest& request) {
     EmulatedOmniSettings settings = request.emulated;
     if (request.orders) settings.orders = request.orders;
     return {std::make_unique<EmulatedOmni>(settings),
-            {{"emulation", CheckOutcome::Ok, "a Phantom Omni that is not there", ""}}};
+            {{"emulation", CheckOutcome::Ok, "an emulated Phantom Omni", ""}}};
 }
 
 OpenedDevice open_mouse(const DeviceRequest& request) {
@@ -64,13 +64,13 @@ OpenedDevice open_script(const DeviceRequest& request) {
 
 constexpr std::array makers{
     DeviceMaker{.name = "emulated",
-                .summary = for_translation("a Phantom Omni that is not there, and a hand on it"),
+                .summary = for_translation("an emulated Phantom Omni, held by an emulated hand"),
                 .is_emulated = true,
                 .is_led = true,
                 .open = open_emulated},
     DeviceMaker{
         .name = "mouse",
-        .summary = for_translation("mouse and keys: the force is seen as what the handle lags"),
+        .summary = for_translation("mouse and keys: the force shows as a lag of the handle"),
         .is_emulated = true,
         .is_led = true,
         .needs_window = true,
@@ -86,7 +86,7 @@ constexpr std::array makers{
         .open = open_force_dimension_device},
     DeviceMaker{
         .name = "spacemouse",
-        .summary = for_translation("SpaceMouse: a cap that sets the handle's speed; no force"),
+        .summary = for_translation("SpaceMouse: its cap sets the speed of the handle; no force"),
         .is_there = [](const DeviceRequest&) { return is_hid_there(SpaceMouseProtocol()); },
         .open = open_space_mouse},
     DeviceMaker{
@@ -112,21 +112,20 @@ constexpr std::array makers{
         .open = open_force_joystick},
     DeviceMaker{.name = "gamepad",
                 .summary = for_translation(
-                    "Xbox-class game pad: sticks that set the handle's speed; no force"),
+                    "Xbox-class game pad: its sticks set the speed of the handle; no force"),
                 .needs_window = true,
                 .is_there = is_game_pad_there,
                 .open = open_game_pad},
     DeviceMaker{.name = "replay",
-                .summary = for_translation("a recorded hand, as palpa run --record left it"),
+                .summary = for_translation("a recorded hand (a recording of palpa run --record)"),
                 .is_emulated = true,
                 .file = "FOLDER",
                 .open = open_replay},
-    DeviceMaker{
-        .name = "script",
-        .summary = for_translation("a handle that goes where a table of times and places says"),
-        .is_emulated = true,
-        .file = "FILE",
-        .open = open_script},
+    DeviceMaker{.name = "script",
+                .summary = for_translation("a handle that follows a table of times and positions"),
+                .is_emulated = true,
+                .file = "FILE",
+                .open = open_script},
 };
 
 constexpr char before_file = ':';
@@ -150,7 +149,7 @@ const DeviceMaker& device_maker_called(const std::string& name) {
     const bool has_file = end + 1 < name.size();
     if (has_file == found->file.empty()) {
         throw LoadError(place, found->file.empty()
-                                   ? fmt::format("plays no file; expected {} alone", kind)
+                                   ? fmt::format("does not play a file; expected {} alone", kind)
                                    : fmt::format("expected {}:{}", kind, found->file));
     }
     return *found;

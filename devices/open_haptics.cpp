@@ -164,7 +164,7 @@ void check_system(const std::filesystem::path& root, std::vector<DeviceCheck>& c
     if (found.empty()) {
         checks.push_back(
             {"bus", CheckOutcome::Unknown,
-             "nothing of this maker on USB or FireWire; one on Ethernet does not show",
+             "no device of this maker on USB or FireWire (a device on Ethernet does not show here)",
              "check power and cable; 'lsusb' shows a Touch as 2988:0302 or 2988:0304"});
         return;
     }
@@ -198,10 +198,10 @@ DeviceCheck check_calibration(const hd::Library& library, int style) {
     (void)first_error(library);
     if (state == hd::calibration_ok) return {"calibration", CheckOutcome::Ok, "done", ""};
     if (state == hd::calibration_needs_hand) {
-        return {"calibration", CheckOutcome::Failed, "the stylus has to go into its inkwell",
+        return {"calibration", CheckOutcome::Failed, "the device is not calibrated",
                 "put the stylus into the inkwell, wait for two seconds, and take it out again"};
     }
-    return {"calibration", CheckOutcome::Failed, "it could not be done",
+    return {"calibration", CheckOutcome::Failed, "calibration failed",
             "put the stylus into the inkwell; if that does not help, run the maker's diagnostic"};
 }
 
@@ -212,7 +212,7 @@ DeviceCheck check_rate(const hd::Library& library) {
     library.get_integerv(hd::update_rate, &rate_hz);
     const hd::Code error = first_error(library);
     if (error != hd::success || rate_hz <= 0) {
-        return {"rate", CheckOutcome::Unknown, "the library does not tell", ""};
+        return {"rate", CheckOutcome::Unknown, "the library does not say", ""};
     }
     if (rate_hz == static_cast<int>(servo_rate_hz)) {
         return {"rate", CheckOutcome::Ok, fmt::format("{} ticks a second", rate_hz), ""};
@@ -231,10 +231,11 @@ DeviceCheck check_motors(const hd::Library& library) {
                 std::string(hd::words(hd::warm_motors).remedy)};
     }
     if (error != hd::success || !std::isfinite(hottest)) {
-        return {"motors", CheckOutcome::Unknown, "the library does not tell how warm they are", ""};
+        return {"motors", CheckOutcome::Unknown, "the library does not report their temperature",
+                ""};
     }
     return {"motors", CheckOutcome::Ok,
-            fmt::format("at {:.0f} % of the warmth they stand", 100 * hottest), ""};
+            fmt::format("at {:.0f} % of their thermal limit", 100 * hottest), ""};
 }
 
 }  // namespace
@@ -323,11 +324,13 @@ std::string_view OpenHaptics::status() const noexcept {
         case State::NeedsInkwell:
             return "Put the stylus into its inkwell, wait for two seconds, and take it out again.";
         case State::Warm:
-            return "The motors are warm: the device rests, and the force returns by itself.";
+            return "The motors are too warm: the device switched the force off, and it returns by "
+                   "itself.";
         case State::Refused:
-            return "The device let go of a force that was too large or too sudden.";
+            return "The device switched off a force that was too large or too sudden; it returns "
+                   "by itself.";
         case State::Lost:
-            return "The device does not answer: check power and cable; it is looked for.";
+            return "The device does not answer: check power and cable. Palpa keeps looking for it.";
     }
     return {};
 }
@@ -460,7 +463,7 @@ OpenedDevice open_haptics(const OpenHapticsSettings& settings, const DeviceReque
     const hd::Library& library = search.library;
     if (open_one.load()) {
         checks.push_back({"init", CheckOutcome::Failed, "this program has a device open already",
-                          "close it first: the library serves one"});
+                          "close it first: the library supports one device at a time"});
         return opened;
     }
     hd::Code error = hd::success;
@@ -492,10 +495,13 @@ OpenedDevice open_haptics(const OpenHapticsSettings& settings, const DeviceReque
     const Vec3 mm = 2 / metre_per_mm * box.half_m;
     checks.push_back(
         {"limits", is_known ? CheckOutcome::Ok : CheckOutcome::Unknown,
-         fmt::format("{:.2f} N at most, {:.2f} N for ever, {:.0f} × {:.0f} × {:.0f} mm{}{}",
-                     spec.peak_force_newton, spec.continuous_force_newton, mm.x(), mm.y(), mm.z(),
-                     is_positive(stiffness) ? fmt::format(", {:.2f} N/mm", stiffness) : "",
-                     is_known ? "" : "; in part the Omni's, for the library does not tell"),
+         fmt::format(
+             "up to {:.2f} N, {:.2f} N continuously, {:.0f} × {:.0f} × {:.0f} mm{}{}",
+             spec.peak_force_newton, spec.continuous_force_newton, mm.x(), mm.y(), mm.z(),
+             is_positive(stiffness) ? fmt::format(", {:.2f} N/mm", stiffness) : "",
+             is_known
+                 ? ""
+                 : "; partly assumed values of an Omni, because the library does not report them"),
          ""});
     checks.push_back(check_calibration(library, query_calibration_style(library)));
     checks.push_back(check_motors(library));

@@ -65,7 +65,8 @@ ErrorWords words(Code error) noexcept {
             return {};
         case warm_motors:
             return {"the motors are too warm",
-                    "let the device rest for some minutes; the force returns by itself, smaller"};
+                    "let the device cool for some minutes; the force returns by itself, at first "
+                    "smaller"};
         case exceeded_max_force:
             return {"the force was larger than the device allows", "choose a smaller force gain"};
         case exceeded_force_impulse:
@@ -89,9 +90,10 @@ ErrorWords words(Code error) noexcept {
             return {"the connection is not set up",
                     "run the maker's set-up program, which pairs the device with its name"};
         case timer_error:
-            return {"the maker's scheduler got no clock", "end other programs and start again"};
+            return {"the maker's scheduler could not start its timer",
+                    "end other programs and start again"};
         case bad_handle:
-            return {"there is no device of that name",
+            return {"no device of this name is set up",
                     "run the maker's set-up program, and see which names it knows"};
         case invalid_licence:
             return {"the maker's library has no licence",
@@ -103,12 +105,12 @@ ErrorWords words(Code error) noexcept {
         case invalid_value:
         case invalid_operation:
         case invalid_input_type:
-            return {"the maker's library does not know what it was asked",
+            return {"the maker's library does not know this function",
                     "install OpenHaptics 3.4 or newer"};
         case illegal_begin:
         case illegal_end:
         case frame_error:
-            return {"a tick of the device was not finished", "start the program again"};
+            return {"a servo tick of the device did not finish", "start the program again"};
         default:
             return {"an error that is not documented", "run the maker's diagnostic"};
     }

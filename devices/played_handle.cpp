@@ -45,7 +45,7 @@ std::vector<std::size_t> find_columns(std::string_view header, const TextPlace& 
         if (found == column_names.end()) {
             if (!takes_others) {
                 throw LoadError(
-                    place, fmt::format("unknown column '{}'; expected names out of {}{}",
+                    place, fmt::format("unknown column '{}'; expected names from {}{}",
                                        name.substr(0, most_quoted), fmt::join(column_names, ", "),
                                        near_name_hint(name, column_names)));
             }
@@ -53,14 +53,14 @@ std::vector<std::size_t> find_columns(std::string_view header, const TextPlace& 
             continue;
         }
         if (std::exchange(has[column], true)) {
-            throw LoadError(place, fmt::format("column '{}' is there twice", name));
+            throw LoadError(place, fmt::format("column '{}' is repeated", name));
         }
         columns.push_back(column);
     }
     for (std::size_t i = 0; i < needed_columns; ++i) {
         if (has[i]) continue;
-        throw LoadError(place, fmt::format("column '{}' is missing; expected the names of the "
-                                           "columns in the first line, {} among them",
+        throw LoadError(place, fmt::format("column '{}' is missing; expected column names in the "
+                                           "first line, with {} among them",
                                            column_names[i],
                                            fmt::join(column_names.begin(),
                                                      column_names.begin() + needed_columns, ", ")));
@@ -78,7 +78,7 @@ Values parse_values(std::string_view line, const TextPlace& place,
             const std::string_view text = line.substr(begin, end - begin);
             const std::optional<double> value = find_real(text);
             if (!value) {
-                throw LoadError(place, fmt::format("'{}' is no number; expected one for {}",
+                throw LoadError(place, fmt::format("'{}' is not a number; expected one for {}",
                                                    trimmed(text).substr(0, most_quoted),
                                                    column_names[columns[column]]));
             }
@@ -87,8 +87,9 @@ Values parse_values(std::string_view line, const TextPlace& place,
         begin = end + 1;
     }
     if (column != columns.size()) {
-        throw LoadError(place, fmt::format("{} values; expected {}, as the first line has names",
-                                           column, columns.size()));
+        throw LoadError(place,
+                        fmt::format("the row has {} values; expected {}, one for each column name",
+                                    column, columns.size()));
     }
     return values;
 }
@@ -99,13 +100,13 @@ PlayedRow row_of(const Values& values, const TextPlace& place) {
                         {values[5], values[6], values[7]},
                         values[4] != 0};
     if (row.handle_m.cwiseAbs().maxCoeff() > played_reach_m) {
-        throw LoadError(place, fmt::format("the handle is {:.6g} m from the middle; expected {} m "
-                                           "at most, either way",
-                                           row.handle_m.cwiseAbs().maxCoeff(), played_reach_m));
+        throw LoadError(place,
+                        fmt::format("the handle is {:.6g} m from the middle; expected at most {} m",
+                                    row.handle_m.cwiseAbs().maxCoeff(), played_reach_m));
     }
     if (row.turn_rad.cwiseAbs().maxCoeff() > most_turn_rad) {
         throw LoadError(place,
-                        fmt::format("the handle is turned by {:.6g} rad; expected {} at most",
+                        fmt::format("the handle is turned by {:.6g} rad; expected at most {} rad",
                                     row.turn_rad.cwiseAbs().maxCoeff(), most_turn_rad));
     }
     if (values[4] != 0 && values[4] != 1) {
@@ -135,13 +136,14 @@ std::vector<PlayedRow> parse_table(std::string_view text, const std::string& fil
         }
         const PlayedRow row = row_of(parse_values(line, place, columns), place);
         if (!rows.empty() && !(row.time_s > rows.back().time_s)) {
-            throw LoadError(place, fmt::format("{} s after {} s; expected times that ascend",
-                                               row.time_s, rows.back().time_s));
+            throw LoadError(place,
+                            fmt::format("the time {} s follows {} s; expected ascending times",
+                                        row.time_s, rows.back().time_s));
         }
         rows.push_back(row);
     }
     if (rows.empty()) {
-        throw LoadError({file}, "holds no row; expected names of columns and a row for each time");
+        throw LoadError({file}, "has no rows; expected column names and one row for each time");
     }
     return rows;
 }

@@ -114,8 +114,7 @@ int main(int argc, char** argv) {
         return palpa::exit_code_after(bad_input);
     } catch (const std::bad_alloc&) {
         fmt::print(stderr,
-                   "palpa: not enough memory for this; expected a smaller file, molecule or "
-                   "picture\n");
+                   "palpa: not enough memory; expected a smaller file, molecule or picture\n");
         return bad_input;
     } catch (const std::exception& error) {
         fmt::print(stderr, "palpa: internal error: {}\n", error.what());

@@ -205,11 +205,10 @@ void LiveSession::begin_recording(const std::filesystem::path& folder, bool over
     const std::lock_guard lock(recorder_mutex_);
     if (plays_)
         throw LoadError({folder.string()},
-                        "cannot be recorded: the frames of a trajectory are not the session's, so "
-                        "that no replay would be the same");
+                        "cannot be recorded: a trajectory moves the atoms, and a recording does "
+                        "not hold its frames; expected a session without a trajectory");
     if (recorder_.is_recording())
-        throw LoadError({folder.string()},
-                        "another recording is under way; expected its end first");
+        throw LoadError({folder.string()}, "another recording is running; end it first (F9)");
     record_what_happened();
     recording_problem_.clear();
     recorder_.begin(folder, overwrites, trajectory);
@@ -235,8 +234,8 @@ std::vector<std::string> LiveSession::take_recording_notes() {
     const std::lock_guard lock(recorder_mutex_);
     std::vector<std::string> notes = recorder_.take_notes();
     if (const std::size_t lost = trajectory_queue_.take_lost(); lost > 0)
-        notes.push_back(
-            fmt::format("{} frames of the trajectory are missing: the disk was too slow", lost));
+        notes.push_back(fmt::format(
+            "{} frames of the trajectory are missing: the disk was too slow to write them", lost));
     return notes;
 }
 
@@ -473,8 +472,8 @@ void LiveSession::record_what_happened() {
         recorder_.lose();
         if (recorder_.is_recording() && recording_problem_.empty())
             recording_problem_ =
-                "ticks are missing: the machine was too busy to keep them all, and a replay will "
-                "not be exact";
+                "servo ticks are missing: the machine was too busy to record them all, so a replay "
+                "will not be exact";
     }
     try {
         journal_queue_.hand_to(recorder_);

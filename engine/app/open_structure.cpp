@@ -59,17 +59,18 @@ SceneRequest build_request(std::span<const fs::path> files) {
         } else if (request.structure.empty()) {
             request.structure = file;
         } else {
-            throw LoadError({file.string()},
-                            fmt::format("is a second structure; {} was opened alone",
-                                        request.structure.filename().string()));
+            throw LoadError(
+                {file.string()},
+                fmt::format("is a second structure file; expected one at a time (the first was {})",
+                            request.structure.filename().string()));
         }
     }
     if (request.structure.empty() && !request.topology.empty())
         request.structure = find_coordinates(request.topology);
     if (request.structure.empty()) {
         throw LoadError({files.empty() ? std::string() : files[0].string()},
-                        "is no structure; expected a .pdb, .cif or .crd file, and with it a "
-                        "topology (.psf) or parameters of its ligands (.str)");
+                        "is not a structure file; expected .pdb, .cif or .crd, and with it, if "
+                        "needed, its topology (.psf) or a parameter file of its ligands (.str)");
     }
     request.settings.entry = request.structure;
     return request;
@@ -157,20 +158,19 @@ private:
         std::string text = problem_.empty() ? std::string() : problem_ + "\n\n";
         for (const UnknownResidue& one : residues_) {
             text += format_translated(
-                "{}{}: {} atoms, {} of them ({})\n  {}\n\n", one.name,
+                "{}{}: {} atoms; found {} times ({})\n{}\n", one.name,
                 one.meaning.empty() ? "" : fmt::format(" ({})", one.meaning), one.atoms,
                 one.where.size(),
                 fmt::join(one.where.begin(),
                           one.where.begin() + std::min<std::ptrdiff_t>(4, std::ssize(one.where)),
                           ", "),
-                one.advice);
+                advise(one, AdviceFor::Window));
         }
         text += translated(
-            "Leave them out: the structure is prepared without them.\n"
-            "Approximate: types, charges and parameters by likeness to known residues; good "
-            "enough to feel a shape, not to measure.\n"
-            "Parameter file: a CHARMM stream file (.str) with the residue, as the CGenFF server "
-            "(cgenff.com) writes it.");
+            "Leave them out: Palpa prepares the structure without these residues.\nApproximate: "
+            "Palpa takes types, charges and parameters from similar known residues. This is good "
+            "enough to feel the shape, but not to measure.\nParameter file: choose a CHARMM stream "
+            "file (.str) that defines the residue. The CGenFF server (cgenff.com) writes one.");
         draw_long_text(text);
         if (ImGui::Button(labelled("Leave them out (L)").c_str())) remedy_ = Remedy::Omit;
         ImGui::SameLine();
@@ -202,7 +202,7 @@ private:
 bool show_report(WindowShell& shell, const std::string& text, bool has_scene) {
     std::optional<bool> goes_on;
     const auto draw = [&] {
-        begin_page(for_translation("What was decided"));
+        begin_page(for_translation("What Palpa decided"));
         draw_long_text(text);
         ImGui::BeginDisabled(!has_scene);
         if (ImGui::Button(labelled("Feel it (Enter)").c_str())) goes_on = true;
@@ -262,8 +262,9 @@ std::optional<MadeScene> make_with_remedies(WindowShell& shell, SceneRequest req
                 return std::ranges::find(tried, file) != tried.end();
             });
         } else if (!tried.empty()) {
-            problem = format_translated("{} has no residue of that name.",
-                                        tried.front().filename().string());
+            problem =
+                format_translated("{} does not define this residue; choose the file that does.",
+                                  tried.front().filename().string());
         }
         tried.clear();
         const Remedy remedy =
@@ -290,9 +291,9 @@ std::optional<fs::path> open_structure(WindowShell& shell, std::span<const fs::p
     std::string text = format_translated("{} atoms. Written to {}",
                                          made->system.structure.names.size(), results.string());
     text += "\n";
-    text += has_scene
-                ? format_translated("In your hand: {}.", made->scene.in_hand)
-                : std::string(translated("No scene could be made of it; the warnings say why."));
+    text += has_scene ? format_translated("In your hand: {}.", made->scene.in_hand)
+                      : std::string(translated(
+                            "No scene could be made from this structure; see the warnings below."));
     text +=
         "\n" + fmt::format(fmt::runtime(translated_plural("{} warning.", "{} warnings.", warnings)),
                            warnings);

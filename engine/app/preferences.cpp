@@ -59,13 +59,13 @@ bool read_recent(const toml::node& value, Preferences& preferences) {
 
 constexpr std::array<Preference, 6> known_keys{{
     {"device", read_text<&Preferences::device>,
-     "device is no text; expected a name as --device takes it"},
-    {"sound", read_sound, "sound is no truth value; expected true or false"},
-    {"scene", read_recent, "scene is no text; expected the file or folder of a scene"},
-    {"recent", read_recent, "recent is no list of texts; expected files of scenes"},
-    {"text_scale", read_text_scale, "text_scale is no number from 0.5 to 4"},
+     "device is not text; expected a device name in quotes, such as \"mouse\""},
+    {"sound", read_sound, "sound is not true or false; expected one of them"},
+    {"scene", read_recent, "scene is not text; expected the file or folder of a scene, in quotes"},
+    {"recent", read_recent, "recent is not a list of texts; expected scene files, [\"...\"]"},
+    {"text_scale", read_text_scale, "text_scale is not a number from 0.5 to 4 (1: the usual size)"},
     {"language", read_text<&Preferences::language>,
-     "language is no text; expected the code of one, such as \"de\" or \"en\""},
+     "language is not text; expected a language code in quotes, such as \"de\" or \"en\""},
 }};
 
 TextPlace place_in(const std::string& file, const toml::source_region& source) {
@@ -117,7 +117,7 @@ std::string format_preferences(const Preferences& preferences) {
     if (preferences.text_scale) table.insert("text_scale", *preferences.text_scale);
     if (preferences.language) table.insert("language", *preferences.language);
     std::ostringstream text;
-    text << "# What was chosen in Palpa's window.\n" << table << "\n";
+    text << "# Preferences of Palpa's window.\n" << table << "\n";
     return text.str();
 }
 
@@ -157,15 +157,16 @@ PreferencesFile::PreferencesFile(std::optional<fs::path> file) : file_(std::move
 void PreferencesFile::keep(const Preferences& preferences) {
     if (preferences == now_) return;
     const TextPlace place{"preferences"};
-    if (!problem_.empty()) throw LoadError(place, "what was chosen is not remembered: " + problem_);
+    if (!problem_.empty()) throw LoadError(place, "preferences cannot be saved: " + problem_);
     if (!file_)
         throw LoadError(place,
-                        "what was chosen is not remembered: no folder for settings is named");
+                        "preferences cannot be saved: there is no settings folder (set HOME or "
+                        "XDG_CONFIG_HOME)");
     std::error_code error;
     fs::create_directories(file_->parent_path(), error);
     if (error) {
         throw LoadError(place,
-                        fmt::format("what was chosen is not remembered: {} cannot be made: {}",
+                        fmt::format("preferences cannot be saved: the folder {} cannot be made: {}",
                                     file_->parent_path().string(), error.message()));
     }
     write_text_file(*file_, format_preferences(preferences), Existing::Replace);

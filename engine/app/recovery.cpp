@@ -66,8 +66,10 @@ void RecoveryFile::save(const SceneDescription& scene) noexcept {
         const auto whole = [](const fs::path& named) {
             return fs::absolute(named).lexically_normal().generic_string();
         };
-        write_text_file(file, "# Kept for a crash.\n" + format_scene(scene, whole),
-                        Existing::Replace);
+        write_text_file(
+            file,
+            "# A backup in case the program ends unexpectedly.\n" + format_scene(scene, whole),
+            Existing::Replace);
         file_ = file;
     } catch (const std::exception&) {  // a full disk may have room the next time
         return;

@@ -79,7 +79,7 @@ Sandbox::Sandbox(WindowShell& shell, std::unique_ptr<WindowSession> session,
     std::error_code error;
     if (!std::filesystem::is_directory(options.screenshots, error)) {
         throw LoadError({options.screenshots.string()},
-                        "is no folder; expected one for screenshots");
+                        "is not a folder; expected the folder for screenshots");
     }
     frame_.hands.resize(hands_.size());  // until the first frame they are empty
     window_.set_title("Palpa - " + scene.title);
@@ -104,7 +104,7 @@ WindowReport Sandbox::run() {
             frame();
             return !quitting_;
         },
-        [this] { notice(translated("the graphics device was lost, and is back")); });
+        [this] { notice(translated("the graphics device was lost and has been set up again")); });
     window_.capture_cursor(false);  // that Space may have
     WindowReport report{{},    overlay_.settings(),  frame_ms_.size(),
                         0,     scale_.value(),       overlay_.lesson().steps_done(),
@@ -153,12 +153,13 @@ void Sandbox::frame() {
     play_force();
     if (frame_ms_.size() + 1 == options_.lose_device_at) {
         frame_ms_.push_back(0);
-        throw DeviceLost("the device was given up on request");
+        throw DeviceLost("the graphics device was released on request (--lose-device-at)");
     }
     is_over_ = options_.last_shot && ms_since(start_) > 1e3 * options_.last_shot_s;
     wants_shot_ = wants_shot_ || is_over_;
     if (window_.size().width == 0 || window_.size().height == 0) {  // folded away
-        if (is_over_) throw GpuError("the window is folded away: no picture of it");
+        if (is_over_)
+            throw GpuError("the window is minimised, so no screenshot was taken; restore it first");
         return;
     }
     draw();

@@ -74,7 +74,7 @@ void Sandbox::ask_to_leave(const std::string& how, std::optional<NextScreen> nex
     };
     if (options_.study || !options_.save || is_saved()) return leave();
     question_ = {
-        translated("What was changed is not saved."),
+        translated("Your changes are not saved."),
         {{Key::S,
           how == "quit" ? translated("Save and quit (S)") : translated("Save and go on (S)"),
           [this, leave] {
@@ -100,11 +100,9 @@ void Sandbox::record_or_end() {
         if (session_.recorded_s()) {
             session_.end_recording();
             tell_recording_notes();
-            notice(
-                format_translated("recorded {0}; Ctrl+O, then O opens its journal.txt and plays it "
-                                  "again",
-                                  recorded_in_.string()),
-                first_notice_s);
+            notice(format_translated("recorded into {0}; to play it: Ctrl+O, O, its journal.txt",
+                                     recorded_in_.string()),
+                   first_notice_s);
         } else {
             recorded_in_ = next_recording(options_.screenshots);
             session_.begin_recording(recorded_in_, false, options_.trajectory);

@@ -27,7 +27,7 @@ void Sandbox::look_for_devices() {
     if (!is_wanted_there) {
         refusal_.clear();
         if (!devices_.wanted.empty() && !std::exchange(has_looked_, true) && notice_.empty()) {
-            notice(format_translated("{} is not there; until it is: {}", devices_.wanted,
+            notice(format_translated("{} is not connected; using until then: {}", devices_.wanted,
                                      devices_.current),
                    first_notice_s);
         }
@@ -63,7 +63,7 @@ bool Sandbox::choose_device(const std::string& name) {
     if (name != devices_.current && !change_device(name)) return false;
     devices_.wanted.clear();
     if (is_stand_in(name)) {
-        notice(format_translated("{}, for this session; D goes back",
+        notice(format_translated("using for this session: {}; press D to go back",
                                  hands_.front().device->spec().name),
                first_notice_s);
         return true;
@@ -88,8 +88,7 @@ void Sandbox::ask_for_stand_in() {
     if (found == devices_.offers.end() || found->name == devices_.current) return;
     question_ = {
         format_translated(
-            "No other device was found ('palpa devices' says why). Take an emulated one for "
-            "this session: {}?",
+            "No other device was found. Use an emulated device for this session ({})?",
             translated(found->summary.c_str())),
         {{Key::Y, translated("Yes (Y)"), [this, name = found->name] { (void)choose_device(name); }},
          {Key::Escape, translated("No (Esc)")}}};
@@ -125,7 +124,7 @@ bool Sandbox::switch_sound(bool is_on) {
     try {
         speaker_.emplace();
     } catch (const SoundError& error) {
-        notice(format_translated("{}: no tone", error.what()), first_notice_s);
+        notice(format_translated("no tone: {}", error.what()), first_notice_s);
         return false;
     }
     return true;
@@ -149,7 +148,7 @@ void Sandbox::play_force() {
     if (speaker_->is_there())
         return speaker_->play(tone_of(frame_.readout.paused ? 0 : hand().felt_newton));
     speaker_.reset();
-    notice(translated("the sound output has gone away: no tone"), first_notice_s);
+    notice(translated("no tone: the sound output was disconnected"), first_notice_s);
 }
 
 }  // namespace palpa

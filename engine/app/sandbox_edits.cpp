@@ -152,7 +152,7 @@ void Sandbox::ask_about_dropped(const std::vector<std::filesystem::path>& files)
     const auto open = [this, files] { ask_to_leave("go on", NextScreen{files}); };
     if (std::ranges::any_of(files, is_scene)) return open();
     if (std::ranges::none_of(files, can_be_opened)) return add_panel_.open(files);
-    question_ = {format_translated("{}: what is to be done with it?", files[0].filename().string()),
+    question_ = {format_translated("What should Palpa do with {}?", files[0].filename().string()),
                  {{Key::A, translated("Add it to this scene (A)"),
                    [this, files] { add_panel_.open(files); }},
                   {Key::O, translated("Open it as a scene of its own (O)"), open},
@@ -167,13 +167,15 @@ void Sandbox::add(AddEdit wanted) {
     const Newcomer newcomer = shape.empty() ? Newcomer{one, gap_of_unknown} : Newcomer{shape, gap};
     const std::optional<Vec3> found = find_room(frame_.places, newcomer, camera_);
     if (!found)
-        return notice(translated("there is no room near what is looked at"), first_notice_s);
+        return notice(translated("there is no room for it near the middle of the picture; move the "
+                                 "view and try again"),
+                      first_notice_s);
     const Vec3& place = *found;
     std::ranges::copy(place, wanted.at_angstrom.begin());
     const double way = (place - as_double(camera_.target)).norm();
     announced_ = {wanted.name, true, frame_.readout.refused_edits,
-                  format_translated("{} was added {}; a click takes it, Ctrl+Z undoes", wanted.name,
-                                    describe_way(way, camera_)),
+                  format_translated("{} was added {}; click on it to take it, Ctrl+Z removes it",
+                                    wanted.name, describe_way(way, camera_)),
                   add_panel_.takes()};
     edit(std::move(wanted));
     overlay_.note_edit();
@@ -183,8 +185,7 @@ void Sandbox::remove_held() {
     if (refuse_in_replay()) return;
     const std::string molecule = molecule_in_hand();
     if (molecule.empty())
-        return notice(
-            translated("nothing is in hand that could be removed: click on an atom first"));
+        return notice(translated("no molecule is in hand to remove; click on an atom first"));
     announced_ = {molecule, false, frame_.readout.refused_edits,
                   format_translated("{} was removed; Ctrl+Z brings it back", molecule)};
     edit(RemoveEdit{molecule});

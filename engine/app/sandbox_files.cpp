@@ -43,7 +43,7 @@ void Sandbox::ask_for_export() {
         return [this, ending] { ask_what_to_export(ending); };
     };
     question_ = {
-        translated("Save coordinates, as they are now, as"),
+        translated("Save the present coordinates as"),
         {{Key::P, "PDB (P)", as(".pdb")},
          {Key::C, "mmCIF (C)", as(".cif")},
          {Key::G, "GRO (G)", as(".gro")},
@@ -69,8 +69,8 @@ void Sandbox::export_readings() {
         const std::array files{TextFile{file, format_readings(overlay_.history().samples())},
                                TextFile{marks, text}};
         write_text_files(files);
-        notice(fmt::format("saved {} of the last {:.0f} s, and {} with the marks of this moment",
-                           file.string(), History::seconds, marks.string()));
+        notice(fmt::format("saved {} (the last {:.0f} s) and {} (the present marks)", file.string(),
+                           History::seconds, marks.string()));
     } catch (const LoadError& error) {
         notice(error.what(), first_notice_s);
     }
@@ -121,11 +121,11 @@ void Sandbox::tell_of_film() {
         film_.reset();
         notice(*outcome, first_notice_s);
     } else if (film_->is_ended()) {
-        notice(format_translated("making {}: {} pictures are still to be written",
-                                 filmed_in_.string(), film_->waiting()),
+        notice(format_translated("writing {}: {} pictures left", filmed_in_.string(),
+                                 film_->waiting()),
                while_it_lasts_s);
     } else {
-        notice(format_translated("filming {}: {:.0f} s; M ends it", filmed_in_.string(),
+        notice(format_translated("filming {}: {:.0f} s; press M to end", filmed_in_.string(),
                                  film_->filmed_s()),
                while_it_lasts_s);
     }

@@ -162,13 +162,13 @@ void Sandbox::rest_all() {
 
 void Sandbox::exchange_hands() {
     if (hands_.size() < 2)
-        return notice(
-            translated("this scene has one hand; [second.grab] in its file gives it another"));
+        return notice(translated(
+            "this scene has one hand; a table [second.grab] in the scene file adds a second"));
     led_ = by_keys();
     held_address_ = in_hand().held_address;
-    notice(format_translated("mouse and clicks: the {} hand ({}); arrow keys: the other one",
+    notice(format_translated("the mouse moves the {} hand ({}); the arrow keys move the other",
                              led_ == 0 ? translated("first") : translated("second"),
-                             held_address_.empty() ? translated("nothing in it") : held_address_));
+                             held_address_.empty() ? translated("empty") : held_address_));
 }
 
 // A study shows nothing of it.

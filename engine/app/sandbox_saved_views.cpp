@@ -60,7 +60,7 @@ void Sandbox::go_to(std::size_t number) {
 void Sandbox::go_to_next_view() {
     if (!has_frame_) return;
     if (saved_views_.empty())
-        return notice(translated("no view is saved yet: Shift+W saves this one"));
+        return notice(translated("no view is saved yet; Shift+W saves this view"));
     go_to(at_view_ ? (*at_view_ + 1) % saved_views_.size() : 0);
     if (!framed_problem_.empty()) return notice(framed_problem_);
     if (!tour_)
@@ -87,8 +87,9 @@ void Sandbox::add_view() {
         set_camera(saved, camera, frame_.places, {}, free_room());
     }
     tour_.reset();
-    notice(format_translated("saved as {}; W shows saved views, Ctrl+S writes them to a file",
-                             saved.name));
+    notice(format_translated(
+        "view saved as {}; W shows the saved views, Ctrl+S writes them to a scene file",
+        saved.name));
     saved_views_.push_back(std::move(saved));
     at_view_ = saved_views_.size() - 1;
 }

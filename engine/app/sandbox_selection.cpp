@@ -46,8 +46,8 @@ void Sandbox::select(const std::string& expression) {
         std::vector<bool> chosen = select_as_seen(world, expression);
         if (std::ranges::find(chosen, true) == chosen.end()) {
             selection_.problem = selected_.empty()
-                                     ? translated("selects no atoms")
-                                     : format_translated("selects no atoms; {} is still selected",
+                                     ? translated("no atom matches this expression")
+                                     : format_translated("no atom matches; {} is still selected",
                                                          selection_.expression);
             return;
         }
@@ -144,7 +144,9 @@ void Sandbox::look_at_selected_or_ligand() {
     std::vector<SphereShape> balls;
     for (std::size_t i = 0; i < std::min(wanted.size(), frame_.places.size()); ++i)
         if (wanted[i]) balls.push_back({frame_.places[i], 1.7F});
-    if (balls.empty()) return notice(translated("nothing is selected, and there is no ligand"));
+    if (balls.empty())
+        return notice(translated(
+            "nothing is selected and the scene has no ligand; select atoms first (Ctrl+F)"));
     OrbitCamera camera = camera_;
     frame_shapes(camera, balls, free_room());
     zoom(camera, room_around);

@@ -72,14 +72,13 @@ void Sandbox::look_at_grabbed() {
 
 void Sandbox::look_at_grabbed_or_all() {
     if (!looks_at_grabbed_ && in_hand().held.count == 0) {
-        notice(translated("nothing is in hand"));
+        notice(translated("nothing is in hand; click on an atom first"));
     } else if (looks_at_grabbed_) {
         look_at_all();
-        notice(translated("everything is shown"));
+        notice(translated("all atoms are shown"));
     } else {
         look_at_grabbed();
-        notice(translated(
-            "what stands in front of the molecule in hand is left out; F shows everything"));
+        notice(translated("atoms in front of the molecule in hand are hidden; F shows them again"));
     }
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* saved_mark = "# A scene as set in Palpa's window";
+constexpr const char* saved_mark = "# A scene saved from Palpa's window";
 
 fs::path folder_of(const fs::path& file) {
     return file.parent_path().empty() ? fs::path(".") : file.parent_path();

@@ -345,7 +345,7 @@ void StartScreen::draw_recovered() {
     for (const fs::path& file : options_.recovered) {
         if (ImGui::Selectable(file.stem().string().c_str())) open(file);
         tip(format_translated(
-                "{}\nCtrl+S saves it as a scene of its own; remove the file to forget it",
+                "{}\nOpen it and press Ctrl+S to save it as a scene; delete the file to discard it",
                 file.string())
                 .c_str());
     }
@@ -389,10 +389,11 @@ void StartScreen::draw_devices() {
         found += (found.empty() ? "" : ", ") + offer.name;
     }
     ImGui::TextWrapped(
-        "%s", found.empty()
-                  ? translated("No haptic device was found: choose yours above to see what is "
-                               "missing. The mouse works without one; sound makes force heard.")
-                  : format_translated("Found: {}.", found).c_str());
+        "%s",
+        found.empty()
+            ? translated("No haptic device was found; choose yours above to see what is missing. "
+                         "The mouse works without one, and sound makes the force audible.")
+            : format_translated("Found: {}.", found).c_str());
 }
 
 void StartScreen::choose_device(const std::string& name) {

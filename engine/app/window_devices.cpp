@@ -49,12 +49,12 @@ WindowDevice WindowDevices::open_first(const std::optional<std::string>& asked) 
                 return opened;
             }
         } catch (const LoadError& error) {
-            notice_ = wanted_.empty()
-                          ? fmt::format("{}; until then: {}", error.what(), first_device)
-                          : fmt::format(
-                                "{}, which led last, cannot be used now: 'palpa devices "
-                                "{}' tells why; until then: {}",
-                                wanted_, wanted_, first_device);
+            notice_ =
+                wanted_.empty()
+                    ? fmt::format("{}; using until then: {}", error.what(), first_device)
+                    : fmt::format(
+                          "{}, the device used last, cannot be used now; using until then: {}",
+                          wanted_, first_device);
         }
     }
     current_ = asked.value_or(first_device);

@@ -150,7 +150,7 @@ std::string WindowShell::change_text_scale(double scale) {
 
 std::string WindowShell::change_language(const std::string& code) {
     if (!choose_language(code))
-        return fmt::format("this system has no texts in the language '{}'", code);
+        return fmt::format("there are no texts in the language '{}' on this system", code);
     if (!options_.language.remember) return {};
     try {
         options_.language.remember(code);

@@ -195,8 +195,9 @@ std::vector<std::optional<BondMotion>> find_overrides(const Connectivity& connec
             is_found = true;
         }
         if (is_found) continue;
-        problems.push_back(fmt::format("{} are not bonded, and so no joint",
-                                       bond_name(connectivity, joint_override.bond)));
+        problems.push_back(
+            fmt::format("{} are not bonded, so they cannot be a joint; expected two bonded atoms",
+                        bond_name(connectivity, joint_override.bond)));
     }
     return asked;
 }
@@ -216,8 +217,8 @@ void cut_loops(const Connectivity& connectivity, const Chemistry& chemistry, Bon
         if (bonds.is_bridge[i] != 0) {
             if (is_asked) {
                 problems.push_back(
-                    fmt::format("{} cannot be a spring: it lies in no ring, or in one that is "
-                                "open already",
+                    fmt::format("{} cannot be a spring: this bond is not in a ring, or its ring is "
+                                "already open; expected a bond of a closed ring",
                                 bond_name(connectivity, connectivity.bonds[i])));
             }
             continue;
@@ -253,9 +254,10 @@ Joints build_joints(const Connectivity& connectivity, const JointRules& rules) {
             bonds.is_bridge[i] != 0 && left.of(a).size() > 1 && left.of(b).size() > 1;
         if (!can_turn) {
             if (bonds.asked[i] == BondMotion::Turn) {
-                problems.push_back(fmt::format(
-                    "{} cannot turn: it is part of a ring, or an end without further atoms",
-                    bond_name(connectivity, connectivity.bonds[i])));
+                problems.push_back(
+                    fmt::format("{} cannot turn: this bond is in a ring, or one of its atoms has "
+                                "no other bonds",
+                                bond_name(connectivity, connectivity.bonds[i])));
             }
             continue;
         }

@@ -293,10 +293,10 @@ void find_linear_bodies(AssemblyTree& tree, std::span<const Vec3> positions) {
         const bool is_linear = is_in_line(shares, positions);
         tree.is_linear.push_back(is_linear ? 1 : 0);
         if (!is_linear || bodies_of[tree.molecule_of[b]] == 1) continue;
-        problems.push_back(fmt::format(
-            "a bond that turns has only atoms in line with it at one end, next to atom {}; it must "
-            "be rigid",
-            tree.atoms[tree.first_atom[b]] + 1));
+        problems.push_back(
+            fmt::format("a rotatable bond next to atom {} has only collinear atoms on one side, so "
+                        "it cannot turn; expected it to be rigid (joints.rigid)",
+                        tree.atoms[tree.first_atom[b]] + 1));
     }
     if (problems.empty()) return;
     const std::string first = problems.front();

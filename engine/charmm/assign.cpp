@@ -187,8 +187,8 @@ AtomRange add_segment_atoms(const ForceField& force_field, const Connectivity& c
         const TextPlace place{connectivity.file, connectivity.lines[i], 0};
         const auto found = places.find(to_string(name));
         if (found == places.end()) {
-            missing.add(place,
-                        fmt::format("atom {} has no place in {}", to_string(name), structure.file));
+            missing.add(place, fmt::format("atom {} has no coordinates in {}", to_string(name),
+                                           structure.file));
             continue;
         }
         new_index[i] = static_cast<std::uint32_t>(table.size() + added.size());

@@ -16,9 +16,9 @@ namespace {
 constexpr double lightest_heavy = 3.5;  // amu
 
 constexpr const char* uncovered_advice =
-    "EEF1-SB has numbers for proteins and for some of CGenFF's types; leave that molecule out, "
-    "call waters that belong to the structure structural (structural_water = true, "
-    "--structural-water), or take no solvent (solvent = \"none\", --solvent none)";
+    "EEF1-SB has parameters for proteins and for some CGenFF types only; leave this molecule out, "
+    "declare waters that belong to the structure as structural (structural_water = true, "
+    "--structural-water), or use no solvent (solvent = \"none\", --solvent none)";
 
 // An atom as the table is asked for it.
 struct TypedAtom {

@@ -25,8 +25,8 @@ fs::path find_built_in_force_field() {
         if (fs::is_regular_file(source, error)) return source;
     }
     throw LoadError({installed.string()},
-                    "the force field that comes with the program is not there; expected it beside "
-                    "the program, or --only-toppar with CHARMM's files");
+                    "the built-in force field is missing; expected this file beside the program, "
+                    "or --only-toppar with CHARMM's files");
 }
 
 ForceField read_built_in_force_field(std::span<const fs::path> files) {

@@ -136,7 +136,7 @@ void parse_force_field(std::string_view text, const std::string& file, ForceFiel
     if (!open.empty()) {
         throw LoadError(
             {file, statements.line_count(), 0},
-            fmt::format("the file ends inside {}, as if it were cut; expected END behind it",
+            fmt::format("the file ends inside {}, so it may be cut off; expected END after it",
                         open));
     }
     if (!has_returned) script.check_closed();
@@ -154,8 +154,8 @@ ForceField read_force_field(std::span<const std::filesystem::path> files) {
             force_field = unpack_force_field(text, file);
         } else {
             throw LoadError({file},
-                            "is a packed force field, which adds to none; expected it to "
-                            "be the first file");
+                            "is a packed force field and cannot be added to other files; expected "
+                            "it as the first file");
         }
     }
     return force_field;

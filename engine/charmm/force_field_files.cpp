@@ -32,7 +32,7 @@ std::vector<fs::path> list_force_field_files(const fs::path& path) {
     }
     if (!files.empty()) return files;
     throw LoadError({path.string()},
-                    "this folder holds no force field; expected files .rtf, .prm and .str");
+                    "this folder contains no force field files; expected .rtf, .prm or .str");
 }
 
 }  // namespace palpa

@@ -15,20 +15,22 @@ std::string describe_kind(ForceFieldNote::Kind kind, std::size_t count) {
     const char* const s = count == 1 ? "" : "s";
     switch (kind) {
         case ForceFieldNote::Kind::Replaced:
-            return fmt::format("{} entr{} of the force field given again, the later counts", count,
-                               count == 1 ? "y" : "ies");
+            return fmt::format(
+                "{} entr{} of the force field defined again; the last definition is used", count,
+                count == 1 ? "y" : "ies");
         case ForceFieldNote::Kind::Negative:
-            return fmt::format("{} force constant{} below 0, taken as {}", count, s,
+            return fmt::format("{} negative force constant{}, used as {}", count, s,
                                count == 1 ? "it is" : "they are");
         case ForceFieldNote::Kind::ExtraWord:
             return fmt::format(
-                "{} line{} with words that are passed over, as if a '!' were missing", count, s);
+                "{} line{} with extra words at the end, which are ignored (is a '!' missing?)",
+                count, s);
         case ForceFieldNote::Kind::OtherFile:
             break;
     }
     return fmt::format(
-        "{} statement{} that name{} another file, which is not read; give it by "
-        "itself",
+        "{} statement{} that name{} another file, which is not read; add that file to the list of "
+        "force field files",
         count, s, count == 1 ? "s" : "");
 }
 
@@ -43,7 +45,7 @@ std::string describe_note(const ForceFieldNote& note) {
         case ForceFieldNote::Kind::Negative:
             return fmt::format("{}: a force constant of {}", place, note.what);
         case ForceFieldNote::Kind::ExtraWord:
-            return fmt::format("{}: {} is passed over", place, note.what);
+            return fmt::format("{}: {} is ignored", place, note.what);
         case ForceFieldNote::Kind::OtherFile:
             break;
     }

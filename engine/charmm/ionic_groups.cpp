@@ -256,7 +256,7 @@ std::vector<std::string> find_charged(std::span<const AtomName> names,
     if (!residues.empty())
         problems.push_back(fmt::format("residues have a charge: {}", join_first(residues)));
     if (std::abs(total) >= rounding)
-        problems.push_back(fmt::format("the whole has {:+.2f} e", total));
+        problems.push_back(fmt::format("the total charge is {:+.2f} e, not 0", total));
     return problems;
 }
 

@@ -32,12 +32,7 @@ void Missing::advise(std::string what) {
 
 void Missing::throw_if_any() const {
     if (problems_.empty()) return;
-    const auto named =
-        problems_.begin() + static_cast<std::ptrdiff_t>(std::min(problems_.size(), most_named));
-    std::vector<std::string> parts(problems_.begin(), named), further(named, problems_.end());
-    if (!further.empty()) parts.push_back(fmt::format("and {} more", further.size()));
-    parts.insert(parts.end(), advice_.begin(), advice_.end());
-    throw LoadError(place_, fmt::format("{}", fmt::join(parts, "; ")), std::move(further));
+    throw join_problems(place_, problems_, advice_);
 }
 
 namespace {
@@ -52,7 +47,7 @@ constexpr std::array other_names = std::to_array<std::pair<std::string_view, std
      {"HOH", "TIP3"},
      {"WAT", "TIP3"},
      {"SOL", "TIP3"},
-     {"ACE", "patch ACE on the residue behind it"},
+     {"ACE", "patch ACE on the residue after it"},
      {"NME", "patch CT3 on the residue before it"},
      {"NMA", "patch CT3 on the residue before it"},
      {"CT3", "patch CT3 on the residue before it"}});
@@ -91,9 +86,9 @@ const Residue* find_residue(const ForceField& force_field, const std::string& na
     double sum = 0;
     for (const ResidueAtom& atom : residue.atoms) sum += atom.charge;
     if (std::abs(sum - residue.charge) > 1e-3) {
-        missing.add(residue.place,
-                    fmt::format("residue '{}' is given {} e, but its atoms add up to {:.4f} e",
-                                name, residue.charge, sum));
+        missing.add(residue.place, fmt::format("residue '{}' is declared with {} e, but the "
+                                               "charges of its atoms add up to {:.4f} e",
+                                               name, residue.charge, sum));
     }
     return &residue;
 }
@@ -110,8 +105,8 @@ const std::pair<const std::string, AtomType>* find_type(const ForceField& force_
                std::all_of(force_field.types.begin(), force_field.types.end(),
                            [](const auto& entry) { return entry.second.number < 1; })) {
         missing.add(place,
-                    fmt::format("atom types are numbers here, and no MASS line in {} has one; "
-                                "expected the topology file that numbers them",
+                    fmt::format("atom types are given as numbers, but no MASS line in {} has a "
+                                "number; expected the topology file that numbers the types",
                                 fmt::join(force_field.files, ", ")));
     } else if (find_integer(name)) {
         missing.add(place, fmt::format("no atom type has the number {}; expected a topology file "

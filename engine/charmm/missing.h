@@ -15,8 +15,6 @@ namespace palpa {
 // the first ones, and `LoadError::further` the others.
 class Missing {
 public:
-    static constexpr std::size_t most_named = 8;
-
     void add(const TextPlace& place, std::string what);
     void advise(std::string what);     // what stands once at the end of the message
     void add(const LoadError& error);  // another stage's problems, behind ours

@@ -94,11 +94,13 @@ std::string pack_force_field(const ForceField& force_field, std::span<const std:
         if (line.empty() || printable(line) != line) {
             throw LoadError(
                 {"about"},
-                fmt::format("a line '{}'; expected words that can be printed", printable(line)));
+                fmt::format(
+                    "the line '{}' has characters that cannot be printed; expected plain text",
+                    printable(line)));
         }
         text += line + '\n';
     }
-    if (about.empty()) throw LoadError({"about"}, "no line; expected a title at least");
+    if (about.empty()) throw LoadError({"about"}, "is empty; expected at least a title line");
     PackWriter writer;
     visit_force_field(writer, force_field);
     const std::string plain = writer.take(), packed = compressed(plain);

@@ -168,11 +168,11 @@ void ParameterReader::read_dihedral(bool is_improper) {
                             statements_.real(6, "phase"), statements_.place()};
     if (term.multiplicity < 0 || term.multiplicity > 12) {
         statements_.fail(
-            fmt::format("a multiplicity of {}; expected 0 to 12", statements_.words()[5]));
+            fmt::format("the multiplicity is {}; expected 0 to 12", statements_.words()[5]));
     }
     if (!has_valid_wildcards(types, is_improper)) {
         statements_.fail(fmt::format(
-            "wildcards as in '{}' are never looked for; expected {}", fmt::join(types, " "),
+            "wildcards as in '{}' are not supported; expected {}", fmt::join(types, " "),
             is_improper ? "A X X D, X B C D, X B C X or X X C D" : "X B C X"));
     }
     types = in_order(std::move(types));
@@ -197,9 +197,10 @@ void ParameterReader::add_dihedral(std::vector<DihedralTerm>& terms, const Dihed
         return;
     }
     if (!terms.empty() && (terms[0].multiplicity == 0 || term.multiplicity == 0)) {
-        statements_.fail(fmt::format(
-            "{} with multiplicities {} and {}, first in {}; 0, which is harmonic, stands alone",
-            what, terms[0].multiplicity, term.multiplicity, to_string(terms[0].place)));
+        statements_.fail(
+            fmt::format("{} has multiplicities {} and {} (first in {}); a multiplicity of 0 "
+                        "(harmonic) cannot be combined with others",
+                        what, terms[0].multiplicity, term.multiplicity, to_string(terms[0].place)));
     }
     terms.push_back(term);
 }
@@ -252,7 +253,8 @@ void ParameterReader::read_cmap() {
     for (std::size_t i = 0; i < 8; ++i) map.types[i] = statements_.name(i, "atom type");
     const std::int64_t size = statements_.whole_number(8, "number of points");
     if (size < 2 || size > 360) {
-        statements_.fail(fmt::format("a map of {} points along an angle; expected 2 to 360", size));
+        statements_.fail(
+            fmt::format("the CMAP has {} points along each angle; expected 2 to 360", size));
     }
     map.count = static_cast<std::size_t>(size * size);
     map.parameter.place = statements_.place();
@@ -264,7 +266,7 @@ void ParameterReader::end_cmap() {
     const OpenMap map = std::move(*open_map_);
     open_map_.reset();
     if (map.parameter.energies.size() != map.count) {
-        throw LoadError(map.parameter.place, fmt::format("a map with {} numbers; expected {}",
+        throw LoadError(map.parameter.place, fmt::format("the CMAP has {} numbers; expected {}",
                                                          map.parameter.energies.size(), map.count));
     }
     const auto [old, is_new] = into_.cmaps.try_emplace(map.types, map.parameter);
@@ -279,8 +281,8 @@ std::array<double, 2> ParameterReader::read_well(std::size_t at, const char* dis
     const double length = statements_.real(at + 1, distance);
     if (depth > 0 || length < 0) {
         statements_.fail(
-            fmt::format("well depth {} and {} {}; CHARMM writes the depth as -epsilon "
-                        "and {} as 0 or more",
+            fmt::format("the well depth is {} kcal/mol and {} is {} Å; expected -epsilon (0 or "
+                        "less) and {} of 0 or more",
                         depth, distance, length, distance));
     }
     return {-depth, length};
@@ -292,7 +294,9 @@ void ParameterReader::check_nonbonded_options() const {
         const std::string_view option = statements_.words()[i];
         if (option.starts_with("GEOM")) {
             statements_.fail(
-                fmt::format("'{}' is not supported: radii are combined by their sum", option));
+                fmt::format("'{}' is not supported; radii are always combined by their sum "
+                            "(arithmetic mean of Rmin)",
+                            option));
         }
         if (option.starts_with("E14F") && statements_.real(i + 1, "factor") != 1) {
             statements_.fail(fmt::format("{} {} is not supported; expected 1", option,

@@ -67,9 +67,10 @@ void check_names(const ResidueInstances& residues, const TemplateUse& use, Missi
                                            name, instance.name.residue,
                                            near_name_hint(name, keys(instance.wanted))));
         } else {
-            missing.add(place, fmt::format("atom '{}' in a term of patch '{}', which residue '{}' "
-                                           "has not",
-                                           name, use.patch, instance.name.residue));
+            missing.add(
+                place,
+                fmt::format("atom '{}' in a term of patch '{}' does not exist in residue '{}'",
+                            name, use.patch, instance.name.residue));
         }
     }
 }
@@ -80,10 +81,10 @@ std::string_view find_remedy(const ResidueInstances& residues, const TemplateUse
     const AtomReference a = find_reference(residues, use, names[0]);
     const AtomReference b = find_reference(residues, use, names[1]);
     if (a.is_neighbour || b.is_neighbour) {
-        return "where a chain has a gap there are two segments, or a TER line between them";
+        return "split the chain into two segments at a gap, or put a TER line there";
     }
-    return a.residue == b.residue ? "the atoms of a residue stand together"
-                                  : "a patch is for residues that touch";
+    return a.residue == b.residue ? "check the coordinates of this residue"
+                                  : "apply a patch only to residues in contact";
 }
 
 void check_bonds(const Structure& structure, const ResidueInstances& residues,

@@ -44,7 +44,7 @@ private:
             if (is_new) add_instance(name, place, last_of_segment);
             ResidueInstance& instance = instances_[index->second];
             if (!instance.present.emplace(name.atom, atom).second) {
-                missing_.add(place, fmt::format("atom {} again", to_string(name)));
+                missing_.add(place, fmt::format("atom {} is repeated", to_string(name)));
             }
         }
     }
@@ -200,7 +200,7 @@ private:
         const AtomReference reference = find_reference(result_, use, name);
         if (reference.residue == none) {
             missing_.add(use.residue->place,
-                         fmt::format("patch '{}' has an atom '{}'; it is used on {} residues",
+                         fmt::format("patch '{}' names an atom '{}', but is applied to {} residues",
                                      use.patch, name, use.instances.size()));
             unsettle(use.instances);
         }

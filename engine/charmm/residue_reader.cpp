@@ -60,7 +60,7 @@ void read_mass(const Statements& statements, ForceField& into) {
                          statements.words().size() > 4 ? std::string(statements.words()[4]) : "",
                          statements.place()};
     if (!(entry.mass >= 0)) {
-        statements.fail(fmt::format("a mass of {} amu; expected 0 or more", entry.mass));
+        statements.fail(fmt::format("the mass is {} amu; expected 0 or more", entry.mass));
     }
     if (!entry.element.empty() && !contains(elements, entry.element)) {
         statements.fail(fmt::format("unknown element '{}'; expected a symbol such as C, or nothing",
@@ -133,7 +133,7 @@ void ResidueReader::start_residue(bool is_patch) {
         } else if (option == "NODI") {
             residue.has_generated_dihedrals = false;
         } else {
-            statements_.fail(fmt::format("'{}' is no option of a {}; expected NOANG or NODIH",
+            statements_.fail(fmt::format("'{}' is not an option of a {}; expected NOANG or NODIH",
                                          statements_.words()[i], kind));
         }
     }
@@ -161,7 +161,7 @@ void ResidueReader::check_extra_words() const {
     if (words.size() <= 4) return statements_.expect_form("ATOM name type charge");
     into_.notes.push_back({ForceFieldNote::Kind::ExtraWord,
                            statements_.place(),
-                           fmt::format("'{}' behind an ATOM line", words[4]),
+                           fmt::format("extra word '{}' at the end of an ATOM line", words[4]),
                            {}});
 }
 
@@ -171,7 +171,7 @@ void ResidueReader::read_atom() {
                      statements_.real(3, "charge"), group_, statements_.place()};
     const auto [first, is_new] = at_line_.emplace(atom.name, atom.place.line);
     if (!is_new) {
-        statements_.fail(fmt::format("atom '{}' again, first in {}", atom.name,
+        statements_.fail(fmt::format("atom '{}' is repeated, first in {}", atom.name,
                                      to_string({atom.place.file, first->second, 0})));
     }
     residue_->atoms.push_back(std::move(atom));
@@ -182,7 +182,7 @@ template <std::size_t Size, class Tuples>
 void ResidueReader::read_tuples(Tuples& tuples, std::size_t from) const {
     const std::vector<std::string_view>& words = statements_.words();
     if ((words.size() - from) % Size != 0) {
-        statements_.fail(fmt::format("{} names on a {} line; expected {} for each",
+        statements_.fail(fmt::format("a {1} line has {0} names; expected a multiple of {2}",
                                      words.size() - from, words[0], Size));
     }
     for (std::size_t i = from; i < words.size(); i += Size) {
@@ -242,7 +242,7 @@ void ResidueReader::read_chain_ends(std::string& first, std::string& last) const
     for (std::size_t i = 1; i < statements_.words().size(); i += 2) {
         const std::string_view end = statements_.words()[i].substr(0, 4);
         if (end != "FIRS" && end != "LAST") {
-            statements_.fail(fmt::format("'{}' is no end of a chain; expected FIRST or LAST",
+            statements_.fail(fmt::format("'{}' is not an end of a chain; expected FIRST or LAST",
                                          statements_.words()[i]));
         }
         (end == "LAST" ? last : first) = statements_.name(i + 1, "patch name");

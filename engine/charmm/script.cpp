@@ -63,7 +63,7 @@ bool Script::follow(Words words) {
         open_blocks_.pop_back();
         if (keyword == "ELSE") skip_block(false);  // behind the block that was taken
     } else if (keyword == "GOTO") {
-        if (words.size() < 2) statements_.fail("no label here; expected: GOTO label");
+        if (words.size() < 2) statements_.fail("the label is missing; expected: GOTO label");
         go_to(std::string(words[1]));
     } else if (keyword == "STRE") {
         note_other_file();
@@ -75,16 +75,16 @@ bool Script::follow(Words words) {
 bool Script::follow_if(Words words) {
     if (words.size() < 5 || !is_one_of(comparisons, words[2])) {
         statements_.fail(
-            fmt::format("'{}' is no condition that is understood; expected: IF variable EQ value "
-                        "THEN, or a statement in place of THEN (or NE, GT, GE, LT, LE)",
+            fmt::format("the condition '{}' is not supported; expected: IF variable EQ value THEN, "
+                        "or a statement in place of THEN (or NE, GT, GE, LT, LE)",
                         fmt::join(words, " ")));
     }
     const std::optional<bool> truth = find_truth(words);
     const bool is_block = words[4] == "THEN";
     if (is_block && !truth) {
         statements_.fail(
-            fmt::format("whether {} {} {} is not known here; expected a variable that the file "
-                        "gives a value by SET",
+            fmt::format("the variable of '{} {} {}' has no value; expected a variable that this "
+                        "file SETs before",
                         words[1], words[2], words[3]));
     }
     if (is_block) {
@@ -98,17 +98,16 @@ bool Script::follow_if(Words words) {
     if (!truth || !*truth) return true;
     const Words rest = words.subspan(4);
     if (!is_script(rest[0].substr(0, 4))) {
-        statements_.fail(
-            fmt::format("'{}' is no statement that may depend on IF; expected SET, "
-                        "GOTO, RETURN or the like",
-                        rest[0]));
+        statements_.fail(fmt::format(
+            "the statement '{}' is not supported after IF; expected SET, GOTO, RETURN or the like",
+            rest[0]));
     }
     return follow(rest);
 }
 
 // SET name [=] [value]
 void Script::set(Words words) {
-    if (words.size() < 2) statements_.fail("no variable here; expected: SET variable value");
+    if (words.size() < 2) statements_.fail("the variable is missing; expected: SET variable value");
     const std::size_t at = words.size() > 2 && words[2] == "=" ? 3 : 2;
     variables_.insert_or_assign(std::string(words[1]), words.size() > at
                                                            ? find_value(words[at])
@@ -143,7 +142,9 @@ void Script::go_to(std::string label) {
         }
     }
     throw LoadError(
-        place, fmt::format("no label '{}' behind this line; jumps back are not followed", label));
+        place,
+        fmt::format("there is no label '{}' after this line; jumps backwards are not supported",
+                    label));
 }
 
 void Script::note_other_file() {
@@ -155,10 +156,10 @@ void Script::note_other_file() {
 
 void Script::check_closed() const {
     if (open_blocks_.empty()) return;
-    throw LoadError({statements_.place().file, statements_.line_count(), 0},
-                    fmt::format("the file ends inside the IF of line {}, as if it were cut; "
-                                "expected ENDIF behind it",
-                                open_blocks_.back()));
+    throw LoadError(
+        {statements_.place().file, statements_.line_count(), 0},
+        fmt::format("the file ends inside the IF of line {}, so it may be cut off; expected ENDIF",
+                    open_blocks_.back()));
 }
 
 std::optional<std::string> Script::find_value(std::string_view word) const {

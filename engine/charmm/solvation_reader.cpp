@@ -44,11 +44,11 @@ public:
             } else if (content == table_head) {
                 has_head = true;
             } else {
-                fail(fmt::format("'{}' is no head of a solvation table; expected \"{}\"",
+                fail(fmt::format("'{}' is not the header of a solvation table; expected \"{}\"",
                                  shortened_text(content), table_head));
             }
         }
-        if (table_.types.empty()) fail("no atom type; expected a line for each");
+        if (table_.types.empty()) fail("the table has no atom types; expected one line for each");
         return std::move(table_);
     }
 
@@ -93,29 +93,30 @@ private:
             field = field.substr(1, field.size() - 2);
             if (field.find('"') == std::string_view::npos) return std::string(trimmed(field));
         }
-        fail(fmt::format("'{}' is no source; expected a text, in quotes where it has commas",
-                         shortened_text(field)));
+        fail(fmt::format(
+            "'{}' is not a valid source; expected text, in quotes if it contains commas",
+            shortened_text(field)));
     }
 
     // The bounds are far from any atom's, and keep all sums finite.
     void check_bounds(const SolvationRow& row) const {
         if (row.volume < 0 || row.volume > 1e4)
-            fail(fmt::format("a volume of {} Å^3; expected 0 to 10000", row.volume));
+            fail(fmt::format("the volume is {} Å^3; expected 0 to 10000", row.volume));
         for (const double energy : {row.dg_ref, row.dg_free}) {
             if (std::abs(energy) > 1e4)
-                fail(fmt::format("an energy of {} kcal/mol; expected -10000 to 10000", energy));
+                fail(fmt::format("the energy is {} kcal/mol; expected -10000 to 10000", energy));
         }
         if (row.lambda < 0.1 || row.lambda > 1e3)
-            fail(fmt::format("a lambda of {} Å; expected 0.1 to 1000", row.lambda));
+            fail(fmt::format("lambda is {} Å; expected 0.1 to 1000", row.lambda));
         if (row.radius < 0.1 || row.radius > 100)
-            fail(fmt::format("a radius of {} Å; expected 0.1 to 100", row.radius));
+            fail(fmt::format("the radius is {} Å; expected 0.1 to 100", row.radius));
     }
 
     void read_row(std::string_view line) {
         const auto fields = split_fields(line);
         const std::string type = upper_case(fields[TypeColumn]);
         if (type.empty() || split_words(type).size() != 1)
-            fail(fmt::format("'{}' is no atom type; expected a name", shortened_text(type)));
+            fail(fmt::format("'{}' is not an atom type; expected a name", shortened_text(type)));
         SolvationRow row;
         row.volume = real(fields[VolumeColumn], "volume; expected a number, in Å^3");
         row.dg_ref = real(fields[ReferenceColumn], "dG_ref; expected a number, in kcal/mol");
@@ -130,7 +131,7 @@ private:
         row.place = {table_.file, line_, 0};
         const auto [known, is_new] = table_.types.emplace(type, std::move(row));
         if (!is_new) {
-            fail(fmt::format("type {} again, first on line {}", printable(type),
+            fail(fmt::format("type {} is repeated, first on line {}", printable(type),
                              known->second.place.line));
         }
     }

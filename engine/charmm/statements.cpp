@@ -28,7 +28,7 @@ bool Statements::next() {
     for (const std::string_view word : words_) {
         constexpr std::size_t most = 100, shown = 20;  // no name or number is that long
         if (word.size() <= most) continue;
-        fail(fmt::format("'{}...' has {} letters; expected words of {} at most",
+        fail(fmt::format("the word '{}...' has {} letters; expected at most {}",
                          word.substr(0, shown), word.size(), most));
     }
     return !words_.empty();
@@ -37,19 +37,19 @@ bool Statements::next() {
 void Statements::fail(const std::string& what) const { throw LoadError(place(), what); }
 
 std::string Statements::name(std::size_t at, const char* what) const {
-    if (at >= words_.size()) fail(fmt::format("no {} here", what));
+    if (at >= words_.size()) fail(fmt::format("the {} is missing", what));
     return std::string(words_[at]);
 }
 
 double Statements::real(std::size_t at, const char* what) const {
-    if (at >= words_.size()) fail(fmt::format("no {} here", what));
+    if (at >= words_.size()) fail(fmt::format("the {} is missing", what));
     const std::optional<double> value = find_real(words_[at]);
     if (!value) fail(fmt::format("'{}' is not a number; expected the {}", words_[at], what));
     return *value;
 }
 
 std::int64_t Statements::whole_number(std::size_t at, const char* what) const {
-    if (at >= words_.size()) fail(fmt::format("no {} here", what));
+    if (at >= words_.size()) fail(fmt::format("the {} is missing", what));
     const std::optional<std::int64_t> value = find_integer(words_[at]);
     if (!value) fail(fmt::format("'{}' is not a whole number; expected the {}", words_[at], what));
     return *value;
@@ -60,13 +60,11 @@ void Statements::expect_form(std::string_view form) const {
     const std::size_t count = words_.size();
     if (count < parts.size() && !parts[count].starts_with('[')) {
         const std::string_view lacking = parts[count].substr(0, parts[count].find(']'));
-        fail(fmt::format("no {} here; expected: {}", lacking, form));
+        fail(fmt::format("the {} is missing; expected: {}", lacking, form));
     }
     if (count > parts.size()) {
-        fail(
-            fmt::format("'{}' is more than stands on such a line; expected: {}, and a comment to "
-                        "begin with '!'",
-                        words_[parts.size()], form));
+        fail(fmt::format("extra word '{}'; expected: {} (a comment begins with '!')",
+                         words_[parts.size()], form));
     }
 }
 

@@ -36,8 +36,8 @@ void refuse_without_hydrogens(const ForceField& force_field, const Structure& st
             continue;
         }
         throw LoadError({structure.file, structure.lines[i], 0},
-                        fmt::format("the structure holds no hydrogens, but {} has some in {}; "
-                                    "expected all atoms, as palpa prepare builds them",
+                        fmt::format("the structure has no hydrogens, but {} has some in {}; "
+                                    "expected all atoms (palpa prepare adds them)",
                                     names[i].residue, residue->second.place.file));
     }
 }

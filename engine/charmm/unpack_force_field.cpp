@@ -31,11 +31,11 @@ public:
 
     // That all bytes were read, and no name was new twice: then places stand for names.
     void finish_all() const {
-        if (at_ != bytes_.size()) fail("more than its content");
+        if (at_ != bytes_.size()) fail("extra bytes");
         std::vector<std::string_view> names;
         for (const KnownName& known : names_) names.push_back(known.text);
         std::ranges::sort(names);
-        if (std::ranges::adjacent_find(names) != names.end()) fail("a name that is new twice");
+        if (std::ranges::adjacent_find(names) != names.end()) fail("a repeated name");
     }
 
     [[noreturn]] void fail(std::string_view what) const {
@@ -74,7 +74,7 @@ public:
         KnownName& known = names_[at];
         if (known.text.empty() && kind != PackedName::MayBeEmpty) fail("an empty name");
         if (kind == PackedName::Atom && std::exchange(known.atom_of, residue_) == residue_) {
-            fail("an atom again");
+            fail("a repeated atom");
         }
         if (kind == PackedName::Term && std::exchange(known.term_of, residue_) != residue_) {
             in_terms_.push_back(at);
@@ -110,7 +110,8 @@ public:
         for (std::size_t i = 0; i < size; ++i) {
             typename Map::key_type one_key;
             key(one_key);
-            if (!values.empty() && !(std::prev(values.end())->first < one_key)) fail("a key again");
+            if (!values.empty() && !(std::prev(values.end())->first < one_key))
+                fail("a repeated key");
             check_key(one_key);
             value(values.try_emplace(values.end(), std::move(one_key))->second);
         }
@@ -125,7 +126,7 @@ public:
         const auto side = static_cast<std::size_t>(
             std::lround(std::sqrt(static_cast<double>(map.energies.size()))));
         if (side < 2 || side > 360 || side * side != map.energies.size())
-            fail("a map of no square");
+            fail("a CMAP that is not square");
     }
     void finish(Residue& residue) {
         residue.place = place_;
@@ -141,7 +142,7 @@ public:
 
 private:
     unsigned char byte() {
-        if (at_ == bytes_.size()) fail("its end");
+        if (at_ == bytes_.size()) fail("an unexpected end");
         return static_cast<unsigned char>(bytes_[at_++]);
     }
 
@@ -159,7 +160,8 @@ private:
         std::string name(bytes_.substr(at_, size));
         at_ += size;
         constexpr std::string_view not_in_names = " \t\r\n!abcdefghijklmnopqrstuvwxyz";
-        if (name.find_first_of(not_in_names) != std::string::npos) fail("a name that is none");
+        if (name.find_first_of(not_in_names) != std::string::npos)
+            fail("a name with forbidden characters");
         return name;
     }
 
@@ -223,11 +225,15 @@ struct PackedHead {
 };
 
 PackedHead read_head(std::string_view bytes, const std::string& file) {
-    const auto cut = [&] { return LoadError({file}, "the packed force field is cut"); };
+    const auto cut = [&] {
+        return LoadError({file}, "the packed force field is cut off; load it again");
+    };
     if (!is_packed_force_field(bytes)) {
-        throw LoadError({file}, fmt::format("is no packed force field of this version; expected it "
-                                            "to begin with '{}'",
-                                            packed_mark));
+        throw LoadError(
+            {file},
+            fmt::format(
+                "is not a packed force field of this version; expected it to begin with '{}'",
+                packed_mark));
     }
     PackedHead head;
     std::size_t at = packed_mark.size() + 1;
@@ -244,8 +250,9 @@ PackedHead read_head(std::string_view bytes, const std::string& file) {
     const auto plain = words.size() == 2 ? find_integer(words[1]) : std::nullopt;
     if (!packed || !plain || *packed < 0 || *plain < 0 || head.about.empty() ||
         *plain > std::int64_t{most_plain_bytes}) {
-        throw LoadError({file},
-                        fmt::format("'{}' is no size of a packed force field", printable(*sizes)));
+        throw LoadError(
+            {file}, fmt::format("'{}' is not the size of a packed force field; load the file again",
+                                printable(*sizes)));
     }
     head.packed_bytes = static_cast<std::size_t>(*packed);
     head.plain_bytes = static_cast<std::size_t>(*plain);

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* is_there = "is there already; expected another name, or --overwrite";
+constexpr const char* is_there = "already exists; expected another name, or --overwrite";
 
 [[noreturn]] void refuse_write(const fs::path& path, const std::error_code& error) {
     throw LoadError({path.string()}, "cannot be written: " + error.message());
@@ -135,16 +135,16 @@ std::string read_text_file(const fs::path& path) {
     std::error_code error;
     if (!fs::exists(path, error)) throw LoadError({path.string()}, "no such file");
     if (fs::is_directory(path, error)) {
-        throw LoadError({path.string()}, "is a folder, a file was expected");
+        throw LoadError({path.string()}, "is a folder; expected a file");
     }
     if (!fs::is_regular_file(path, error)) {
-        throw LoadError({path.string()}, "is no regular file, one was expected");
+        throw LoadError({path.string()}, "is not a regular file; expected one");
     }
     const File file(path, FileUse::Read, error);
     std::optional<std::uintmax_t> bytes;
     if (!error) bytes = file.find_size(error);
     if (error) throw LoadError({path.string()}, "cannot be read: " + error.message());
-    if (!bytes) throw LoadError({path.string()}, "is no regular file, one was expected");
+    if (!bytes) throw LoadError({path.string()}, "is not a regular file; expected one");
     if (*bytes > most_file_bytes) refuse_size(path, size_text(*bytes));
     std::string content;
     content.reserve(static_cast<std::size_t>(*bytes));
@@ -191,7 +191,7 @@ Existing check_output(const fs::path& path, std::string_view mark, bool overwrit
     const fs::path folder = path.parent_path();
     if (!folder.empty() && !fs::is_directory(folder, error)) {
         throw LoadError({path.string()},
-                        "is in a folder that does not exist; expected an existing one");
+                        "is in a folder that does not exist; make the folder first");
     }
     if (is_stream(path)) return Existing::Replace;
     const fs::file_status status = status_of(path);
@@ -201,13 +201,14 @@ Existing check_output(const fs::path& path, std::string_view mark, bool overwrit
     if (fs::exists(status)) {
         if (!overwrites) throw LoadError({path.string()}, is_there);
         if (fs::is_symlink(status)) {
-            throw LoadError({path.string()},
-                            "is a link; expected a file that palpa wrote, or none");
+            throw LoadError(
+                {path.string()},
+                "is a link and is not replaced; expected a file that palpa wrote, or another name");
         }
         if (!has_mark(path, mark)) {
-            throw LoadError({path.string()},
-                            "is no file that this command wrote, and is not replaced; expected "
-                            "another name");
+            throw LoadError(
+                {path.string()},
+                "was not written by this command and is not replaced; expected another name");
         }
     }
     const Draft possible(path);
@@ -238,8 +239,9 @@ void NewFile::close() { close_all(file_, path_); }
 
 FolderLock::FolderLock(const fs::path& folder) : folder_(folder) {
     if (!folder_.is_taken()) return;
-    throw LoadError({folder.string()},
-                    "another run is writing into this folder; expected another folder");
+    throw LoadError(
+        {folder.string()},
+        "another run is writing into this folder; expected another folder, or wait until it ends");
 }
 
 }  // namespace palpa

@@ -3,6 +3,7 @@
 #include "core/text.h"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <utility>
 
 namespace palpa {
@@ -20,5 +21,15 @@ LoadError::LoadError(const TextPlace& place, const std::string& message,
                      std::vector<std::string> further)
     : std::runtime_error(printable(to_string(place) + ": " + message)),
       further_(std::make_shared<const std::vector<std::string>>(std::move(further))) {}
+
+LoadError join_problems(const TextPlace& place, const std::vector<std::string>& problems,
+                        std::span<const std::string> advice) {
+    const auto named = problems.begin() +
+                       static_cast<std::ptrdiff_t>(std::min(problems.size(), most_named_problems));
+    std::vector<std::string> parts(problems.begin(), named), further(named, problems.end());
+    if (!further.empty()) parts.push_back(fmt::format("and {} more", further.size()));
+    parts.insert(parts.end(), advice.begin(), advice.end());
+    return {place, fmt::format("{}", fmt::join(parts, "; ")), std::move(further)};
+}
 
 }  // namespace palpa

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -31,5 +32,12 @@ public:
 private:
     std::shared_ptr<const std::vector<std::string>> further_;  // shared: copies must not throw
 };
+
+// One error of several problems, in this order; `place` is that of the first, the others state
+// theirs. The message names the first `most_named_problems` and counts the others, which further()
+// holds; `advice` stands at its end. There must be a problem.
+constexpr std::size_t most_named_problems = 8;
+LoadError join_problems(const TextPlace& place, const std::vector<std::string>& problems,
+                        std::span<const std::string> advice = {});
 
 }  // namespace palpa

@@ -172,10 +172,9 @@ namespace {
 
 void check_moves_itself(const SceneDescription& scene) {
     if (!scene.engine) return;
-    throw LoadError(
-        scene.place_of("engine"),
-        "a remote engine moves all atoms here, and how exact its forces are is its own; "
-        "expected a scene without [engine]");
+    throw LoadError(scene.place_of("engine"),
+                    "a remote engine computes the forces of this scene, so Palpa cannot state "
+                    "their error; expected a scene without [engine]");
 }
 
 }  // namespace

@@ -156,14 +156,14 @@ void check_closed_paths(const ClosedPathOptions& options) {
             if (key != own && !own.ends_with("." + key)) continue;
             throw LoadError(
                 {"--set " + setting},
-                "every closed path has a course and a length of its own; expected no " + own);
+                "closed-paths sets the path and its duration itself; expected no " + own);
         }
     }
     const SceneDescription scene = read_scene(options.scene, options.settings);
     if (scene.coupling.mode != CouplingMode::Guarded) {
-        throw LoadError(scene.place_of("coupling.mode"),
-                        "the continuous law is guarded coupling's; expected coupling.mode = "
-                        "\"guarded\"");
+        throw LoadError(
+            scene.place_of("coupling.mode"),
+            "closed-paths compares with guarded coupling; expected coupling.mode = \"guarded\"");
     }
     for (const MoleculeDescription& molecule : scene.molecules) {
         if (molecule.name != scene.grab.molecule) continue;
@@ -175,8 +175,8 @@ void check_closed_paths(const ClosedPathOptions& options) {
         }
         if (!scene.has_statics() && (turns || molecule.motion == Motion::Translate)) continue;
         throw LoadError(scene.place_of("grab.molecule"),
-                        "expected a rigid molecule that moves in space, translate or with-handle, "
-                        "and no other that moves by itself");
+                        "expected a rigid molecule with motion translate or with-handle, and no "
+                        "other molecule that moves by itself");
     }
 }
 

@@ -215,8 +215,9 @@ std::vector<std::string> choose_compounds(const ForceField& force_field, std::si
 std::vector<LigandComparison> compare_ligands(const ForceField& force_field,
                                               const std::vector<std::string>& residues) {
     if (!force_field.residues.contains("TIP3")) {
-        throw LoadError({"TIP3"},
-                        "no such residue; expected toppar_water_ions.str among the files");
+        throw LoadError(
+            {"TIP3"},
+            "the residue TIP3 is missing; expected toppar_water_ions.str among the files");
     }
     const RigidWater water = find_water(force_field);
     const LigandModel model = build_ligand_model(force_field, residues);
@@ -227,8 +228,8 @@ std::vector<LigandComparison> compare_ligands(const ForceField& force_field,
                                   : std::nullopt;
         if (!compound || compound->graph.size() != force_field.residues.at(name).atoms.size()) {
             throw LoadError({name},
-                            "no model compound; expected a residue of CGenFF's types alone, whose "
-                            "valences add up to its charge, without lone pairs");
+                            "is not a model compound; expected a residue with CGenFF types only, "
+                            "without lone pairs, whose valences agree with its charge");
         }
         results.push_back(compare(force_field, model, water, *compound));
     }

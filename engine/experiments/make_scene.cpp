@@ -40,7 +40,7 @@ void report_penalties(const std::vector<std::filesystem::path>& files, Report& r
         for (const CgenffPenalties& one : find_penalties(read_text_file(file))) {
             const double highest = std::max(one.parameters, one.charges);
             std::string text = fmt::format(
-                "{} of {}: highest penalties by CGenFF: {:.1f} of a parameter, {:.1f} of a charge",
+                "{} of {}: highest CGenFF penalties: {:.1f} for parameters, {:.1f} for charges",
                 one.residue, file.filename().string(), one.parameters, one.charges);
             if (highest < fair_penalty) {
                 report.add("Ligand parameters", std::move(text));
@@ -62,7 +62,7 @@ TunedScene find_scene(const SceneRequest& request, const std::string& title,
                           title, on_stage);
     } catch (const LoadError& error) {
         if (!request.grab.empty()) throw;
-        system.report.warn(fmt::format("no scene is written: {}", error.what()));
+        system.report.warn(fmt::format("no scene was written: {}", error.what()));
         return {};
     }
 }

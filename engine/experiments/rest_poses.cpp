@@ -31,7 +31,8 @@ public:
         ++place_.line;
         words_ = split_words(trimmed(line));
         if (place_.line == 1) {
-            if (line != rest_poses_mark) fail("is no file of poses", std::string(rest_poses_mark));
+            if (line != rest_poses_mark)
+                fail("is not a file of poses", std::string(rest_poses_mark));
             return;
         }
         if (place_.line == 2) return add_model();
@@ -39,10 +40,10 @@ public:
         if (kind == "pose") return add_pose();
         if (kind == "rest") return add_rest();
         if (kind != "angles" && kind != "base" && kind != "spring" && kind != "move") {
-            fail(fmt::format("'{}' is no kind of line", printable(kind.substr(0, 20))),
+            fail(fmt::format("'{}' is not a kind of line", printable(kind.substr(0, 20))),
                  "pose, rest, angles, base, spring or move");
         }
-        if (rest_ == nullptr) fail("comes before a line 'rest'", "pose, then rest");
+        if (rest_ == nullptr) fail("stands before any line 'rest'", "pose, then rest");
         if (kind == "angles") return add_angles();
         if (kind == "base") return add_base();
         if (kind == "spring") return add_spring();
@@ -50,8 +51,8 @@ public:
     }
 
     RestPoses take() {
-        if (place_.line == 0) fail("is empty", std::string(rest_poses_mark));
-        if (place_.line == 1) fail("ends before the scene", "scene and five numbers");
+        if (place_.line == 0) fail("is an empty line", std::string(rest_poses_mark));
+        if (place_.line == 1) fail("ends before the line 'scene'", "scene and five numbers");
         if (poses_.poses.empty()) fail("has no poses", "one or more");
         finish_pose();
         return std::move(poses_);
@@ -70,7 +71,7 @@ private:
     double number(std::size_t word) const {
         const std::optional<double> value = find_real(words_[word]);
         if (!value || std::abs(*value) > most_number) {
-            fail(fmt::format("'{}' is no number", printable(words_[word].substr(0, 40))),
+            fail(fmt::format("'{}' is not a number", printable(words_[word].substr(0, 40))),
                  "a number of 1e9 at most");
         }
         return *value;
@@ -88,19 +89,20 @@ private:
         const auto count = [&](std::size_t word) {
             const std::optional<std::int64_t> value = find_integer(words_[word]);
             if (!value || *value < 0 || static_cast<double>(*value) > most_number)
-                fail(fmt::format("'{}' is no count", printable(words_[word].substr(0, 40))),
+                fail(fmt::format("'{}' is not a whole number",
+                                 printable(words_[word].substr(0, 40))),
                      "a whole number from 0 to 1e9");
             return static_cast<std::size_t>(*value);
         };
         poses_.of = {count(1), count(2), count(3), count(4), number(5)};
-        if (poses_.of.cutoff <= 0) fail("the cutoff is not above 0", "a length in Å");
+        if (poses_.of.cutoff <= 0) fail("the cutoff is not greater than 0", "a length in Å");
     }
 
     void add_pose() {
         check_count(0, "nothing");
         finish_pose();
         if (poses_.poses.size() == most_poses)
-            fail("begins one pose too many", fmt::format("{} at most", most_poses));
+            fail("begins too many poses", fmt::format("{} at most", most_poses));
         poses_.poses.emplace_back();
         rests_ = 0;
         pose_line_ = place_.line;
@@ -109,12 +111,13 @@ private:
     void add_rest() {
         constexpr std::string_view expected = "all or cutoff, an energy and a force: five words";
         check_count(5, std::string(expected));
-        if (poses_.poses.empty()) fail("comes before a line 'pose'", "pose");
-        if (rests_ == 2) fail("is the third of its pose", "two, or a line 'pose' before it");
+        if (poses_.poses.empty()) fail("stands before any line 'pose'", "pose");
+        if (rests_ == 2)
+            fail("is the third line 'rest' of its pose", "two, or a line 'pose' before it");
         finish_rest();
         const std::string_view pairs = rests_ == 0 ? "all" : "cutoff";
         if (words_[1] != pairs) {
-            fail(fmt::format("is of '{}'", printable(words_[1].substr(0, 20))),
+            fail(fmt::format("names '{}'", printable(words_[1].substr(0, 20))),
                  fmt::format("'{}': all first, then cutoff", pairs));
         }
         RestPosePair& pair = poses_.poses.back();
@@ -127,7 +130,7 @@ private:
     }
 
     void add_angles() {
-        if (has_angles_) fail("has angles twice", "one line of angles");
+        if (has_angles_) fail("repeats the angles of this pose", "one line of angles");
         check_count(poses_.of.bodies, fmt::format("{} angles, one of each body", poses_.of.bodies));
         has_angles_ = true;
         for (std::size_t i = 1; i < words_.size(); ++i) rest_->angles.push_back(number(i));
@@ -150,7 +153,9 @@ private:
     void add_move() {
         check_count(7, "a move, a change of the force, and 1 for a snap or 0: seven numbers");
         if (words_[7] != "0" && words_[7] != "1")
-            fail(fmt::format("'{}' is no snap", printable(words_[7].substr(0, 20))), "0 or 1");
+            fail(fmt::format("'{}' does not say whether this move is a snap",
+                             printable(words_[7].substr(0, 20))),
+                 "0 or 1");
         rest_->moves.push_back({vector(1), vector(4), words_[7] == "1"});
     }
 
@@ -160,7 +165,7 @@ private:
         const auto check = [&](std::size_t found, std::size_t expected, const char* what) {
             if (found == expected) return;
             throw LoadError({place_.file, rest_->line},
-                            fmt::format("{} of {} are there; expected {}", found, what, expected));
+                            fmt::format("has {} of {}; expected {}", found, what, expected));
         };
         if (!has_angles_)
             throw LoadError({place_.file, rest_->line}, "has no angles; expected a line of them");
@@ -174,10 +179,11 @@ private:
         finish_rest();
         rest_ = nullptr;
         if (!poses_.poses.empty() && rests_ != 2) {
-            throw LoadError({place_.file, pose_line_},
-                            fmt::format("the pose has {} of its two lines 'rest'; expected rest "
-                                        "all and rest cutoff",
-                                        rests_));
+            throw LoadError(
+                {place_.file, pose_line_},
+                fmt::format(
+                    "the pose has {} of two lines 'rest'; expected rest all and rest cutoff",
+                    rests_));
         }
     }
 

@@ -77,8 +77,8 @@ void check_scenarios(const ScenarioOptions& options) {
     for (const MoleculeDescription& molecule : scene.molecules) {
         if (molecule.name != scene.grab.molecule || molecule.motion == Motion::AlongX) continue;
         throw LoadError(scene.place_of("grab.molecule"),
-                        "moves in space, where work on a closed path is not zero; expected a "
-                        "molecule that moves along-x, or palpa closed-paths");
+                        "moves in space, where a path out and back does work; expected a molecule "
+                        "with motion along-x (for space use palpa closed-paths)");
     }
 }
 

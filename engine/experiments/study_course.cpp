@@ -28,17 +28,16 @@ std::string StudyCourse::text() const {
     switch (stage_) {
         case Stage::Consent:
             return "You will look for the place where two molecules neither attract nor repel each "
-                   "other, several times, with different forces. It takes about twenty minutes.\n\n"
-                   "Kept are: a random number in place of your name, how near you came, and how "
-                   "long it took. Nothing else is. You may stop at any time with Esc; what you did "
-                   "until then stays in the table.\n\n"
-                   "Press Enter if you agree and want to take part, Esc if not.";
+                   "other, several times, with different forces. It takes about twenty "
+                   "minutes.\n\nPalpa stores a random number in place of your name, how near you "
+                   "came, and how long it took. It stores nothing else. You may stop at any time "
+                   "with Esc; the trials that you have finished stay in the table.\n\nPress Enter "
+                   "if you agree and want to take part, Esc if not.";
         case Stage::Practice:
-            return "Practice. Move the handle (a mouse: hold Space and move it): the molecule "
-                   "comes along. Draw it near: first it is pulled in, then pushed back. Between is "
-                   "the place where it "
-                   "feels nothing. Take your time; nothing is written down.\n\n"
-                   "Press Enter when you know your way.";
+            return "Practice. Move the handle (with a mouse: hold Space and move it), and the "
+                   "molecule follows. Bring it near the other molecule: first it is attracted, "
+                   "then repelled. In between is the place without force. Take your time; practice "
+                   "is not recorded.\n\nPress Enter when you are ready.";
         case Stage::Break:
             return fmt::format(
                 "Trial {} of {}. Find the place without force, as exactly as you can, and press "

@@ -60,13 +60,13 @@ SceneDescription read_study_scene(const StudyOptions& options,
 double find_rest(const SceneDescription& scene, const World& world) {
     if (moves_in_space(world) || has_mobile(world)) {
         throw LoadError(scene.place_of("grab.molecule"),
-                        "is to be found at one place on a line; expected a molecule that moves "
-                        "along-x, and others that do not move by themselves");
+                        "is not confined to a line; expected a molecule with motion along-x, and "
+                        "no molecule that moves by itself");
     }
     const std::optional<double> rest = equilibrium_distance(world);
     if (!rest) {
         throw LoadError(scene.place_of("grab.molecule"),
-                        "is nowhere drawn back and forth to one place on its line; expected "
+                        "has no place on its line where attraction and repulsion balance; expected "
                         "molecules that attract each other");
     }
     return *rest;
@@ -98,7 +98,8 @@ void check_study(const StudyOptions& options) {
     const SceneDescription scene = read_study_scene(options, {});
     if (!hand_model(scene.hand.grip)) {
         throw LoadError(scene.place_of("hand.grip"),
-                        "is none, and no hand finds nothing; expected one that holds the handle");
+                        "is \"none\", so nobody moves the handle; expected a grip that holds it, "
+                        "such as \"medium\"");
     }
     (void)find_rest(scene, load_world(scene));
 }

@@ -223,15 +223,15 @@ void set_region(Tuning& tuning) {
     const RegionChoice region = choose_region(copy.structure, copy.segments, copy.hand.held);
     tuning.tuning.region_angstrom = region.angstrom;
     tuning.tuning.region_note = fmt::format(
-        "{} of {} atoms lie within it, at most {} so that a step takes milliseconds; all others "
-        "stay where they are.",
+        "{} of {} atoms lie within it (limit {}, so that a step takes milliseconds); all other "
+        "atoms are fixed.",
         region.atoms, count_mobile_atoms(copy.segments), most_atoms_of_region);
 }
 
 void set_coupling(const Played& first, Tuning& tuning) {
     tuning.tuning.feel_pN = choose_range(first.strong_pN);
     tuning.tuning.coupling_note = fmt::format(
-        "The emulated hand found forces of up to {:.0f} pN for 95 % of its stroke: a tenth of that "
+        "For 95 % of its stroke the emulated hand found forces up to {:.0f} pN: one tenth of that "
         "is felt as 0.3 N, three times that as 2.7 N.",
         first.strong_pN);
 }
@@ -239,28 +239,32 @@ void set_coupling(const Played& first, Tuning& tuning) {
 void report_scene(const Played& played, const Tuning& tuning, Report& report) {
     constexpr std::string_view heading = "Scene";
     const HandChoice& hand = tuning.copy.hand;
-    report.add(heading, fmt::format("in the hand: {} ({}; --grab SEGMENT:RESIDUE or --grab SEGMENT "
-                                    "takes another)",
-                                    hand.words, hand.reason));
+    report.add(
+        heading,
+        fmt::format(
+            "in the hand: {} ({}; to choose another: --grab SEGMENT:RESIDUE or --grab SEGMENT)",
+            hand.words, hand.reason));
     if (!tuning.tuning.region_note.empty()) {
         report.add(heading, fmt::format("joints.region_angstrom = {} around the hand: {}",
                                         *tuning.tuning.region_angstrom, tuning.tuning.region_note));
     }
     for (const std::vector<std::string>& names : tuning.copy.joined) {
-        report.add(heading, fmt::format("bonded to each other, so one molecule there: {}",
-                                        fmt::join(names, ", ")));
+        report.add(
+            heading,
+            fmt::format("segments bonded to each other, which form one molecule of the scene: {}",
+                        fmt::join(names, ", ")));
     }
     report.add(
         heading,
-        fmt::format("{} joints turn, in {}; brought to rest: {:.2f} to "
-                    "{:.2f} kcal/mol in {} steps, moved {:.2f} Å at most (relaxed.crd)",
+        fmt::format("{} joints can turn, in {}; relaxed from {:.2f} to {:.2f} kcal/mol in {} "
+                    "steps, largest move of an atom {:.2f} Å (relaxed.crd)",
                     tuning.joints,
                     tuning.text.solvent == Solvent::None ? "vacuum" : "EEF1-SB's implicit water",
                     tuning.relaxed.energy_before, tuning.relaxed.energy_after, tuning.relaxed.steps,
                     tuning.relaxed.largest_move));
     if (tuning.relaxed.end != RelaxEnd::Converged) {
         report.add(heading, fmt::format("not yet at rest: an rms force of {:.3g} kcal/mol per "
-                                        "radian and Å is left; palpa relax goes on",
+                                        "radian and Å remains; relax further with palpa relax",
                                         tuning.relaxed.rms_force));
     }
     if (const auto range = tuning.tuning.feel_pN) {
@@ -296,7 +300,7 @@ Played try_ways(const std::filesystem::path& folder, const StageFunction& on_sta
     for (const Vec3& way : {out, across, Vec3(out.cross(across))}) {
         tuning.rest = rest;
         take_way(way, tuning);
-        const Played played = play_written(folder, for_translation("looking for the forces"),
+        const Played played = play_written(folder, for_translation("measuring the forces"),
                                            {way_out_only}, on_stage, tuning);
         if (played.moved_angstrom > best.moved_angstrom) {
             best = played;
@@ -349,7 +353,7 @@ void describe_hand(Tuning& tuning) {
 void hold_residue(const Played& chain, Tuning& tuning) {
     SystemCopy& copy = tuning.copy;
     const std::string reason =
-        fmt::format("{} moves by {:.2f} Å only", copy.hand.words, chain.moved_angstrom);
+        fmt::format("{} moves by only {:.2f} Å", copy.hand.words, chain.moved_angstrom);
     copy.hand = choose_residue(copy.structure, copy.segments);
     copy.hand.reason = fmt::format("{}; {}", reason, copy.hand.reason);
     describe_hand(tuning);

@@ -112,8 +112,8 @@ SceneDescription read_unbinding(const UnbindingOptions& options,
     SceneDescription scene = read_scene(options.scene, settings);
     if (!scene.has_statics()) {
         throw LoadError({scene.file.string()},
-                        "nothing moves by itself here, so nothing leaves its pocket; expected a "
-                        "flexible scene, as scenes/hiv/flexible.toml");
+                        "no molecule of this scene moves by itself, so there is no pocket to "
+                        "leave; expected a flexible scene such as scenes/hiv/flexible.toml");
     }
     return scene;
 }

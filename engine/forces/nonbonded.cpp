@@ -227,9 +227,9 @@ std::optional<std::string_view> find_problem(const NonbondedSettings& settings) 
     const bool ends = switches || settings.electrostatics != ElectrostaticCutoff::None;
     if (ends && !(settings.cutoff > 0)) return "the cutoff must be above 0 Å";
     if (switches && !(settings.switch_from > 0 && settings.switch_from < settings.cutoff))
-        return "switching must begin above 0 Å and before the cutoff";
+        return "the switching distance must be above 0 Å and below the cutoff";
     if (settings.distance_dielectric && settings.electrostatics == ElectrostaticCutoff::ForceShift)
-        return "force shift needs a constant dielectric";
+        return "a force shift needs a constant dielectric, not one that grows with distance";
     return std::nullopt;
 }
 

@@ -13,7 +13,7 @@ ByteSource::ByteSource(const std::filesystem::path& path) : name_(path.string())
     std::error_code error;
     if (!std::filesystem::exists(path, error)) throw LoadError({name_}, "no such file");
     if (!std::filesystem::is_regular_file(path, error)) {
-        throw LoadError({name_}, "is no regular file, one was expected");
+        throw LoadError({name_}, "is not a regular file; expected one");
     }
     stream_ = std::make_unique<std::ifstream>(path, std::ios::binary);
     size_ = std::filesystem::file_size(path, error);
@@ -33,8 +33,8 @@ void ByteSource::read(std::uint64_t offset, std::span<char> into) {
     stream_->read(into.data(), count);
     if (!*stream_ || stream_->gcount() != count) {
         throw LoadError({name_},
-                        "cannot be read where it could be when it was opened; expected a "
-                        "file that nothing else cuts short");
+                        "became shorter while it was being read; expected a file that no other "
+                        "program changes");
     }
 }
 

@@ -81,7 +81,7 @@ void parse_cif(std::string_view text, const std::string& file, CifListener& list
     } catch (const pegtl::parse_error& error) {
         const auto& position = error.positions().front();
         throw LoadError({file, position.line, position.column},
-                        "no CIF: " + std::string(error.message()));
+                        "is not a CIF file: " + std::string(error.message()));
     }
 }
 

@@ -92,7 +92,7 @@ private:
     std::string word(std::string_view line, Columns columns, const char* what) const {
         const std::string_view text = find_field(line, columns);
         if (text.empty()) {
-            fail(columns.first + 1, fmt::format("no {} here{}", what, cut_hint()));
+            fail(columns.first + 1, fmt::format("the {} is missing{}", what, cut_hint()));
         }
         return std::string(text);
     }
@@ -118,7 +118,8 @@ private:
         const auto [first, is_new] = seen_.emplace(
             std::tuple(name.segment, name.residue, name.number, name.atom), lines_.number());
         if (!is_new) {
-            fail(0, fmt::format("atom {} again, first on line {}", to_string(name), first->second));
+            fail(0, fmt::format("atom {} is repeated, first on line {}", to_string(name),
+                                first->second));
         }
         // One by one: a call may evaluate its arguments in any order, and the first error counts.
         const double x = coordinate(line, layout_.x);

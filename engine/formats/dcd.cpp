@@ -101,7 +101,8 @@ private:
     void take_mark(std::uint64_t expected, const char* where) {
         const std::int32_t mark = take_integer(where);
         if (mark >= 0 && static_cast<std::uint64_t>(mark) == expected) return;
-        fail(fmt::format("a mark of {} says {} bytes; expected {}", where, mark, expected));
+        fail(
+            fmt::format("the record length of {} is {} bytes; expected {}", where, mark, expected));
     }
 
     void find_order() {
@@ -116,11 +117,10 @@ private:
         if (number<std::int32_t>(bytes.data()) != header_bytes) {
             if (there == bytes.size() && text.substr(8) == "CORD") {
                 fail(
-                    "has records with marks of 8 bytes; expected marks of 4 bytes, as most "
-                    "compilers write them");
+                    "has record lengths of 8 bytes; expected 4 bytes, as most programs write them");
             }
             if (there < 8) fail_end("the header");
-            fail("is no DCD file; expected a first record of 84 bytes");
+            fail("is not a DCD file; expected a first record of 84 bytes");
         }
         if (there < 8) fail_end("the header");
         if (text.substr(4, 4) == "VELD") {
@@ -128,11 +128,9 @@ private:
         }
         if (text.substr(4, 4) == "CORD") return;
         if (text.substr(8) == "CORD") {
-            fail(
-                "has records with marks of 8 bytes; expected marks of 4 bytes, as most compilers "
-                "write them");
+            fail("has record lengths of 8 bytes; expected 4 bytes, as most programs write them");
         }
-        fail("is no DCD file; expected CORD in its first record");
+        fail("is not a DCD file; expected CORD in its first record");
     }
 
     void read_header() {
@@ -163,7 +161,8 @@ private:
     void read_titles() {
         const std::int32_t bytes = take_integer("the titles");
         if (bytes < 4) {
-            fail(fmt::format("a mark of the titles says {} bytes; expected 4 or more", bytes));
+            fail(fmt::format("the record length of the titles is {} bytes; expected 4 or more",
+                             bytes));
         }
         if (source_.size() - at_ < static_cast<std::uint64_t>(bytes)) fail_end("the titles");
         at_ += static_cast<std::uint64_t>(bytes);
@@ -176,8 +175,9 @@ private:
         take_mark(4, "the number of atoms");
         constexpr std::int32_t most = std::numeric_limits<std::int32_t>::max() / 4;
         if (atoms < 1 || atoms > most || fixed_ >= atoms) {
-            fail(fmt::format("has {} atoms, {} of them fixed; expected 1 to {} and some that move",
-                             atoms, fixed_, most));
+            fail(
+                fmt::format("has {} atoms, {} of them fixed; expected 1 to {} atoms, not all fixed",
+                            atoms, fixed_, most));
         }
         atoms_ = static_cast<std::size_t>(atoms);
         if (fixed_ > 0) read_moving(atoms_ - static_cast<std::size_t>(fixed_));
@@ -196,8 +196,9 @@ private:
         for (std::size_t i = 0; i < count; ++i) {
             const std::int64_t atom = number<std::int32_t>(&bytes[4 * i]);
             if (atom <= last || atom > static_cast<std::int64_t>(atoms_)) {
-                fail(fmt::format("atom {} in {} behind atom {}; expected rising numbers to {}",
-                                 atom, where, last, atoms_));
+                fail(fmt::format(
+                    "atom {} in {} follows atom {}; expected ascending numbers up to {}", atom,
+                    where, last, atoms_));
             }
             moving_.push_back(static_cast<std::uint32_t>(atom - 1));
             last = atom;
@@ -223,8 +224,8 @@ private:
         if (offset_of(frames_) != source_.size()) notes_.push_back(cut_off_note(frames_));
         if (told_frames_ != 0 && static_cast<std::uint64_t>(told_frames_) != frames_) {
             notes_.push_back(
-                fmt::format("has {} frames by its header and holds {}: the file may have been "
-                            "cut off, or its writer interrupted",
+                fmt::format("announces {} frames and contains {}: the file may be cut off, or its "
+                            "writer was interrupted",
                             told_frames_, frames_));
         }
     }
@@ -259,9 +260,9 @@ private:
         for (const char* const mark : {at, content + bytes}) {
             const auto length = number<std::int32_t>(mark);
             if (length >= 0 && static_cast<std::uint64_t>(length) == bytes) continue;
-            fail_frame(
-                source_.name(), frame,
-                fmt::format("a mark of the {} says {} bytes; expected {}", what, length, bytes));
+            fail_frame(source_.name(), frame,
+                       fmt::format("the record length of the {} is {} bytes; expected {}", what,
+                                   length, bytes));
         }
         at = content + bytes + mark_bytes;
         return content;
@@ -350,13 +351,13 @@ void DcdWriter::add_frame(std::span<const Vec3> positions, const std::optional<M
     }
     if (box.has_value() != has_box_) {
         fail_frame(file_.name(), frames_,
-                   has_box_ ? "no box; expected one, as in the header"
-                            : "a box; expected none, as in the header");
+                   has_box_ ? "the frame has no box; expected one, as the header announces"
+                            : "the frame has a box; expected none, as the header announces");
     }
     if (box && !is_lower_box(*box)) {
-        fail_frame(file_.name(), frames_,
-                   "a box that a DCD file cannot tell; expected its edge a along x and b in the "
-                   "plane of x and y");
+        fail_frame(
+            file_.name(), frames_,
+            "a DCD file cannot hold this box; expected edge a along x and edge b in the xy plane");
     }
     check_positions(file_.name(), frames_, positions);
     std::string text, content;

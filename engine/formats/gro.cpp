@@ -36,10 +36,11 @@ std::int64_t gro_residue_number(const Structure& structure, std::size_t atom) {
     if (has_code) text.remove_suffix(1);
     const std::optional<std::int64_t> number = find_integer(text);
     if (!number || *number < -9999) {
-        fail_gro(structure, atom,
-                 fmt::format("'{}' is no residue number of a GRO file; expected a "
-                             "whole number from -9999",
-                             structure.names[atom].number));
+        fail_gro(
+            structure, atom,
+            fmt::format(
+                "'{}' is not a residue number of a GRO file; expected a whole number from -9999",
+                structure.names[atom].number));
     }
     return wrapped_number(*number);
 }
@@ -172,7 +173,8 @@ private:
         if (width_ == 0) width_ = find_width();
         AtomName name{"", word({5, 5}, "residue name"), word({0, 5}, "residue number"),
                       word({10, 5}, "atom name")};
-        if (!find_integer(name.number)) fail(fmt::format("'{}' is no residue number", name.number));
+        if (!find_integer(name.number))
+            fail(fmt::format("'{}' is not a residue number", name.number));
         Vec3 place;
         for (std::size_t i = 0; i < 3; ++i) {
             const std::string_view text = find_field(lines_.line(), {20 + i * width_, width_});

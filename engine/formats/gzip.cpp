@@ -16,7 +16,8 @@ class Inflater {
 public:
     explicit Inflater(const std::string& file) : file_(file) {
         constexpr int gzip_window = 15 + 16;  // zlib's way to ask for gzip's header
-        if (inflateInit2(&stream_, gzip_window) != Z_OK) fail("cannot be unpacked: no memory");
+        if (inflateInit2(&stream_, gzip_window) != Z_OK)
+            fail("cannot be unpacked: not enough memory");
     }
     Inflater(const Inflater&) = delete;
     Inflater& operator=(const Inflater&) = delete;
@@ -56,10 +57,12 @@ private:
             }
             if (state == Z_BUF_ERROR ||
                 (state == Z_OK && stream_.avail_in == 0 && stream_.avail_out > 0)) {
-                fail("is cut off: its compressed data do not end; load it again");
+                fail("is cut off: its compressed data have no end; download or copy it again");
             }
             if (state != Z_OK && state != Z_STREAM_END) {
-                fail("is damaged: its compressed data do not unpack; load it again");
+                fail(
+                    "is damaged: its compressed data cannot be unpacked; download or copy it "
+                    "again");
             }
         }
     }

@@ -21,21 +21,25 @@ std::vector<IndexGroup> parse_index_file(std::string_view text, const std::strin
             const std::string_view name =
                 line.ends_with(']') ? trimmed(line.substr(1, line.size() - 2)) : std::string_view{};
             if (name.empty()) {
-                fail(fmt::format("'{}' is no group; expected \"[ name ]\"", shortened(line)));
+                fail(fmt::format("'{}' is not the name of a group; expected \"[ name ]\"",
+                                 shortened(line)));
             }
             groups.push_back({std::string(name), {}, lines.number()});
             continue;
         }
         for (const std::string_view word : split_words(line)) {
-            if (groups.empty()) fail("has atoms before any group; expected \"[ name ]\" first");
+            if (groups.empty())
+                fail("lists atoms before the first group; expected \"[ name ]\" first");
             const std::optional<std::int64_t> number = find_integer(word);
             constexpr std::int64_t most = 100'000'000;
             if (!number || *number < 1 || *number > most)
-                fail(fmt::format("'{}' is no atom; expected a number from 1", shortened(word)));
+                fail(fmt::format("'{}' is not an atom number; expected a whole number from 1",
+                                 shortened(word)));
             groups.back().atoms.push_back(static_cast<std::uint32_t>(*number - 1));
         }
     }
-    if (groups.empty()) throw LoadError({file}, "has no group; expected \"[ name ]\" and atoms");
+    if (groups.empty())
+        throw LoadError({file}, "has no group; expected \"[ name ]\" and atom numbers");
     return groups;
 }
 

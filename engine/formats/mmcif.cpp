@@ -112,8 +112,8 @@ public:
         }
         if (builder_.atom_count() == 0 && dictionary_line_ != 0) {
             fail({{}, dictionary_line_, 0},
-                 "no structure but a dictionary: _chem_comp_atom holds a residue's ideal geometry; "
-                 "expected atoms in _atom_site");
+                 "is a chemical component (_chem_comp_atom, ideal geometry of a residue), not a "
+                 "structure; expected atoms in _atom_site");
         }
         builder_.end_chain();
         return builder_.build(last_line);
@@ -135,15 +135,17 @@ private:
         }
         if (!full_name.starts_with(category)) return {};
         if (table_ && *table_ != table) {
-            fail(tag, fmt::format("atoms again, first on line {}; expected one table _atom_site",
-                                  table_line_));
+            fail(tag,
+                 fmt::format(
+                     "a second table of atoms, first on line {}; expected one table _atom_site",
+                     table_line_));
         }
         if (!table_) table_line_ = tag.line;
         table_ = table;
         const std::string_view name = std::string_view(full_name).substr(category.size());
         for (std::size_t i = 0; i < column_names.size(); ++i) {
             if (upper_case(column_names[i]) != name) continue;
-            if (given_[i]) fail(tag, fmt::format("column {} again", tag.text));
+            if (given_[i]) fail(tag, fmt::format("column {} is repeated", tag.text));
             given_[i] = true;
             return static_cast<Column>(i);
         }
@@ -153,9 +155,9 @@ private:
     [[noreturn]] void fail_value(Column column, std::string_view expected) const {
         const CifToken& cell = row_[column];
         if (!given_[column]) {
-            fail({{}, table_line_, 0}, fmt::format("atoms without a column _atom_site.{}; expected "
-                                                   "{}",
-                                                   column_names[column], expected));
+            fail({{}, table_line_, 0},
+                 fmt::format("the column _atom_site.{} is missing; expected {}",
+                             column_names[column], expected));
         }
         fail(cell, fmt::format("'{}' in _atom_site.{} is not {}", shortened(cell.text),
                                column_names[column], expected));
@@ -320,8 +322,8 @@ std::pair<std::string, std::string> number_and_code(const Structure& structure, 
         const std::size_t line = structure.lines.empty() ? 0 : structure.lines[atom];
         throw LoadError(
             {structure.file, line},
-            fmt::format("'{}' of {} is no residue number of a CIF file; expected a "
-                        "whole number with one letter behind it, or none",
+            fmt::format("'{}' of {} is not a residue number of a CIF file; expected a whole number "
+                        "with one letter behind it, or none",
                         structure.names[atom].number, to_string(structure.names[atom])));
     }
     return {number, code};

@@ -149,9 +149,9 @@ double MmcifAssemblies::number(std::size_t column) const {
     const std::string_view text = unquoted(token.text);
     const std::optional<double> value = is_move ? find_coordinate(text) : find_real(text);
     if (!value) {
-        fail(token,
-             fmt::format("'{}' in _pdbx_struct_oper_list.{} is no number{}", shortened(token.text),
-                         name, is_move ? fmt::format(" within ±{} Å", farthest_coordinate) : ""));
+        fail(token, fmt::format("'{}' in _pdbx_struct_oper_list.{} is not a number{}",
+                                shortened(token.text), name,
+                                is_move ? fmt::format(" within ±{} Å", farthest_coordinate) : ""));
     }
     return *value;
 }
@@ -235,8 +235,8 @@ void MmcifAssemblies::build_part(const Generation& generation) {
     while (!rest.empty()) {
         const std::size_t end = rest.find(')');
         if (rest[0] != '(' || end == std::string_view::npos) {
-            fail(token, fmt::format("'{}' is no expression of operators; expected one such as 1,2 "
-                                    "or (1-3)(4,5)",
+            fail(token, fmt::format("'{}' is not an expression of operators; expected one such as "
+                                    "1,2 or (1-3)(4,5)",
                                     shortened(token.text)));
         }
         part.operators.push_back(build_list(rest.substr(1, end - 1), token));

@@ -55,9 +55,10 @@ public:
         const std::string name = upper_case(tag.text);
         if (name.starts_with(site_prefix)) {
             if (!in_table_ && table_line_ != 0) {
-                fail(tag, fmt::format("atoms again, first on line {}; expected one table "
-                                      "_atom_site",
-                                      table_line_));
+                fail(tag,
+                     fmt::format(
+                         "a second table of atoms, first on line {}; expected one table _atom_site",
+                         table_line_));
             }
             in_table_ = true;
             if (table_line_ == 0) table_line_ = tag.line;
@@ -129,8 +130,8 @@ private:
                 table_.coordinates[i] = *column;
             } else {
                 fail(value,
-                     "atoms without a column _atom_site.Cartn_x, Cartn_y or Cartn_z; expected all "
-                     "of them");
+                     "a column _atom_site.Cartn_x, Cartn_y or Cartn_z is missing; expected all "
+                     "three");
             }
         }
         table_.columns = loop_columns_;
@@ -141,8 +142,10 @@ private:
         std::vector<ModelRows>& models = table_.models;
         if (models.empty() || models.back().number != model_) {
             if (!numbers_.insert(std::string(model_)).second) {
-                throw LoadError({file_, last_line_},
-                                fmt::format("model {} again; expected its atoms together", model_));
+                throw LoadError(
+                    {file_, last_line_},
+                    fmt::format("model {} is repeated; expected all atoms of a model together",
+                                model_));
             }
             check_atoms();
             models.push_back({row_begin_, end, 0, std::string(model_)});
@@ -256,7 +259,9 @@ public:
         ModelReader reader(table_, source_.name(), frame, into);
         parse_cif(text, source_.name(), reader);
         if (into.positions.size() != atom_count()) {
-            fail_frame(source_.name(), frame, "is not what it was when the file was opened");
+            fail_frame(source_.name(), frame,
+                       "has changed since the file was opened; expected a file that no other "
+                       "program changes");
         }
     }
 

@@ -117,7 +117,7 @@ public:
             fail_line(
                 fmt::format("ends within the model of line {}; expected ENDMDL", model_line_));
         }
-        if (end_line_ == 0) builder_.add_note("no END record: the file may have been cut off");
+        if (end_line_ == 0) builder_.add_note("no END record: the file may be cut off");
         if (!unknown_.empty()) {
             builder_.add_note(
                 fmt::format("records left out as unknown: {}", fmt::join(unknown_, ", ")));
@@ -149,10 +149,9 @@ private:
         const bool wide = line.starts_with("ATOM ") && record.size() == 6 && is_digit(record[5]);
         if (line.starts_with("HETATM") || (record == "ATOM" && line[0] == 'A') || wide) {
             if (end_line_ != 0) {
-                fail_line(
-                    fmt::format("an atom behind the END of line {}; expected MODEL and "
-                                "ENDMDL around each of several models",
-                                end_line_));
+                fail_line(fmt::format(
+                    "an atom after the END of line {}; expected MODEL and ENDMDL around each model",
+                    end_line_));
             }
             read_atom(line[0] == 'H', wide);
         } else if (line.starts_with("MODEL ")) {
@@ -183,7 +182,7 @@ private:
         if (std::binary_search(other_records.begin(), other_records.end(), record)) return;
         const std::string hint = near_name_hint(record, atom_records);
         if (!hint.empty()) {
-            fail_line(fmt::format("'{}' in columns 1 to 6 is no record{}", record, hint));
+            fail_line(fmt::format("'{}' in columns 1 to 6 is not a record{}", record, hint));
         }
         if (unknown_.size() < 10) {
             unknown_.insert(is_name(record) ? std::string(record)
@@ -193,14 +192,14 @@ private:
 
     void begin_model() {
         if (model_line_ != 0) {
-            fail_line(fmt::format("a model within the model of line {}; expected ENDMDL before it",
+            fail_line(fmt::format("a MODEL inside the model of line {}; expected ENDMDL before it",
                                   model_line_));
         }
         // Some write the number a column further left or right.
         const std::string_view text = trimmed(lines_.line().substr(5));
         const std::optional<std::int64_t> number = find_integer(text);
         if (!number || *number < 0 || *number > 1'000'000'000) {
-            fail(model_columns, "no number of a model; expected a whole number from 0");
+            fail(model_columns, "not a model number; expected a whole number from 0");
         }
         if (!models_.insert(*number).second) {
             fail_line(fmt::format("model {} again", *number));
@@ -220,27 +219,28 @@ private:
         record.model = model_;
         record.serial = serial(wide_serial);
         AtomName name;
-        name.atom = word(atom_columns, "atom name");
+        name.atom = word(atom_columns, "an atom name");
         record.alternate = letter(alternate_columns);
-        name.residue = word(residue_columns, "residue name");
+        name.residue = word(residue_columns, "a residue name");
         const char chain = letter(chain_columns);
         if (chain != ' ') record.chain = chain;
         name.segment =
-            field(segment_columns).empty() ? record.chain : word(segment_columns, "segment name");
+            field(segment_columns).empty() ? record.chain : word(segment_columns, "a segment name");
         read_residue_number(record, name);
         Vec3 position;
         for (std::size_t axis = 0; axis < 3; ++axis) {
             position[static_cast<Eigen::Index>(axis)] = coordinate(position_columns[axis]);
         }
         if (!field(occupancy_columns).empty()) {
-            record.occupancy = real(occupancy_columns, "occupancy; expected a number, often 1.00");
+            record.occupancy =
+                real(occupancy_columns, "an occupancy; expected a number, often 1.00");
         }
         if (!field(b_factor_columns).empty()) {
-            record.b_factor = real(b_factor_columns, "B-factor; expected a number in Å^2");
+            record.b_factor = real(b_factor_columns, "a B-factor; expected a number in Å^2");
         }
         record.element = upper_case(field(element_columns));
         const std::optional<std::int32_t> charge = find_formal_charge(field(charge_columns));
-        if (!charge) fail(charge_columns, "no charge; expected a digit and its sign, as 1+");
+        if (!charge) fail(charge_columns, "not a charge; expected a digit and its sign, as 1+");
         record.formal_charge = *charge;
         builder_.add_atom(std::move(name), position, std::move(record), lines_.number());
     }
@@ -254,7 +254,7 @@ private:
             return ++last_serial_;
         }
         const std::optional<std::int64_t> value = find_wide_number(text, columns.count);
-        if (!value) fail(columns, "no serial of an atom; expected a whole number");
+        if (!value) fail(columns, "not an atom serial number; expected a whole number");
         last_serial_ = *value;
         return *value;
     }
@@ -266,12 +266,12 @@ private:
         if (fifth_digit) {
             ++columns.count;
         } else if (insertion != ' ' && !is_letter(insertion)) {
-            fail(insertion_columns, "no insertion code; expected a letter or a blank");
+            fail(insertion_columns, "not an insertion code; expected a letter or a blank");
         } else {
             record.insertion_code = insertion;
         }
         const std::optional<std::int64_t> value = find_wide_number(field(columns), columns.count);
-        if (!value) fail(columns, "no residue number; expected a whole number");
+        if (!value) fail(columns, "not a residue number; expected a whole number");
         if (*value == 0 && last_residue_ == 9999 && record.chain == last_chain_) {
             residue_offset_ += 10'000;
         } else if (record.chain != last_chain_) {
@@ -286,29 +286,30 @@ private:
 
     char letter(Columns column) const {
         const char value = lines_.line()[column.first];
-        if (value < ' ' || value > '~') fail(column, "no letter that can be printed");
+        if (value < ' ' || value > '~') fail(column, "not a letter that can be printed");
         return value;
     }
 
     std::string word(Columns columns, const char* what) const {
         const std::string_view text = field(columns);
         if (!is_name(text)) {
-            fail(columns, fmt::format("no {}; expected letters without blanks between them", what));
+            fail(columns,
+                 fmt::format("not {}; expected letters without blanks between them", what));
         }
         return std::string(text);
     }
 
     double real(Columns columns, const char* what) const {
         const std::optional<double> value = find_real(field(columns));
-        if (!value) fail(columns, fmt::format("no {}", what));
+        if (!value) fail(columns, fmt::format("not {}", what));
         return *value;
     }
 
     double coordinate(Columns columns) const {
         const std::optional<double> value = find_coordinate(field(columns));
         if (!value) {
-            fail(columns,
-                 fmt::format("no coordinate; expected a number within ±{} Å", farthest_coordinate));
+            fail(columns, fmt::format("not a coordinate; expected a number within ±{} Å",
+                                      farthest_coordinate));
         }
         return *value;
     }

@@ -101,7 +101,7 @@ public:
             } else if (is_record(*line, "MODEL")) {
                 if (atoms > 0) {
                     fail_frame(source_.name(), frames_.size(),
-                               "a model within a model, or behind atoms outside of models; "
+                               "a MODEL inside another model, or after atoms outside of models; "
                                "expected ENDMDL before it");
                 }
                 in_model = true;
@@ -117,7 +117,7 @@ public:
         // A file without END may be whole, but for one that has frames of more atoms before.
         if (atoms > 0 && !in_model && (frames_.empty() || atoms == atoms_)) {
             add_frame(begin, source_.size(), atoms);
-            notes_.emplace_back("no END record: the file may have been cut off");
+            notes_.emplace_back("no END record: the file may be cut off");
         } else if (atoms > 0 || in_model) {
             if (frames_.empty()) throw LoadError({source_.name()}, "ends within its first model");
             notes_.push_back(cut_off_note(frames_.size()));
@@ -148,7 +148,9 @@ public:
             }
         }
         if (into.positions.size() != atoms_) {
-            fail_frame(source_.name(), frame, "is not what it was when the file was opened");
+            fail_frame(source_.name(), frame,
+                       "has changed since the file was opened; expected a file that no other "
+                       "program changes");
         }
     }
 

@@ -64,10 +64,11 @@ private:
 
     void read_flags() {
         const std::vector<std::string_view> words = split_words(lines_.line());
-        if (words.empty() || words[0] != "PSF") fail(1, "no PSF file; expected PSF on line 1");
+        if (words.empty() || words[0] != "PSF")
+            fail(1, "is not a PSF file; expected PSF on line 1");
         for (const std::string_view flag : std::span(words).subspan(1)) {
             if (std::find(known_flags.begin(), known_flags.end(), flag) == known_flags.end()) {
-                fail(1, fmt::format("'{}' is no kind of PSF file that can be read; expected {}",
+                fail(1, fmt::format("the PSF format '{}' is not supported; expected {}",
                                     shortened(flag), fmt::join(known_flags, ", ")));
             }
             has_cmap_ = has_cmap_ || flag == "CMAP";
@@ -81,24 +82,27 @@ private:
         const std::string_view line = lines_.line();
         const std::size_t mark = line.find('!');
         if (mark == std::string_view::npos) {
-            fail(header_line_, fmt::format("'{}' is no head of a section; expected a count and "
-                                           "!NAME",
-                                           shortened(trimmed(line))));
+            fail(header_line_,
+                 fmt::format("'{}' is not the header of a section; expected a count and !NAME",
+                             shortened(trimmed(line))));
         }
         std::vector<std::size_t> counts;
         for (const std::string_view word : split_words(line.substr(0, mark))) {
             counts.push_back(whole_number(word, header_line_, "count"));
         }
         const std::vector<std::string_view> name = split_words(line.substr(mark + 1));
-        if (counts.empty() || name.empty()) fail(header_line_, "a section without count or name");
+        if (counts.empty() || name.empty())
+            fail(header_line_, "a section has no count or no name; expected a count and !NAME");
         const std::string section(name[0].substr(0, name[0].find(':')));
         const auto [first, is_new] = sections_.emplace(section, header_line_);
         if (!is_new) {
-            fail(header_line_, fmt::format("section !{} again, first on line {}",
+            fail(header_line_, fmt::format("section !{} is repeated, first on line {}",
                                            shortened(section), first->second));
         }
         if (section != "NTITLE" && section != "NATOM" && !sections_.contains("NATOM")) {
-            fail(header_line_, fmt::format("section !{} before the atoms", shortened(section)));
+            fail(header_line_,
+                 fmt::format("section !{} stands before the atoms; expected !NATOM first",
+                             shortened(section)));
         }
         lines_.advance();
         read_content(section, counts);
@@ -134,8 +138,8 @@ private:
         } else if (section == "MOLNT") {
             read_numbers(connectivity_.names.size());
         } else if (std::any_of(counts.begin(), counts.end(), [](std::size_t n) { return n > 0; })) {
-            fail(header_line_,
-                 fmt::format("section !{} is not empty, and not supported", shortened(section)));
+            fail(header_line_, fmt::format("section !{} is not supported; expected it to be empty",
+                                           shortened(section)));
         }
     }
 
@@ -171,7 +175,7 @@ private:
     }
 
     void read_atoms(std::size_t count) {
-        if (count == 0) fail(header_line_, "no atoms; expected a count from 1");
+        if (count == 0) fail(header_line_, "the file has no atoms; expected a count from 1");
         reserve_atoms(std::min({count, text_.size() / shortest_atom, count_lines(text_, "")}));
         for (std::size_t atom = 0; atom < count; ++atom, lines_.advance()) {
             if (trimmed(lines_.line()).empty()) {
@@ -206,8 +210,8 @@ private:
         const auto [first, is_new] = seen_.emplace(
             std::tuple(name.segment, name.residue, name.number, name.atom), lines_.number());
         if (!is_new) {
-            fail(lines_.number(),
-                 fmt::format("atom {} again, first on line {}", to_string(name), first->second));
+            fail(lines_.number(), fmt::format("atom {} is repeated, first on line {}",
+                                              to_string(name), first->second));
         }
         const double charge = real(words[6], "charge; expected a number, in e");
         const double mass = real(words[7], "mass; expected a number, in amu");
@@ -277,8 +281,8 @@ private:
         for (const auto& [a, b] : connectivity_.bonds) {
             if (seen.insert(std::minmax(a, b)).second) continue;
             fail(header_line_,
-                 fmt::format("the bond of {} and {} comes twice", to_string(connectivity_.names[a]),
-                             to_string(connectivity_.names[b])));
+                 fmt::format("the bond between {} and {} is listed twice",
+                             to_string(connectivity_.names[a]), to_string(connectivity_.names[b])));
         }
     }
 

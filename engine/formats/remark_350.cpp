@@ -61,7 +61,7 @@ void Remark350::begin_assembly(std::string_view name, std::size_t line) {
     part_line_ = 0;
     if (name.empty()) fail(line, "BIOMOLECULE without a number");
     if (!names_.emplace(name).second) {
-        fail(line, fmt::format("biomolecule {} again", shortened(name)));
+        fail(line, fmt::format("biomolecule {} is repeated", shortened(name)));
     }
     assemblies_.push_back({std::string(name), {}});
 }
@@ -78,20 +78,21 @@ void Remark350::begin_part(std::string_view chains, std::size_t line) {
 
 void Remark350::add_chains(std::string_view chains, std::size_t line) {
     AssemblyPart& part = assemblies_.back().parts.back();
-    if (!part.operators[0].empty()) fail(line, "chains behind the operators that are for them");
+    if (!part.operators[0].empty())
+        fail(line, "the chains follow their operators; expected them before");
     if (chains == "NULL") return;  // the chain without a name
     part.chains += chain_list(chains);
 }
 
 void Remark350::add_row(const std::vector<std::string_view>& words, std::size_t line) {
     if (part_line_ == 0) {
-        fail(line, "an operator for no chains; expected APPLY THE FOLLOWING TO CHAINS before it");
+        fail(line, "an operator has no chains; expected APPLY THE FOLLOWING TO CHAINS before it");
     }
     constexpr std::size_t word_count = 6;
     if (words.size() != word_count) {
-        fail(line, fmt::format("{} words behind REMARK 350; expected {}, as BIOMT1 1 1.0 0.0 0.0 "
-                               "0.0",
-                               words.size(), word_count));
+        fail(line,
+             fmt::format("{} words after REMARK 350; expected {}, such as BIOMT1 1 1.0 0.0 0.0 0.0",
+                         words.size(), word_count));
     }
     std::vector<std::uint32_t>& list = assemblies_.back().parts.back().operators[0];
     if (rows_ == row_names.size()) {
@@ -111,12 +112,12 @@ void Remark350::add_row(const std::vector<std::string_view>& words, std::size_t 
     const auto row = static_cast<Eigen::Index>(rows_);
     for (std::size_t i = 0; i < 3; ++i) {
         const std::optional<double> value = find_real(words[2 + i]);
-        if (!value) fail(line, fmt::format("'{}' is no number", shortened(words[2 + i])));
+        if (!value) fail(line, fmt::format("'{}' is not a number", shortened(words[2 + i])));
         one.rotation(row, static_cast<Eigen::Index>(i)) = *value;
     }
     const std::optional<double> move = find_coordinate(words[5]);
     if (!move) {
-        fail(line, fmt::format("'{}' is no translation; expected a number within ±{} Å",
+        fail(line, fmt::format("'{}' is not a translation; expected a number within ±{} Å",
                                shortened(words[5]), farthest_coordinate));
     }
     one.translation[row] = *move;

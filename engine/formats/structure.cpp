@@ -26,8 +26,8 @@ Structure read_structure(const std::filesystem::path& path) {
     }
     if (ending == ".GRO") return parse_gro(read_packed_text_file(path), path.string());
     throw LoadError({path.string()},
-                    fmt::format("'{}' is no ending of a structure file; expected .pdb, .ent, .cif, "
-                                ".mmcif, .crd, .cor or .gro, or one of these with .gz behind it",
+                    fmt::format("'{}' is not the ending of a structure file; expected .pdb, .ent, "
+                                ".cif, .mmcif, .crd, .cor or .gro, or one of these followed by .gz",
                                 path.extension().string()));
 }
 

@@ -62,7 +62,7 @@ void add_notes(Structure& structure) {
             fmt::format("{} HETATM atom{} of {}", count, count == 1 ? "" : "s", residue));
     }
     add_note_on_atoms(
-        "without an element, guessed from the name",
+        "without an element symbol (element guessed from the atom name)",
         [](const AtomRecord& atom) { return atom.element_guessed; }, structure);
 }
 
@@ -94,8 +94,9 @@ void StructureBuilder::add_atom(AtomName name, const Vec3& position, AtomRecord 
                                                describe(name, record)));
         }
     } else if (!is_element(record.element)) {
-        throw LoadError(place, fmt::format("'{}' is no element; expected a symbol such as C or MG",
-                                           record.element));
+        throw LoadError(place,
+                        fmt::format("'{}' is not an element; expected a symbol such as C or MG",
+                                    record.element));
     }
     structure_.names.push_back(std::move(name));
     structure_.positions.push_back(position);
@@ -108,12 +109,12 @@ void StructureBuilder::leave_out(const AtomName& name, const AtomRecord& record,
     const std::size_t first_line = structure_.lines[first];
     if (structure_.names[first].residue != name.residue || repeated_ == most_repeated) {
         throw LoadError({structure_.file, line},
-                        fmt::format("atom {} again, first on line {}; expected another name, "
-                                    "alternate location, chain or model",
+                        fmt::format("atom {} is repeated, first on line {}; expected a different "
+                                    "name, alternate location, chain or model",
                                     describe(name, record), first_line));
     }
     if (++repeated_ == 1) {
-        structure_.repeated = fmt::format("atom {} of line {} again on line {}",
+        structure_.repeated = fmt::format("atom {} of line {} is repeated on line {}",
                                           describe(name, record), first_line, line);
     }
 }
@@ -145,9 +146,9 @@ Structure StructureBuilder::build(std::size_t line) {
     if (atom_count() == 0) throw LoadError({structure_.file, line}, "ends without any atom");
     if (repeated_ > 0) {
         structure_.repeated +=
-            repeated_ == 1
-                ? "; the first is taken"
-                : fmt::format(", and {} more such; the first of each is taken", repeated_ - 1);
+            repeated_ == 1 ? "; the first is used"
+                           : fmt::format(", and {} more repeated atoms; the first of each is used",
+                                         repeated_ - 1);
         structure_.notes.push_back(structure_.repeated);
     }
     add_notes(structure_);

@@ -21,8 +21,8 @@ std::unique_ptr<Trajectory> open_trajectory(const std::filesystem::path& path) {
     if (ending == ".PDB" || ending == ".ENT") return open_pdb_models(ByteSource(path));
     if (ending == ".CIF" || ending == ".MMCIF") return open_mmcif_models(ByteSource(path));
     throw LoadError({path.string()},
-                    fmt::format("'{}' is no ending of a trajectory; expected .dcd, .xtc, .trr, "
-                                ".pdb, .ent, .cif or .mmcif",
+                    fmt::format("'{}' is not the ending of a trajectory file; expected .dcd, .xtc, "
+                                ".trr, .pdb, .ent, .cif or .mmcif",
                                 path.extension().string()));
 }
 

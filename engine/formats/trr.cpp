@@ -81,7 +81,7 @@ public:
         }
         if (next < source_.size()) notes_.push_back(cut_off_note(frame));
         if (without > 0) {
-            notes_.push_back(fmt::format("{} frame{} without positions left out", without,
+            notes_.push_back(fmt::format("{} frame{} without positions ignored", without,
                                          without == 1 ? "" : "s"));
         }
     }
@@ -94,7 +94,9 @@ public:
         const auto& [offset, in_file] = frames_[frame];
         const std::optional<TrrHead> head = find_head(offset, in_file);
         if (!head || head->atoms != atoms_ || source_.size() - offset < head->length()) {
-            fail_frame(source_.name(), in_file, "is not what it was when the file was opened");
+            fail_frame(source_.name(), in_file,
+                       "has changed since the file was opened; expected a file that no other "
+                       "program changes");
         }
         into.step = head->step;
         into.time_ps = {};
@@ -119,7 +121,7 @@ public:
             for (std::size_t atom = 0; atom < vectors->size(); ++atom) {
                 if ((*vectors)[atom].allFinite()) continue;
                 fail_frame(source_.name(), in_file,
-                           fmt::format("atom {} has a {} that is no finite number", atom + 1,
+                           fmt::format("atom {} has a {} that is not a finite number", atom + 1,
                                        vectors == &into.forces ? "force" : "velocity"));
             }
         }
@@ -151,7 +153,7 @@ private:
         if (room < sizes_at) return {};
         if (std::string_view(bytes_).substr(version_at, trr_version.size()) != trr_version ||
             integer(8) != static_cast<std::int32_t>(trr_version.size())) {
-            fail(fmt::format("is of another version; expected {}", trr_version));
+            fail(fmt::format("has a different TRR version; expected {}", trr_version));
         }
         if (room < reals_at) return {};
         TrrHead head;

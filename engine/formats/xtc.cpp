@@ -85,7 +85,9 @@ private:
         source_.read(next_, bytes_);
         if (room < 4) return false;
         if (integer(0) == wide_xtc_magic) {
-            fail("is of the form 2023, for more than 298 million atoms; expected the form 1995");
+            fail(
+                "has the XTC format of 2023 (more than 298 million atoms); expected the format of "
+                "1995");
         }
         if (integer(0) != xtc_magic) {
             fail(fmt::format("begins with {}; expected {}, as every frame of an XTC file",
@@ -107,8 +109,8 @@ private:
             if (room < packed_at) return false;
             const std::int32_t packed = integer(length_at);
             if (packed < 0 || count > most_packed_places(static_cast<std::uint64_t>(packed))) {
-                fail(fmt::format("has {} atoms in {} bytes, which have no room for them", count,
-                                 packed));
+                fail(
+                    fmt::format("has {} atoms in {} bytes, which is too few bytes", count, packed));
             }
             length = packed_at + padded(static_cast<std::uint64_t>(packed));
         }
@@ -207,7 +209,7 @@ XtcWriter::XtcWriter(const std::filesystem::path& path, std::size_t atom_count, 
     if (!(precision >= 1 && precision <= 1e6F)) {
         throw LoadError(
             {file_.name()},
-            fmt::format("the precision {}; expected 1 to 1000000 steps per nanometre", precision));
+            fmt::format("the precision is {}; expected 1 to 1000000 steps per nm", precision));
     }
 }
 
@@ -234,8 +236,8 @@ void XtcWriter::add_frame(std::span<const Vec3> positions, std::int32_t step, do
         }
     } else if (!append_packed(text, positions, precision_)) {
         fail_frame(file_.name(), frames_,
-                   fmt::format("coordinates that have no room in whole numbers of {} steps per "
-                               "nanometre; expected a lower precision",
+                   fmt::format("the coordinates are too large for a precision of {} steps per nm; "
+                               "expected a lower precision",
                                precision_));
     }
     file_.append(text);

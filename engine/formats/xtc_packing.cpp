@@ -319,7 +319,7 @@ std::string unpack_places(const IntegerPlace& least, const IntegerPlace& greates
     std::size_t small_count = 0;  // stays until a group changes it
     for (std::size_t atom = 0; atom < places.size();) {
         if (small < first_small || small > last_small) {
-            return fmt::format("small differences of {} bits behind atom {}; expected {} to {}",
+            return fmt::format("differences of {} bits after atom {}; expected {} to {} bits",
                                small, atom, first_small, last_small);
         }
         IntegerPlace place = least;

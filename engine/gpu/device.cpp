@@ -175,7 +175,7 @@ void GpuDevice::create_instance() {
     info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
     info.ppEnabledExtensionNames = extensions.data();
     if (vkCreateInstance(&info, nullptr, &instance_) != VK_SUCCESS) {
-        throw GpuError("Vulkan cannot be started; is a driver installed (mesa-vulkan-drivers)?");
+        throw GpuError("Vulkan cannot be started; install a driver (Debian: mesa-vulkan-drivers)");
     }
     if (!options_.validation) return;
     const auto create = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
@@ -203,9 +203,9 @@ void GpuDevice::choose_physical_device() {
                    is_writing = features.fragmentStoresAndAtomics == VK_TRUE;
         if (!family || !is_new || !is_writing) {
             refused += fmt::format("; {}: {}", properties.deviceName,
-                                   !family   ? "has no queue that draws"
+                                   !family   ? "has no graphics queue"
                                    : !is_new ? "older than Vulkan 1.1"
-                                             : "its fragment shaders cannot write into buffers");
+                                             : "fragment shaders cannot write to buffers");
             continue;
         }
         if (rank_of(properties.deviceType) <= best) continue;
@@ -214,7 +214,7 @@ void GpuDevice::choose_physical_device() {
         properties_ = properties;
         queue_family_ = *family;
     }
-    if (physical_ == VK_NULL_HANDLE) throw GpuError("no Vulkan device can draw" + refused);
+    if (physical_ == VK_NULL_HANDLE) throw GpuError("no usable Vulkan device was found" + refused);
     vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
 }
 

@@ -10,7 +10,8 @@ constexpr VkMemoryPropertyFlags visible =
 
 VkDeviceMemory allocate(const GpuDevice& device, const VkMemoryRequirements& needs,
                         std::uint32_t type) {
-    if (type == UINT32_MAX) throw GpuError("the device has no memory of the kind that is needed");
+    if (type == UINT32_MAX)
+        throw GpuError("the graphics device has no memory of the required type");
     VkMemoryAllocateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
     info.allocationSize = needs.size;

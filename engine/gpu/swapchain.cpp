@@ -27,7 +27,7 @@ VkSurfaceFormatKHR choose_format(const GpuDevice& device) {
             if (format.format == wanted) return format;
         }
     }
-    throw GpuError("this display takes no pictures of 8 bits a channel");
+    throw GpuError("this display does not support 8 bits per colour channel");
 }
 
 VkImageMemoryBarrier barrier_of(VkImage image, VkImageLayout from, VkImageLayout to,

@@ -253,38 +253,44 @@ std::string_view words(SafetyStage stage) noexcept {
             return "";
         case SafetyStage::Slewed:
             return for_translation(
-                "The force changes faster than the device may: it follows a little later.");
+                "The force changes faster than the device allows, so it is sent a little more "
+                "slowly.");
         case SafetyStage::Clamped:
             return for_translation(
-                "The force is larger than the limit: push less, or choose a smaller force gain.");
+                "The force is at the limit of the device (clipping): push less, or choose a "
+                "smaller force gain.");
         case SafetyStage::ThermalLimit:
             return for_translation(
-                "The motors are warm and the force is limited: let them rest for a while.");
+                "The motors are warm, so the force is reduced (thermal limit): let them cool for a "
+                "while.");
         case SafetyStage::Engaging:
             return for_translation(
-                "The force is coming back: hold the handle, in two seconds it is there in full.");
+                "The force is coming back: hold the handle. It reaches its full value in two "
+                "seconds.");
         case SafetyStage::Waiting:
             return for_translation(
-                "The force is off: move the molecule to where it feels nothing, then it "
+                "The force is off: move the molecule to a place without force, then the force "
                 "returns.");
         case SafetyStage::Disengaged:
-            return for_translation("The force is switched off: go on, and it returns.");
+            return for_translation(
+                "The force is off while the scene is paused: continue, and it returns.");
         case SafetyStage::Ending:
-            return for_translation("The program ends and takes the force away: hold the handle.");
+            return for_translation("The program ends and the force fades: hold the handle.");
         case SafetyStage::Stale:
             return for_translation(
-                "The simulation is too slow or stands still, so the force fades: wait, or let "
-                "fewer joints move.");
+                "The simulation is too slow or has stopped, so the force fades: wait, or reduce "
+                "the number of active joints.");
         case SafetyStage::CoolDown:
             return for_translation(
-                "The device says that its motors are too warm, so the force fades: let them "
-                "rest until it returns.");
+                "The device reports that its motors are too warm, so the force fades: let them "
+                "cool until it returns.");
         case SafetyStage::TooFast:
             return for_translation(
-                "The handle was faster than the limit, so the force is off: move it slowly.");
+                "The handle moved faster than its limit, so the force is off: move it slowly.");
         case SafetyStage::Late:
             return for_translation(
-                "The force loop was late, so the force is off: close other programs.");
+                "The force loop was late (servo tick missed), so the force is off: close other "
+                "programs.");
         case SafetyStage::Frozen:
             return for_translation(
                 "The device reports no motion although the force changes, so the force is off: "
@@ -295,14 +301,15 @@ std::string_view words(SafetyStage stage) noexcept {
                 "calibrate the device.");
         case SafetyStage::Refused:
             return for_translation(
-                "The device found the force too large or too sudden and let go: move the handle "
-                "slowly, then it returns.");
+                "The device switched off a force that was too large or too sudden: move the handle "
+                "slowly, then the force returns.");
         case SafetyStage::Unplugged:
             return for_translation(
                 "The device does not answer, so the force is off: check cable and power.");
         case SafetyStage::NotFinite:
             return for_translation(
-                "The computed force was no number, so the force stays off: reset the scene.");
+                "The computed force was not a number, so the force stays off: reset the scene "
+                "(R).");
     }
     return "";
 }

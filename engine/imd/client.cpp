@@ -47,12 +47,13 @@ void ImdClient::begin() {
     std::error_code error;
     socket_ = Socket::connect(options_.address, options_.port, error);
     if (error == std::errc::invalid_argument) {
-        return lose("is no address of numbers, as 127.0.0.1 is", ImdLack::Answer);
+        return lose("is not a numeric address such as 127.0.0.1", ImdLack::Answer);
     }
     if (error)
-        return lose(fmt::format("cannot be connected to: {}", error.message()), ImdLack::Answer);
+        return lose(fmt::format("does not accept the connection: {}", error.message()),
+                    ImdLack::Answer);
     phase_ = Phase::Connecting;
-    set_state(ImdState::Waiting, "is being connected to");
+    set_state(ImdState::Waiting, "has not accepted the connection yet");
 }
 
 void ImdClient::drop() {
@@ -100,7 +101,8 @@ bool ImdClient::poll(double now_s, int at_most_ms) {
     wait(at_most_ms);
     if (phase_ == Phase::Connecting && has_room_) {
         if (const std::error_code error = socket_.find_error()) {
-            lose(fmt::format("cannot be connected to: {}", error.message()), ImdLack::Answer);
+            lose(fmt::format("does not accept the connection: {}", error.message()),
+                 ImdLack::Answer);
         } else {
             phase_ = Phase::Greeting;
             set_state(ImdState::Waiting, "is connected and has not sent its handshake");
@@ -134,12 +136,13 @@ bool ImdClient::read() {
     for (std::size_t total = 0; total < most && socket_.is_open();) {
         const SocketTransfer got = socket_.read(bytes);
         if (phase_ == Phase::Leaving) {
-            if (got.is_ended || got.error) finish_leaving("was left in order");
+            if (got.is_ended || got.error) finish_leaving("was disconnected normally");
         } else if (got.is_ended) {
             lose(fmt::format("closed the connection {}", decoder_.find_place()), ImdLack::Order,
                  true);
         } else if (got.error) {
-            lose(fmt::format("is lost {}: {}", decoder_.find_place(), got.error.message()),
+            lose(fmt::format("lost the connection {}: {}", decoder_.find_place(),
+                             got.error.message()),
                  ImdLack::Order, true);
         } else {
             is_newer |= take(std::span(bytes).first(got.bytes));
@@ -155,7 +158,7 @@ bool ImdClient::take(std::span<const std::byte> bytes) {
     while (!bytes.empty()) {
         bytes = bytes.subspan(decoder_.take(bytes));
         if (!decoder_.problem().empty()) {
-            lose(fmt::format("is left: {}", decoder_.problem()),
+            lose(fmt::format("was disconnected: {}", decoder_.problem()),
                  decoder_.other_atoms() > 0 ? ImdLack::Atoms : ImdLack::Order);
             break;
         }
@@ -184,13 +187,13 @@ bool ImdClient::take(std::span<const std::byte> bytes) {
 void ImdClient::take_greeting() {
     if (!decoder_.is_ready()) return;
     if (options_.version && decoder_.version() != *options_.version) {
-        return lose(fmt::format("is left: it speaks version {}, expected {}", decoder_.version(),
-                                *options_.version),
+        return lose(fmt::format("was disconnected: it uses IMD version {}, expected {}",
+                                decoder_.version(), *options_.version),
                     ImdLack::Version);
     }
     if (decoder_.version() == 3) session_ = decoder_.message()->session;
     if (decoder_.version() == 3 && !session_.coordinates) {
-        return lose("is left: it announced frames without coordinates, expected some",
+        return lose("was disconnected: its frames have no coordinates, expected coordinates",
                     ImdLack::Order);
     }
     units_ = options_.units.value_or(imd_units_of(decoder_.version()));
@@ -218,7 +221,8 @@ void ImdClient::check_delay() {
             }
             return;
         case Phase::Leaving:
-            if (passed_s > leave_within_s) finish_leaving("was left, and did not close its end");
+            if (passed_s > leave_within_s)
+                finish_leaving("was disconnected, but did not close its end");
             return;
         case Phase::Running:
             break;
@@ -241,10 +245,10 @@ std::string ImdClient::find_pull_problem(std::span<const std::int32_t> atoms,
                                          std::span<const Vec3> forces) const {
     if (state_ != ImdState::Connected) return why_;
     if (version() == 3 && !options_.pulls_in_version_3) {
-        return "forces in version 3 are an experiment, which was not asked for";
+        return "forces in IMD version 3 are experimental and were not switched on";
     }
     if (atoms.size() != forces.size()) {
-        return fmt::format("{} forces for {} atoms, expected one each", forces.size(),
+        return fmt::format("{} forces for {} atoms, expected one for each atom", forces.size(),
                            atoms.size());
     }
     for (std::size_t i = 0; i < atoms.size(); ++i) {

@@ -43,9 +43,9 @@ ImdServer::ImdServer(ImdServerOptions options)
     std::error_code error;
     listening_ = Socket::listen(options_.address, options_.port, error);
     if (error == std::errc::invalid_argument) {
-        problem_ = fmt::format("'{}' is no address of numbers, as 127.0.0.1 is", options_.address);
+        problem_ = fmt::format("'{}' is not a numeric address such as 127.0.0.1", options_.address);
     } else if (error) {
-        problem_ = fmt::format("{}:{} cannot be listened at: {}", options_.address, options_.port,
+        problem_ = fmt::format("cannot listen at {}:{}: {}", options_.address, options_.port,
                                error.message());
     }
 }
@@ -73,12 +73,12 @@ void ImdServer::take_clients() {
     for (std::size_t i = 0; i <= most_clients; ++i) {
         std::error_code error;
         Socket socket = listening_.accept(error);
-        if (error) note(fmt::format("a client could not be taken: {}", error.message()));
+        if (error) note(fmt::format("a client could not be accepted: {}", error.message()));
         if (!socket.is_open()) return;
         const std::uint64_t number = next_number_++;
         if (clients_.size() >= options_.max_clients) {
-            note(fmt::format("client {} was turned away: {} are here, which is the most", number,
-                             clients_.size()));
+            note(fmt::format("client {} was refused: {} clients are connected, which is the limit",
+                             number, clients_.size()));
             continue;
         }
         Client client{.number = number,
@@ -103,7 +103,8 @@ void ImdServer::read(Client& client) {
             return drop(client,
                         fmt::format("closed the connection {}", client.decoder.find_place()));
         }
-        if (got.error) return drop(client, fmt::format("is lost: {}", got.error.message()));
+        if (got.error)
+            return drop(client, fmt::format("lost the connection: {}", got.error.message()));
         if (got.bytes == 0) return;
         std::span<const std::byte> left = std::span(bytes).first(got.bytes);
         while (!left.empty() && !client.is_over) {
@@ -121,9 +122,9 @@ void ImdServer::take(Client& client, const ImdMessage& message) {
         case ImdType::Go:
             client.has_gone = true;
             client.steps = client.rate;  // the next frame is its first
-            return note(fmt::format("client {} watches", client.number));
+            return note(fmt::format("client {} is watching", client.number));
         case ImdType::Disconnect:
-            return drop(client, "left in order");
+            return drop(client, "disconnected normally");
         case ImdType::ClientForces:
             return take_forces(client, message);
         case ImdType::Pause:
@@ -146,8 +147,8 @@ bool ImdServer::may_command(Client& client, bool is_allowed, const char* what) {
     const bool is_first = puller_ == 0 || puller_ == client.number;
     if (is_allowed && is_first) return true;
     if (!std::exchange(client.was_noted, true)) {
-        note(is_allowed ? fmt::format("client {} may not {}: client {} pulls", client.number, what,
-                                      puller_)
+        note(is_allowed ? fmt::format("client {} may not {}: client {} is pulling", client.number,
+                                      what, puller_)
                         : fmt::format("client {} may not {}: this engine does not allow it",
                                       client.number, what));
     }
@@ -156,7 +157,7 @@ bool ImdServer::may_command(Client& client, bool is_allowed, const char* what) {
 
 void ImdServer::take_forces(Client& client, const ImdMessage& message) {
     if (!may_command(client, options_.may_pull, "pull")) return;
-    if (puller_ == 0) note(fmt::format("client {} pulls", client.number));
+    if (puller_ == 0) note(fmt::format("client {} is pulling", client.number));
     puller_ = client.number;
     pull_.atoms = message.atoms;
     pull_.forces.resize(message.atoms.size());
@@ -180,9 +181,10 @@ void ImdServer::judge(Client& client) {
     if (client.is_over) return;
     const double passed_s = now_s_ - client.since_s;
     if (!client.has_gone && passed_s > options_.go_within_s) {
-        drop(client, fmt::format("was dropped: it said no go within {} s", options_.go_within_s));
+        drop(client,
+             fmt::format("was dropped: it did not send IMD_GO within {} s", options_.go_within_s));
     } else if (client.sent < client.outgoing.size() && passed_s > options_.stuck_after_s) {
-        drop(client, fmt::format("was dropped: it took nothing for {:.1f} s", passed_s));
+        drop(client, fmt::format("was dropped: it received nothing for {:.1f} s", passed_s));
     }
 }
 
@@ -204,8 +206,8 @@ void ImdServer::remove_dropped() {
 void ImdServer::change_atoms(std::size_t atoms) {
     if (atoms == options_.atoms) return;
     for (Client& client : clients_) {
-        drop(client, fmt::format("was dropped: there are {} atoms now, no more {}, and no message "
-                                 "can tell it",
+        drop(client, fmt::format("was dropped: the number of atoms is now {}, no longer {}, and "
+                                 "IMD has no message for this",
                                  atoms, options_.atoms));
     }
     remove_dropped();
@@ -268,7 +270,8 @@ void ImdServer::write(Client& client) {
     while (!client.is_over && client.sent < client.outgoing.size()) {
         const SocketTransfer sent =
             client.socket.write(std::span(client.outgoing).subspan(client.sent));
-        if (sent.error) return drop(client, fmt::format("is lost: {}", sent.error.message()));
+        if (sent.error)
+            return drop(client, fmt::format("lost the connection: {}", sent.error.message()));
         if (sent.bytes == 0) return;
         client.sent += sent.bytes;
         if (client.has_gone) client.since_s = now_s_;

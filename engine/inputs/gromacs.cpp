@@ -78,8 +78,8 @@ std::string format_maps(const RunSystem& system, const std::vector<std::string>&
         const CmapMap& map = topology.cmap_maps[term.map];
         if (known->second != term.map || map.size != topology.cmap_maps[0].size) {
             throw LoadError({system.connectivity.file},
-                            "has cross-terms that GROMACS cannot tell apart: maps of different "
-                            "sizes, or two for the same five types of atoms");
+                            "has cross-terms (CMAP) that GROMACS cannot distinguish: maps of "
+                            "different sizes, or two maps for the same five atom types");
         }
         if (!is_new) continue;
         for (const std::uint32_t type : types) rows += names[type] + " ";
@@ -334,8 +334,8 @@ Cutoff gromacs_cutoff(const RunSystem& system) {
     const double room = std::floor(10 * (0.5 * system.box->minCoeff() - buffer)) / 10;
     if (room < least) {
         throw LoadError({system.connectivity.file},
-                        fmt::format("the box's shortest edge of {:.2f} Å has no room for a cutoff; "
-                                    "expected at least {} Å",
+                        fmt::format("the shortest edge of the box is {:.2f} Å, too short for a "
+                                    "cutoff; expected at least {} Å",
                                     system.box->minCoeff(), shortest_gromacs_edge));
     }
     return room >= to ? Cutoff{from, to} : Cutoff{room - width, room};

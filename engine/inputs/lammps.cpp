@@ -127,8 +127,8 @@ void add_dihedrals(const RunSystem& system, Terms& terms) {
         const double phase = t.phase * degree_of_radian, whole = std::round(phase);
         if (std::abs(phase - whole) > 1e-6) {
             refuse(system, t.a,
-                   fmt::format("dihedral has a phase of {:.6g} degrees, where LAMMPS takes whole "
-                               "ones",
+                   fmt::format("dihedral has a phase of {:.6g} degrees; expected whole degrees, as "
+                               "LAMMPS requires",
                                phase));
         }
         const bool has_pair = left.erase({std::min(t.a, t.d), std::max(t.a, t.d)}) == 1;
@@ -151,11 +151,10 @@ void add_impropers(const RunSystem& system, Terms& terms) {
     for (const Improper& t : system.topology.impropers) {
         const double psi0 = std::abs(t.psi0 * degree_of_radian);
         if (std::min(psi0, std::abs(psi0 - 180)) > 1e-6) {
-            refuse(
-                system, t.a,
-                fmt::format("improper is about {:.6g} degrees, where LAMMPS, which does not know "
-                            "one side from the other, has 0 and 180",
-                            psi0));
+            refuse(system, t.a,
+                   fmt::format("improper is at {:.6g} degrees; expected 0 or 180, because LAMMPS "
+                               "does not distinguish the two sides",
+                               psi0));
         }
         terms.impropers.add(fmt::format("{:.12g} {:.12g}", t.k, psi0), {t.a, t.b, t.c, t.d});
     }

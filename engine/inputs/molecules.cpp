@@ -152,9 +152,9 @@ std::array<std::uint32_t, 5> five_atoms(const RunSystem& system, const CmapTerm&
         const std::uint32_t atom = term.phi[0] + first;
         throw LoadError(
             {system.connectivity.file, system.connectivity.lines[atom]},
-            fmt::format("the cross-term that begins at {} is of two dihedrals that do not follow "
-                        "each other, which other engines do not have; expected four atoms and "
-                        "the last three of them with one more",
+            fmt::format("the cross-term (CMAP) that begins at {} has two dihedrals that do not "
+                        "overlap, which other engines do not support; expected the second dihedral "
+                        "to begin with the last three atoms of the first",
                         to_string(system.connectivity.names[atom])));
     }
     return {term.phi[0], term.phi[1], term.phi[2], term.phi[3], term.psi[3]};

@@ -23,13 +23,13 @@ void check(const RunSystem& system) {
     if (system.positions.empty()) throw LoadError(place, "there are no atoms to run");
     if (system.topology.solvation) {
         throw LoadError(place,
-                        "has implicit water (EEF1-SB), which other engines do not have; expected a "
-                        "system in vacuum or with waters of its own");
+                        "has implicit water (EEF1-SB), which other engines do not support; "
+                        "expected a system in vacuum or with explicit water");
     }
     if (!std::ranges::all_of(system.positions, [](const Vec3& p) { return p.allFinite(); }))
-        throw LoadError(place, "an atom has no place; expected finite coordinates");
+        throw LoadError(place, "an atom has no coordinates; expected finite numbers");
     if (system.box && !(system.box->allFinite() && system.box->minCoeff() > 0))
-        throw LoadError(place, "the box has an edge that is not positive");
+        throw LoadError(place, "an edge of the box is not positive; expected edges above 0 Å");
 }
 
 Connectivity reordered(const Connectivity& from, const std::vector<std::uint32_t>& order,
@@ -118,23 +118,25 @@ std::vector<std::string> list_warnings(const RunSystem& system) {
     const double charge =
         std::accumulate(system.topology.charge.begin(), system.topology.charge.end(), 0.0);
     if (system.box && std::abs(charge) > neutral_within) {
-        warnings.push_back(fmt::format(
-            "the box has a charge of {:.3f} e, which PME spreads evenly over it; expected ions",
-            charge));
+        warnings.push_back(
+            fmt::format("the box has a charge of {:.3f} e, which PME spreads evenly over it; add "
+                        "ions to make it neutral",
+                        charge));
     }
     if (system.box) {
         const Vec3 size = find_extent(system.positions).size();
         for (int axis = 0; axis < 3; ++axis) {
             // Molecules may stick out of the box by half of themselves.
             if (size[axis] < 0.9 * (*system.box)[axis] || size[axis] > 1.5 * (*system.box)[axis]) {
-                warnings.push_back(fmt::format("along {} the box has {:.2f} Å and its atoms {:.2f}",
-                                               "xyz"[axis], (*system.box)[axis], size[axis]));
+                warnings.push_back(fmt::format(
+                    "along {} the box is {:.2f} Å long, but its atoms extend over {:.2f} Å",
+                    "xyz"[axis], (*system.box)[axis], size[axis]));
             }
         }
     }
     if (const auto closest =
             describe_coincident_atoms(system.connectivity.names, system.positions, closest_atoms)) {
-        warnings.push_back("atoms are on each other: " + *closest);
+        warnings.push_back("atoms overlap: " + *closest);
     }
     return warnings;
 }

@@ -194,8 +194,8 @@ void check_segments(const Connectivity& molecule) {
     for (std::size_t i = 0; i < molecule.names.size(); ++i) {
         if (!molecule.names[i].segment.starts_with("WAT")) continue;
         throw LoadError({molecule.file, molecule.lines[i]},
-                        fmt::format("segment '{}' is called as waters of the box are; expected a "
-                                    "name that does not begin with WAT",
+                        fmt::format("segment '{}' has a name of the box's waters; expected a name "
+                                    "that does not begin with WAT",
                                     molecule.names[i].segment));
     }
 }
@@ -213,9 +213,9 @@ WaterBox build_water_box(const ForceField& force_field, const Connectivity& mole
         if (extent.size().maxCoeff() > box.edge) {
             throw LoadError(
                 {molecule.file},
-                fmt::format("the molecule is {:.1f} Å long and the box {:.1f}; expected "
-                            "more waters",
-                            extent.size().maxCoeff(), box.edge));
+                fmt::format(
+                    "the molecule is {:.1f} Å long and the box only {:.1f} Å; expected more waters",
+                    extent.size().maxCoeff(), box.edge));
         }
         for (Vec3& place : box.positions) place += Vec3::Constant(0.5 * box.edge) - extent.centre();
     }

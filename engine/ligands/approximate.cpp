@@ -104,10 +104,11 @@ LigandModel build_ligand_model(const ForceField& force_field,
     std::vector<ModelCompound> compounds = find_model_compounds(force_field, withheld);
     constexpr std::size_t few = 100;
     if (compounds.size() < few) {
-        throw LoadError({"--approximate-ligands"},
-                        fmt::format("the force field has {} model compounds of CGenFF; expected "
-                                    "top_all36_cgenff.rtf and par_all36_cgenff.prm among its files",
-                                    compounds.size()));
+        throw LoadError(
+            {"--approximate-ligands"},
+            fmt::format("the force field has only {} model compounds of CGenFF; expected "
+                        "top_all36_cgenff.rtf and par_all36_cgenff.prm among its files",
+                        compounds.size()));
     }
     TypeLibrary types(compounds);
     ChargeModel charges(compounds);
@@ -132,7 +133,7 @@ ApproximateLigand approximate_ligand(const MoleculeGraph& graph, const LigandMod
     ligand.doubtful_turns = find_doubtful_turns(ligand, seen);
     ligand.residue = build_residue(ligand, impropers);
     if (!into.residues.emplace(graph.name, ligand.residue).second) {
-        throw LoadError({graph.name}, "the force field has a residue of this name already");
+        throw LoadError({graph.name}, "the force field already has a residue of this name");
     }
     return ligand;
 }

@@ -84,11 +84,12 @@ private:
 
     void add_atom() {
         const std::string atom = upper_case(unquoted(row_[AtomId].text));
-        if (atom.empty()) fail(row_[0], "an atom without a name (atom_id)");
+        if (atom.empty()) fail(row_[0], "an atom has no name (atom_id)");
         const std::string element = upper_case(unquoted(row_[Element].text));
         if (!is_element(element)) {
-            fail(row_[0], fmt::format("atom {}: '{}' is no element; expected a symbol such as C",
-                                      shortened(atom), shortened(element)));
+            fail(row_[0],
+                 fmt::format("atom {}: '{}' is not an element; expected a symbol such as C",
+                             shortened(atom), shortened(element)));
         }
         const std::uint32_t index = index_of(atom, row_[0]);
         GraphAtom& into = result.graph.atoms[index];
@@ -103,7 +104,7 @@ private:
     void add_bond() {
         const std::uint32_t a = index_of(upper_case(unquoted(row_[First].text)), row_[0]);
         const std::uint32_t b = index_of(upper_case(unquoted(row_[Second].text)), row_[0]);
-        if (a == b) fail(row_[0], "a bond of an atom with itself");
+        if (a == b) fail(row_[0], "a bond joins an atom to itself");
         for (const GraphBond& bond : result.graph.bonds) {
             if ((bond.a == a && bond.b == b) || (bond.a == b && bond.b == a)) return;
         }

@@ -130,13 +130,13 @@ std::vector<std::string> describe(const ApproximateLigand& ligand) {
                     highest_penalty(ligand)));
     for (const std::string& note : ligand.notes) lines.push_back(ligand.name + ": " + note);
     for (const auto& [a, b] : ligand.doubtful_turns) {
-        lines.push_back(fmt::format("{}: the barrier about {}-{} is a guess", ligand.name,
+        lines.push_back(fmt::format("{}: the torsion barrier about {}-{} is a guess", ligand.name,
                                     ligand.graph.atoms[a].name, ligand.graph.atoms[b].name));
     }
     for (std::size_t i = 0; i < ligand.graph.size(); ++i) {
         const TypeChoice& choice = ligand.types[i];
         lines.push_back(
-            fmt::format("{} {:<5} {:<7} {:+.3f} e, penalty {:3.0f}: like {} as far as {}",
+            fmt::format("{} {:<5} {:<7} {:+.3f} e, penalty {:3.0f}: taken from {}, alike in {}",
                         ligand.name, ligand.graph.atoms[i].name, choice.type, ligand.charges[i],
                         choice.penalty, choice.example, name_of(choice.level)));
     }

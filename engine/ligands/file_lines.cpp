@@ -22,7 +22,7 @@ void FileLines::fail(const std::string& what) const {
 std::size_t FileLines::count(std::string_view text, const char* what) const {
     const auto found = find_integer(text);
     if (!found || *found < 0 || *found > 1'000'000) {
-        fail(fmt::format("'{}' is no {}; expected a whole number", shortened(text), what));
+        fail(fmt::format("'{}' is not a whole number; expected the {}", shortened(text), what));
     }
     return static_cast<std::size_t>(*found);
 }
@@ -33,8 +33,8 @@ Vec3 FileLines::position(std::string_view x, std::string_view y, std::string_vie
     for (const std::string_view text : {x, y, z}) {
         const auto found = find_coordinate(text);
         if (!found) {
-            fail(fmt::format("'{}' is no coordinate; expected Å, within {:g}", shortened(text),
-                             farthest_coordinate));
+            fail(fmt::format("'{}' is not a coordinate; expected a number within ±{:g} Å",
+                             shortened(text), farthest_coordinate));
         }
         place(i++) = *found;
     }
@@ -44,18 +44,20 @@ Vec3 FileLines::position(std::string_view x, std::string_view y, std::string_vie
 std::string FileLines::element(std::string_view text) const {
     const std::string symbol = upper_case(text);
     if (!is_element(symbol)) {
-        fail(fmt::format("'{}' is no element; expected a symbol such as C or Cl", shortened(text)));
+        fail(fmt::format("'{}' is not an element; expected a symbol such as C or Cl",
+                         shortened(text)));
     }
     return symbol == "D" ? "H" : symbol;
 }
 
 void FileLines::add_bond(std::size_t a, std::size_t b, int order, MoleculeGraph& graph) const {
     if (a < 1 || b < 1 || a > graph.size() || b > graph.size() || a == b) {
-        fail(fmt::format("a bond of atoms {} and {}; expected two of 1 to {}", a, b, graph.size()));
+        fail(fmt::format("a bond of atoms {} and {}; expected two different atoms from 1 to {}", a,
+                         b, graph.size()));
     }
     for (const GraphBond& bond : graph.bonds) {
         if ((bond.a == a - 1 && bond.b == b - 1) || (bond.a == b - 1 && bond.b == a - 1)) {
-            fail(fmt::format("the bond of atoms {} and {} again", a, b));
+            fail(fmt::format("the bond of atoms {} and {} is repeated", a, b));
         }
     }
     graph.bonds.push_back(

@@ -13,8 +13,8 @@ void read_atom(const FileLines& lines, LigandFile& into, std::set<std::string>& 
     const std::vector<std::string_view> words = split_words(lines.line());
     if (words.size() < 6) lines.fail("expected number, name, x, y, z and type of an atom");
     if (lines.count(words[0], "atom's number") != into.graph.size() + 1) {
-        lines.fail(fmt::format("atom {}; expected {}: they count from 1", shortened(words[0]),
-                               into.graph.size() + 1));
+        lines.fail(fmt::format("atom number {}; expected {} (atoms count from 1)",
+                               shortened(words[0]), into.graph.size() + 1));
     }
     if (into.graph.size() == most_ligand_atoms) {
         lines.fail(fmt::format("more than {} atoms", most_ligand_atoms));
@@ -73,7 +73,8 @@ LigandFile parse_mol2(std::string_view text, const std::string& file) {
             read_bond(lines, result);
         }
     }
-    if (result.graph.atoms.empty()) lines.fail("no atoms; expected a section @<TRIPOS>ATOM");
+    if (result.graph.atoms.empty())
+        lines.fail("the file has no atoms; expected a section @<TRIPOS>ATOM");
     for (const GraphAtom& atom : result.graph.atoms) {
         result.states_charges = result.states_charges || atom.charge != 0;
     }

@@ -102,7 +102,7 @@ void read_v30_atom(const FileLines& lines, const std::vector<std::string_view>& 
                    LigandFile& into) {
     if (words.size() < 6) lines.fail("expected number, element, x, y, z and mapping of an atom");
     if (lines.count(words[0], "atom's number") != into.graph.size() + 1) {
-        lines.fail(fmt::format("atom {}; expected {}: they count from 1", words[0],
+        lines.fail(fmt::format("atom number {}; expected {} (atoms count from 1)", words[0],
                                into.graph.size() + 1));
     }
     into.graph.atoms.push_back(

@@ -64,11 +64,12 @@ MoleculeGraph complete(LigandFile file, bool at_its_word, std::vector<std::strin
     const bool has_hydrogens = has_hydrogen_on_carbon(graph);
     if (has_hydrogens) {
         if (has_open && !assign_bond_orders(graph)) {
-            notes.emplace_back("its aromatic bonds and hydrogens leave a carbon open");
+            notes.emplace_back(
+                "its aromatic bonds and hydrogens leave a carbon with a free valence");
         }
         charge_by_valence(graph);
     } else if (has_open && !pair_marked_bonds(graph, file.open_bonds, open_ends(file))) {
-        notes.emplace_back("its aromatic bonds leave a carbon open");
+        notes.emplace_back("its aromatic bonds leave a carbon with a free valence");
     }
     if (at_its_word && (has_hydrogens || file.states_charges)) {
         return has_hydrogens ? std::move(graph) : with_hydrogens(graph);
@@ -126,7 +127,7 @@ class Search {
 public:
     explicit Search(const LigandQuery& query) : query_(query), found_(query.found) {
         if (found_.size() > most_ligand_atoms) {
-            throw LoadError({found_.name}, fmt::format("{} atoms; expected at most {} of a ligand",
+            throw LoadError({found_.name}, fmt::format("{} atoms; expected at most {} for a ligand",
                                                        found_.size(), most_ligand_atoms));
         }
         find_bonds(found_);
@@ -215,7 +216,7 @@ private:
 
     FoundLigand from_places() {
         std::vector<std::string> notes;
-        notes.emplace_back("its bond orders are guessed from distances and angles: look at them");
+        notes.emplace_back("its bond orders are guessed from distances and angles; check them");
         std::vector<bool> is_hydrogen(found_.size());
         for (std::size_t i = 0; i < found_.size(); ++i) is_hydrogen[i] = found_.is_hydrogen(i);
         MoleculeGraph heavy = without_atoms(found_, is_hydrogen);
@@ -224,7 +225,7 @@ private:
         charge_at_ph_7(neutral, notes);
         MoleculeGraph graph = with_hydrogens(neutral);
         add_hydrogen_places(graph);
-        return {std::move(graph), "the places of its atoms", std::move(notes), {}};
+        return {std::move(graph), "the positions of its atoms", std::move(notes), {}};
     }
 
     const LigandQuery& query_;

@@ -27,11 +27,11 @@ void refuse_alternative(const Structure& structure, std::size_t first, std::size
                             structure.records[first].model != structure.records[again].model;
     throw LoadError(
         {structure.file, structure.lines[again], 0},
-        fmt::format("atom {} again{}, first{} on line {}{}; expected one place for each atom: "
-                    "choose one, as palpa prepare does",
+        fmt::format("atom {} is repeated{}, first{} on line {}{}; expected one position for each "
+                    "atom (palpa prepare chooses one)",
                     to_string(structure.names[again]), describe(structure, again, with_model),
                     describe(structure, first, with_model), structure.lines[first],
-                    count > 1 ? fmt::format(" ({} such lines)", count) : std::string()));
+                    count > 1 ? fmt::format(" ({} repeated lines)", count) : std::string()));
 }
 
 void refuse_alternatives(const Structure& structure) {

@@ -355,8 +355,8 @@ private:
         }
         if (alike.empty()) return diagnosis.explain(segment);
         return fmt::format(
-            "; segment {} fits {} alike; expected one only, or one called like the segment or its "
-            "end",
+            "; segment {} matches {} equally well; expected one match, or one named like the "
+            "segment or its end",
             shown(segment.name), fmt::join(alike, " and "));
     }
 
@@ -372,8 +372,8 @@ private:
         }
         const std::size_t others = missing.size() - names.size();
         std::string text = fmt::format(
-            "{} of its {} atoms are not in {}: {}{}; segments here: {}; segments or chains there: "
-            "{}",
+            "{} of its {} atoms are not in {}: {}{}; segments of this file: {}; segments or chains "
+            "of the other: {}",
             missing.size(), place_.size(), structure_.file, fmt::join(names, ", "),
             others > 0 ? fmt::format(" and {} more", others) : "", list_names(segments_),
             list_names(groups_));

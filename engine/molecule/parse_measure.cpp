@@ -12,8 +12,8 @@ std::vector<Selection> parse_measure(std::string_view text, const std::string& s
     const auto count = 1 + static_cast<std::size_t>(std::ranges::count(text, ';'));
     if (count < fewest || count > most) {
         throw LoadError({source},
-                        fmt::format("'{}' has {} {}; expected two, three or four with ';' between "
-                                    "them, for a distance, an angle or a dihedral",
+                        fmt::format("'{}' has {} {}; expected two for a distance, three for an "
+                                    "angle or four for a dihedral, with ';' between them",
                                     text, count, count == 1 ? "selection" : "selections"));
     }
     std::vector<Selection> selections;

@@ -86,7 +86,7 @@ public:
         SelectionNode root = parse_or();
         if (is(SelectionToken::Kind::End)) return root;
         if (is(SelectionToken::Kind::Close))
-            words_.refuse(now().column, "')' closes nothing, expected '(' before it or none");
+            words_.refuse(now().column, "')' has no '(' before it, expected one or no ')'");
         const std::string hint = find_selection_keyword(in_small_letters(now().text))
                                      ? std::string()
                                      : near_selection_keyword(now().text);
@@ -135,9 +135,9 @@ private:
 
     SelectionNode parse_unary() {
         if (++depth_ > deepest) {
-            words_.refuse(now().column, fmt::format("expressions are more than {} deep here, "
-                                                    "expected fewer in one another",
-                                                    deepest));
+            words_.refuse(
+                now().column,
+                fmt::format("expressions are nested more than {} deep, expected fewer", deepest));
         }
         SelectionNode node = parse_term();
         --depth_;
@@ -351,8 +351,9 @@ private:
             first.number < last.number ||
             (first.number == last.number && (last.code == ' ' || first.code <= last.code));
         if (!is_rising)
-            words_.refuse(column, fmt::format("{} is after {}, expected the first number first",
-                                              first.number, last.number));
+            words_.refuse(column,
+                          fmt::format("{} is larger than {}, expected the smaller number first",
+                                      first.number, last.number));
     }
 
     SelectionWords words_;

@@ -134,7 +134,7 @@ private:
     Atoms select_structure(const IsOf& is_of, const SelectionNode& node) {
         if (context_.structure.empty())
             refuse_selection(source_, node.column,
-                             "the secondary structure is not known here, expected an expression "
+                             "the secondary structure is unknown here, expected an expression "
                              "without helix, strand and coil");
         Atoms chosen = select_kind(ResidueKind::Protein);
         for (std::size_t i = 0; i < chosen.size(); ++i)

@@ -47,7 +47,7 @@ SelectionToken SelectionWords::read_quoted() {
     const std::size_t end = text_.find(text_[at_], at_ + 1);
     const std::size_t column = column_of(at_);
     if (end == std::string_view::npos)
-        refuse(column, fmt::format("the quote has no end, expected {} behind the name",
+        refuse(column, fmt::format("the quotation mark has no end, expected {} after the name",
                                    text_[at_] == '"' ? "\"" : "'"));
     const SelectionToken token{SelectionToken::Kind::Quoted, text_.substr(at_ + 1, end - at_ - 1),
                                column};

@@ -93,8 +93,8 @@ void align(const Structure& structure, const AlignSettings& settings, std::span<
     const Vec3 across = up - up.dot(x) * x;
     if (!(across.norm() > 1e-3)) {
         throw LoadError({structure.file},
-                        "--y-towards: the two residues lie along x; expected two "
-                        "whose direction is across it");
+                        "--y-towards: the direction between the two residues is parallel to x; "
+                        "expected residues that lie across the x axis");
     }
     const Vec3 y = across.normalized();
     Mat3 turn;

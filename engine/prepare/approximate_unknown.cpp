@@ -129,8 +129,8 @@ private:
         for (const ResidueRange& residue : residues) {
             const auto other = find_bond_out(structure, residue);
             if (!other) continue;
-            throw LoadError(place, fmt::format("{} is bonded to {}: --approximate-ligands takes "
-                                               "molecules that are bonded to nothing else",
+            throw LoadError(place, fmt::format("{} is bonded to {}; --approximate-ligands takes "
+                                               "only molecules without bonds to others",
                                                residue_label(structure, residue),
                                                to_string(structure.names[*other])));
         }
@@ -175,11 +175,12 @@ private:
         if (used_.contains(file)) return;
         std::vector<std::string> names;
         for (const auto& [name, residues] : unknown) names.push_back(name);
-        throw LoadError({file.string()},
-                        fmt::format("--ligand: fits none of the residues without a topology ({}); "
-                                    "expected the same heavy atoms and bonds, or the same names",
-                                    names.empty() ? "there is none"
-                                                  : fmt::format("{}", fmt::join(names, ", "))));
+        throw LoadError(
+            {file.string()},
+            fmt::format(
+                "--ligand: matches none of the residues without a topology ({}); expected the same "
+                "heavy atoms and bonds, or the same atom names",
+                names.empty() ? "none is missing" : fmt::format("{}", fmt::join(names, ", "))));
     }
 
     const PrepareSettings& settings_;

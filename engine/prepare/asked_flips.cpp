@@ -28,15 +28,14 @@ std::string find_obstacle(const Structure& structure, const ResidueRange& residu
     const std::string label = residue_label(structure, residue);
     const std::string& name = structure.names[residue.first].residue;
     if (std::ranges::find(turning, name) == turning.end()) {
-        return fmt::format("{} has no end to turn over; expected an ASN, GLN or HIS", label);
+        return fmt::format("{} cannot be flipped; expected an ASN, GLN or HIS", label);
     }
     const TurnedAtoms turned = turned_atoms_of(name);
     std::vector<std::string_view> needed(turned.axis.begin(), turned.axis.end());
     needed.insert(needed.end(), turned.atoms.begin(), turned.atoms.end());
     for (const std::string_view atom : needed) {
         if (!find_atom(structure, residue, atom)) {
-            return fmt::format("{} has no atom {} in the file, so there is nothing to turn over",
-                               label, atom);
+            return fmt::format("{} cannot be flipped: the file has no atom {} of it", label, atom);
         }
     }
     const auto is_turned = [&](std::size_t atom) {
@@ -45,7 +44,7 @@ std::string find_obstacle(const Structure& structure, const ResidueRange& residu
     };
     for (const ResidueLink& bond : bonds) {
         if (std::ranges::any_of(bond.atoms, is_turned)) {
-            return fmt::format("{} is held by the bond between {} and {}", label,
+            return fmt::format("{} cannot be flipped because of the bond between {} and {}", label,
                                to_string(structure.names[bond.atoms[0]]),
                                to_string(structure.names[bond.atoms[1]]));
         }
@@ -73,7 +72,7 @@ std::vector<std::size_t> turn_as_asked(std::span<const ResidueChoice> flips,
         flip(structure, *residue);
         turned.push_back(residue->first);
         report.add(turned_heading,
-                   fmt::format("{}: turned over, as asked", residue_label(structure, *residue)));
+                   fmt::format("{}: flipped, as requested", residue_label(structure, *residue)));
     }
     std::ranges::sort(turned);
     return turned;

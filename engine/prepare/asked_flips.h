@@ -13,7 +13,7 @@
 
 namespace palpa {
 
-inline constexpr std::string_view turned_heading = "Amides and histidines turned over";
+inline constexpr std::string_view turned_heading = "Flipped amides and histidines";
 
 // Turns each of them once and returns the first atoms of their residues, rising. Noted in `missing`
 // is a choice of no residue, of one without such a side chain, or without all its heavy atoms, or

@@ -45,10 +45,10 @@ void check_rotation(const Structure& structure, const SymmetryOperator& one) {
     const Mat3 product = one.rotation.transpose() * one.rotation;
     const double worst = (product - Mat3::Identity()).cwiseAbs().maxCoeff();
     if (worst <= slip && one.rotation.determinant() > 0) return;
-    throw LoadError({structure.file, one.line},
-                    fmt::format("operator {} is no rotation: its matrix would bend or mirror what "
-                                "it copies",
-                                one.name));
+    throw LoadError(
+        {structure.file, one.line},
+        fmt::format("operator {} is not a rotation: its matrix would distort or mirror the copy",
+                    one.name));
 }
 
 SymmetryOperator product(const SymmetryOperator& then, const SymmetryOperator& first) {
@@ -126,7 +126,9 @@ public:
             if (next_ >= count) name.insert(0, 1, letters[next_ / count - 1]);
             if (used_.insert(name).second) return name;
         }
-        throw LoadError({file_}, "more chains in the assembly than there are names of two letters");
+        throw LoadError({file_},
+                        "the assembly has more chains than there are names of two letters; build a "
+                        "smaller one");
     }
 
 private:
@@ -170,7 +172,7 @@ public:
         }
         if (waters_ > 0) {
             report_.add(assembly_heading,
-                        fmt::format("{} cop{} of waters on a symmetry axis left out", waters_,
+                        fmt::format("left out {} cop{} of waters on a symmetry axis", waters_,
                                     waters_ == 1 ? "y" : "ies"));
         }
         return std::move(result_);
@@ -315,7 +317,9 @@ private:
         report_.add(assembly_heading, text);
         if (2 * count >= of) return;
         report_.warn(
-            fmt::format("{}: wrong, if the file holds half of it, bonded to its copy", text));
+            fmt::format("{}. Check this: it is wrong if the file contains half of a molecule that "
+                        "is bonded to its copy",
+                        text));
     }
 
     const Structure& structure_;
@@ -351,8 +355,8 @@ void warn_of_assembly(const Structure& structure, Report& report) {
     }
     if (most == 0) return;
     report.warn(
-        fmt::format("the file's biological assembly 1 has {} cop{} of its chains, made by "
-                    "symmetry (--assembly 1 builds it); taken as it is, without them",
+        fmt::format("biological assembly 1 has {} more cop{} of chains by symmetry, which were not "
+                    "built; --assembly 1 builds them",
                     most, most == 1 ? "y" : "ies"));
 }
 

@@ -60,10 +60,9 @@ public:
     Structure name() {
         for (std::size_t i = 0; i < residues_.size(); ++i) name_residue(i);
         if (backbones_ > 0 && alpha_carbons_ == backbones_) {
-            throw LoadError(
-                {structure_.file},
-                "no residue has N, CA and C: this looks like alpha-carbons only, from "
-                "which no system can be built; expected a structure of all heavy atoms");
+            throw LoadError({structure_.file},
+                            "no residue has N, CA and C: the structure seems to have alpha-carbons "
+                            "only; expected a structure with all heavy atoms");
         }
         refuse_fragments();
         missing_.throw_if_any();
@@ -209,11 +208,10 @@ private:
         }
         std::vector<std::string_view> names;
         for (const auto& entry : wanted.elements) names.emplace_back(entry.first);
-        missing_.add(
-            place(atom),
-            fmt::format("{} has an atom '{}' that its topology does not know{}; expected the "
-                        "names of CHARMM or the PDB",
-                        residue_label(structure_, residue), name, near_name_hint(name, names)));
+        missing_.add(place(atom), fmt::format("{} has an atom '{}' that is not in its topology{}; "
+                                              "expected atom names of CHARMM or the PDB",
+                                              residue_label(structure_, residue), name,
+                                              near_name_hint(name, names)));
     }
 
     // Side chains can be built; the backbone, and molecules that are no chain, cannot.
@@ -241,8 +239,8 @@ private:
         if (!is_amino_acid) {
             const AtomName& name = structure_.names[residue.first];
             Fragment& fragment =
-                fragments_[fmt::format("{} of its {} heavy atoms ({} lack)", heavy - lacking.size(),
-                                       heavy, join_some(lacking))];
+                fragments_[fmt::format("{} of its {} heavy atoms ({} missing)",
+                                       heavy - lacking.size(), heavy, join_some(lacking))];
             fragment.place = place(residue.first);
             fragment.residue = name.residue;
             fragment.where.push_back(
@@ -255,8 +253,8 @@ private:
         if (lacks("N") || lacks("CA") || lacks("C")) {
             if (lacks("N") && lacks("C") && !lacks("CA")) ++alpha_carbons_;
             missing_.add(place(residue.first),
-                         fmt::format("{} lacks {} of its backbone; expected N, CA and C, or "
-                                     "--without {}:{}",
+                         fmt::format("{}: the backbone atoms {} are missing; expected N, CA and C, "
+                                     "or --without {}:{}",
                                      label, join_some(lacking), chain_of(structure_, residue.first),
                                      structure_.names[residue.first].number));
             return;
@@ -268,8 +266,8 @@ private:
         for (const auto& [what, fragment] : fragments_) {
             const bool are_several = fragment.where.size() > 1;
             missing_.add(fragment.place,
-                         fmt::format("{} {} {} {}; a molecule that is no chain must be whole{}; "
-                                     "expected whole coordinates, or --without {}",
+                         fmt::format("{} {} {} {}, too few to build the rest{}; expected complete "
+                                     "coordinates, or --without {}",
                                      fragment.residue, fmt::join(fragment.where, " and "),
                                      are_several ? "have each" : "has", what,
                                      are_several ? ", and halves on an axis of symmetry cannot be "
@@ -299,10 +297,9 @@ private:
         for (std::size_t i = residue.first; i < residue.end(); ++i) {
             if (element_of(structure_, i) != "H" || placed.contains(i)) continue;
             kept_[i] = false;
-            report_.warn(
-                fmt::format("{} {} is not within 1.5 Å of any atom of its residue: it is "
-                            "built anew",
-                            residue_label(structure_, residue), structure_.names[i].atom));
+            report_.warn(fmt::format(
+                "{} {} is more than 1.5 Å from every atom of its residue, so it was built anew",
+                residue_label(structure_, residue), structure_.names[i].atom));
         }
     }
 
@@ -391,18 +388,19 @@ private:
                                                    residue, count, count == 1 ? "" : "s"));
         }
         if (renamed_hydrogens_ > 0) {
-            report_.add(
-                names_heading,
-                fmt::format("{} hydrogens named by the atom that they are on", renamed_hydrogens_));
+            report_.add(names_heading,
+                        fmt::format("{} hydrogens named after the atom that they are bonded to",
+                                    renamed_hydrogens_));
         }
         if (!dropped_.empty()) {
-            report_.warn(fmt::format("left out hydrogens that the chosen residues do not have: {}",
-                                     join_some(dropped_)));
+            report_.warn(
+                fmt::format("left out hydrogens that the chosen protonation does not have: {}",
+                            join_some(dropped_)));
         }
         if (corrected_elements_ > 0) {
             report_.warn(
-                fmt::format("{} atoms have an element that their name contradicts; the "
-                            "name counts: are the element columns right?",
+                fmt::format("{} atoms have an element that contradicts their name; the name was "
+                            "used. Check the element columns of the file",
                             corrected_elements_));
         }
     }

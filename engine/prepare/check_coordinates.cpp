@@ -38,8 +38,8 @@ void refuse_coincident(const Structure& structure, std::span<const std::uint8_t>
     for (const auto& [first, second] : find_coincident_atoms(positions, closest)) {
         const std::size_t a = atoms[first], b = atoms[second];
         missing.add({structure.file, structure.lines[b], 0},
-                    fmt::format("{} is {:.2f} Å from {} (line {}); expected one of them, "
-                                "--without the other",
+                    fmt::format("{} is {:.2f} Å from {} (line {}); expected atoms apart (leave one "
+                                "residue out with --without)",
                                 to_string(structure.names[b]),
                                 (structure.positions[a] - structure.positions[b]).norm(),
                                 to_string(structure.names[a]), structure.lines[a]));
@@ -65,13 +65,13 @@ void check_bonds(const Structure& structure, const Topology& topology,
     const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
     std::nth_element(ratios.begin(), middle, ratios.end());
     if (*middle < 0.7 || *middle > 1.5) {
-        throw LoadError({structure.file},
-                        fmt::format("bonds are {:.2f} times as long as they should be; expected "
-                                    "coordinates in Å",
-                                    *middle));
+        throw LoadError(
+            {structure.file},
+            fmt::format("bonds are {:.2f} times their normal length; expected coordinates in Å",
+                        *middle));
     }
     if (!strange.empty()) {
-        report.warn(fmt::format("bonds far from their length: {}", join_some(strange)));
+        report.warn(fmt::format("bonds of unusual length: {}", join_some(strange)));
     }
 }
 
@@ -91,10 +91,9 @@ void check_hands(const Structure& structure, std::span<const std::uint8_t> is_ad
         if (to_n.cross(to_c).dot(to_cb) < 0) wrong.push_back(residue_label(structure, residue));
     }
     if (wrong.empty()) return;
-    report.warn(
-        fmt::format("D-amino acids, or a mirror image: {}; their dihedral maps are those "
-                    "of L",
-                    join_some(wrong)));
+    report.warn(fmt::format(
+        "D-amino acids, or a mirror image: {}; the force field has CMAPs for L-amino acids only",
+        join_some(wrong)));
 }
 
 }  // namespace

@@ -21,7 +21,7 @@
 namespace palpa {
 namespace {
 
-constexpr std::string_view choice_heading = "Chosen atoms";
+constexpr std::string_view choice_heading = "Selected atoms";
 
 Structure choose_model(const Structure& structure, const PrepareSettings& settings,
                        Report& report) {
@@ -73,7 +73,7 @@ public:
             if (used_[i]) continue;
             const std::vector<std::string_view> known(names.begin(), names.end());
             throw LoadError({structure_.file},
-                            fmt::format("nothing here is '{}'{}; expected a residue name, "
+                            fmt::format("the structure has no '{}'{}; expected a residue name, "
                                         "chain:NAME or CHAIN:NUMBER",
                                         words_[i], near_name_hint(words_[i], known)));
         }
@@ -153,18 +153,21 @@ public:
         };
         for (const auto& [name, count] : asked_) {
             report.add(choice_heading,
-                       fmt::format("left out as asked: {} ({})", name, count_of(count)));
+                       fmt::format("left out, as requested: {} ({})", name, count_of(count)));
         }
         for (const auto& [name, count] : crystal_) {
-            report.add(choice_heading,
-                       fmt::format("left out, not of the molecule: {}, {} ({}; --keep {} keeps it)",
-                                   name, crystal_only(name), count_of(count), name));
+            report.add(
+                choice_heading,
+                fmt::format(
+                    "left out because only the crystal needed it: {}, {} ({}; --keep {} keeps it)",
+                    name, crystal_only(name), count_of(count), name));
         }
         if (waters_ > 0) {
             report.add(choice_heading,
                        fmt::format("left out {} waters (--keep-waters keeps them)", waters_));
         }
-        if (ions_ > 0) report.add(choice_heading, fmt::format("left out {} ions as asked", ions_));
+        if (ions_ > 0)
+            report.add(choice_heading, fmt::format("left out {} ions, as requested", ions_));
     }
 
 private:
@@ -235,7 +238,7 @@ char choose_location(const Structure& structure, const ResidueRange& residue,
                                         residue_label(structure, residue), location));
         }
         chosen = location;
-        reason = "as asked";
+        reason = "as requested";
     }
     std::string all;
     for (const auto& entry : locations) all += fmt::format(" {}", entry.first);
@@ -312,8 +315,8 @@ Structure choose_atoms(const Structure& structure, const PrepareSettings& settin
     const Structure wanted = leave_out(whole, settings, report);
     if (wanted.names.empty()) {
         throw LoadError({structure.file},
-                        "no atom is left once waters, ions, what only a crystal needs (--keep) and "
-                        "what was asked for are left out");
+                        "no atom remains after leaving out waters (--keep-waters), ions "
+                        "(--no-ions), molecules of the crystal (--keep) and what --without names");
     }
     return choose_locations(wanted, settings, report);
 }

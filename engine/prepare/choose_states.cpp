@@ -364,7 +364,7 @@ private:
                 const bool gives = own.role == HydrogenRole::Giver;
                 found.emplace_back(
                     -score, fmt::format("{} {} {}, {:.1f} Å", structure_.names[own.atom].atom,
-                                        gives ? "gives to" : "takes from", atom_name(other),
+                                        gives ? "donates to" : "accepts from", atom_name(other),
                                         (own.place - other.place).norm()));
             });
         std::sort(found.begin(), found.end());
@@ -408,7 +408,7 @@ private:
         }
         if (!state.histidine.empty()) {
             if (result.reason.empty()) {
-                result.reason = "nothing near decides, the more frequent tautomer";
+                result.reason = "no hydrogen bond decides; the more frequent tautomer was used";
             }
             result.might_be_charged = state.histidine != "HSP" && has_two_takers(group, state);
         }

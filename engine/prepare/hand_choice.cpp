@@ -86,7 +86,7 @@ HandChoice hold_atom(const Structure& structure, const SystemSegment& segment,
             {atom},
             fmt::format("atom {} of {} {} {}, on a spring", name.atom, name.residue, name.number,
                         segment.name),
-            "there is one residue only"};
+            "the molecule has only one residue"};
 }
 
 HandChoice hold_most_exposed(const Structure& structure, const SystemSegment& segment) {
@@ -100,10 +100,11 @@ HandChoice hold_most_exposed(const Structure& structure, const SystemSegment& se
         best = i;
         fewest = count;
     }
-    return hold_residue(structure, segment, std::move(residues[best]),
-                        fmt::format("of this chain it has the fewest heavy atoms within {} Å, {}, "
-                                    "so it moves most easily",
-                                    neighbourhood, fewest));
+    return hold_residue(
+        structure, segment, std::move(residues[best]),
+        fmt::format(
+            "it has the fewest heavy atoms within {} Å of this chain ({}), so it moves most easily",
+            neighbourhood, fewest));
 }
 
 const SystemSegment& find_largest(const Structure& structure,
@@ -115,7 +116,7 @@ const SystemSegment& find_largest(const Structure& structure,
     }
     if (largest) return *largest;
     throw LoadError({structure.file},
-                    "no molecule to hold: only water, ions and pieces that are not bonded");
+                    "there is no molecule to hold: only water, ions and fragments");
 }
 
 HandChoice choose_by_size(const Structure& structure, std::span<const SystemSegment> segments) {
@@ -129,14 +130,14 @@ HandChoice choose_by_size(const Structure& structure, std::span<const SystemSegm
     if (smallest != &largest && smallest->atoms.size() <= most_in_hand) {
         const bool is_alone = smallest->atoms.size() < largest.atoms.size();
         return hold_all(*smallest, is_alone ? "it is the smallest molecule"
-                                            : "it is the last of molecules alike");
+                                            : "it is the last of several equal molecules");
     }
     return hold_most_exposed(structure, largest);
 }
 
 HandChoice choose_by_name(const Structure& structure, std::span<const SystemSegment> segments,
                           std::string_view grab) {
-    constexpr std::string_view reason = "as asked";
+    constexpr std::string_view reason = "as requested";
     for (const SystemSegment& segment : segments) {
         if (segment.name == grab && segments.size() > 1) {
             return hold_all(segment, std::string(reason));

@@ -147,7 +147,8 @@ void build_missing(PreparedSystem& system, const std::vector<AtomCoordinate>& co
     Missing missing;
     for (const std::uint32_t atom : built.unplaced) {
         missing.add({system.structure.file, system.structure.lines[atom], 0},
-                    fmt::format("no place for {}: nothing that it is bonded to has one",
+                    fmt::format("{} cannot be built: no atom bonded to it has coordinates; leave "
+                                "its residue out with --without",
                                 atom_label(system, atom)));
     }
     missing.throw_if_any();
@@ -167,7 +168,7 @@ void orient(PreparedSystem& system, std::span<const std::uint32_t> added,
                                            oriented.groups.size(), std::abs(oriented.energy_change),
                                            oriented.sweeps));
     if (!oriented.is_settled) {
-        system.report.warn("the search for hydrogen bonds stopped before it had settled");
+        system.report.warn("the search for hydrogen bonds stopped before it converged");
     }
 }
 
@@ -180,7 +181,7 @@ std::string contact_label(const PreparedSystem& system, const std::optional<Atom
 void warn_of_clash(PreparedSystem& system, const std::optional<AtomContact>& closest) {
     constexpr double clash = 1.5;  // Å
     if (!closest || closest->distance > clash) return;
-    system.report.warn(fmt::format("a clash is left: {}", contact_label(system, closest)));
+    system.report.warn(fmt::format("a clash remains: {}", contact_label(system, closest)));
 }
 
 void relax_system(PreparedSystem& system, std::span<const std::uint8_t> is_built,
@@ -196,11 +197,10 @@ void relax_system(PreparedSystem& system, std::span<const std::uint8_t> is_built
     constexpr std::string_view heading = "Relaxation";
     system.report.add(
         heading,
-        fmt::format("{:.2f} to {:.2f} kcal/mol in {} steps (dielectric 4 r, cutoff "
-                    "9 Å, the file's heavy atoms held by 5 kcal/mol/Å^2), rms force {:.2f} "
-                    "kcal/mol/Å left",
-                    relaxed.before.total(), relaxed.after.total(), relaxed.steps,
-                    relaxed.rms_force));
+        fmt::format(
+            "{:.2f} to {:.2f} kcal/mol in {} steps (dielectric 4 r, cutoff 9 Å, heavy atoms of the "
+            "file restrained by 5 kcal/mol/Å^2); remaining rms force {:.2f} kcal/mol/Å",
+            relaxed.before.total(), relaxed.after.total(), relaxed.steps, relaxed.rms_force));
     system.report.add(heading, fmt::format("closest contact before: {}",
                                            contact_label(system, relaxed.closest_before)));
     system.report.add(heading, fmt::format("closest contact after: {}",
@@ -212,8 +212,7 @@ void relax_system(PreparedSystem& system, std::span<const std::uint8_t> is_built
     constexpr double large_force = 1;  // kcal/mol/Å
     if (relaxed.rms_force > large_force) {
         system.report.warn(
-            fmt::format("relaxing stopped early: an rms force of {:.1f} kcal/mol/Å "
-                        "is left",
+            fmt::format("the relaxation stopped early: an rms force of {:.1f} kcal/mol/Å remains",
                         relaxed.rms_force));
     }
 }
@@ -238,12 +237,11 @@ void take_reduced_phosphates(PreparedSystem& system) {
         std::accumulate(system.topology.charge.begin(), system.topology.charge.end(), 0.0);
     system.report.add(
         "Solvent",
-        fmt::format("{} phosphates of nucleic acids have {} e, not -1, in vacuum: for the "
-                    "counterions that are missing, and the scene has a dielectric of {} "
-                    "(--full-phosphates keeps the whole charge and a dielectric of 1); charge of "
-                    "the system {:+.2f} e",
-                    system.reduced_phosphates, reduced_phosphate_charge, nucleic_dielectric,
-                    charge));
+        fmt::format(
+            "in vacuum {} phosphates of nucleic acids have {} e instead of -1 e, and the scene has "
+            "a dielectric of {}, to replace missing counterions and water (--full-phosphates keeps "
+            "-1 e and a dielectric of 1); charge of the system {:+.2f} e",
+            system.reduced_phosphates, reduced_phosphate_charge, nucleic_dielectric, charge));
 }
 
 // The oxygens of waters of the file that are no part of the system.
@@ -271,7 +269,9 @@ std::string format_approximate(const PreparedSystem& system, std::string_view ti
 void create_folder(const std::filesystem::path& folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
-    if (error) throw LoadError({folder.string()}, fmt::format("no folder: {}", error.message()));
+    if (error)
+        throw LoadError({folder.string()},
+                        fmt::format("the folder cannot be made: {}", error.message()));
 }
 
 }  // namespace

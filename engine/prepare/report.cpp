@@ -27,7 +27,7 @@ std::string Report::to_text() const {
         }
         text += '\n';
     };
-    if (!warnings_.empty()) write("Look at these first", warnings_);
+    if (!warnings_.empty()) write("Warnings: check these first", warnings_);
     for (const auto& [heading, lines] : sections_) write(heading, lines);
     return text;
 }

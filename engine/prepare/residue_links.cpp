@@ -211,14 +211,14 @@ std::vector<LinkPatch> patch_links(const ForceField& force_field, const Structur
             ++contacts;
         } else {
             report.warn(
-                fmt::format("{}: bonded {}, but there is no patch{}; without a bond they "
-                            "repel each other, --without leaves one of them out",
+                fmt::format("{}: bonded {}, but the force field has no patch for this bond{}; "
+                            "without it they repel each other (leave one out with --without)",
                             words, why, patch ? " " + patch->patch : ""));
         }
     }
     if (contacts > 0) {
-        report.add(links_heading, fmt::format("{} contact{} of metals that the file states: not "
-                                              "bonded, ions keep their place by their charge",
+        report.add(links_heading, fmt::format("{} contact{} of metal ions in the file: no bonds "
+                                              "made, charges hold the ions in place",
                                               contacts, contacts == 1 ? "" : "s"));
     }
     return patches;

@@ -247,7 +247,7 @@ private:
     }
 
     static std::string taken_as(const std::string& from, const std::string& to) {
-        return fmt::format("{} taken as {}, as asked", from, to);
+        return fmt::format("{} taken as {}, as requested", from, to);
     }
 
     // One atom is an ion, whatever else has its name in the force field.
@@ -380,7 +380,7 @@ private:
             find_state(residue);
             return;
         }
-        report_.add(protonation_heading, fmt::format("{}: {}, as asked", label, state));
+        report_.add(protonation_heading, fmt::format("{}: {}, as requested", label, state));
     }
 
     void choose_patch(const ResidueRange& residue, const std::string& patch) {
@@ -434,9 +434,9 @@ private:
         const std::string label = residue_label(structure_, residue);
         if (state.is_flipped) {
             flip(structure_, residue);
-            report_.add(turned_heading, fmt::format("{}: turned over, {:.1f} hydrogen bonds gained "
-                                                    "({})",
-                                                    label, state.gain, state.reason));
+            report_.add(turned_heading,
+                        fmt::format("{}: flipped, {:.1f} hydrogen bonds gained ({})", label,
+                                    state.gain, state.reason));
         }
         if (state.histidine.empty() || is_known("HIS")) return;
         rename_residue(structure_, residue, state.histidine);
@@ -444,8 +444,8 @@ private:
                     fmt::format("{}: {} ({})", label, state.histidine, state.reason));
         if (state.might_be_charged) {
             report_.warn(
-                fmt::format("{} has an acceptor at both nitrogens and may be charged: "
-                            "--protonation {}:{}=HSP",
+                fmt::format("{} has acceptors at both ring nitrogens, so it may be charged; to "
+                            "charge it: --protonation {}:{}=HSP",
                             label, identity(residue).first, identity(residue).second));
         }
     }
@@ -469,12 +469,12 @@ private:
     }
 
     void report_unknown(const std::string& name, const std::vector<ResidueRange>& residues) {
-        UnknownResidue unknown{name, meaning_of(name), {}, residues[0].count, {}};
+        UnknownResidue unknown = describe_unknown(name);
+        unknown.atoms = residues[0].count;
         for (const ResidueRange& residue : residues) {
             const auto [chain, number] = identity(residue);
             unknown.where.push_back(fmt::format("{}:{}", chain, number));
         }
-        unknown.advice = advice_for(name);
         std::string where = fmt::format(
             "{}",
             fmt::join(unknown.where.begin(),
@@ -485,7 +485,7 @@ private:
         missing_.add({structure_.file, structure_.lines[residues[0].first], 0},
                      fmt::format("no topology for residue '{}'{}{} ({}; {} atoms): {}", name,
                                  unknown.meaning.empty() ? "" : ", ", unknown.meaning, where,
-                                 unknown.atoms, unknown.advice));
+                                 unknown.atoms, advise(unknown, AdviceFor::CommandLine)));
         unknown_.push_back(std::move(unknown));
     }
 
@@ -496,20 +496,15 @@ private:
         return named == structure_.component_names.end() ? std::string() : printable(named->second);
     }
 
-    std::string advice_for(const std::string& name) const {
+    UnknownResidue describe_unknown(const std::string& name) const {
+        UnknownResidue unknown;
+        unknown.name = name;
+        unknown.meaning = meaning_of(name);
+        if (const auto parent = look_up(parents, name)) unknown.similar = *parent;
         const auto found = find_component(name);
-        const auto parent = look_up(parents, name);
-        const std::string as =
-            parent ? fmt::format("take it as {} with --as {}={}, ", *parent, name, *parent)
-                   : std::string();
-        const bool is_covered = found && !found->component->charmm.empty();
-        const std::string files = is_covered
-                                      ? fmt::format("add {} with --toppar", found->table->files)
-                                      : std::string("give the file that has it with --toppar");
-        const std::string without = fmt::format("leave it out with --without {}", name);
-        if (settings_.approximates_ligands) return fmt::format("{}{}, or {}", as, files, without);
-        return fmt::format("{}{}, {}, or take a ligand approximately with --approximate-ligands",
-                           as, files, without);
+        if (found && !found->component->charmm.empty()) unknown.files = found->table->files;
+        unknown.can_be_approximated = !settings_.approximates_ligands;
+        return unknown;
     }
 
     const ForceField& force_field_;

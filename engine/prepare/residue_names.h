@@ -4,6 +4,7 @@
 #include "charmm/missing.h"
 #include "molecule/atoms.h"
 #include "prepare/report.h"
+#include "prepare/residue_advice.h"
 #include "prepare/residue_links.h"
 #include "prepare/settings.h"
 
@@ -18,15 +19,6 @@ namespace palpa {
 struct ResiduePatch {
     std::size_t atom;  // any of the residue's
     std::string patch;
-};
-
-// A kind of residue that the force field lacks.
-struct UnknownResidue {
-    std::string name;                // "TES"
-    std::string meaning;             // in words, by the file or by our tables; may be empty
-    std::vector<std::string> where;  // "A:325"
-    std::size_t atoms = 0;           // of the first
-    std::string advice;              // what to do
 };
 
 struct NamedResidues {

@@ -129,8 +129,8 @@ private:
             if (segments_.insert(name).second) return name;
         }
         throw LoadError({structure_.file},
-                        fmt::format("more than {} segments; expected fewer, --without leaves out "
-                                    "what is not needed",
+                        fmt::format("the structure has more than {} segments; expected fewer "
+                                    "(leave molecules out with --without)",
                                     most_segments));
     }
 
@@ -165,12 +165,12 @@ private:
             choose_ends(first, last, is_behind_gap, is_before_gap, settings);
         }
         if (is_behind_gap) {
-            report_.warn(fmt::format(
-                "chain {} has a gap between {} and {}: {} close it (--last, --first take other "
-                "patches)",
-                chain_name, residue_label(structure_, residues_[before->second]),
-                residue_label(structure_, residues_[first]),
-                is_nucleic ? "a hydroxyl and a phosphate" : "neutral caps"));
+            report_.warn(
+                fmt::format("chain {} has a gap between {} and {}, closed by {} (for other "
+                            "patches: --last, --first)",
+                            chain_name, residue_label(structure_, residues_[before->second]),
+                            residue_label(structure_, residues_[first]),
+                            is_nucleic ? "a hydroxyl and a phosphate" : "neutral caps"));
         }
         last_of_chain_[chain_key] = last;
         // A chain's name means its real ends, not those at gaps.
@@ -218,8 +218,8 @@ private:
         } else if (!has_atom(last, "CAT")) {
             settings.last.clear();
             report_.warn(
-                fmt::format("{} stands alone before a gap, charged at both ends; --without "
-                            "{}:{} leaves it out",
+                fmt::format("{} is a single residue before a gap and is charged at both ends; to "
+                            "leave it out: --without {}:{}",
                             residue_label(structure_, residues_[last]), chain(last),
                             structure_.names[residues_[last].first].number));
         }
@@ -250,10 +250,11 @@ private:
             ++count;
         }
         if (count == 0) return;
-        report_.add(segments_heading,
-                    fmt::format("{} to {}: {} of {} sugars have no O2', so they are deoxyribose",
-                                residue_label(structure_, residues_[first]),
-                                residue_label(structure_, residues_[end - 1]), count, end - first));
+        report_.add(
+            segments_heading,
+            fmt::format("{} to {}: {} of {} sugars have no O2', so they were taken as deoxyribose",
+                        residue_label(structure_, residues_[first]),
+                        residue_label(structure_, residues_[end - 1]), count, end - first));
     }
 
     // A peptide whose last C is bonded to its first N.
@@ -345,8 +346,8 @@ private:
             if (is_new) continue;
             const std::size_t line = structure_.lines[before->second];
             missing_.add({structure_.file, structure_.lines[residue.first], 0},
-                         fmt::format("{} has the number of {} (line {}); expected a number, or an "
-                                     "insertion code, of its own, or --without one of them",
+                         fmt::format("{} has the same number as {} (line {}); expected different "
+                                     "numbers or insertion codes, or --without one of them",
                                      residue_label(structure_, residue),
                                      structure_.names[before->second].residue, line));
         }
@@ -389,7 +390,7 @@ private:
                                          one.chain, one.number, other.chain, other.number));
                 continue;
             }
-            add_disulphide(*a, *b, "as asked");
+            add_disulphide(*a, *b, "as requested");
             taken.insert(*a);
             taken.insert(*b);
         }
@@ -397,11 +398,12 @@ private:
         for (const auto& [distance, a, b] : find_sulphur_pairs()) {
             if (taken.contains(a) || taken.contains(b)) continue;
             if (distance > longest_link) {
-                report_.add(disulphide_heading,
-                            fmt::format("{} and {}: not bonded, SG {:.2f} Å apart (--disulphide "
-                                        "bonds them)",
-                                        residue_label(structure_, residues_[a]),
-                                        residue_label(structure_, residues_[b]), distance));
+                report_.add(
+                    disulphide_heading,
+                    fmt::format(
+                        "{} and {}: not bonded, SG {:.2f} Å apart (to bond them: --disulphide)",
+                        residue_label(structure_, residues_[a]),
+                        residue_label(structure_, residues_[b]), distance));
                 continue;
             }
             taken.insert(a);

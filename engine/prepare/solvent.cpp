@@ -50,16 +50,15 @@ std::optional<SolventObstacle> find_uncovered(const Connectivity& connectivity,
     const std::vector<std::uint8_t> is_water =
         find_water_atoms(connectivity.names, connectivity.mass);
     if (settings.keeps_waters && std::ranges::find(is_water, 1) != is_water.end()) {
-        return SolventObstacle{
-            "waters are kept, and beside EEF1-SB they would be counted twice",
-            "leave them out (no --keep-waters), or name the few that are part of the structure "
-            "(--structural-water A:301)"};
+        return SolventObstacle{"the system has explicit waters, which EEF1-SB would count twice",
+                               "leave the waters out (no --keep-waters), or name the few that are "
+                               "part of the structure (--structural-water A:301)"};
     }
     const std::vector<std::string> uncovered =
         find_uncovered_types(connectivity, eef1sb_table(), find_structural(connectivity, settings));
     if (!uncovered.empty()) {
         return SolventObstacle{
-            fmt::format("EEF1-SB has no numbers for {}: {}",
+            fmt::format("EEF1-SB has no parameters for {}: {}",
                         uncovered.size() == 1 ? "a type of atoms" : "types of atoms",
                         join_some(uncovered)),
             "leave those residues out (--without, --no-ions)"};
@@ -75,15 +74,15 @@ std::optional<SolventObstacle> find_obstacle(
         find_other_radii(connectivity, solvation, eef1sb_table());
     if (!others.empty()) {
         return SolventObstacle{
-            fmt::format("EEF1-SB is made for CHARMM36, and these parameter files have other radii: "
-                        "{}",
-                        join_some(others)),
+            fmt::format(
+                "EEF1-SB requires the radii of CHARMM36, but these parameter files have others: {}",
+                join_some(others)),
             "give CHARMM36's or CHARMM36m's files (--toppar)"};
     }
     const std::vector<std::string> charged = find_charged_groups(connectivity, groups);
     if (!charged.empty()) {
         return SolventObstacle{
-            fmt::format("EEF1-SB needs neutral charge groups, and has no charges for {}",
+            fmt::format("EEF1-SB requires neutral charge groups and has no charges for {}",
                         join_some(charged)),
             "take residues and patches that it knows (ARG LYS ASP GLU HSP, NTER GLYP PROP CTER), "
             "or give ionic groups of a ligand neutral charges in its topology file"};
@@ -110,14 +109,13 @@ void report_groups(const Connectivity& connectivity, std::size_t charge_groups, 
                                residues.size(), fmt::join(residues, ", ")));
     }
     report.add(solvent_heading,
-               fmt::format("{} charge groups, all neutral; so is the whole", charge_groups));
+               fmt::format("{} charge groups, all neutral; total charge 0 e", charge_groups));
 }
 
 void report_force_field(const ForceField& given, Report& report) {
     const bool is_m = given.nbfix.contains(in_order("NC2", "OC"));
     if (is_m) {
-        report.add(solvent_heading,
-                   "NBFIX of NC2 and OC: off, those types are combined as all others");
+        report.add(solvent_heading, "NBFIX of NC2 and OC: switched off, as EEF1-SB requires");
     }
     const double k = find_backbone_term(given);
     if (k != 0) {
@@ -136,7 +134,7 @@ void report_force_field(const ForceField& given, Report& report) {
 
 void report_types(const Connectivity& connectivity, Report& report) {
     for (const std::string& assigned : find_assigned_types(connectivity, eef1sb_table())) {
-        report.add(solvent_heading, fmt::format("ASSIGNED by us, not published: {}", assigned));
+        report.add(solvent_heading, fmt::format("assigned by Palpa, not published: {}", assigned));
     }
 }
 
@@ -146,9 +144,10 @@ void report_structural(const Connectivity& connectivity, const PrepareSettings& 
     const std::vector<std::uint8_t> is_water =
         find_water_atoms(connectivity.names, connectivity.mass);
     const auto atoms = std::ranges::count(is_water, std::uint8_t{1});
-    report.add(solvent_heading, fmt::format("structural waters, as asked: {}, without volume or "
-                                            "solvation energy",
-                                            atoms / 3));
+    report.add(
+        solvent_heading,
+        fmt::format("structural waters, as requested: {}, without volume or solvation energy",
+                    atoms / 3));
 }
 
 }  // namespace
@@ -171,20 +170,23 @@ std::optional<SolvatedSystem> solvate(const ForceField& force_field, const Struc
     }
     if (obstacle) {
         if (settings.solvent) {
-            throw LoadError({structure.file},
-                            fmt::format("no --solvent eef1-sb: {}; expected to {}, or "
-                                        "--solvent none",
-                                        obstacle->reason, obstacle->advice));
+            throw LoadError(
+                {structure.file},
+                fmt::format(
+                    "--solvent eef1-sb cannot be used: {}; expected to {}, or --solvent none",
+                    obstacle->reason, obstacle->advice));
         }
-        report.add(solvent_heading, fmt::format("none, vacuum: {}", obstacle->reason));
+        report.add(solvent_heading, fmt::format("none (vacuum), because {}", obstacle->reason));
         return std::nullopt;
     }
-    report.add(solvent_heading,
-               fmt::format("EEF1-SB's implicit water{}: neutral ionic groups, a dielectric of "
-                           "1.5 r, and no molecules of water",
-                           settings.solvent ? ", as asked" : ", which covers every type"));
-    report.add(solvent_heading,
-               "hydrogens are turned and clashes relaxed with full charges, as without a solvent");
+    report.add(
+        solvent_heading,
+        fmt::format("implicit water, EEF1-SB{}: neutral ionic groups, a dielectric of 1.5 r, no "
+                    "explicit water",
+                    settings.solvent ? ", as requested" : ", because it covers every atom type"));
+    report.add(
+        solvent_heading,
+        "hydrogens were oriented and clashes relaxed with full charges, as without a solvent");
     report_groups(system.connectivity, groups.size(), report);
     report_types(system.connectivity, report);
     report_structural(system.connectivity, settings, report);

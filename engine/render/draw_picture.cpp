@@ -69,7 +69,8 @@ Picture Renderer::draw(const FrameScene& scene, std::uint32_t width, std::uint32
 Picture Renderer::draw_in_tiles(const FrameScene& scene, std::uint32_t width, std::uint32_t height,
                                 std::uint32_t largest, PictureContent content) {
     if (width == 0 || height == 0) {
-        throw GpuError(fmt::format("a picture of {}x{}; expected 1x1 at least", width, height));
+        throw GpuError(
+            fmt::format("a picture of {}x{} pixels; expected at least 1x1", width, height));
     }
     const GpuFrame whole = build_frame_constants(scene, {width, height});
     if (width <= largest && height <= largest) return draw_frame(scene, whole, content);
@@ -77,8 +78,8 @@ Picture Renderer::draw_in_tiles(const FrameScene& scene, std::uint32_t width, st
         std::max(farthest_tap, static_cast<std::uint32_t>(std::max(scene.outline, 0))) + 1;
     if (largest <= 2 * margin) {
         throw GpuError(
-            fmt::format("tiles of {} pixels; expected more than {}: as much around them "
-                        "is drawn as shading and outlines look at",
+            fmt::format("tiles of {} pixels are too small; expected more than {} pixels, the range "
+                        "of shading and outlines",
                         largest, 2 * margin));
     }
     Picture picture{width, height, {}, {}, {}};
@@ -122,8 +123,8 @@ Picture Renderer::draw_frame(const FrameScene& scene, const GpuFrame& frame,
     if (lacks_layers()) submit();  // now there is room for them
     if (lacks_layers()) {
         throw GpuError(
-            fmt::format("a picture of {}x{} has more than {} translucent layers for "
-                        "its pixels together, too many for {}; expected a smaller one",
+            fmt::format("a picture of {}x{} pixels needs more than {} translucent layers, too many "
+                        "for {}; expected a smaller picture",
                         size.width, size.height, layers_.room(), device_.name()));
     }
     Picture picture{size.width, size.height, colours.read<std::uint8_t>(), {}, {}};

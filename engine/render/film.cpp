@@ -61,15 +61,15 @@ std::vector<fs::path> list_frames(const fs::path& folder, bool overwrites) {
     if (!is_there(folder)) return {};
     std::error_code error;
     if (!fs::is_directory(fs::symlink_status(folder, error)))
-        throw LoadError({folder.string()}, "is no folder; expected one for the film's pictures");
+        throw LoadError({folder.string()}, "is not a folder; expected one for the film's pictures");
     std::vector<fs::path> frames = list_folder(folder);
     if (frames.empty()) return frames;
     if (!overwrites || !std::ranges::all_of(frames, is_own_frame)) {
         throw LoadError({folder.string()},
-                        overwrites ? "holds something that is no picture of a film, and is not "
+                        overwrites ? "contains files that are not pictures of a film and is not "
                                      "replaced; expected another name for the film"
-                                   : "holds something already, and is where the film's pictures "
-                                     "go; expected another name for the film, or --overwrite");
+                                   : "is the folder for the film's pictures and is not empty; "
+                                     "expected another name for the film, or --overwrite");
     }
     return frames;
 }
@@ -81,7 +81,7 @@ std::string first_line_of(const fs::path& file) {
     while (std::getline(stream, line)) {
         if (!trimmed(line).empty()) return printable(trimmed(line));
     }
-    return "it says nothing";
+    return "it gives no reason";
 }
 
 // ffmpeg takes "%" in the name of numbered pictures for a number.
@@ -101,16 +101,16 @@ void check_film(const FilmSettings& settings) {
     const std::string ending = upper_case(settings.file.extension().string());
     if (std::ranges::find(film_endings, ending) == film_endings.end()) {
         throw LoadError({settings.file.string()},
-                        fmt::format("'{}' is no ending of a film; expected .mp4, .mkv, .mov or "
-                                    ".webm, or a folder for its pictures",
+                        fmt::format("'{}' is not the ending of a film; expected .mp4, .mkv, .mov "
+                                    "or .webm, or a folder for its pictures",
                                     settings.file.extension().string()));
     }
     if (is_there(settings.file) && !(settings.overwrites && is_own_film(settings.file))) {
-        throw LoadError({settings.file.string()},
-                        settings.overwrites
-                            ? "is no film that this program made, and is not replaced; expected "
-                              "another name"
-                            : "is there already; expected another name, or --overwrite");
+        throw LoadError(
+            {settings.file.string()},
+            settings.overwrites
+                ? "was not made by this program and is not replaced; expected another name"
+                : "already exists; expected another name, or --overwrite");
     }
     (void)list_frames(folder_of(settings.file), settings.overwrites);
 }
@@ -133,7 +133,7 @@ FilmEnd Film::finish() {
     FilmEnd end;
     end.folder = folder_;
     if (count_ == 0) {
-        end.why = "no picture was taken";
+        end.why = "no picture was drawn";
         return end;
     }
     if (is_sequence(settings_.file)) {
@@ -152,15 +152,15 @@ FilmEnd Film::finish() {
         work.path() / "output", work.path() / "errors");
     std::error_code error;
     if (ffmpeg.problem != 0 || ffmpeg.status != 0) {
-        end.why = ffmpeg.problem != 0 ? "ffmpeg is not installed, which makes a film of them"
-                                      : fmt::format("ffmpeg made no film of them: {}",
+        end.why = ffmpeg.problem != 0 ? "ffmpeg is not installed; install it to make a film of them"
+                                      : fmt::format("ffmpeg failed to make a film of them: {}",
                                                     first_line_of(work.path() / "errors"));
         fs::remove(made, error);
         return end;
     }
     // Somebody may have put a file there meanwhile.
     if (is_there(settings_.file) && !(settings_.overwrites && is_own_film(settings_.file))) {
-        end.why = fmt::format("{} is there already", settings_.file.string());
+        end.why = fmt::format("{} already exists", settings_.file.string());
         fs::remove(made, error);
         return end;
     }

@@ -30,9 +30,10 @@ void LayerLists::reserve(VkExtent2D size) {
     }
     heads_bytes_ = word * (1 + pixels);
     if (heads_bytes_ + node_bytes > largest) {
-        throw GpuError(fmt::format(
-            "translucent shapes in a picture of {}x{}; expected at most {} pixels on {}",
-            size.width, size.height, largest / word, device_->name()));
+        throw GpuError(
+            fmt::format("a picture of {}x{} pixels with translucent shapes is too large; expected "
+                        "at most {} pixels in all on {}",
+                        size.width, size.height, largest / word, device_->name()));
     }
     const auto most = static_cast<std::uint32_t>(
         std::min<VkDeviceSize>((largest - heads_bytes_) / node_bytes, UINT32_MAX / 4));

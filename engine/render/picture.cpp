@@ -111,7 +111,7 @@ Picture read_png(const std::filesystem::path& path) {
     png_image image{};
     image.version = PNG_IMAGE_VERSION;
     if (png_image_begin_read_from_memory(&image, content.data(), content.size()) == 0)
-        throw LoadError({path.string()}, std::string("is no PNG file: ") + image.message);
+        throw LoadError({path.string()}, std::string("is not a PNG file: ") + image.message);
     if (image.width > most || image.height > most) {
         png_image_free(&image);
         throw LoadError({path.string()},

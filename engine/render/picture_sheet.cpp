@@ -55,7 +55,8 @@ PictureSheet::PictureSheet(GpuDevice& device, std::span<const Picture> pictures)
     const auto rows = (static_cast<std::uint32_t>(count_) + columns_ - 1) / columns_;
     const VkExtent2D all{each_.width * columns_, each_.height * rows};
     if (all.width > largest_side || all.height > largest_side)
-        throw GpuError("the pictures are larger than every graphics device can have them");
+        throw GpuError(
+            "the pictures are too large together for a graphics device; use fewer or smaller ones");
     const std::size_t row_bytes = 4 * static_cast<std::size_t>(each_.width);
     const Buffer staging(device, row_bytes * columns_ * all.height,
                          VK_BUFFER_USAGE_TRANSFER_SRC_BIT, BufferPlace::Readback);

@@ -181,7 +181,7 @@ TextPainter::TextPainter(const std::filesystem::path& font) : font_(std::make_un
     const bool is_read = FT_New_Face(library, font.string().c_str(), 0, &face) == 0;
     if (is_read) font_->face.reset(face);
     if (!is_read || !FT_IS_SCALABLE(face))
-        throw LoadError({font.string()}, "is no font; expected one with outlines, such as .ttf");
+        throw LoadError({font.string()}, "is not a font; expected one with outlines, such as .ttf");
     FT_Stroker stroker = nullptr;
     if (FT_Stroker_New(library, &stroker) != 0) throw LoadError({"FreeType"}, "has no memory");
     font_->stroker.reset(stroker);
@@ -226,7 +226,7 @@ void TextPainter::draw(Picture& picture, std::string_view text, int left, int to
 struct TextPainter::Font {};
 
 TextPainter::TextPainter(const std::filesystem::path& /*font*/) {
-    throw LoadError({"FreeType"}, "is not part of this program, which was built without it");
+    throw LoadError({"FreeType"}, "is missing: this program was built without it");
 }
 
 TextSize TextPainter::measure(std::string_view /*text*/, int /*letter_size*/) { return {}; }

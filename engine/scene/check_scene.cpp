@@ -28,10 +28,10 @@ const MoleculeDescription* find_named(const SceneDescription& scene, Problems& p
         if (molecule.name == name) return &molecule;
         names.emplace_back(molecule.name);
     }
-    problems.add(problems.place_of(key),
-                 fmt::format("'{}' is \"{}\", which is no molecule of this scene; "
-                             "expected one of {}{}",
-                             key, name, fmt::join(names, ", "), near_name_hint(name, names)));
+    problems.add(
+        problems.place_of(key),
+        fmt::format("'{}' is \"{}\", which is not a molecule of this scene; expected one of {}{}",
+                    key, name, fmt::join(names, ", "), near_name_hint(name, names)));
     return nullptr;
 }
 
@@ -61,11 +61,11 @@ bool check_grabbed(const SceneDescription& scene, const HandTables& by,
         problems.place_of(key),
         fmt::format("'{}' is \"{}\", whose motion is \"{}\"; expected {}", key, by.grab.molecule,
                     name_of(grabbed.motion),
-                    by_spring ? fmt::format("a free molecule, or one that is fixed and flexible: "
-                                            "the hand pulls at it by a spring ({}.atom)",
+                    by_spring ? fmt::format("a molecule that is free, or fixed and flexible, "
+                                            "because the hand pulls it by a spring ({}.atom)",
                                             by.grab_key)
-                              : "a molecule that moves, along-x, translate, translate-and-turn "
-                                "or with-handle"));
+                              : "a molecule that the hand can move: along-x, translate, "
+                                "translate-and-turn or with-handle"));
     return false;
 }
 
@@ -74,13 +74,15 @@ void check_start(const HandTables& by, bool along_x, Problems& problems) {
     const std::string offset = by.hand_key + ".start_offset_angstrom";
     if (along_x && by.hand.start_offset_angstrom != std::array<double, 3>{}) {
         problems.add(problems.place_of(offset),
-                     fmt::format("'{}' is for a molecule that moves in space; expected {}", offset,
-                                 distance));
+                     fmt::format("'{}' applies to a molecule that moves in space, and this one "
+                                 "moves along x; expected {}",
+                                 offset, distance));
     }
     if (!along_x && by.hand.start_angstrom) {
         problems.add(problems.place_of(distance),
-                     fmt::format("'{}' is for a molecule that moves along x; expected {}", distance,
-                                 offset));
+                     fmt::format("'{}' applies to a molecule that moves along x, and this one "
+                                 "moves in space; expected {}",
+                                 distance, offset));
     }
 }
 
@@ -120,16 +122,17 @@ void check_motions(const SceneDescription& scene,
         }
         if (molecule.motion == Motion::AlongX && scene.has_statics()) {
             problems.add(problems.place_of(key),
-                         fmt::format("'{}' is \"along-x\" beside something that moves by "
-                                     "itself; expected translate or translate-and-turn",
+                         fmt::format("'{}' is \"along-x\" in a scene with molecules that move by "
+                                     "themselves; expected translate or translate-and-turn",
                                      key));
         }
         if (molecule.motion == Motion::WithHandle && scene.has_statics()) {
-            problems.add(problems.place_of(key),
-                         fmt::format("'{}' is \"with-handle\" beside something that moves by "
-                                     "itself, which a handle does not turn yet; expected "
-                                     "translate or translate-and-turn",
-                                     key));
+            problems.add(
+                problems.place_of(key),
+                fmt::format(
+                    "'{}' is \"with-handle\" in a scene with molecules that move by themselves, "
+                    "which is not supported; expected translate or translate-and-turn",
+                    key));
         }
     }
 }
@@ -146,8 +149,8 @@ void check_grab(const SceneDescription& scene, Problems& problems) {
         find_named(scene, problems, "joints.around", scene.joints.around);
     if (scene.joints.region_angstrom && scene.joints.within_angstrom) {
         problems.add(problems.place_of("joints.within_angstrom"),
-                     "'joints.within_angstrom' is given beside 'joints.region_angstrom'; expected "
-                     "one of them");
+                     "'joints.within_angstrom' and 'joints.region_angstrom' are both given; "
+                     "expected one of them");
     }
 }
 
@@ -169,24 +172,25 @@ bool is_host_in_numbers(std::string_view host) {
 void check_engine(const EngineDescription& engine, Problems& problems) {
     if (!is_engine_address(engine.address)) {
         problems.add(problems.place_of("engine.address"),
-                     fmt::format("'engine.address' is \"{}\"; expected HOST:PORT with the host in "
-                                 "numbers, as \"127.0.0.1:8888\"",
+                     fmt::format("'engine.address' is \"{}\"; expected HOST:PORT with a numeric "
+                                 "host, such as \"127.0.0.1:8888\"",
                                  engine.address));
     }
     if (engine.program == EngineProgram::Lammps && engine.rate == 1) {
         problems.add(problems.place_of("engine.rate"),
-                     "'engine.rate' is 1, at which LAMMPS takes no forces: it does where it sends "
-                     "every second step or rarer; expected 2 or more, or 0: as its input has it");
+                     "'engine.rate' is 1, but LAMMPS accepts forces only if it sends every second "
+                     "step or fewer; expected 2 or more, or 0 for the rate of its input");
     }
 }
 
 void check_camera(const std::string& key, const std::array<double, 3>& camera, Problems& problems) {
     const auto [azimuth, elevation, zoom] = camera;
     if (std::abs(elevation) <= 90 && zoom >= 0.01 && zoom <= 100) return;
-    problems.add(problems.place_of(key),
-                 fmt::format("'{}' is [{}, {}, {}]; expected [azimuth, elevation, zoom]: "
-                             "degrees, the second from -90 to 90, and a factor from 0.01 to 100",
-                             key, azimuth, elevation, zoom));
+    problems.add(
+        problems.place_of(key),
+        fmt::format("'{}' is [{}, {}, {}]; expected [azimuth, elevation, zoom]: azimuth in "
+                    "degrees, elevation from -90 to 90 degrees, zoom factor from 0.01 to 100",
+                    key, azimuth, elevation, zoom));
 }
 
 void check_saved_views(const SceneDescription& scene, Problems& problems) {
@@ -195,10 +199,11 @@ void check_saved_views(const SceneDescription& scene, Problems& problems) {
         const std::string key = fmt::format("view.saved[{}]", names.size() + 1);
         check_camera(key + ".camera", saved.camera, problems);
         if (std::ranges::find(names, saved.name) != names.end()) {
-            problems.add(problems.place_of(key + ".name"),
-                         fmt::format("'{}.name' is \"{}\", as that of a view before; expected a "
-                                     "name of its own",
-                                     key, saved.name));
+            problems.add(
+                problems.place_of(key + ".name"),
+                fmt::format(
+                    "'{}.name' is \"{}\", the name of an earlier view; expected a different name",
+                    key, saved.name));
         }
         names.emplace_back(saved.name);
     }
@@ -240,7 +245,7 @@ void check_edit(const EditDescription& edit, bool has_second, const std::string&
     const std::string whose = path + "hand";
     if (edit.hand == 1 && !has_second) {
         problems.add(problems.place_of(whose),
-                     fmt::format("'{}' is \"second\", and the scene has one hand; expected "
+                     fmt::format("'{}' is \"second\", but the scene has one hand; expected "
                                  "\"first\", or a table [second.grab]",
                                  whose));
     }
@@ -278,28 +283,28 @@ void check_hand(const HandTables& by, bool is_remote, Problems& problems) {
         if (!right) problems.add(problems.place_of(key), fmt::format("'{}' {}", key, what));
     };
     check(h.stroke != Stroke::InOut || !is_remote, stroke,
-          "is \"in-out\", for which there is no wall to go to with [engine]; expected \"hold\", "
+          "is \"in-out\", which does not work with a remote engine ([engine]); expected \"hold\", "
           "\"path\" or \"lead\"");
     check(h.stroke != Stroke::InOut || h.grip != HandGrip::None, stroke,
-          "is \"in-out\" with a grip of \"none\": nobody would move the handle; expected "
-          "\"hold\", or a hand");
+          "is \"in-out\", but with the grip \"none\" nobody moves the handle; expected \"hold\", "
+          "or another grip");
     const bool has_path = h.stroke == Stroke::Path || h.stroke == Stroke::Lead;
     check(!has_path || !h.path.empty(), stroke,
           fmt::format("is \"{}\", but '{}' has no point; expected [[time, place], ...]",
                       stroke_names[static_cast<std::size_t>(h.stroke)], path));
     check(h.stroke != Stroke::Lead || h.grip != HandGrip::None, stroke,
-          "is \"lead\" with a grip of \"none\": nobody would move the handle; expected a hand");
+          "is \"lead\", but with the grip \"none\" nobody moves the handle; expected another grip");
     const auto turns = [](const PathPoint& point) {
         return point.turn_deg != PathPoint{}.turn_deg;
     };
     check(h.stroke != Stroke::Lead || std::ranges::none_of(h.path, turns), path,
-          fmt::format("turns the handle, but '{}' is \"lead\", which only moves; expected [s, Å] "
-                      "or [s, Å, Å, Å]",
+          fmt::format("turns the handle, but '{}' is \"lead\", which does not turn it; expected "
+                      "[s, Å] or [s, Å, Å, Å]",
                       stroke));
     for (std::size_t i = 1; i < h.path.size(); ++i) {
         check(h.path[i].time_s > h.path[i - 1].time_s, path,
-              fmt::format("has the time {} after {}; expected ascending times", h.path[i].time_s,
-                          h.path[i - 1].time_s));
+              fmt::format("has the time {} s after {} s; expected ascending times",
+                          h.path[i].time_s, h.path[i - 1].time_s));
     }
 }
 
@@ -327,15 +332,17 @@ void check_lesson_step(const LessonStepDescription& step, const std::string& key
     const bool has_bounds = step.at_least || step.at_most;
     if (const auto& question = step.question) {
         check(!has_bounds, key,
-              fmt::format("'{}' has a question and a quantity with bounds; expected one of them",
-                          key));
+              fmt::format(
+                  "'{}' has both a question and bounds (at_least, at_most); expected one of them",
+                  key));
         check(question->right <= static_cast<std::int64_t>(question->answers.size()),
               key + ".question.right",
-              fmt::format("'{}.question.right' is {}, of {} answers", key, question->right,
-                          question->answers.size()));
+              fmt::format("'{}.question.right' is {}; expected the number of one of the {} answers",
+                          key, question->right, question->answers.size()));
         check(question->why.size() == question->answers.size(), key + ".question.why",
-              fmt::format("'{}.question.why' explains {} of {} answers; expected one of each", key,
-                          question->why.size(), question->answers.size()));
+              fmt::format(
+                  "'{}.question.why' has {} texts for {} answers; expected one for each answer",
+                  key, question->why.size(), question->answers.size()));
         return;
     }
     check(has_bounds, key,
@@ -343,13 +350,13 @@ void check_lesson_step(const LessonStepDescription& step, const std::string& key
                       key));
     const auto [fewest, most] = count_selections(step.quantity);
     check(step.of.size() >= fewest && step.of.size() <= most, key + ".of",
-          fmt::format("'{}.of' has {} selections, and {} is of {}", key, step.of.size(),
+          fmt::format("'{}.of' has {} selections, but {} needs {}", key, step.of.size(),
                       lesson_quantity_names[static_cast<std::size_t>(step.quantity)], most));
     for (std::size_t i = 1; i < step.operator_path.size(); ++i) {
-        check(step.operator_path[i].time_s > step.operator_path[i - 1].time_s,
-              key + ".operator_path",
-              fmt::format("'{}.operator_path' has the time {} after {}; expected ascending times",
-                          key, step.operator_path[i].time_s, step.operator_path[i - 1].time_s));
+        check(
+            step.operator_path[i].time_s > step.operator_path[i - 1].time_s, key + ".operator_path",
+            fmt::format("'{}.operator_path' has the time {} s after {} s; expected ascending times",
+                        key, step.operator_path[i].time_s, step.operator_path[i - 1].time_s));
     }
 }
 
@@ -361,24 +368,23 @@ void check_ranges(const SceneDescription& scene, Problems& problems) {
               method_of(scene.statics) == RelaxMethod::QuasiStatic ||
               method_of(scene.statics) == RelaxMethod::SecondOrder,
           "statics.method",
-          fmt::format("'statics.method' is \"{}\", which moves all joints at once; expected "
-                      "second-order or quasi-static with coupling.feel_within_pN",
+          fmt::format("'statics.method' is \"{}\", which cannot follow an error limit "
+                      "(coupling.feel_within_pN); expected second-order or quasi-static",
                       relax_method_names[static_cast<std::size_t>(method_of(scene.statics))]));
     const StaticsDescription& statics = scene.statics;
     const bool is_adaptive =
         statics.budget_us.has_value() || statics.active < StaticsDescription{}.active;
     check(!is_adaptive || method_of(statics) == RelaxMethod::QuasiStatic, "statics.method",
-          fmt::format("'statics.method' is \"{}\", which moves all degrees of freedom; expected "
-                      "quasi-static with statics.{}",
+          fmt::format("'statics.method' is \"{}\", which always moves all degrees of freedom; "
+                      "expected quasi-static with statics.{}",
                       relax_method_names[static_cast<std::size_t>(method_of(statics))],
                       statics.budget_us ? "budget_us" : "active"));
     const bool has_solvent = scene.force_field.solvent != Solvent::None;
-    check(
-        !has_solvent || !scene.statics.cutoff_angstrom, "statics.cutoff_angstrom",
-        fmt::format("'statics.cutoff_angstrom' is {}, and with force_field.solvent = \"{}\" forces "
-                    "end at 9 and 9.5 Å by themselves; expected no cutoff, or solvent = \"none\"",
-                    scene.statics.cutoff_angstrom.value_or(0),
-                    solvent_names[static_cast<std::size_t>(scene.force_field.solvent)]));
+    check(!has_solvent || !scene.statics.cutoff_angstrom, "statics.cutoff_angstrom",
+          fmt::format("'statics.cutoff_angstrom' is {}, but force_field.solvent = \"{}\" has "
+                      "cutoffs of its own (9 and 9.5 Å); expected no cutoff, or solvent = \"none\"",
+                      scene.statics.cutoff_angstrom.value_or(0),
+                      solvent_names[static_cast<std::size_t>(scene.force_field.solvent)]));
     for (const MoleculeDescription& molecule : scene.molecules) {
         const std::string anchors = fmt::format("molecules.{}.anchors", molecule.name);
         for (auto i = molecule.anchors.begin(); i != molecule.anchors.end(); ++i) {
@@ -387,18 +393,20 @@ void check_ranges(const SceneDescription& scene, Problems& problems) {
         }
         const std::string key = fmt::format("molecules.{}.structural_water", molecule.name);
         check(has_solvent || !molecule.structural_water, key,
-              fmt::format("'{}' is true without a solvent, where waters are as all molecules; "
-                          "expected force_field.solvent = \"eef1-sb\", or no such key",
+              fmt::format("'{}' is true, but the scene has no implicit solvent; expected "
+                          "force_field.solvent = \"eef1-sb\", or leave this key out",
                           key));
     }
     check(std::abs(scene.period_ms - std::round(scene.period_ms)) < 1e-9, "run.period_ms",
-          fmt::format("'run.period_ms' is {}; expected a whole number of servo ticks of 1 ms",
+          fmt::format("'run.period_ms' is {}; expected a whole number of ms (servo ticks)",
                       scene.period_ms));
     for (const LessonStepDescription& step : scene.lesson) {
         const std::string key = "lesson." + step.name;
         check_lesson_step(step, key, check);
         check(!(step.at_least && step.at_most) || *step.at_least <= *step.at_most, key + ".at_most",
-              fmt::format("'{}.at_most' is below at_least; no value would do", key));
+              fmt::format(
+                  "'{}.at_most' is below at_least, so no value can pass; expected at_least or more",
+                  key));
     }
 }
 
@@ -408,15 +416,15 @@ void check_coupling(const CouplingDescription& c, Problems& problems) {
     const auto check = [&](bool right, const std::string& key, const std::string& what) {
         if (!right) problems.add(problems.place_of(key), what);
     };
-    check(
-        c.F_h2_N > c.F_h1_N, "coupling.F_h2_N",
-        fmt::format("'coupling.F_h2_N' is {}; expected more than F_h1_N, {}", c.F_h2_N, c.F_h1_N));
+    check(c.F_h2_N > c.F_h1_N, "coupling.F_h2_N",
+          fmt::format("'coupling.F_h2_N' is {} N; expected more than F_h1_N, {} N", c.F_h2_N,
+                      c.F_h1_N));
     check(c.A_d_max >= c.A_d_min, "coupling.A_d_max",
           fmt::format("'coupling.A_d_max' is {}; expected A_d_min, {}, or more", c.A_d_max,
                       c.A_d_min));
     check(c.F_hi_nN * 1e3 > 2 * c.F_lo_pN, "coupling.F_hi_nN",
-          fmt::format("'coupling.F_hi_nN' is {}; expected more than twice F_lo_pN, {}", c.F_hi_nN,
-                      c.F_lo_pN));
+          fmt::format("'coupling.F_hi_nN' is {} nN; expected more than twice F_lo_pN, {} pN",
+                      c.F_hi_nN, c.F_lo_pN));
     if (const auto range = c.feel_pN) {
         constexpr double most_felt_newton = 3;
         const auto [weakest, strongest] = *range;
@@ -424,11 +432,11 @@ void check_coupling(const CouplingDescription& c, Problems& problems) {
               fmt::format("'coupling.feel_pN' is [{}, {}]; expected the weaker force first",
                           weakest, strongest));
         check(c.mode == CouplingMode::Guarded, "coupling.feel_pN",
-              fmt::format("'coupling.feel_pN' is for guarded coupling, and coupling.mode is {}, "
-                          "with forces of its own; expected mode = \"guarded\", or no feel_pN",
+              fmt::format("'coupling.feel_pN' applies to guarded coupling, but coupling.mode is "
+                          "{}; expected mode = \"guarded\", or no feel_pN",
                           coupling_mode_names[static_cast<std::size_t>(c.mode)]));
         check(c.clamp_N >= most_felt_newton, "coupling.clamp_N",
-              fmt::format("'coupling.clamp_N' is {}, and what feel_pN names is felt as up to {} N; "
+              fmt::format("'coupling.clamp_N' is {} N, but with feel_pN forces reach {} N; "
                           "expected that or more",
                           c.clamp_N, most_felt_newton));
     }

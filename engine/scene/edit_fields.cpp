@@ -13,14 +13,16 @@ namespace {
 constexpr double farthest_angstrom = 1e4;
 
 void visit_action(FieldVisitor& v, TakeEdit& e) {
-    v.text({.key = "take",
-            .meaning = "the hand holds \"NAME\", or by a spring \"NAME:25\", \"NAME:25 CA\"",
-            .form = TextForm::MoleculeOrPart},
-           e.what);
+    v.text(
+        {.key = "take",
+         .meaning =
+             "the hand takes the molecule \"NAME\", or by a spring \"NAME:25\" or \"NAME:25 CA\"",
+         .form = TextForm::MoleculeOrPart},
+        e.what);
 }
 
 void visit_action(FieldVisitor& v, LetGoEdit& /*e*/) {
-    v.mark({.key = "let_go", .meaning = "the hand holds nothing"});
+    v.mark({.key = "let_go", .meaning = "the hand lets go"});
 }
 
 void visit_action(FieldVisitor& v, PutBackEdit& /*e*/) {
@@ -43,20 +45,20 @@ void visit_action(FieldVisitor& v, AddEdit& e) {
             v.text({.key = "copy_of", .meaning = "name of a molecule", .form = TextForm::Molecule},
                    e.copy_of);
         } else {
-            v.file({.key = "structure", .meaning = "as of [molecules.NAME]", .required = true},
+            v.file({.key = "structure", .meaning = "as in [molecules.NAME]", .required = true},
                    e.structure);
-            v.file({.key = "topology", .meaning = "as of [molecules.NAME]"}, e.topology);
-            const Field segment{.key = "segment", .meaning = "of several in that file"};
+            v.file({.key = "topology", .meaning = "as in [molecules.NAME]"}, e.topology);
+            const Field segment{.key = "segment", .meaning = "segment, if the file has several"};
             if (v.is_there(segment, !e.segment.empty())) v.text(segment, e.segment);
         }
     }
     v.text({.key = "name",
-            .meaning = "of the new molecule",
+            .meaning = "name of the new molecule",
             .required = true,
             .form = TextForm::Molecule},
            e.name);
     v.triple({.key = "at_angstrom",
-              .meaning = "where its reference atom is",
+              .meaning = "position of its reference atom, Å",
               .lowest = -farthest_angstrom,
               .highest = farthest_angstrom,
               .required = true},
@@ -65,12 +67,13 @@ void visit_action(FieldVisitor& v, AddEdit& e) {
 }
 
 void visit_action(FieldVisitor& v, RemoveEdit& e) {
-    v.text({.key = "remove", .meaning = "a molecule goes", .form = TextForm::Molecule}, e.molecule);
+    v.text({.key = "remove", .meaning = "removes a molecule", .form = TextForm::Molecule},
+           e.molecule);
 }
 
 void visit_action(FieldVisitor& v, PinEdit& e) {
     v.texts({.key = "pin",
-             .meaning = "label, distance, angle or dihedral",
+             .meaning = "marks atoms: label, distance, angle or dihedral",
              .lowest = 1,
              .highest = 4,
              .form = TextForm::Atom},
@@ -88,7 +91,7 @@ void visit_action(FieldVisitor& v, RestraintEdit& e) {
              .form = TextForm::ResidueOrAtom},
             e.atoms);
     const Field place{.key = "place_angstrom",
-                      .meaning = "where one atom is pulled to",
+                      .meaning = "place to which the atom is pulled, Å",
                       .lowest = -farthest_angstrom,
                       .highest = farthest_angstrom};
     if (v.is_there(place, e.place_angstrom.has_value())) {
@@ -112,9 +115,9 @@ void visit_action(FieldVisitor& v, MobilityEdit& e) {
             .required = true,
             .form = TextForm::Molecule},
            e.molecule);
-    choose_if_set(v, {.key = "motion", .meaning = "as of [molecules.NAME]"}, motion_names,
+    choose_if_set(v, {.key = "motion", .meaning = "as in [molecules.NAME]"}, motion_names,
                   e.motion);
-    choose_if_set(v, {.key = "shape", .meaning = "as of [molecules.NAME]"}, shape_names, e.shape);
+    choose_if_set(v, {.key = "shape", .meaning = "as in [molecules.NAME]"}, shape_names, e.shape);
     v.leave_table();
 }
 
@@ -125,9 +128,9 @@ void visit_action(FieldVisitor& v, AppearanceEdit& e) {
             .required = true,
             .form = TextForm::Molecule},
            e.molecule);
-    choose_if_set(v, {.key = "representation", .meaning = "as of [view]"}, representation_names,
+    choose_if_set(v, {.key = "representation", .meaning = "as in [view]"}, representation_names,
                   e.representation);
-    choose_if_set(v, {.key = "colour", .meaning = "as of [view]"}, colouring_names, e.colouring);
+    choose_if_set(v, {.key = "colour", .meaning = "as in [view]"}, colouring_names, e.colouring);
     const Field visible{.key = "visible", .meaning = "whether it is drawn"};
     if (v.is_there(visible, e.visible.has_value())) {
         if (!e.visible) e.visible.emplace();
@@ -137,11 +140,12 @@ void visit_action(FieldVisitor& v, AppearanceEdit& e) {
 }
 
 void visit_action(FieldVisitor& v, CouplingEdit& e) {
-    v.coupling_settings({.key = "coupling", .meaning = "other values for them"}, e.settings);
+    v.coupling_settings({.key = "coupling", .meaning = "new values for keys of [coupling]"},
+                        e.settings);
 }
 
 void visit_action(FieldVisitor& v, ResetEdit& /*e*/) {
-    v.mark({.key = "reset", .meaning = "molecules, hands and coupling as this file has them"});
+    v.mark({.key = "reset", .meaning = "resets molecules, hands and coupling to this file"});
 }
 
 void visit_action(FieldVisitor& v, UndoEdit& /*e*/) {
@@ -149,7 +153,7 @@ void visit_action(FieldVisitor& v, UndoEdit& /*e*/) {
 }
 
 void visit_action(FieldVisitor& v, RedoEdit& /*e*/) {
-    v.mark({.key = "redo", .meaning = "does again what was undone"});
+    v.mark({.key = "redo", .meaning = "redoes the last undone edit"});
 }
 
 template <std::size_t... Index>
@@ -161,12 +165,12 @@ EditAction action_of(std::size_t index, std::index_sequence<Index...> /*all*/) {
 
 void visit_edit(FieldVisitor& v, EditDescription& edit) {
     v.real({.key = "at_s",
-            .meaning = "of [[edits]]: one of these before the first step from then on",
+            .meaning = "simulated time of the edit, s; it is made before the next step",
             .lowest = 0,
             .highest = 1e5,
             .required = true},
            edit.at_s);
-    v.choice({.key = "hand", .meaning = "whose edit it is"}, edit_hand_names, edit.hand);
+    v.choice({.key = "hand", .meaning = "hand that makes the edit"}, edit_hand_names, edit.hand);
     for (const std::size_t index : v.one_of(edit_names, edit.action.index())) {
         visit_edit_action(v, index, edit.action);
     }
@@ -181,7 +185,7 @@ void visit_edit_action(FieldVisitor& v, std::size_t index, EditAction& action) {
 }
 
 void visit_edits(FieldVisitor& v, std::vector<EditDescription>& edits) {
-    visit_entries(v, {.key = "edits", .meaning = "what changes while the scene runs"}, edits,
+    visit_entries(v, {.key = "edits", .meaning = "changes while the scene runs"}, edits,
                   [&](EditDescription& edit) { visit_edit(v, edit); });
 }
 

@@ -15,23 +15,22 @@ namespace {
 void visit_force_field(FieldVisitor& v, ForceFieldDescription& f, bool is_required) {
     v.enter_table(
         {.key = "force_field", .meaning = "where the forces come from", .required = is_required});
-    const Field files{
-        .key = "files",
-        .meaning =
-            "CHARMM topology, parameter and stream files, in the order of reading; not "
-            "needed with [engine]",
-        .required = is_required};
+    const Field files{.key = "files",
+                      .meaning =
+                          "CHARMM topology, parameter and stream files, in reading order; not "
+                          "needed with [engine]",
+                      .required = is_required};
     if (is_required || v.is_there(files, !f.files.empty())) v.files(files, f.files);
     v.real({.key = "coulomb_constant",
-            .meaning = "kcal Å/mol/e²; the default is CHARMM's own",
+            .meaning = "Coulomb's constant, kcal Å/mol/e²; the default is CHARMM's",
             .lowest = 0,
             .highest = 1e6},
            f.coulomb_constant);
     choose(v,
            {.key = "solvent",
-            .meaning = "what stands for the water around: none, or EEF1-SB's implicit water, with "
-                       "neutral charges of ionic groups (`palpa prepare --solvent eef1-sb`), a "
-                       "dielectric of 1.5 r and ends of its own at 9 and 9.5 Å"},
+            .meaning = "solvent model: none, or EEF1-SB's implicit water, which needs neutral "
+                       "ionic groups (`palpa prepare --solvent eef1-sb`) and has a dielectric of "
+                       "1.5 r and its own cutoffs at 9 and 9.5 Å"},
            solvent_names, f.solvent);
     v.leave_table();
 }
@@ -39,55 +38,55 @@ void visit_force_field(FieldVisitor& v, ForceFieldDescription& f, bool is_requir
 void visit_molecule(FieldVisitor& v, MoleculeDescription& m, bool is_remote) {
     v.enter_table({.key = m.name, .meaning = "one molecule"});
     v.file({.key = "structure",
-            .meaning = "structure file: .crd, .pdb, .cif or .gro; with [engine] also .psf: "
+            .meaning = "structure file: .crd, .pdb, .cif or .gro; with [engine] also .psf, because "
                        "the engine's first frame has the positions",
             .required = true},
            m.structure);
     v.file({.key = "topology",
-            .meaning = "PSF file for types, charges, masses and bonds; unset: they come from the "
-                       "force field's residues"},
+            .meaning = "PSF file with types, charges, masses and bonds; unset: from the force "
+                       "field's residues"},
            m.topology);
     v.text({.key = "segment",
-            .meaning = "segment of that file whose atoms make up the molecule",
+            .meaning = "segment of that file whose atoms form the molecule",
             .required = true},
            m.segment);
-    v.text({.key = "reference_atom",
-            .meaning = "atom that stands for the molecule's place: its name, with the residue "
-                       "number before it where the name alone is not enough (\"25 CG\"); with "
-                       "[engine], unset: the first",
-            .required = !is_remote},
-           m.reference_atom);
-    choose(v,
-           {.key = "motion",
-            .meaning = "what the hand may do with the molecule without turning it: nothing, move "
-                       "it along x, or in space after it was relaxed on loading; "
-                       "translate-and-turn: it turns by itself meanwhile, about its reference "
-                       "atom; with-handle: the handle turns it too, about that atom; free: it "
-                       "moves and turns by itself, no hand holds it"},
-           motion_names, m.motion);
+    v.text(
+        {.key = "reference_atom",
+         .meaning = "atom that marks the molecule's position: its name, after the residue number "
+                    "if the name is not unique (\"25 CG\"); unset with [engine]: the first atom",
+         .required = !is_remote},
+        m.reference_atom);
+    choose(
+        v,
+        {.key = "motion",
+         .meaning =
+             "how the molecule moves. fixed: not at all; along-x: the hand moves it along x; "
+             "translate: the hand moves it in space, after a relaxation on loading; "
+             "translate-and-turn: it also turns by itself about its reference atom; with-handle: "
+             "the handle turns it about that atom; free: it moves and turns by itself"},
+        motion_names, m.motion);
     choose(v,
            {.key = "shape",
-            .meaning = "whether its joints turn by themselves, those that [joints] names"},
+            .meaning = "rigid, or flexible: the joints that [joints] names turn by themselves"},
            shape_names, m.shape);
     v.flag({.key = "structural_water",
             .meaning = "with `force_field.solvent`: its waters are part of the structure, without "
-                       "volume or solvation energy; any others are refused there"},
+                       "volume or solvation energy; other waters are not allowed then"},
            m.structural_water);
-    v.texts(
-        {.key = "anchors",
-         .meaning = "atoms (\"25 CA\") or residues (\"25\", their centre of mass) that "
-                    "springs hold where the structure has them, while the molecule moves by "
-                    "itself, so that the hand does not carry all of it along; their energy is part "
-                    "of the potential energy, and an anchor of what is in the hand is felt"},
-        m.anchors);
+    v.texts({.key = "anchors",
+             .meaning = "atoms (\"25 CA\") or residues (\"25\", their centre of mass) that springs "
+                        "hold at their place in the structure, so that the hand does not carry the "
+                        "whole molecule along; the springs are part of the potential energy, and "
+                        "those on the molecule in hand are felt"},
+            m.anchors);
     v.real({.key = "anchor_kcal_per_mol_angstrom2",
             .meaning = "stiffness k of these springs, E = k x²/2",
             .lowest = 1e-3,
             .highest = 1e4},
            m.anchor_kcal_per_mol_angstrom2);
     v.texts({.key = "approximate",
-             .meaning = "residues whose types, charges and parameters are approximate (`palpa "
-                        "prepare --approximate-ligands`); the window says so"},
+             .meaning = "residues with approximate types, charges and parameters (`palpa prepare "
+                        "--approximate-ligands`), which the window lists"},
             m.approximate);
     v.leave_table();
 }
@@ -111,16 +110,15 @@ void visit_grab(FieldVisitor& v, const Field& table, GrabDescription& g, bool is
             .meaning = "name of the molecule that the hand moves",
             .required = true},
            g.molecule);
-    v.text(
-        {.key = "measured_from",
-         .meaning = "name of the molecule whose reference atom distances are measured from; with "
-                    "[engine], unset: the one in the hand",
-         .required = !is_remote},
-        g.measured_from);
+    v.text({.key = "measured_from",
+            .meaning = "name of the molecule to whose reference atom distances are measured; unset "
+                       "with [engine]: the one in the hand",
+            .required = !is_remote},
+           g.measured_from);
     v.text({.key = "atom",
-            .meaning = "atom of that molecule (\"25 CA\") or residue (\"25\", its centre of mass) "
-                       "that the hand pulls at by a spring, or its Nth atom (\"#17\"); unset: it "
-                       "moves the whole molecule, with [engine] by a spring too"},
+            .meaning = "part of that molecule that the hand pulls by a spring: an atom (\"25 "
+                       "CA\"), a residue (\"25\", its centre of mass) or the Nth atom (\"#17\"); "
+                       "unset: the hand moves the whole molecule, with [engine] also by a spring"},
            g.atom);
     v.real({.key = "spring_kcal_per_mol_angstrom2",
             .meaning = "stiffness k of that spring, E = k x²/2",
@@ -132,23 +130,27 @@ void visit_grab(FieldVisitor& v, const Field& table, GrabDescription& g, bool is
 
 void visit_hand(FieldVisitor& v, const Field& table, HandDescription& h) {
     v.enter_table(table);
-    choose(v, {.key = "grip", .meaning = "how firmly the handle is held; none leaves it free"},
-           grip_names, h.grip);
-    choose(v,
-           {.key = "stroke",
-            .meaning = "what the hand does: keep the handle where the force vanishes, go in to "
-                       "peak_nN and out again, follow path, or lead the molecule along it by "
-                       "sight, which takes what time it takes"},
-           stroke_names, h.stroke);
+    choose(
+        v,
+        {.key = "grip", .meaning = "how firmly the hand holds the handle; none: nobody holds it"},
+        grip_names, h.grip);
+    choose(
+        v,
+        {.key = "stroke",
+         .meaning =
+             "what the hand does. hold: keep the handle where the force vanishes; in-out: move in "
+             "until the repulsion is peak_nN and out again; path: follow path with the handle; "
+             "lead: lead the molecule along path by sight, at the speed that the force allows"},
+        stroke_names, h.stroke);
     v.optional_real({.key = "start_angstrom",
-                     .meaning = "distance of the reference atoms at the start; unset: for hold the "
-                                "outermost distance without force, else as in the structure",
+                     .meaning = "distance of the reference atoms at the start, Å; unset: with hold "
+                                "the outermost distance without force, else as in the structure",
                      .lowest = 0,
                      .highest = 1e3},
                     h.start_angstrom);
     v.triple({.key = "start_offset_angstrom",
-              .meaning = "where a molecule that moves in space starts, [x, y, z] from its relaxed "
-                         "place",
+              .meaning =
+                  "start of a molecule that moves in space, [x, y, z] in Å from its relaxed place",
               .lowest = -1e3,
               .highest = 1e3},
              h.start_offset_angstrom);
@@ -165,25 +167,25 @@ void visit_hand(FieldVisitor& v, const Field& table, HandDescription& h) {
             .lowest = 0,
             .highest = 1e4},
            h.pause_s);
-    v.integer({.key = "cycles", .meaning = "in-out: how often", .lowest = 1, .highest = 10000},
-              h.cycles);
-    v.optional_real(
-        {.key = "release_s",
-         .meaning = "when the hand lets go: it wants no place any more, only its mass and damping "
-                    "stay on the handle; unset: never",
-         .lowest = 0,
-         .highest = 1e5},
-        h.release_s);
+    v.integer(
+        {.key = "cycles", .meaning = "in-out: number of strokes", .lowest = 1, .highest = 10000},
+        h.cycles);
+    v.optional_real({.key = "release_s",
+                     .meaning = "time when the hand lets go, s: then only its mass and damping act "
+                                "on the handle; unset: never",
+                     .lowest = 0,
+                     .highest = 1e5},
+                    h.release_s);
     v.real({.key = "kick_N_s",
-            .meaning = "impulse that knocks the handle towards +x, spread over 10 ms at 1 s",
+            .meaning = "impulse on the handle towards +x, spread over 10 ms at 1 s",
             .lowest = -0.1,
             .highest = 0.1},
            h.kick_N_s);
     v.path({.key = "path",
-            .meaning = "path: where the hand is to be, [s, mm along x], [s, mm, mm, mm], or that "
-                       "and a turn about x, y and z in degrees (a rotation vector), minimum jerk "
-                       "in between; lead: where it is to have brought the molecule, [s, Å along "
-                       "x] or [s, Å, Å, Å] from its start",
+            .meaning =
+                "path: positions of the hand, [s, mm along x], [s, mm, mm, mm], or with a rotation "
+                "vector about x, y and z in degrees as well, minimum jerk in between; lead: "
+                "positions of the molecule from its start, [s, Å along x] or [s, Å, Å, Å]",
             .lowest = -1e5,
             .highest = 1e5},
            h.path);
@@ -213,58 +215,58 @@ void visit_engine(FieldVisitor& v, std::optional<EngineDescription>& engine) {
     if (!v.is_there(table, engine.has_value())) return;
     if (!engine) engine.emplace();
     v.enter_table(table);
-    v.text({.key = "address", .meaning = "where it listens, HOST:PORT; the host in numbers"},
+    v.text({.key = "address",
+            .meaning = "address where the engine listens, HOST:PORT with a numeric host"},
            engine->address);
-    choose(
-        v,
-        {.key = "program",
-         .meaning = "what it is, which decides the unit of energies that it sends: GROMACS sends "
-                    "kJ/mol in version 2, the others kcal/mol"},
-        engine_program_names, engine->program);
-    choose(v, {.key = "protocol", .meaning = "version of IMD that it must speak"},
-           engine_protocol_names, engine->protocol);
-    v.file(
-        {.key = "atoms",
-         .meaning = "which of the engine's atoms are which of the scene's: the engine's own as a "
-                    "PSF or GRO file, found by residue and name; or an index file (.ndx) whose "
-                    "first group lists, in the order in which the engine sends its atoms, their "
-                    "numbers in the scene; unset: all of the scene's, in their order"},
-        engine->atoms);
+    choose(v,
+           {.key = "program",
+            .meaning = "program, which decides the unit of its energies: GROMACS sends kJ/mol in "
+                       "IMD version 2, the others kcal/mol"},
+           engine_program_names, engine->program);
+    choose(v, {.key = "protocol", .meaning = "required IMD version"}, engine_protocol_names,
+           engine->protocol);
+    v.file({.key = "atoms",
+            .meaning = "how the engine's atoms match the scene's: a PSF or GRO file of the "
+                       "engine's atoms, matched by residue and name; or an index file (.ndx) whose "
+                       "first group lists the scene's atom numbers in the order in which the "
+                       "engine sends its atoms; unset: all atoms of the scene in their order"},
+           engine->atoms);
     v.integer({.key = "rate",
-               .meaning = "steps of the engine between two frames; 0: as the engine has it. LAMMPS "
-                          "takes no forces at a rate of 1",
+               .meaning = "steps of the engine between two frames; 0: the engine's setting. LAMMPS "
+                          "does not accept forces at a rate of 1",
                .lowest = 0,
                .highest = 1e6},
               engine->rate);
-    v.real({.key = "force_scale",
-            .meaning = "force on the engine's atoms, as a share of what the hand feels",
-            .lowest = 0,
-            .highest = 100},
-           engine->force_scale);
+    v.real(
+        {.key = "force_scale",
+         .meaning = "force on the engine's atoms, as a multiple of the force that the hand feels",
+         .lowest = 0,
+         .highest = 100},
+        engine->force_scale);
     v.real({.key = "most_force_nN",
             .meaning = "largest force of the spring between hand and atoms; beyond it the force "
                        "stays constant",
             .lowest = 1e-3,
             .highest = 100},
            engine->most_force_nN);
-    v.real({.key = "smoothing_ms",
-            .meaning = "time constant of the low-pass through which the spring sees the atoms, so "
-                       "that heat does not shake the hand; the force is later by as much",
-            .lowest = 0,
-            .highest = 1e4},
-           engine->smoothing_ms);
+    v.real(
+        {.key = "smoothing_ms",
+         .meaning = "time constant of a low-pass filter for the atoms that the spring pulls, so "
+                    "that thermal motion does not shake the hand; it delays the force by as much",
+         .lowest = 0,
+         .highest = 1e4},
+        engine->smoothing_ms);
     v.real({.key = "late_s",
-            .meaning = "without a frame for so long there is no force until the next",
+            .meaning = "time without a frame after which the force is off until the next frame",
             .lowest = 0.05,
             .highest = 60},
            engine->late_s);
-    v.real(
-        {.key = "wait_s",
-         .meaning = "how long to wait for its first frame, without a window, and where only that "
-                    "has the positions",
-         .lowest = 0,
-         .highest = 1e5},
-        engine->wait_s);
+    v.real({.key = "wait_s",
+            .meaning = "time to wait for the first frame, in runs without a window and where only "
+                       "that frame has the positions",
+            .lowest = 0,
+            .highest = 1e5},
+           engine->wait_s);
     v.leave_table();
 }
 
@@ -284,13 +286,13 @@ void visit_device(FieldVisitor& v, DeviceDescription& d) {
             .highest = 10},
            d.friction_N);
     v.real({.key = "encoder_step_mm",
-            .meaning = "step of the position sensor; 0 reads exactly",
+            .meaning = "resolution of the position sensor; 0: exact",
             .lowest = 1e-6,
             .highest = 1,
             .zero = true},
            d.encoder_step_mm);
     v.integer({.key = "servo_delay_ticks",
-               .meaning = "servo ticks from a force to its sending",
+               .meaning = "delay of the device, servo ticks from computing a force to sending it",
                .lowest = 0,
                .highest = 7},
               d.servo_delay_ticks);
@@ -298,28 +300,32 @@ void visit_device(FieldVisitor& v, DeviceDescription& d) {
 }
 
 void visit_coupling(FieldVisitor& v, CouplingDescription& c) {
-    v.enter_table({.key = "coupling", .meaning = "from molecule to hand and back"});
+    v.enter_table({.key = "coupling", .meaning = "coupling between molecule and hand"});
     visit_coupling_keys(v, c);
     v.leave_table();
 }
 
 void visit_question(FieldVisitor& v, std::optional<LessonQuestion>& question) {
-    const Field table{.key = "question",
-                      .meaning = "whose right answer does the step, in place of a quantity"};
+    const Field table{
+        .key = "question",
+        .meaning = "a question whose right answer completes the step, in place of a quantity"};
     if (!v.is_there(table, question.has_value())) return;
     if (!question) question.emplace();
     v.enter_table(table);
     v.text({.key = "text", .meaning = "what is asked", .required = true}, question->text);
     v.texts({.key = "answers",
-             .meaning = "to choose from",
+             .meaning = "answers to choose from",
              .lowest = 2,
              .highest = 6,
              .required = true},
             question->answers);
-    v.integer({.key = "right", .meaning = "the number of the right one", .lowest = 1, .highest = 6},
+    v.integer({.key = "right",
+               .meaning = "number of the right answer, from 1",
+               .lowest = 1,
+               .highest = 6},
               question->right);
     v.texts({.key = "why",
-             .meaning = "of each answer, why it is right or wrong",
+             .meaning = "for each answer, why it is right or wrong",
              .lowest = 2,
              .highest = 6,
              .required = true},
@@ -329,34 +335,32 @@ void visit_question(FieldVisitor& v, std::optional<LessonQuestion>& question) {
 
 void visit_lesson_step(FieldVisitor& v, LessonStepDescription& s) {
     v.enter_table({.key = s.name, .meaning = "one step of the lesson"});
-    v.text({.key = "text", .meaning = "what there is to know", .required = true}, s.text);
+    v.text({.key = "text", .meaning = "explanation", .required = true}, s.text);
     v.text({.key = "task", .meaning = "what to do", .required = true}, s.task);
-    choose(v,
-           {.key = "quantity",
-            .meaning = "the quantity that decides whether the step is done: the distance of the "
-                       "reference atoms, the "
-                       "force on the molecule or on the hand (+ repels), the coupling's mode, the "
-                       "ripple of the force on the hand in the last 2 s; of what `of` selects: the "
-                       "distance of two centres, the dihedral of four atoms, the number of "
-                       "hydrogen bonds between two, cells of 20° by 20° that two dihedrals have "
-                       "visited so far, how far a centre is from where it began; the work that "
-                       "the hand has done, the potential energy"},
-           lesson_quantity_names, s.quantity);
-    v.texts({.key = "of",
-             .meaning = "selections (tools/selections.md): two for between_angstrom and "
-                        "hydrogen_bonds, four atoms for dihedral_deg, five in a row for map_cells "
-                        "(C, N, CA, C, N: φ and ψ), one for way_angstrom; unset: what is in hand"},
-            s.of);
-    v.optional_real({.key = "at_least",
-                     .meaning = "smallest value that will do",
-                     .lowest = -1e6,
-                     .highest = 1e6},
-                    s.at_least);
+    choose(
+        v,
+        {.key = "quantity",
+         .meaning = "quantity that decides whether the step is done: distance of the reference "
+                    "atoms; force on the molecule or on the hand (+ repels); coupling mode; ripple "
+                    "of the force on the hand in the last 2 s; for the selections of `of`: "
+                    "distance of two centres, dihedral of four atoms, number of hydrogen bonds "
+                    "between two, number of cells of 20° by 20° that two dihedrals have visited, "
+                    "distance of a centre from its start; work of the hand; potential energy"},
+        lesson_quantity_names, s.quantity);
+    v.texts(
+        {.key = "of",
+         .meaning = "selections (tools/selections.md): two for between_angstrom and "
+                    "hydrogen_bonds, four atoms for dihedral_deg, five bonded atoms for map_cells "
+                    "(C, N, CA, C, N: φ and ψ), one for way_angstrom; unset: the molecule in hand"},
+        s.of);
     v.optional_real(
-        {.key = "at_most", .meaning = "largest value that will do", .lowest = -1e6, .highest = 1e6},
+        {.key = "at_least", .meaning = "smallest accepted value", .lowest = -1e6, .highest = 1e6},
+        s.at_least);
+    v.optional_real(
+        {.key = "at_most", .meaning = "largest accepted value", .lowest = -1e6, .highest = 1e6},
         s.at_most);
     v.real({.key = "for_s",
-            .meaning = "how long without a break, in simulated seconds",
+            .meaning = "simulated seconds for which the value must stay accepted",
             .lowest = 0,
             .highest = 1e3},
            s.for_s);
@@ -365,20 +369,21 @@ void visit_lesson_step(FieldVisitor& v, LessonStepDescription& s) {
            s.view);
     choose(v,
            {.key = "plot",
-            .meaning = "drawn below the task: the map that map_cells counts on, or the force on "
-                       "the molecule over the distance"},
+            .meaning = "plot below the task: the map of map_cells, or the force on the molecule "
+                       "over the distance"},
            lesson_plot_names, s.plot);
     v.text({.key = "operator_take",
             .meaning = "what the operator of `palpa lessons play` takes in hand as the step "
-                       "begins, as `edits.take`; unset: what it has"},
+                       "begins, as in `edits.take`; unset: no change"},
            s.operator_take);
-    const Field coupling{.key = "operator_coupling",
-                         .meaning = "what it changes of the coupling then, as `edits.coupling`"};
+    const Field coupling{
+        .key = "operator_coupling",
+        .meaning = "coupling keys that the operator changes then, as in `edits.coupling`"};
     if (v.is_there(coupling, !s.operator_coupling.empty()))
         v.coupling_settings(coupling, s.operator_coupling);
     v.path({.key = "operator_path",
-            .meaning = "where it leads what it holds after that, as `hand.path` of \"lead\": "
-                       "seconds since the step began, Å from where the scene began",
+            .meaning = "path along which the operator then leads the molecule, as `hand.path` of "
+                       "\"lead\": s since the step began, Å from the start of the scene",
             .lowest = -1e5,
             .highest = 1e5},
            s.operator_path);
@@ -518,20 +523,18 @@ private:
 
 void visit_scene(FieldVisitor& v, SceneDescription& scene) {
     v.text({.key = "title", .meaning = "name of the scene"}, scene.title);
-    v.text({.key = "about", .meaning = "what it shows, in a few sentences"}, scene.about);
-    choose(v, {.key = "level", .meaning = "whom it is for; the start screen shows it"},
+    v.text({.key = "about", .meaning = "description in a few sentences"}, scene.about);
+    choose(v, {.key = "level", .meaning = "audience, which the start screen shows"},
            scene_level_names, scene.level);
     v.real({.key = "minutes",
-            .meaning = "that a person spends with it; 0: not stated",
+            .meaning = "minutes that a person needs for it; 0: not stated",
             .lowest = 0,
             .highest = 600},
            scene.minutes);
-    v.text(
-        {.key = "made_by",
-         .meaning = "how the files that the scene names are made, for who reads it; nothing runs "
-                    "it"},
-        scene.made_by);
-    v.text({.key = "lesson_goal", .meaning = "what one can do after its lesson"},
+    v.text({.key = "made_by",
+            .meaning = "how to make the files of the scene, for the reader; Palpa does not run it"},
+           scene.made_by);
+    v.text({.key = "lesson_goal", .meaning = "what a person can do after the lesson"},
            scene.lesson_goal);
     visit_engine(v, scene.engine);
     const bool is_remote = scene.engine && !v.is_listing();
@@ -548,20 +551,21 @@ void visit_scene(FieldVisitor& v, SceneDescription& scene) {
     visit_view(v, scene.view);
     visit_lesson(v, scene.lesson);
     v.enter_table({.key = "run", .meaning = "a headless run"});
-    v.real({.key = "period_ms",
-            .meaning = "declared period of the simulation, a whole number of 1 ms servo ticks",
-            .lowest = 1,
-            .highest = 1e4},
-           scene.period_ms);
-    v.real({.key = "seconds", .meaning = "length of the run", .lowest = 1e-3, .highest = 1e5},
+    v.real(
+        {.key = "period_ms",
+         .meaning = "declared period of the simulation, ms, a whole number of servo ticks of 1 ms",
+         .lowest = 1,
+         .highest = 1e4},
+        scene.period_ms);
+    v.real({.key = "seconds", .meaning = "length of the run, s", .lowest = 1e-3, .highest = 1e5},
            scene.seconds);
     v.integer({.key = "every",
-               .meaning = "the trace keeps one row of this many servo ticks",
+               .meaning = "the trace has one row for every N servo ticks",
                .lowest = 1,
                .highest = 1e6},
               scene.every);
     v.integer({.key = "seed",
-               .meaning = "of everything random; the strokes so far draw nothing",
+               .meaning = "random seed; the present strokes use no random numbers",
                .lowest = 0,
                .highest = 1e15},
               scene.seed);

@@ -86,7 +86,7 @@ std::string join_some(const std::vector<std::string>& names) {
 std::string prepare_hint(const fs::path& structure) {
     const bool is_packed = upper_case(structure.extension().string()) == ".GZ";
     const fs::path name = is_packed ? structure.stem().stem() : structure.stem();
-    return fmt::format("'palpa prepare {} -o {}' makes a scene of it",
+    return fmt::format("'palpa prepare {} -o {}' makes a scene from it",
                        shell_word(structure.string()), shell_word(name.string()));
 }
 
@@ -100,7 +100,7 @@ void refuse_other_files(const fs::path& file) {
         throw LoadError(
             {file.string()},
             fmt::format("is a topology, not a scene; 'palpa prepare FILE.crd --topology "
-                        "{}' makes a scene of it and its coordinates",
+                        "{}' makes a scene from it and its coordinates",
                         shell_word(file.string())));
     }
     if (ending == ".GZ") {
@@ -227,7 +227,7 @@ fs::path find_scene_file(const fs::path& named) {
             contents = describe_own_scenes({});
         }
         throw LoadError({named.string()},
-                        "this folder holds no scene.toml, so it is no scene" + contents);
+                        "this folder has no scene.toml, so it is not a scene" + contents);
     }
     if (fs::exists(named, error)) {
         refuse_other_files(named);

@@ -21,12 +21,13 @@ FieldPlaces Problems::finish() {
     std::stable_sort(problems_.begin(), problems_.end(), [](const Problem& a, const Problem& b) {
         return std::tie(a.place.line, a.place.column) < std::tie(b.place.line, b.place.column);
     });
-    const std::size_t others = problems_.size() - 1;
-    throw LoadError(
-        problems_[0].place,
-        problems_[0].what + (others == 0   ? ""
-                             : others == 1 ? " (and 1 more problem)"
-                                           : fmt::format(" (and {} more problems)", others)));
+    std::vector<std::string> texts;
+    for (const Problem& problem : problems_) {
+        texts.push_back(texts.empty()
+                            ? problem.what
+                            : fmt::format("{}: {}", to_string(problem.place), problem.what));
+    }
+    throw join_problems(problems_[0].place, texts);
 }
 
 }  // namespace palpa

@@ -1,5 +1,5 @@
-// What is wrong with a scene, gathered, so that the first problem in the file is reported, not the
-// first one in our list; and where its fields stand.
+// Gathers what is wrong with a scene, so that all problems are reported in the order of the file;
+// and where its fields stand.
 #pragma once
 #include "core/load_error.h"
 
@@ -28,8 +28,8 @@ public:
     void set_place(const std::string& key, const TextPlace& place) { places_[key] = place; }
     TextPlace place_of(std::string_view key) const;
 
-    // Throws a LoadError with the first problem and the number of the others, or gives the places
-    // of all fields that the file has.
+    // Throws one LoadError with all problems, in the order of the file (join_problems in
+    // core/load_error.h), or gives the places of all fields that the file has.
     FieldPlaces finish();
 
 private:

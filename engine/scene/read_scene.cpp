@@ -160,8 +160,8 @@ public:
                 level.missing = true;
             }
         } else if (field.required && !level.missing) {
-            problem(levels_.back().place,
-                    fmt::format("no table [{}]: {}", full_key(field.key), field.meaning));
+            problem(levels_.back().place, fmt::format("the table [{}] is missing: {}",
+                                                      full_key(field.key), field.meaning));
             level.missing = true;  // one message is enough for all that it would hold
         }
         levels_.push_back(std::move(level));
@@ -185,7 +185,7 @@ public:
         for (auto& [position, name] : found) names.push_back(std::move(name));
         if (names.empty()) {
             problem(level.place,
-                    fmt::format("[{}] holds no table; expected {}",
+                    fmt::format("[{}] has no table; expected {}",
                                 level.path.substr(0, level.path.size() - 1), field.meaning));
         }
     }
@@ -228,7 +228,7 @@ public:
         if (found.empty()) {
             const std::string whole =
                 level.path.substr(0, std::max<std::size_t>(level.path.size(), 1) - 1);
-            level.lacks = fmt::format("{} has none of {}; expected one",
+            level.lacks = fmt::format("{} has none of the keys {}; expected one of them",
                                       whole.empty() ? "the line" : fmt::format("'{}'", whole),
                                       fmt::join(keys, ", "));
             return {};
@@ -237,8 +237,8 @@ public:
         for (std::size_t i = 1; i < found.size(); ++i) {
             const std::string_view extra = keys[found[i].second];
             problem(place_of(level.table->find(extra)->first.source()),
-                    fmt::format("'{}' beside '{}'; expected one of them", full_key(extra),
-                                keys[found[0].second]));
+                    fmt::format("'{}' and '{}' are both given; expected one of them",
+                                full_key(extra), keys[found[0].second]));
         }
         return {found[0].second};
     }
@@ -404,10 +404,11 @@ public:
             const std::optional<PathPoint> point = find_path_point(field, entry);
             if (!point) {
                 return problem(
-                    entry, fmt::format("an entry of '{}' is no point of a path; expected [s, mm], "
-                                       "[s, mm, mm, mm] or [s, mm, mm, mm, degrees, degrees, "
-                                       "degrees], numbers from {} to {}",
-                                       full_key(field.key), field.lowest, field.highest));
+                    entry,
+                    fmt::format(
+                        "an entry of '{}' is not a point of a path; expected [s, mm], [s, mm, mm, "
+                        "mm] or [s, mm, mm, mm, degrees, degrees, degrees], numbers from {} to {}",
+                        full_key(field.key), field.lowest, field.highest));
             }
             value.push_back(*point);
         }
@@ -508,7 +509,7 @@ private:
         const Level& level = levels_.back();
         if (!node && field.required && !level.missing) {
             problem(level.place,
-                    fmt::format("no key '{}': {}", full_key(field.key), field.meaning));
+                    fmt::format("the key '{}' is missing: {}", full_key(field.key), field.meaning));
         }
         return node;
     }
@@ -518,7 +519,7 @@ private:
     }
 
     static std::string range(const Field& field, std::string_view kind) {
-        return fmt::format("{} {}from {} to {}", kind, field.zero ? "that is 0, or " : "",
+        return fmt::format("{} {}from {} to {}", kind, field.zero ? "that is 0 or " : "",
                            field.lowest, field.highest);
     }
 
@@ -532,18 +533,18 @@ private:
         if (!may_read_.empty() && std::ranges::none_of(may_read_, [&](const fs::path& folder) {
                 return is_below(real, folder);
             })) {
-            problem(node, fmt::format("'{}' names {}, which is outside of the scene's folder; "
-                                      "expected a file below it, or --allow-outside where the "
-                                      "scene is trusted",
-                                      full_key(field.key), quote_word(node.ref<std::string>())));
+            problem(node,
+                    fmt::format("'{}' names {}, which is outside of the scene's folder; expected a "
+                                "file in this folder, or --allow-outside if you trust the scene",
+                                full_key(field.key), quote_word(node.ref<std::string>())));
             return false;
         }
         std::error_code error;
         if (fs::is_regular_file(value, error)) return true;
-        problem(node, fmt::format("'{}' names no file: {} is not there; expected a file beside the "
-                                  "scene{}",
+        problem(node, fmt::format("'{}' names a file that does not exist: {}; expected a file in "
+                                  "the scene's folder{}",
                                   full_key(field.key), value.generic_string(),
-                                  is_made_ ? ", whose made_by says how it is made" : ""));
+                                  is_made_ ? " (its key made_by says how to make the file)" : ""));
         return false;
     }
 
@@ -601,7 +602,8 @@ void check_dots(std::string_view line, const TextPlace& place) {
 // The full key that "mode" or "coupling.mode" means.
 std::string full_setting_key(const std::string& key, const TextPlace& place) {
     if (key == "edits" || key.starts_with("edits.") || key.starts_with("edits[")) {
-        throw LoadError(place, "edits are a list, [[edits]], that only the file of a scene has");
+        throw LoadError(place,
+                        "edits cannot be set here; write them as [[edits]] into the scene file");
     }
     if (key.find('.') != std::string::npos) return key;
     std::vector<std::string> matches;
@@ -628,10 +630,10 @@ std::string full_setting_key(const std::string& key, const TextPlace& place) {
     };
     if (matches.size() == 1 && !is_of_many(matches[0])) return matches[0];
     if (matches.empty()) {
-        throw LoadError(place, fmt::format("no field of a scene is called '{}'{}", key,
+        throw LoadError(place, fmt::format("there is no scene key '{}'{}", key,
                                            near_name_hint(key, last_parts)));
     }
-    throw LoadError(place, fmt::format("'{}' could be {}; expected the key in full", key,
+    throw LoadError(place, fmt::format("'{}' can mean {}; expected the full key", key,
                                        fmt::join(matches, " or ")));
 }
 
@@ -662,7 +664,9 @@ std::string setting_value(std::string_view text, const TextPlace& place) {
     if (is_toml("x = " + value)) return value;
     if (const std::optional<double> number = find_real(text)) return format_real(*number);
     if (text.empty() || text.find_first_of("\"'\\[]{}=#") != std::string_view::npos) {
-        throw LoadError(place, "the value is neither TOML nor a bare word");
+        throw LoadError(place,
+                        "the value is not valid TOML; expected a number, true, false, a word or "
+                        "text in quotes");
     }
     return "\"" + value + "\"";
 }
@@ -672,7 +676,9 @@ void apply_setting(std::string_view origin, const std::string& setting, toml::ta
         return static_cast<unsigned char>(letter) < 0x20 || letter == 0x7f;
     });
     if (!printable) {
-        throw LoadError({std::string(trimmed(origin))}, "a setting is one line of printable text");
+        throw LoadError(
+            {std::string(trimmed(origin))},
+            "a setting has characters that cannot be printed; expected one line of text");
     }
     const TextPlace place{std::string(origin) + setting};
     check_dots(setting, place);
@@ -683,7 +689,7 @@ void apply_setting(std::string_view origin, const std::string& setting, toml::ta
     }
     const std::string key = full_setting_key(left, place);
     if (key.starts_with('.') || key.ends_with('.') || key.find("..") != std::string::npos) {
-        throw LoadError(place, fmt::format("'{}' is no key", key));
+        throw LoadError(place, fmt::format("'{}' is not a key", key));
     }
     const std::string value =
         setting_value(trimmed(std::string_view(setting).substr(equals + 1)), place);
@@ -691,7 +697,7 @@ void apply_setting(std::string_view origin, const std::string& setting, toml::ta
         merge(toml::parse(std::string_view(key + " = " + value), std::string_view(place.file)),
               root);
     } catch (const toml::parse_error&) {
-        throw LoadError(place, fmt::format("'{}' is no key", key));
+        throw LoadError(place, fmt::format("'{}' is not a key", key));
     }
 }
 
@@ -793,7 +799,7 @@ EditDescription parse_edit(std::string_view text, const TextPlace& place) {
     }
     if (scene.edits.size() != 1) {
         throw LoadError(
-            place, fmt::format("holds {} edits; expected one table [[edits]]", scene.edits.size()));
+            place, fmt::format("has {} edits; expected one table [[edits]]", scene.edits.size()));
     }
     scene.edits.front().place = place;
     return scene.edits.front();
@@ -833,7 +839,7 @@ std::string with_equals(std::string_view line) {
 RunCommand read_run_command(std::string_view line, const SceneDescription& scene) {
     toml::table root = parse_table(fmt::format("line = {{{}}}", with_equals(line)), {});
     const toml::table* const table = root.size() == 1 ? root["line"].as_table() : nullptr;
-    if (!table) throw LoadError({}, "is no list of KEY = VALUE with commas between");
+    if (!table) throw LoadError({}, "is not a list of KEY = VALUE separated by commas");
     RunCommand command;
     Problems problems({});
     Reader reader(*table, {}, scene.file.parent_path(), false, problems);

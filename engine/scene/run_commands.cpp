@@ -27,46 +27,47 @@ void visit_driving(FieldVisitor& v, std::size_t index, RunAction& action) {
     switch (index) {
         case 0:
             return v.integer({.key = "step",
-                              .meaning = "steps of the simulation that pass; the answer comes "
-                                         "after them",
+                              .meaning = "runs this many simulation steps, then answers",
                               .lowest = 1,
                               .highest = 1e9},
                              action.emplace<StepCommand>().steps);
         case 1:
             return v.real({.key = "run",
-                           .meaning = "simulated seconds that pass, in whole steps",
+                           .meaning = "runs this many simulated seconds, in whole steps",
                            .lowest = 1e-3,
                            .highest = 1e5},
                           action.emplace<RunForCommand>().seconds);
         case 2:
             return v.triple({.key = "hand_mm",
-                             .meaning = "where the emulated hand wants the handle from now on",
+                             .meaning = "new target of the emulated hand, mm",
                              .lowest = -1e3,
                              .highest = 1e3},
                             action.emplace<HandCommand>().place_mm);
         case 3:
-            return v.text({.key = "read",
-                           .meaning = "time, energy, marks, and of every hand forces and what it "
-                                      "holds; of the atoms that it names, where they are"},
-                          action.emplace<ReadCommand>().atoms);
+            return v.text(
+                {.key = "read",
+                 .meaning = "answers with time, energy, marks, the forces of every hand and what "
+                            "it holds; and with the positions of the named atoms"},
+                action.emplace<ReadCommand>().atoms);
         case 4:
-            return v.text({.key = "save",
-                           .meaning = "coordinates into a new file: .pdb, .cif, .gro, .crd, .psf",
-                           .required = true},
-                          action.emplace<SaveCommand>().file);
+            return v.text(
+                {.key = "save",
+                 .meaning = "writes coordinates to a new file: .pdb, .cif, .gro, .crd, .psf",
+                 .required = true},
+                action.emplace<SaveCommand>().file);
         case 5:
             action = HelpCommand{};
-            return v.mark({.key = "help", .meaning = "these words"});
+            return v.mark({.key = "help", .meaning = "lists the commands"});
         default:
             action = QuitCommand{};
-            return v.mark({.key = "quit", .meaning = "the run ends, as at the end of the input"});
+            return v.mark({.key = "quit", .meaning = "ends the run, as the end of the input does"});
     }
 }
 
 }  // namespace
 
 void visit_run_command(FieldVisitor& v, RunCommand& command) {
-    v.choice({.key = "hand", .meaning = "whose edit or place it is"}, edit_hand_names,
+    v.choice({.key = "hand", .meaning = "hand of the edit or target"}, edit_hand_names,
              command.hand);
     for (const std::size_t index : v.one_of(names, index_of(command.action))) {
         if (index >= edit_count) {

@@ -14,22 +14,21 @@ UnmetRequirements find_unmet(const AccuracyReport& report) {
     UnmetRequirements unmet;
     if (const auto within_pN = report.within_pN; within_pN && report.within_share < most) {
         unmet.tolerance = fmt::format(
-            "the tolerance: nine tenths of the time within {:.3g} pN, {:.3g} times the {:.6g} "
-            "asked",
+            "tolerance: for 90 % of the time the error was below {:.3g} pN, {:.3g} times the limit "
+            "of {:.6g} pN",
             report.ninety_pN, report.ninety_pN / *within_pN, *within_pN);
     }
     if (report.within_pN && report.period_share > 1) {
-        unmet.period =
-            fmt::format("the period: a step takes {:.3g} times as long", report.period_share);
+        unmet.period = fmt::format("period: a step takes {:.3g} times the declared period",
+                                   report.period_share);
     }
     if (report.largest_cap_ratio > noticeable) {
-        unmet.reach =
-            fmt::format("the reach: A_d was raised up to {:.3g} times", report.largest_cap_ratio);
+        unmet.reach = fmt::format("reach: A_d was raised up to {:.3g} times (cap ratio)",
+                                  report.largest_cap_ratio);
     }
     if (report.thermal_share > 0) {
-        unmet.motors =
-            fmt::format("the motors: for {:.3g} % of the time they were too warm for the force",
-                        100 * report.thermal_share);
+        unmet.motors = fmt::format("motors: at their thermal limit for {:.3g} % of the time",
+                                   100 * report.thermal_share);
     }
     return unmet;
 }

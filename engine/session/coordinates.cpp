@@ -33,10 +33,11 @@ CoordinateFormat format_of(const fs::path& file) {
     if (ending == ".GRO") return CoordinateFormat::Gro;
     if (ending == ".CRD" || ending == ".COR") return CoordinateFormat::Crd;
     if (ending == ".PSF") return CoordinateFormat::Psf;
-    throw LoadError({file.string()},
-                    fmt::format("'{}' is no ending of coordinates; expected .pdb, .ent, .cif, "
-                                ".mmcif, .gro, .crd, .cor, or .psf for a topology with its .crd",
-                                file.extension().string()));
+    throw LoadError(
+        {file.string()},
+        fmt::format("'{}' is not the ending of a coordinate file; expected .pdb, .ent, .cif, "
+                    ".mmcif, .gro, .crd, .cor, or .psf for a topology with its .crd",
+                    file.extension().string()));
 }
 
 bool is_shown(const World& world, Entity molecule) {
@@ -55,8 +56,8 @@ void read_number(const AtomName& name, AtomRecord& record) {
     }
     if (!number || *number < -999'999'999 || *number > 999'999'999) {
         throw LoadError({"export"},
-                        fmt::format("'{}' is no residue number, of {}; expected a whole number "
-                                    "with one letter behind it, or none",
+                        fmt::format("the residue number '{}' of {} is not valid; expected a whole "
+                                    "number, with or without one letter after it",
                                     name.number, to_string(name)));
     }
     record.residue_number = static_cast<std::int32_t>(*number);
@@ -99,7 +100,7 @@ std::vector<std::uint32_t> select_atoms(const World& world,
     for (const std::string& wanted : molecules) {
         if (std::ranges::find(names, wanted) != names.end()) continue;
         throw LoadError({fmt::format("--of {}", wanted)},
-                        fmt::format("is no molecule of this scene; expected one of {}{}",
+                        fmt::format("is not a molecule of this scene; expected one of {}{}",
                                     fmt::join(names, ", "), near_name_hint(wanted, names)));
     }
     std::vector<std::uint32_t> atoms;
@@ -113,7 +114,8 @@ std::vector<std::uint32_t> select_atoms(const World& world,
     });
     std::ranges::sort(atoms);
     if (atoms.empty())
-        throw LoadError({"export"}, "nothing is shown; expected --of and a molecule's name");
+        throw LoadError({"export"},
+                        "no molecule is shown; expected --of and the name of a molecule");
     return atoms;
 }
 

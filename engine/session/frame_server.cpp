@@ -88,19 +88,19 @@ std::optional<ClientPull> FrameServer::take_pull() {
     const ImdPull& asked = server_.pull();
     const std::size_t count = std::min(asked.atoms.size(), most_client_pulls);
     if (count < asked.atoms.size()) {
-        note_once(noted_many_, fmt::format("of forces on {} atoms the first {} are taken",
-                                           asked.atoms.size(), count));
+        note_once(noted_many_,
+                  fmt::format("forces on {} atoms were received, only the first {} are used",
+                              asked.atoms.size(), count));
     }
     ClientPull pull{{}, {}, atoms_};
     for (std::size_t i = 0; i < count; ++i) {
         const double norm = asked.forces[i].norm();
         const double share = norm > strongest_client_pull ? strongest_client_pull / norm : 1;
         if (share < 1) {
-            note_once(
-                noted_strong_,
-                fmt::format("a force of {:.3g} kcal/mol/Å was asked for, and {:.4g} is taken: "
-                            "the most on one atom is 10 nN",
-                            norm, strongest_client_pull));
+            note_once(noted_strong_,
+                      fmt::format("a force of {:.3g} kcal/mol/Å was received and reduced to {:.4g} "
+                                  "kcal/mol/Å: the limit for one atom is 10 nN",
+                                  norm, strongest_client_pull));
         }
         pull.atoms.push_back(static_cast<std::uint32_t>(asked.atoms[i]));
         pull.forces.emplace_back(share * asked.forces[i]);
@@ -118,8 +118,8 @@ void FrameServer::note_without_effect(const World& world) {
     const std::size_t without_effect = count_pulls_without_effect(world);
     if (without_effect == 0) return;
     note_once(noted_without_effect_,
-              fmt::format("forces on {} of {} atoms do nothing: fixed, or of a "
-                          "molecule that a hand holds as a whole",
+              fmt::format("forces on {} of {} atoms have no effect: these atoms are fixed, or a "
+                          "hand holds their whole molecule",
                           without_effect, pull->atoms.size()));
 }
 

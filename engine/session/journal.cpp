@@ -148,14 +148,14 @@ public:
     void add_line(std::string_view line) {
         ++place_.line;
         if (place_.line == 1) {
-            if (line != journal_mark) fail("is no journal", std::string(journal_mark));
+            if (line != journal_mark) fail("is not a journal", std::string(journal_mark));
             return;
         }
         const std::size_t blank = std::min(line.find(' '), line.size());
         const std::string_view kind = line.substr(0, blank);
         rest_ = line.substr(std::min(blank + 1, line.size()));
         if (kind == "hand") return add_device();
-        if (journal_.devices.empty()) fail("begins without a hand", "hand {...}");
+        if (journal_.devices.empty()) fail("has no hand before the first event", "hand {...}");
         if (kind == "t") return add_tick();
         if (kind == "record") {
             if (journal_.first_recorded) fail("begins a second recording", "one");
@@ -172,16 +172,16 @@ private:
 
     void add_device() {
         if (!journal_.events.empty() || !journal_.ticks.empty())
-            fail("a hand comes late", "all hands before what happens");
+            fail("a hand is declared too late", "all hands before the first event");
         if (journal_.devices.size() == most_hands)
-            fail("has too many hands", fmt::format("at most {}", most_hands));
+            fail("declares too many hands", fmt::format("at most {}", most_hands));
         journal_.devices.push_back(read_device(read_json()));
         before_.emplace_back();
     }
 
     void add_event(std::string_view kind) {
         if (kind.size() != 1 || event_kinds.find(kind) == std::string_view::npos)
-            fail(fmt::format("'{}' is no kind of line", printable(kind.substr(0, 20))),
+            fail(fmt::format("'{}' is not a kind of line", printable(kind.substr(0, 20))),
                  "t, p, s, h, c, d, a or record");
         PlayedEvent& played = journal_.events.emplace_back();
         for (std::size_t i = 0; i < journal_.devices.size(); ++i) {
@@ -189,7 +189,7 @@ private:
             if (!read_word(take_word(), pose)) fail("a pose has no number", "a whole number");
             const auto& events = journal_.events;
             if (events.size() > 1 && pose < events[events.size() - 2].poses[i])
-                fail("a pose is older than the one before", "rising numbers");
+                fail("the number of a pose does not rise", "rising numbers");
         }
         switch (kind.front()) {
             case 'p':
@@ -214,7 +214,7 @@ private:
             case 'a': {
                 bool settles = false;
                 if (!read_word(take_word(), settles))
-                    fail("an adoption does not say whether hands settle", "0 or 1");
+                    fail("an adoption does not say whether hands relax", "0 or 1");
                 played.event = AdoptEvent{settles};
                 break;
             }
@@ -222,7 +222,7 @@ private:
                 played.event = read_change(read_json());
                 break;
         }
-        if (!trimmed(rest_).empty()) fail("has words too many", "fewer");
+        if (!trimmed(rest_).empty()) fail("has too many words", "fewer");
     }
 
     void add_tick() {
@@ -238,7 +238,7 @@ private:
             read_hand(before_[i]);
             journal_.hands.push_back(before_[i]);
         }
-        if (!trimmed(rest_).empty()) fail("has words too many", "fewer");
+        if (!trimmed(rest_).empty()) fail("has too many words", "fewer");
         journal_.ticks.push_back(tick);
     }
 
@@ -248,7 +248,7 @@ private:
             if (word.empty() || word == "|") return;
             (void)take_word();
             if (word != "=" && !read_word(word, value))
-                fail(fmt::format("'{}' is no value", printable(word.substr(0, 40))),
+                fail(fmt::format("'{}' is not a value", printable(word.substr(0, 40))),
                      "a number, or =");
         });
     }
@@ -339,13 +339,13 @@ private:
         if (!is_number_of_atoms(of, most_atoms)) fail(fmt::format("'of' is {}", of), "atoms");
         const Json& pulls = json["pull"];
         if (!pulls.is_array() || pulls.size() > most_client_pulls)
-            fail("'pull' is no list, or too long", fmt::format("at most {}", most_client_pulls));
+            fail("'pull' is not a list, or too long", fmt::format("at most {}", most_client_pulls));
         ClientPull pull{{}, {}, static_cast<std::size_t>(of)};
         std::set<std::uint32_t> atoms;
         for (const Json& one : pulls) {
             if (!one.is_array() || one.size() != 4 ||
                 !std::ranges::all_of(one, [](const Json& x) { return x.is_number(); }))
-                fail("a pull is no atom with its force", "four numbers");
+                fail("a pull does not name an atom and its force", "four numbers");
             const auto atom = one[0].get<double>();
             const Vec3 force(one[1].get<double>(), one[2].get<double>(), one[3].get<double>());
             if (!is_number_of_atoms(atom, of) ||
@@ -363,7 +363,7 @@ private:
     LiveSettings read_settings(const Json& json) const {
         std::vector<std::string> settings;
         for (const Json& setting : json["coupling"]) {
-            if (!setting.is_string()) fail("a setting is no text", "\"key = value\"");
+            if (!setting.is_string()) fail("a setting is not text", "\"key = value\"");
             settings.push_back(setting.get<std::string>());
         }
         const double period_ms = read_amount(json, "period_ms");
@@ -391,7 +391,7 @@ Journal parse_journal(std::string_view text, const std::string& file) {
     }
     Journal journal = parser.take();
     if (journal.devices.empty())
-        throw LoadError({file, 1}, "holds no whole line of a hand; expected a journal");
+        throw LoadError({file, 1}, "has no complete line for a hand; expected a journal");
     return journal;
 }
 

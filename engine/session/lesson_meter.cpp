@@ -97,10 +97,9 @@ void LessonMeter::find_atoms(const World& world, std::size_t i) {
     if (step.quantity == LessonQuantity::Way && step.of.empty())
         found.push_back(held_atoms(world, first_hand(world)));
     if (step.quantity == LessonQuantity::Way && found.front().empty()) {
-        throw LoadError(scene_.place_of(key),
-                        fmt::format("'{}' is not there, and the hand holds nothing; expected a "
-                                    "selection",
-                                    key));
+        throw LoadError(
+            scene_.place_of(key),
+            fmt::format("'{}' is missing and the hand holds nothing; expected a selection", key));
     }
     atoms_[i] = std::move(found);
 }

@@ -152,7 +152,8 @@ void LiveSimulation::obey(const LiveSettings& settings) {
         world_.resource<SceneFile>().scene.coupling = settings.coupling;  // edits begin from it
     } else {
         readout_.problem =
-            "eq. 2 of these numbers cannot have these slopes: the law from before stays";
+            "eq. 2 with these values cannot reach the slopes A_f_max and A_f_min, so the previous "
+            "force law stays; change F_h1, F_h2 or F_0";
     }
     try {
         for (const HandDevice& device : devices_)
@@ -175,7 +176,7 @@ void LiveSimulation::obey(const Pause& pause) {
 
 void LiveSimulation::obey(const Reset& reset) {
     if (find_remote_engine(world_)) {
-        readout_.problem = "a remote engine's atoms are where they are: nothing puts them back";
+        readout_.problem = "reset is not possible: a remote engine moves the atoms";
         return;
     }
     if (reset.start_angstrom) scene_.hand.start_angstrom = reset.start_angstrom;

@@ -51,10 +51,11 @@ HandScript plan_in_out(const SceneDescription& scene, const HandTables& tables, 
                        const World& world, double half_width_m) {
     const std::string& key = tables.hand_key;
     if (!tables.grab.atom.empty()) {
-        throw LoadError(scene.place_of(key + ".stroke"),
-                        fmt::format("'{}.stroke' is \"in-out\" with a spring ({}.atom), for which "
-                                    "there is no peak to go to; expected \"path\" or \"hold\"",
-                                    key, tables.grab_key));
+        throw LoadError(
+            scene.place_of(key + ".stroke"),
+            fmt::format("'{}.stroke' is \"in-out\", but the hand pulls by a spring ({}.atom), "
+                        "which has no repulsion peak; expected \"path\" or \"hold\"",
+                        key, tables.grab_key));
     }
     const double start = grabbed_distance(world, entity);
     const double peak_newton = tables.hand.peak_nN * 1e-9;
@@ -62,7 +63,7 @@ HandScript plan_in_out(const SceneDescription& scene, const HandTables& tables, 
         world, peak_newton / units::newton_per_kcal_per_mol_angstrom, start, entity);
     if (!innermost) {
         throw LoadError(scene.place_of(key + ".peak_nN"),
-                        fmt::format("the repulsion reaches {} nN nowhere inside of {} Å; expected "
+                        fmt::format("the repulsion does not reach {} nN within {} Å; expected "
                                     "another {}.peak_nN or {}.start_angstrom",
                                     tables.hand.peak_nN, start, key, key));
     }
@@ -95,8 +96,8 @@ void check_speed(const SceneDescription& scene, const HandTables& tables,
         if (speed <= fastest_hand_m_per_s) continue;
         const bool own_path = tables.hand.stroke == Stroke::Path;
         throw LoadError(scene.place_of(tables.hand_key + (own_path ? ".path" : ".stroke_s")),
-                        fmt::format("the stroke asks the hand for {:.3g} m/s; expected {} m/s at "
-                                    "most, so more time",
+                        fmt::format("the stroke needs a hand speed of {:.3g} m/s; expected at most "
+                                    "{} m/s, so give the stroke more time",
                                     speed, fastest_hand_m_per_s));
     }
 }

@@ -57,7 +57,8 @@ private:
     template <class Value>
     static Value take(std::map<std::uint64_t, Value>& kept, std::uint64_t number) {
         const auto found = kept.find(number);
-        if (found == kept.end()) fail(fmt::format("goes back to what was posted as {}", number));
+        if (found == kept.end())
+            fail(fmt::format("refers to result {}, which is no longer available", number));
         Value value = std::move(found->second);
         kept.erase(kept.begin(), std::next(found));
         return value;
@@ -101,7 +102,7 @@ public:
 
 private:
     void play_event() {
-        if (next_event_ == journal_.events.size()) fail("uses what no step has posted");
+        if (next_event_ == journal_.events.size()) fail("uses a result that no step has produced");
         const PlayedEvent& played = journal_.events[next_event_++];
         std::vector<HandPose> poses(poses_.size());
         for (std::size_t slot = 0; slot < poses.size(); ++slot)
@@ -115,7 +116,7 @@ private:
         std::deque<HandPose>& kept = poses_[slot];
         while (!kept.empty() && kept.front().number < number) kept.pop_front();
         if (kept.empty() || kept.front().number != number)
-            fail(fmt::format("an event begins from pose {} of hand {}, which was not yet there",
+            fail(fmt::format("an event begins from pose {} of hand {}, which does not exist yet",
                              number, slot + 1));
         return kept.front();
     }
@@ -133,7 +134,7 @@ JournalPlayer::JournalPlayer(const SceneDescription& scene, const Journal& journ
                              const StageFunction& on_stage) {
     const std::size_t hands = scene.second ? 2 : 1;
     if (journal.devices.size() > hands)
-        fail(fmt::format("moves {} hands, where the scene has {}", journal.devices.size(), hands));
+        fail(fmt::format("moves {} hands, but the scene has {}", journal.devices.size(), hands));
     player_ = std::make_unique<Player>(scene, journal, on_stage);
 }
 

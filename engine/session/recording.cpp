@@ -229,7 +229,8 @@ std::vector<fs::path> list_own_folder(const fs::path& folder) {
     std::error_code error;
     if (!is_there(folder)) return {};
     if (!fs::is_directory(fs::symlink_status(folder, error))) {
-        throw LoadError({folder.string()}, "is no folder; expected a recording's own");
+        throw LoadError({folder.string()},
+                        "is not a folder; expected the folder that the recording made");
     }
     return list_folder(folder);
 }
@@ -244,7 +245,8 @@ std::vector<fs::path> list_recorded(const fs::path& folder) {
         std::error_code error;
         if (!is_there(file)) continue;
         if (!fs::is_regular_file(fs::symlink_status(file, error))) {
-            throw LoadError({file.string()}, "is no regular file; expected a recording's own");
+            throw LoadError({file.string()},
+                            "is not a regular file; expected the file that the recording made");
         }
         files.push_back(file);
     }
@@ -276,7 +278,7 @@ void check_can_be_made(const fs::path& folder) {
     while (parent.has_relative_path() && !fs::exists(parent, error)) parent = parent.parent_path();
     if (!fs::is_directory(parent, error)) {
         throw LoadError({folder.string()},
-                        fmt::format("cannot be made: {} is no folder", parent.string()));
+                        fmt::format("cannot be made: {} is not a folder", parent.string()));
     }
 }
 
@@ -300,25 +302,26 @@ SceneDescription read_recorded_scene(const fs::path& folder) {
     std::error_code error;
     if (!fs::exists(session, error)) {
         throw LoadError({folder.string()},
-                        "holds no session.toml; expected the folder of a recording (palpa run "
+                        "has no session.toml; expected the folder of a recording (palpa run "
                         "--record)");
     }
     SceneDescription scene = read_scene(session, {});
     if (scene.engine) {
         throw LoadError(scene.place_of("engine"),
-                        "a remote engine moved the atoms, and its frames are not in the recording; "
-                        "expected one without [engine]");
+                        "cannot be replayed: a remote engine moved the atoms and the recording "
+                        "does not have its frames; expected a recording without [engine]");
     }
     if (is_of_trajectory(folder)) {
         throw LoadError({folder.string()},
-                        "a trajectory moved the atoms (--trajectory), and its frames are not in "
-                        "the recording; expected one without");
+                        "cannot be replayed: a trajectory moved the atoms (--trajectory) and the "
+                        "recording does not have its frames; expected a recording without a "
+                        "trajectory");
     }
     if (is_of_commands(folder)) {
         throw LoadError({folder.string()},
-                        "commands drove the run (--commands), and they are not in the recording; "
-                        "expected one without, or the commands given once more to palpa run "
-                        "session.toml --headless --commands");
+                        "cannot be replayed: commands drove the run (--commands) and the recording "
+                        "does not have them; expected a recording without commands, or the same "
+                        "commands given to palpa run session.toml --headless --commands");
     }
     return scene;
 }
@@ -337,16 +340,16 @@ void check_record_folder(const fs::path& folder, bool overwrites) {
     }
     if (fs::is_empty(folder, error)) return;
     if (!overwrites) {
-        throw LoadError({folder.string()}, is_recording(folder)
-                                               ? "holds a recording already; expected a new or "
-                                                 "empty folder, or --overwrite"
-                                               : "holds something that is no recording; expected a "
-                                                 "new or empty folder");
+        throw LoadError(
+            {folder.string()},
+            is_recording(folder)
+                ? "already contains a recording; expected a new or empty folder, or --overwrite"
+                : "contains files that are not a recording; expected a new or empty folder");
     }
     if (!is_recording(folder)) {
         throw LoadError({folder.string()},
-                        "holds something that is no recording, and is not overwritten; expected a "
-                        "new or empty folder");
+                        "contains files that are not a recording and is not overwritten; expected "
+                        "a new or empty folder");
     }
     (void)list_recorded(folder);
 }
@@ -364,9 +367,9 @@ void make_room(const fs::path& folder, const std::map<fs::path, std::string>& na
     for (const auto& [input, name] : names) {
         const fs::path file = folder / name;
         if (is_there(file) && std::find(files.begin(), files.end(), file) == files.end()) {
-            throw LoadError({file.string()},
-                            "is no file of this recording, and is not replaced; expected a new "
-                            "folder");
+            throw LoadError(
+                {file.string()},
+                "is not part of this recording and is not replaced; expected a new folder");
         }
     }
     std::erase(files, session);

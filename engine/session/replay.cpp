@@ -39,12 +39,12 @@ TraceCheck::TraceCheck(const std::filesystem::path& folder, std::uint64_t ticks,
         return line;
     };
     const std::optional<std::string_view> header = take_line();
-    if (!header) throw LoadError({file, 1}, "holds no whole line; expected a recorded trace");
+    if (!header) throw LoadError({file, 1}, "has no complete line; expected a recorded trace");
     relaxes_ = *header == trace_header(hands, true);
     if (!relaxes_ && *header != trace_header(hands)) {
         throw LoadError({file, 1},
-                        "has other columns than this program records; expected a recording of the "
-                        "same version, session.toml says which");
+                        "has different columns than this program records; expected a recording of "
+                        "the same version (session.toml names its version)");
     }
     columns_ = split_row(*header);
     while (const std::optional<std::string_view> line = take_line()) rows_.push_back(*line);

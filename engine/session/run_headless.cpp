@@ -94,8 +94,8 @@ ServoSettings build_servo_settings(const SceneDescription& scene, const World& w
 void check_period(const DeviceSpec& device, double period_s) {
     if (bears_period(device, period_s)) return;
     throw LoadError({"run.period_ms"},
-                    fmt::format("is {:.6g} ms, and {} would play a force that is as old; expected "
-                                "at most {:.6g} ms with a device that has motors",
+                    fmt::format("is {:.6g} ms, so {} would render a force of this age; expected at "
+                                "most {:.6g} ms with a device that has motors",
                                 1e3 * period_s, device.name, 1e3 * longest_real_period_s));
 }
 
@@ -149,7 +149,8 @@ FeltStiffness stiffest_place(const SceneDescription& scene, const World& world,
     // In space from the start both ways; outward all gets soft soon.
     const double start = grabbed_distance(world, hand);
     for (double in = 0; in < 60 && look_at(start - in); in += 0.05) {
-        if (on_stage) on_stage(fmt::format("looking for the stiffest place: {:.1f} Å in", in), {});
+        if (on_stage)
+            on_stage(fmt::format("searching for the stiffest place: {:.1f} Å in", in), {});
     }
     for (double out = 0.05; out < 2 && look_at(start + out);) out += 0.05;
     return stiffest;
@@ -191,9 +192,9 @@ void warn_of_resolution(const SceneDescription& scene, const World& world,
     const double jump = encoder_jump(*servo.guarded, 1e-3 * step_mm);
     if (jump > noticed_newton) {
         warnings.push_back(fmt::format(
-            "this device vibrates or gains energy unless friction holds it: a step of its position "
-            "sensor of {:.3g} mm changes the force by {:.2g} N at once (at {:.3g} N/m and {:.3g} N "
-            "s/m); expected at most {} N, so steps of {:.2g} mm or less, or less damping "
+            "without friction this device vibrates or generates energy: one step of its position "
+            "sensor ({:.3g} mm) changes the force by {:.2g} N at once (at {:.3g} N/m and {:.3g} N "
+            "s/m); expected at most {} N: a sensor step of {:.2g} mm or less, or less damping "
             "(device.encoder_step_mm, coupling.damping_N_s_per_m)",
             step_mm, jump, servo.guarded->cap_N_per_m, servo.guarded->damping_N_s_per_m,
             noticed_newton, step_mm * noticed_newton / jump));
@@ -203,8 +204,8 @@ void warn_of_resolution(const SceneDescription& scene, const World& world,
     const double slope = force_gain(servo.guarded->force_law, 0);
     if (slope * finest_newton > noticed_newton) {
         warnings.push_back(fmt::format(
-            "this force law plays rounding errors: at rest its gain is {:.2g}, so that forces of "
-            "{:.2g} N are felt as {:.2g} N; expected a gain of at most {:.2g}",
+            "this force law makes rounding errors felt: at rest its gain is {:.2g} N/N, so forces "
+            "of {:.2g} N are felt as {:.2g} N; expected a gain of at most {:.2g} N/N",
             slope, finest_newton, std::min(slope * finest_newton, scene.coupling.clamp_N),
             noticed_newton / finest_newton));
     }
@@ -219,9 +220,9 @@ void warn_of_stiffness(const SceneDescription& scene, const World& world, const 
     const double limit = calm_stiffness(scene, hand, world.resource<Clock>().period_s);
     if (stiffest.newton_per_metre > limit) {
         warnings.push_back(
-            fmt::format("this setting vibrates unless friction holds it: at {:.2f} Å the hand "
-                        "feels {:.3g} N/m, "
-                        "and this hand on this device is calm up to {:.3g} N/m at T_s = {} ms",
+            fmt::format("without friction this setting vibrates: at {:.2f} Å the hand feels {:.3g} "
+                        "N/m, but this hand on this device is stable only up to {:.3g} N/m at T_s "
+                        "= {} ms; shorten the period, raise A_d or lower the force gain",
                         stiffest.angstrom, stiffest.newton_per_metre, limit, scene.period_ms));
     }
     if (script.release_s) {
@@ -229,8 +230,8 @@ void warn_of_stiffness(const SceneDescription& scene, const World& world, const 
             calm_stiffness(scene, relaxed(hand), world.resource<Clock>().period_s);
         if (stiffest.newton_per_metre > relaxed_limit && stiffest.newton_per_metre <= limit) {
             warnings.push_back(fmt::format(
-                "once the hand lets go this setting vibrates unless friction holds it: the relaxed "
-                "hand is calm up to {:.3g} N/m at T_s = {} ms, and feels up to {:.3g} N/m",
+                "without friction this setting vibrates after the hand lets go: the relaxed hand "
+                "is stable up to {:.3g} N/m at T_s = {} ms, but feels up to {:.3g} N/m",
                 relaxed_limit, scene.period_ms, stiffest.newton_per_metre));
         }
     }
@@ -242,16 +243,15 @@ void warn_of_stroke(const SceneDescription& scene, const World& world, const Han
     const HandTables tables = list_hands(scene).at(slot);
     if (world.resource<Coupling>().is_guarded && tables.hand.peak_nN > scene.coupling.stop_nN) {
         warnings.push_back(
-            fmt::format("the hand is to feel {:.6g} nN ({}.peak_nN), and the molecule is held "
-                        "back from {:.6g} "
-                        "nN on (coupling.stop_nN)",
+            fmt::format("the hand should reach {:.6g} nN ({}.peak_nN), but the molecule stops at "
+                        "{:.6g} nN (coupling.stop_nN)",
                         tables.hand.peak_nN, tables.hand_key, scene.coupling.stop_nN));
     }
     const double last_move = script.path.empty() ? 0 : script.path.back().time_s;
     if (last_move > scene.seconds) {
         warnings.push_back(
-            fmt::format("the stroke takes {:.6g} s, the run only {:.6g} s (run.seconds)", last_move,
-                        scene.seconds));
+            fmt::format("the stroke takes {:.6g} s, but the run only {:.6g} s (run.seconds)",
+                        last_move, scene.seconds));
     }
 }
 
@@ -265,13 +265,13 @@ std::vector<std::string> list_warnings(const SceneDescription& scene, const Worl
     if (const auto closest = describe_coincident_atoms(world.resource<AtomTable>().names,
                                                        world.resource<AtomTable>().positions,
                                                        nearest_single_precision)) {
-        warnings.push_back(fmt::format("atoms are on each other at the start: {}", *closest));
+        warnings.push_back(fmt::format("atoms overlap at the start: {}", *closest));
     }
     const std::optional<JointRelaxReport>& relaxed = world.resource<StartReport>().joints_at_rest;
     if (relaxed && relaxed->end != RelaxEnd::Converged) {
         warnings.push_back(fmt::format(
-            "not at rest at the start: an rms force of {:.3g} kcal/mol per radian and Å is left "
-            "after {} steps (statics.relax_steps, statics.rest_kcal_per_mol; palpa relax)",
+            "the molecules are not at rest at the start: an rms force of {:.3g} kcal/mol per "
+            "radian and Å remains after {} steps; raise statics.relax_steps or run palpa relax",
             relaxed->rms_force, relaxed->steps));
     }
     warn_of_stroke(scene, world, script, 0, warnings);
@@ -280,7 +280,8 @@ std::vector<std::string> list_warnings(const SceneDescription& scene, const Worl
     if (scene.engine && scene.engine->program == EngineProgram::Unknown &&
         scene.engine->rate == 1) {
         warnings.emplace_back(
-            "engine.rate is 1: LAMMPS takes forces only where it sends every second step or rarer");
+            "engine.rate is 1, but LAMMPS accepts forces only if it sends every second step or "
+            "fewer");
     }
     return warnings;
 }
@@ -308,15 +309,16 @@ void warn_of_outcome(Summary& summary) {
         summary.warnings.emplace_back("a force was not finite: the device was stopped");
     }
     if (summary.steps_not_finite > 0) {
-        summary.warnings.push_back(fmt::format("{} of {} steps were not finite and moved nothing",
-                                               summary.steps_not_finite, summary.steps));
+        summary.warnings.push_back(
+            fmt::format("{} of {} steps gave results that were not finite and were discarded",
+                        summary.steps_not_finite, summary.steps));
     }
     if (summary.sums_in_double > 0) {
-        summary.warnings.push_back(fmt::format(
-            "{} of {} sums of forces were in double and took longer: atoms were within {} Å of "
-            "each other, or {} Å away",
-            summary.sums_in_double, summary.sums, nearest_single_precision,
-            farthest_single_precision));
+        summary.warnings.push_back(
+            fmt::format("{} of {} force sums were computed in double precision and took longer, "
+                        "because atoms were closer than {} Å or farther than {} Å",
+                        summary.sums_in_double, summary.sums, nearest_single_precision,
+                        farthest_single_precision));
     }
 }
 

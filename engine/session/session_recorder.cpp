@@ -83,8 +83,8 @@ void SessionRecorder::begin(const std::filesystem::path& folder, bool overwrites
     flush();
     if (!is_whole_) {
         throw LoadError({folder.string()},
-                        "cannot be recorded: the session is so long that its beginning is no "
-                        "longer kept; open the scene anew, or record from the start (--record)");
+                        "cannot be recorded: the session is too long, so its beginning is no "
+                        "longer in memory; open the scene again and record from the start");
     }
     recording_.emplace(folder, scene_, overwrites, devices_.size(), RecordedBy::Journal);
     try {

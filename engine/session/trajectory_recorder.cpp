@@ -95,8 +95,8 @@ void TrajectoryFiles::begin(const TrajectoryShot& shot) {
     system_ = shot.system;
     if (number_ > 1) {
         notes_.push_back(
-            fmt::format("at {:.6g} s an edit changed the atoms: frames from there on "
-                        "are in {}, whose atoms {} lists",
+            fmt::format("at {:.6g} s an edit changed the atoms; later frames are in {}, with the "
+                        "atoms listed in {}",
                         shot.time_s, name("trajectory", ".dcd").filename().string(),
                         name("system", ".psf").filename().string()));
     }
@@ -118,8 +118,8 @@ void TrajectoryFiles::add(const TrajectoryShot& shot) {
     if (settings_.most_bytes && bytes_ > *settings_.most_bytes) {
         is_over_ = true;
         notes_.push_back(
-            fmt::format("the trajectory ends at {:.6g} s, for it has {} MiB; "
-                        "--trajectory-fps and a number writes all of it",
+            fmt::format("the trajectory ends at {:.6g} s because it has reached {} MiB; "
+                        "--trajectory-fps N writes all of it",
                         shot.time_s, *settings_.most_bytes >> 20));
         return;
     }
@@ -131,7 +131,7 @@ void TrajectoryFiles::add(const TrajectoryShot& shot) {
         ++frames_;
     } catch (const LoadError& error) {
         is_over_ = true;
-        notes_.push_back(fmt::format("no more frames of the trajectory: {}", error.what()));
+        notes_.push_back(fmt::format("the trajectory stops here: {}", error.what()));
     }
 }
 
@@ -141,7 +141,7 @@ void TrajectoryFiles::close() {
         if (xtc_) xtc_->close();
     } catch (const LoadError& error) {
         is_over_ = true;
-        notes_.push_back(fmt::format("the trajectory's end is missing: {}", error.what()));
+        notes_.push_back(fmt::format("the end of the trajectory is missing: {}", error.what()));
     }
     dcd_.reset();
     xtc_.reset();

@@ -61,18 +61,20 @@ AtomsOf find_atoms(const World& world, const std::string& address) {
 AtomsOf find_some_atoms(const World& world, const std::string& address) {
     AtomsOf found = find_atoms(world, address);
     if (found.atoms.empty())
-        refuse(fmt::format("\"{}\" is a whole molecule; expected \"{}:25\" or \"{}:25 CA\"",
-                           address, address, address));
+        refuse(
+            fmt::format("\"{}\" is a whole molecule; expected a residue or atom of it, such as "
+                        "\"{}:25\" or \"{}:25 CA\"",
+                        address, address, address));
     return found;
 }
 
 void check_name_is_new(const World& world, const std::string& name) {
-    if (name.empty()) refuse("what is added has no name; expected name = \"w2\"");
+    if (name.empty()) refuse("the new molecule has no name; expected a name such as name = \"w2\"");
     const std::optional<Address> address = find_address(name);
     if (!address || !address->residue.empty())
-        refuse(fmt::format("'{}' is no name of a molecule; expected one without ':'", name));
+        refuse(fmt::format("'{}' is not a name of a molecule; expected one without ':'", name));
     if (molecule_called(world, name) != Entity{})
-        refuse(fmt::format("there is a molecule '{}' already; expected another name", name));
+        refuse(fmt::format("there is already a molecule '{}'; expected another name", name));
 }
 
 // ---- after an edit ---------------------------------------------------------------------------
@@ -241,8 +243,8 @@ void check_room(const AtomTable& atoms, AtomRange added, const std::string& name
     }
     if (pair[0] == pair[1]) return;
     refuse(
-        fmt::format("'{}' would overlap: {} is {:.2f} Å from {}; expected {} with {} Å or more "
-                    "between all atoms",
+        fmt::format("'{}' would overlap another molecule: {} is {:.2f} Å from {}; expected {} with "
+                    "at least {} Å between all atoms",
                     name, to_string(atoms.names[pair[0]]), std::sqrt(closest2),
                     to_string(atoms.names[pair[1]]), remedy, nearest));
 }
@@ -365,7 +367,8 @@ void remove_molecule(World& world, const RemoveEdit& edit) {
         const Entity molecule = find_molecule(changed, edit.molecule);
         std::size_t count = 0;
         changed.each<Molecule>([&](Entity, const Molecule&) { ++count; });
-        if (count == 1) refuse(fmt::format("'{}' is the last molecule; it stays", edit.molecule));
+        if (count == 1)
+            refuse(fmt::format("'{}' is the last molecule and cannot be removed", edit.molecule));
         for (const Entity hand : find_hands(changed)) {
             const Grip* const grip = changed.find<Grip>(hand);
             if (grip && grip->molecule == molecule) release(changed, hand);
@@ -400,14 +403,16 @@ void add_restraint(World& world, const RestraintEdit& edit) {
         changed.set(changed.create(), std::move(restraint));
         if (!needs_mechanics(changed))
             refuse(
-                "nothing is mobile here that a restraint could pull at; expected a molecule "
-                "with motion = \"free\" or shape = \"flexible\"");
+                "a restraint has no effect, because no molecule moves by itself; expected a "
+                "molecule with motion = \"free\" or shape = \"flexible\"");
     });
 }
 
 void set_mobility(World& world, const MobilityEdit& edit) {
     if (edit.motion && *edit.motion != Motion::Fixed && *edit.motion != Motion::Free)
-        refuse("only a hand guides a molecule; expected motion = \"fixed\" or \"free\"");
+        refuse(
+            "this motion needs a hand that holds the molecule; expected motion = \"fixed\" or "
+            "\"free\"");
     edit_whole(world, [&](World& changed) {
         const Entity molecule = find_molecule(changed, edit.molecule);
         bool is_held = false;
@@ -438,8 +443,8 @@ void set_coupling(World& world, const CouplingEdit& edit) {
     const CouplingDescription coupling = with_settings(scene.coupling, edit.settings);
     if (!can_build_laws(coupling))
         refuse(
-            "eq. 2 of these F_h1_N, F_h2_N, F_0_nN cannot have the slopes A_f_max at 0 and "
-            "A_f_min at F_0; expected others, or force_law = \"printed\"");
+            "eq. 2 with these F_h1_N, F_h2_N and F_0_nN cannot have the slopes A_f_max at 0 and "
+            "A_f_min at F_0; expected other values, or force_law = \"printed\"");
     scene.coupling = coupling;
     set_coupling(coupling, world);
 }
@@ -472,8 +477,8 @@ void check_engine_allows(const World& world, const EditDescription& edit) {
         std::holds_alternative<CouplingEdit>(action))
         return;
     refuse(
-        fmt::format("a remote engine moves everything here, and '{}' is not for it; expected "
-                    "take, let_go, appearance or coupling",
+        fmt::format("a remote engine moves the atoms of this scene, so '{}' is not possible; "
+                    "expected take, let_go, appearance or coupling",
                     edit_names[action.index()]));
 }
 
@@ -616,7 +621,7 @@ EditHistory::Entry* EditHistory::end_grip(std::size_t hand) noexcept {
 
 void EditHistory::go(World& world, std::deque<Entry>& from, std::deque<Entry>& to) {
     if (from.empty())
-        refuse(&from == &undo_ ? "nothing is there to be undone" : "nothing is there to be redone");
+        refuse(&from == &undo_ ? "there is nothing to undo" : "there is nothing to redo");
     Entry entry = std::move(from.back());
     from.pop_back();
     has_changed_coupling_ = entry.change.is_of_coupling;

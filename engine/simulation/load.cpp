@@ -107,8 +107,8 @@ void relax_grabbed(const SceneDescription& scene, const HandTables& tables, Enti
     if (!(report.force < resting_force)) {
         throw LoadError(
             scene.place_of(tables.grab_key + ".molecule"),
-            fmt::format("'{}' finds no rest where it stands: {:.3g} pN are left after {} "
-                        "evaluations; expected a structure that was minimised",
+            fmt::format("'{}' does not come to rest: a force of {:.3g} pN remains after {} "
+                        "evaluations; expected a minimised structure",
                         grabbed.name, report.force * units::newton_per_kcal_per_mol_angstrom * 1e12,
                         report.evaluations));
     }
@@ -164,12 +164,11 @@ void start_grabbed(const SceneDescription& scene, const HandTables& tables, Enti
         return;
     }
     if ((from_origin - from_origin.x() * Vec3::UnitX()).norm() > 1e-6) {
-        throw LoadError(
-            scene.place_of(tables.grab_key + ".measured_from"),
-            fmt::format("the reference atoms of '{}' and '{}' are not on one line along "
-                        "x: they are ({}) Å apart",
-                        grabbed.name, origin.name,
-                        fmt::join(from_origin.begin(), from_origin.end(), ", ")));
+        throw LoadError(scene.place_of(tables.grab_key + ".measured_from"),
+                        fmt::format("the reference atoms of '{}' and '{}' are not on a line along "
+                                    "x: they are ({}) Å apart in x, y and z",
+                                    grabbed.name, origin.name,
+                                    fmt::join(from_origin.begin(), from_origin.end(), ", ")));
     }
     move_grabbed(world, find_start(scene, tables, hand, world, from_origin.x()), hand);
     grip.is_new = false;
@@ -287,9 +286,10 @@ World read_world(const SceneDescription& scene, const StageFunction& on_stage) {
 
 void check_laws(const SceneDescription& scene) {
     if (can_build_laws(scene.coupling)) return;
-    throw LoadError(scene.place_of("coupling.force_law"),
-                    "eq. 2 of these F_h1_N, F_h2_N, F_0_nN cannot have the slopes A_f_max at 0 and "
-                    "A_f_min at F_0; expected others, or coupling.force_law = \"printed\"");
+    throw LoadError(
+        scene.place_of("coupling.force_law"),
+        "eq. 2 with these F_h1_N, F_h2_N and F_0_nN cannot have the slopes A_f_max at 0 and "
+        "A_f_min at F_0; expected other values, or coupling.force_law = \"printed\"");
 }
 
 }  // namespace
@@ -306,10 +306,10 @@ World load_world(const SceneDescription& scene, const StageFunction& on_stage) {
     if (needs_mechanics(world)) {
         tell(on_stage, for_translation("finding bonded terms"));
         bonded_terms(world);
-        tell(on_stage, for_translation("building joints and lists of neighbours"));
+        tell(on_stage, for_translation("building joints and neighbour lists"));
         relax_and_build_mechanics(world, tell_relaxing(on_stage));
     }
-    tell(on_stage, for_translation("bringing the molecule in the hand to its start"));
+    tell(on_stage, for_translation("moving the molecule in the hand to its start"));
     start_hands(scene, world);
     std::vector<Entity> molecules;
     world.each<Molecule>([&](Entity molecule, const Molecule&) { molecules.push_back(molecule); });

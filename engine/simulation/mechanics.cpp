@@ -57,17 +57,18 @@ std::uint32_t find_atom(const Connectivity& connectivity, const NamedAtom& wante
             name.atom == wanted.atom)
             return i;
     }
-    throw LoadError(place, fmt::format("\"{}\" names atom '{}' of residue {} of segment '{}', "
-                                       "which is not there",
-                                       bond, wanted.atom, wanted.number, wanted.segment));
+    throw LoadError(
+        place,
+        fmt::format("\"{}\" names atom '{}' of residue {} of segment '{}', which does not exist",
+                    bond, wanted.atom, wanted.number, wanted.segment));
 }
 
 JointOverride read_override(const Connectivity& connectivity, const std::string& bond,
                             BondMotion motion, const TextPlace& place) {
     const std::vector<std::string_view> words = split_words(bond);
     if (words.size() != 4 && words.size() != 5) {
-        throw LoadError(place, fmt::format("\"{}\" is no bond; expected \"A 25 CB CG\" or, between "
-                                           "residues, \"A 25 C 26 N\"",
+        throw LoadError(place, fmt::format("\"{}\" is not a bond; expected \"A 25 CB CG\" or, "
+                                           "between residues, \"A 25 C 26 N\"",
                                            bond));
     }
     const NamedAtom first{words[0], words[1], words[2]};
@@ -166,11 +167,12 @@ SceneJoints find_joints(const SceneDescription& scene, const Connectivity& conne
     }
     for (const JointOverride& o : rules.overrides) {
         if (o.motion != BondMotion::Turn || mobile.has(o.bond)) continue;
-        throw LoadError(scene.place_of("joints.turn"),
-                        fmt::format("bond {} - {} is of a rigid molecule; expected shape = "
-                                    "\"flexible\" there",
-                                    to_string(connectivity.names[o.bond[0]]),
-                                    to_string(connectivity.names[o.bond[1]])));
+        throw LoadError(
+            scene.place_of("joints.turn"),
+            fmt::format(
+                "bond {} - {} belongs to a rigid molecule; expected shape = \"flexible\" for it",
+                to_string(connectivity.names[o.bond[0]]),
+                to_string(connectivity.names[o.bond[1]])));
     }
     const auto keep_mobile = [&] {
         std::erase_if(result.joints.joints, [&](const Joint& joint) {
@@ -241,8 +243,8 @@ void check_one_piece(const TextPlace& place, const Molecule& held,
     for (std::uint32_t i = 0; i < held.atoms.count; ++i) {
         if (piece_of(held.atoms.first + i) == piece_of(held.reference_atom)) continue;
         throw LoadError(place,
-                        fmt::format("'{}' is not all bonded together; expected one molecule, or a "
-                                    "free one held by a spring (grab.atom)",
+                        fmt::format("'{}' has parts without bonds between them; expected one "
+                                    "bonded molecule, or a free one held by a spring (grab.atom)",
                                     held.name));
     }
 }
@@ -445,12 +447,13 @@ RelaxMethod find_method(const SceneDescription& scene, Eigen::Index coordinates)
     if (method != RelaxMethod::SecondOrder || coordinates <= most_second_order_coordinates)
         return method;
     if (!scene.statics.method) return RelaxMethod::QuasiStatic;
-    throw LoadError(scene.place_of("statics.method"),
-                    fmt::format("{} degrees of freedom by second order would take {:.1f} GB and "
-                                "minutes; expected at most {}: fewer joints "
-                                "(joints.region_angstrom, joints.within_angstrom), or quasi-static",
-                                coordinates, 5e-8 * static_cast<double>(coordinates * coordinates),
-                                most_second_order_coordinates));
+    throw LoadError(
+        scene.place_of("statics.method"),
+        fmt::format("the second-order method with {} degrees of freedom would need {:.1f} GB and "
+                    "minutes; expected at most {} degrees of freedom: use fewer joints "
+                    "(joints.region_angstrom, joints.within_angstrom), or quasi-static",
+                    coordinates, 5e-8 * static_cast<double>(coordinates * coordinates),
+                    most_second_order_coordinates));
 }
 
 // ---- together --------------------------------------------------------------------------------
@@ -589,10 +592,11 @@ void check_segments(const World& world) {
         world.each<Molecule, Source>([&](Entity b, const Molecule& other, const Source& source) {
             if (a == b || from.structure != source.structure || from.segment != source.segment)
                 return;
-            throw LoadError(scene.place_of("molecules." + other.name + ".segment"),
-                            fmt::format("'{}' and '{}' are the same atoms, segment '{}'; expected "
-                                        "each segment once, where anything moves by itself",
-                                        one.name, other.name, from.segment));
+            throw LoadError(
+                scene.place_of("molecules." + other.name + ".segment"),
+                fmt::format("'{}' and '{}' are the same atoms (segment '{}'); expected each "
+                            "segment only once in a scene with molecules that move by themselves",
+                            one.name, other.name, from.segment));
         });
     });
 }
@@ -641,10 +645,10 @@ const BondedTerms& bonded_terms(World& world) {
         if (!out) return;
         throw LoadError(
             {from.file, from.lines[(*out)[0]]},
-            fmt::format("atoms {} and {} are bonded, across segments; expected "
-                        "molecules that are not bonded to others, where any moves by "
-                        "itself",
-                        to_string(from.names[(*out)[0]]), to_string(from.names[(*out)[1]])));
+            fmt::format(
+                "atoms {} and {} of different segments are bonded; expected molecules without "
+                "bonds between them in a scene with molecules that move by themselves",
+                to_string(from.names[(*out)[0]]), to_string(from.names[(*out)[1]])));
     });
     auto topology = std::make_shared<Topology>(build_topology(*all, force_field));
     topology->solvation = find_solvation(world);
@@ -721,8 +725,8 @@ void relax_and_build_mechanics(World& world, const RelaxProgressFunction& on_rel
     report.joints_at_rest = relax_joints(loose, to_rest, rest, statics, on_relax);
     if (report.joints_at_rest->end == RelaxEnd::NotFinite) {
         throw LoadError(scene.place_of("molecules"),
-                        "the energy at the start is not finite; expected atoms apart from each "
-                        "other, and charges and parameters of molecules");
+                        "the energy at the start is not finite; expected atoms that do not "
+                        "overlap, with sensible charges and parameters");
     }
     put_in_table(loose, plan.atoms, rest.positions, world.resource<AtomTable>().positions);
     TorsionModel model = build_model(world, plan, plan.bases);

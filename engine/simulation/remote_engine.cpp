@@ -136,7 +136,8 @@ EngineAtoms match_names(const SceneDescription& scene, const AtomTable& table) {
         if (found == places.end() || found->second.size() != 1) {
             throw LoadError(
                 scene.place_of("engine.atoms"),
-                fmt::format("{} has {} atoms called {} {} {}; expected one, for {} of the scene",
+                fmt::format("{} has {} atoms named {} {} {}; expected exactly one, to match {} of "
+                            "the scene",
                             path.string(), found == places.end() ? 0 : found->second.size(),
                             name.residue, name.number, name.atom, to_string(name)));
         }
@@ -146,7 +147,7 @@ EngineAtoms match_names(const SceneDescription& scene, const AtomTable& table) {
         if (has_masses && std::abs(file.masses[place] - table.mass[i]) > most_off) {
             throw LoadError(
                 scene.place_of("engine.atoms"),
-                fmt::format("{} has {} with {} amu, the scene with {}; expected the "
+                fmt::format("{} has {} with {} amu, but the scene has it with {} amu; expected the "
                             "same atom",
                             path.string(), to_string(name), file.masses[place], table.mass[i]));
         }
@@ -166,17 +167,16 @@ EngineAtoms match_index(const SceneDescription& scene, const AtomTable& table) {
         if (atom >= table.size() || atoms.in_engine[atom] >= 0) {
             throw LoadError(
                 {path.string(), group.line},
-                fmt::format("group '{}' has atom {} {}; expected each of the scene's "
-                            "{} atoms once at most",
-                            group.name, atom + 1,
-                            atom >= table.size() ? "that the scene does not have" : "twice",
-                            table.size()));
+                fmt::format(
+                    "group '{}' has atom {} {}; expected each of the scene's {} atoms at most once",
+                    group.name, atom + 1,
+                    atom >= table.size() ? "that the scene does not have" : "twice", table.size()));
         }
         atoms.in_table[i] = static_cast<std::int32_t>(atom);
         atoms.in_engine[atom] = static_cast<std::int32_t>(i);
     }
     if (group.atoms.empty())
-        throw LoadError({path.string(), group.line}, "has no atoms; expected some");
+        throw LoadError({path.string(), group.line}, "has no atoms; expected at least one");
     return atoms;
 }
 
@@ -311,7 +311,7 @@ AtomRange add_engine_atoms(const Source& source, AtomTable& table) {
         if (found == places.end()) {
             throw LoadError(
                 {connectivity->file, connectivity->lines[i]},
-                fmt::format("atom {} has no place in {}", to_string(name), structure.file));
+                fmt::format("atom {} has no coordinates in {}", to_string(name), structure.file));
         }
         at[i] = static_cast<std::int64_t>(table.size());
         // The name first: hydrogens may have been given mass of their neighbours.
@@ -341,10 +341,11 @@ EngineAtoms find_engine_atoms(const SceneDescription& scene, const AtomTable& ta
     const std::string ending = upper_case(path.extension().string());
     if (ending == ".NDX") return match_index(scene, table);
     if (!path.empty() && ending != ".PSF" && ending != ".GRO") {
-        throw LoadError(scene.place_of("engine.atoms"),
-                        fmt::format("'{}' is no list of the engine's atoms; expected a .psf, .gro "
-                                    "or .ndx file",
-                                    path.string()));
+        throw LoadError(
+            scene.place_of("engine.atoms"),
+            fmt::format(
+                "'{}' is not a list of the engine's atoms; expected a .psf, .gro or .ndx file",
+                path.string()));
     }
     if (!path.empty()) return match_names(scene, table);
     EngineAtoms atoms;
@@ -444,15 +445,15 @@ void await_engine(World& world) {
 }
 
 std::string advise(const RemoteEngine& engine) {
-    const std::string usual = "expected one that listens there and sends frames";
+    const std::string usual = "expected an engine that listens there and sends frames";
     switch (engine.client->lack()) {
         case ImdLack::Answer:
             // It was there before.
             if (engine.frames > 0) return usual;
             return usual + ": start it first, or wait longer (engine.wait_s)";
         case ImdLack::Handshake:
-            return "another client may hold it: expected it to be free (LAMMPS takes one client at "
-                   "a time, and ends itself over one that gave up)";
+            return "another client may be connected; expected a free engine (LAMMPS accepts one "
+                   "client at a time, and ends when a client gives up)";
         case ImdLack::Frame:
             return "expected frames: wait longer (engine.wait_s)";
         case ImdLack::Version:
@@ -511,7 +512,7 @@ std::string describe_engine(const World& world) {
     const ImdClient& client = *engine->client;
     if (client.state() != ImdState::Connected) return client.why();
     if (!engine->refusal.empty()) return fmt::format("no force: {}", engine->refusal);
-    return fmt::format("engine at {}: {:.0f} frames/s, force {:.0f} ms late",
+    return fmt::format("engine at {}: {:.0f} frames/s, force delayed by {:.0f} ms",
                        engine->settings.address,
                        engine->frame_interval_s > 0 ? 1 / engine->frame_interval_s : 0,
                        1e3 * find_engine_delay(world));

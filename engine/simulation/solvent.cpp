@@ -36,10 +36,9 @@ void refuse_neutral_groups(const SceneDescription& scene, const AtomTable& atoms
     const AtomName& first = atoms.names[groups.front().atoms.front()];
     throw LoadError(
         scene.place_of(solvent_key),
-        fmt::format("the molecules have EEF1-SB's neutral charges ({} of {} {} {} is neutral, {} "
-                    "ionic groups in all), and the scene is in vacuum; expected "
-                    "solvent = \"eef1-sb\", or topology files made without (palpa prepare "
-                    "--solvent none)",
+        fmt::format("the scene is in vacuum, but the molecules have EEF1-SB's neutral charges ({} "
+                    "of {} {} {} is neutral, {} ionic groups in all); expected solvent = "
+                    "\"eef1-sb\", or topology files without them (palpa prepare --solvent none)",
                     groups.front().kind, first.segment, first.residue, first.number,
                     groups.size()));
 }
@@ -49,8 +48,8 @@ void refuse_charges(const SceneDescription& scene, const AtomTable& atoms) {
         find_charged(atoms.names, list_types(atoms), atoms.charge);
     if (charged.empty()) return;
     throw LoadError(scene.place_of(solvent_key),
-                    fmt::format("EEF1-SB needs neutral charges, and {}; expected topology files "
-                                "of `palpa prepare --solvent eef1-sb`, or solvent = \"none\"",
+                    fmt::format("EEF1-SB needs neutral charges, but {}; expected topology files "
+                                "from `palpa prepare --solvent eef1-sb`, or solvent = \"none\"",
                                 fmt::join(charged, "; ")));
 }
 
@@ -69,7 +68,7 @@ std::vector<std::uint8_t> find_structural(const World& world) {
             if (is_water[i] == 0) {
                 throw LoadError(
                     scene.place_of(fmt::format("molecules.{}.structural_water", molecule.name)),
-                    fmt::format("{} is of no water; expected a molecule of waters alone",
+                    fmt::format("{} is not part of a water; expected a molecule of waters only",
                                 to_string(atoms.names[i])));
             }
             is_structural[i] = 1;

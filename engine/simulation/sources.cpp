@@ -168,9 +168,9 @@ Source build_residue(const ForceField& force_field, const std::string& residue,
     const std::vector<AtomCoordinate> table = find_internal_coordinates(force_field, *whole);
     const BuiltPositions built = build_positions(connectivity, topology, table, whole->positions);
     if (!built.unplaced.empty()) {
-        throw LoadError({"edit"}, fmt::format("residue '{}' has atoms that are bonded to "
-                                              "nothing; expected one molecule",
-                                              residue));
+        throw LoadError(
+            {"edit"},
+            fmt::format("residue '{}' has atoms without bonds; expected one molecule", residue));
     }
     return {std::move(whole), nullptr, name};
 }

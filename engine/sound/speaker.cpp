@@ -20,7 +20,7 @@ Speaker::Speaker() {
     SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
     SDL_SetHint(SDL_HINT_APP_NAME, "Palpa");
     if (SDL_InitSubSystem(SDL_INIT_AUDIO) != 0) {
-        throw SoundError(fmt::format("no sound output ({})", SDL_GetError()));
+        throw SoundError(fmt::format("no sound output was found ({})", SDL_GetError()));
     }
     SDL_AudioSpec wanted{};
     wanted.freq = sound_rate_hz;

@@ -204,9 +204,9 @@ void AddPanel::choose_files() {
     if (wants_focus_) ImGui::SetKeyboardFocusHere();
     (void)type_text("##structure", translated("a path, or drop a file on the window"), structure_);
     ImGui::TextUnformatted(translated("types and charges: .psf"));
-    (void)type_text("##topology", translated("none: of the force field's residues"), topology_);
+    (void)type_text("##topology", translated("empty: use the force field's residues"), topology_);
     ImGui::TextUnformatted(translated("segment or chain"));
-    (void)type_text("##segment", translated("only where the file has several"), segment_);
+    (void)type_text("##segment", translated("needed only if the file has several"), segment_);
 }
 
 void AddPanel::name_it(const AtomDirectory& atoms) {
@@ -237,11 +237,11 @@ std::string AddPanel::find_problem(const AtomDirectory& atoms) const {
     if (origin_ == Origin::Residue && residue_.empty())
         return atoms.force_field->residues.empty()
                    ? translated("the scene's force field has no residues")
-                   : translated("no residue of the scene's force field is called so");
+                   : translated("no residue of the scene's force field has this name");
     if (origin_ == Origin::Copy && !find_molecule(atoms, copy_of_))
         return translated("choose a molecule");
     if (origin_ == Origin::Files) {
-        if (path_of(structure_).empty()) return translated("name a structure file");
+        if (path_of(structure_).empty()) return translated("enter the name of a structure file");
         for (const std::string& file : {structure_, topology_}) {
             std::error_code error;
             const std::filesystem::path path = path_of(file);
@@ -250,10 +250,10 @@ std::string AddPanel::find_problem(const AtomDirectory& atoms) const {
         }
     }
     const std::string name(trimmed(name_));
-    if (name.empty()) return translated("give it a name");
-    if (!is_name(name)) return translated("a name has no ':'");
+    if (name.empty()) return translated("enter a name for the molecule");
+    if (!is_name(name)) return translated("a name cannot contain ':'");
     if (find_molecule(atoms, name))
-        return format_translated("there is a molecule {} already", name);
+        return format_translated("there is already a molecule {}; enter another name", name);
     return {};
 }
 

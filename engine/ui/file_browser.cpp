@@ -64,7 +64,7 @@ void FileBrowser::go_to(const fs::path& folder) {
     std::error_code error;
     const fs::path whole = fs::weakly_canonical(fs::absolute(folder, error), error);
     if (!fs::is_directory(whole, error)) {
-        problem_ = format_translated("{} is no folder that can be read", folder.string());
+        problem_ = format_translated("{} is not a readable folder", folder.string());
         return;
     }
     folder_ = whole;
@@ -123,8 +123,10 @@ std::optional<fs::path> FileBrowser::draw_entries() {
             }
             if (i == chosen_ && steps_ != 0) ImGui::SetScrollHereY();
         }
-        if (is_cut_off_) ImGui::TextDisabled("%s", translated("more files: type the name above"));
-        if (entries_.empty()) ImGui::TextDisabled("%s", translated("no such files here"));
+        if (is_cut_off_)
+            ImGui::TextDisabled("%s", translated("there are more files: type the name above"));
+        if (entries_.empty())
+            ImGui::TextDisabled("%s", translated("no matching files in this folder"));
         ImGui::EndListBox();
     }
     steps_ = 0;

@@ -66,7 +66,7 @@ std::optional<std::size_t> draw_lesson_question(const LessonQuestion& question,
     const bool is_right = *chosen + 1 == static_cast<std::size_t>(question.right);
     ImGui::PushStyleColor(ImGuiCol_Text, is_right ? right_answer_colour : wrong_answer_colour);
     ImGui::TextWrapped("%c: %s %s", static_cast<char>('A' + static_cast<int>(*chosen)),
-                       is_right ? "Right." : "Not so.", question.why[*chosen].c_str());
+                       is_right ? "Right." : "Not correct.", question.why[*chosen].c_str());
     ImGui::PopStyleColor();
     return pressed;
 }

@@ -320,7 +320,7 @@ void Overlay::draw_lesson(const Readout& readout) {
     } else {
         draw_lesson_step(readout, count);
     }
-    if (ImGui::SmallButton(labelled("from the beginning").c_str())) {
+    if (ImGui::SmallButton(labelled("from the start").c_str())) {
         lesson_.restart();
         lesson_curve_.clear();
     }
@@ -367,7 +367,8 @@ void Overlay::draw_warnings(const Readout& readout, const OverlayStatus& status)
         if (left_s > 0) warnings.push_back(text());
     };
     if (stopped_)
-        warnings.emplace_back(translated("a force was not finite: no force until you reset (R)"));
+        warnings.emplace_back(translated(
+            "a force was not finite, so the force is off until you reset the scene (R)"));
     const bool feels = readout.holds_something && !stopped_;
     if (reason_ != SafetyStage::None && feels)
         warnings.emplace_back(translated(words(reason_).data()));
@@ -375,33 +376,35 @@ void Overlay::draw_warnings(const Readout& readout, const OverlayStatus& status)
         warnings.emplace_back(translated(words(stage_).data()));
     warn(shaking_for_s_, is_shaking(readout), [&] {
         return format_translated(
-            "this setting vibrates: K > B/(1.5 T_s). This hand keeps {:.3g} N/m calm at T_s = {} "
-            "ms. Shorten the period, raise A_d, or lower the force gain.",
+            "this setting vibrates: K > B/(1.5 T_s). This hand is stable up to {:.3g} N/m at T_s = "
+            "{} ms. Shorten the period, raise A_d, or lower the force gain.",
             stiffness_limit_, settings_.period_ms);
     });
     warn(clamped_for_s_, clamped_, [&] {
-        return format_translated("the force is cut off at {} N", settings_.coupling.clamp_N);
+        return format_translated(
+            "clipping: the force is limited to {} N; push less or lower the force gain",
+            settings_.coupling.clamp_N);
     });
     warn(late_for_s_, readout.step_ms > settings_.period_ms, [&] {
         return format_translated(
-            "steps take longer than their period of {} ms: the force comes late",
+            "steps take longer than the period of {} ms, so the force is delayed; raise the period",
             settings_.period_ms);
     });
     warn(at_wall_for_s_, is_guarded() && overtravel_m_ > least_overtravel_m, [&] {
         return format_translated(
-            "at the wall: an atom is pushed with {:.3g} nN, and the molecule goes no further; draw "
-            "the hand back {:.0f} mm to come off it",
+            "overtravel: the contact force has reached {:.3g} nN, so the molecule has stopped; "
+            "move the hand back by {:.0f} mm before it follows again",
             settings_.coupling.stop_nN, std::ceil(1e3 * overtravel_m_));
     });
     if (went_through_) {
         warnings.emplace_back(
-            translated("the molecule was pushed through the other one: R brings it back"));
+            translated("the molecule was pushed through another one; R resets the scene"));
     }
     if (!readout.problem.empty()) warnings.push_back(readout.problem);
     if (!readout.engine.empty()) warnings.push_back(readout.engine);
     if (!readout.edit_under_way.empty())
-        warnings.push_back(format_translated("{}: being prepared", readout.edit_under_way));
-    if (readout.paused) warnings.emplace_back(translated("paused: P goes on"));
+        warnings.push_back(format_translated("{}: in preparation", readout.edit_under_way));
+    if (readout.paused) warnings.emplace_back(translated("paused; P continues"));
     if (!status.notice.empty()) warnings.push_back(status.notice);
     warnings.emplace_back(
         readout.replay

@@ -31,12 +31,13 @@ struct Touch {
 };
 constexpr std::array touches{
     Touch{for_translation("waters"), 20, 1e3,
-          for_translation(
-              "20 pN to 1 nN: dispersion and single hydrogen bonds; strong contacts feel alike")},
+          for_translation("20 pN to 1 nN: dispersion and single hydrogen bonds; all strong "
+                          "contacts feel the same")},
     Touch{for_translation("pockets"), 100, 5e3,
-          for_translation("100 pN to 5 nN: what holds a ligand")},
+          for_translation("100 pN to 5 nN: forces that bind a ligand")},
     Touch{for_translation("walls"), 1e3, 5e4,
-          for_translation("1 to 50 nN: the shape of hard walls; bonds are not noticed")}};
+          for_translation(
+              "1 to 50 nN: the shape of repulsive walls; hydrogen bonds are too weak to feel")}};
 
 // What laws and ways to reach places may be called in scenes, for translators.
 [[maybe_unused]] constexpr std::array law_names{
@@ -116,9 +117,10 @@ void Overlay::draw_gains(std::vector<Command>& commands) {
                force_lines,
                force_points},
               height);
-    tip(translated(
-        "Eq. 2: F_h = a1 atan(d1 F) + a2 [atan(d2 (F - F_0)) + atan(d2 (F + F_0))]; the point is "
-        "where you are. Steep for weak forces, flat for strong ones, never cut off."));
+    tip(
+        translated("Eq. 2: F_h = a1 atan(d1 F) + a2 [atan(d2 (F - F_0)) + atan(d2 (F + F_0))]; the "
+                   "point shows the present force. The curve is steep for weak forces and flat for "
+                   "strong ones, without clipping."));
     const std::array gain_lines{PlotLine{x_, z_, gain_colour, "A_d"}};
     const std::array gain_points{PlotPoint{
         now_nN,
@@ -134,8 +136,8 @@ void Overlay::draw_gains(std::vector<Command>& commands) {
                gain_points},
               height);
     tip(translated(
-        "Eq. 3: A_d = A_dmin + b [atan((|F| - F_off) g) - atan(-F_off g)]: far from everything the "
-        "molecule goes far for a little travel of the handle, in contact it goes slowly."));
+        "Eq. 3: A_d = A_dmin + b [atan((|F| - F_off) g) - atan(-F_off g)]: far from other atoms a "
+        "small move of the handle moves the molecule far; in contact the molecule moves slowly."));
     const LiveSettings before = settings_;
     const float top = ImGui::GetCursorPosY();
     draw_gain_sliders();
@@ -194,13 +196,13 @@ void Overlay::draw_gain_sliders() {
                   "A_fmax of eq. 2: gain of weak forces, N on the hand per N on the molecule"));
         slide("A_f min", c.A_f_min, 0.01e9, 5e9, "%.3g", true,
               for_translation("A_fmin of eq. 2: gain of strong forces, N/N"));
-        slide(
-            "F_h1", c.F_h1_N, 0.1, 2.9, "%.2f N", false,
-            for_translation("F_h1 of eq. 2, N: where the weak forces' part of the curve tends to"));
+        slide("F_h1", c.F_h1_N, 0.1, 2.9, "%.2f N", false,
+              for_translation("F_h1 of eq. 2, N: limit of the part of the curve for weak forces"));
         slide("F_h2", c.F_h2_N, 0.2, 3.3, "%.2f N", false,
-              for_translation("F_h2 of eq. 2, N: where the strongest forces tend to; above F_h1"));
+              for_translation(
+                  "F_h2 of eq. 2, N: limit for the strongest forces; must be above F_h1"));
         slide("F_0", c.F_0_nN, 0.0, 10, "%.2f nN", false,
-              for_translation("F_0 of eq. 2, nN: between weak and strong forces"));
+              for_translation("F_0 of eq. 2, nN: molecular force between weak and strong"));
         c.F_h2_N = std::max(c.F_h2_N, 1.05 * c.F_h1_N);
         c.A_f_max = std::max(c.A_f_max, c.A_f_min);
     } else if (c.mode != CouplingMode::NoForce) {
@@ -213,7 +215,7 @@ void Overlay::draw_gain_sliders() {
         slide("A_d min", c.A_d_min, 0.0005e9, 1e9, "%.3g", true,
               for_translation("A_dmin of eq. 3: handle metres per molecule metre far away"));
         slide("F_off", c.F_off_pN, 1, 500, "%.0f pN", true,
-              for_translation("F_off of eq. 3, pN: molecular force where near begins"));
+              for_translation("F_off of eq. 3, pN: molecular force at which contact begins"));
         c.A_d_max = std::max(c.A_d_max, c.A_d_min);
     } else {
         slide("A_d", c.A_d, 0.005e9, 10e9, "%.3g", true,
@@ -242,8 +244,7 @@ void Overlay::choose_touch() {
     }
     same_line_if_it_fits(translated("as the scene"));
     if (ImGui::SmallButton(labelled("as the scene").c_str())) set(scene_.coupling.feel_pN);
-    tip(translated(
-        "the range that the scene's file states, or its force law where it states none"));
+    tip(translated("the force range of the scene file, or its force law if it has no range"));
     if (!c.feel_pN) return;
     double weakest = (*c.feel_pN)[0];
     slide(for_translation("touch"), weakest, touches.front().weakest_pN, touches.back().weakest_pN,
@@ -277,22 +278,19 @@ void Overlay::choose_laws() {
     };
     choose(
         for_translation("force"), force_law_names, c.force_law,
-        for_translation(
-            "force law: eq. 2 as printed, or calibrated to its slopes, a constant gain, or equal "
-            "noticeable steps for each decade"));
-    choose(
-        for_translation("travel"), displacement_law_names, c.displacement_law,
-        for_translation(
-            "displacement law: eq. 3 that sees stiff places too, as printed, or a constant gain"));
-    choose(
-        for_translation("raised"), gain_shape_names, c.gain_shape,
-        for_translation(
-            "where A_d is raised for the cap: in all directions, or, a tensor, in those that are "
-            "stiff, so that sliding along a wall goes faster"));
+        for_translation("force law: eq. 2 as printed; eq. 2 calibrated to its slopes; a constant "
+                        "gain; or equally many noticeable steps for each decade of force"));
+    choose(for_translation("travel"), displacement_law_names, c.displacement_law,
+           for_translation("displacement law: eq. 3 with the stiffness included; eq. 3 as printed; "
+                           "or a constant gain"));
+    choose(for_translation("raised"), gain_shape_names, c.gain_shape,
+           for_translation(
+               "directions in which A_d is raised to keep the stiffness cap: all (scalar), or only "
+               "the stiff ones (tensor), so that the molecule slides faster along a wall"));
     choose(for_translation("reach"), workspace_names, c.workspace,
-           for_translation("how far places are reached: the clutch alone; outside a bubble the "
-                           "molecule goes on by "
-                           "itself; or the handle drifts back to its centre while it moves"));
+           for_translation("how to reach distant places: with the clutch only; outside a bubble "
+                           "the molecule continues to move (rate control); or the handle drifts "
+                           "back to its centre while it moves"));
     ImGui::TreePop();
 }
 
@@ -308,9 +306,9 @@ void Overlay::choose_range() {
         c.feel_pN.reset();
         if (has_range) c.feel_pN = {c.F_lo_pN, 1e3 * c.F_hi_nN};
     }
-    tip(translated(
-        "what must be felt, in place of a force law: the weakest force as 0.3 N, the strongest as "
-        "2.7 N"));
+    tip(
+        translated("a range of molecular forces in place of a force law: the weakest is felt as "
+                   "0.3 N, the strongest as 2.7 N"));
     if (c.feel_pN) {
         auto& [weakest, strongest] = *c.feel_pN;
         slide(for_translation("weakest"), weakest, lowest_pN, highest_pN, "%.0f pN", true,
@@ -321,8 +319,8 @@ void Overlay::choose_range() {
     }
     if (c.feel_within_pN) {
         slide(for_translation("within"), *c.feel_within_pN, lowest_pN, highest_pN, "%.0f pN", true,
-              for_translation(
-                  "how far forces may be from what all joints would give; active joints follow"));
+              for_translation("error limit of the force against complete relaxation; the number of "
+                              "active joints follows from it"));
     }
 }
 

@@ -56,26 +56,25 @@ const char* doing(bool on_axis, double force) {
 // Which water is around the molecules, and what that leaves out.
 void show_solvent(Solvent solvent, bool is_remote) {
     if (is_remote) {
-        return reading(
-            translated("water"), translated("the engine's"),
-            translated("A remote engine moves the atoms, with its own force field, temperature and "
-                       "water."));
+        return reading(translated("water"), translated("the engine's"),
+                       translated("A remote engine moves the atoms with its own force field, "
+                                  "temperature and water."));
     }
     if (solvent == Solvent::None) {
         return reading(
             translated("water"), translated("none: vacuum"),
-            translated("Molecules are in vacuum. Nothing screens charges, so that ionic groups "
-                       "attract and repel each other far too strongly; nothing is gained from "
-                       "water. force_field.solvent of the scene says so."));
+            translated("The molecules are in vacuum. Nothing screens charges, so ionic groups "
+                       "attract and repel each other far too strongly, and there is no solvation "
+                       "energy. The scene sets this by force_field.solvent."));
     }
     reading(
         translated("water"), translated("implicit, EEF1-SB"),
-        translated(
-            "EEF1-SB (Bottaro et al. 2013): each atom gains from water, less what the atoms around "
-            "take of its shell; ionic groups are neutral, and charges act through a dielectric of "
-            "1.5 r. It leaves out salt, surface tension, polarisation and viscosity, and knows no "
-            "inside and outside: a salt bridge is nearly nothing; catalytic pairs of acids and "
-            "metal sites are poor. Energies are no free energies of binding."));
+        translated("EEF1-SB (Bottaro et al. 2013): each atom has a solvation energy, reduced by "
+                   "the atoms around it; ionic groups are neutral, and charges act through a "
+                   "dielectric of 1.5 r. The model leaves out salt, surface tension, polarisation "
+                   "and viscosity, and does not distinguish inside and outside of a protein: salt "
+                   "bridges are far too weak; pairs of catalytic acids and metal sites are "
+                   "described poorly. The energies are not free energies of binding."));
 }
 
 // Residues whose parameters nobody has fitted.
@@ -89,20 +88,19 @@ void show_approximate(const std::vector<MoleculeDescription>& molecules) {
     if (names.empty()) return;
     reading(
         translated("approximate"), fmt::format("{}", fmt::join(names, ", ")),
-        translated(
-            "Types, charges and parameters of these residues are guesses by likeness to CGenFF's "
-            "model compounds (palpa prepare --approximate-ligands): forces on and by them are "
-            "rough. For real ones send the molecule to the CGenFF server (cgenff.com) and give "
-            "its stream file to palpa prepare with --parameters."));
+        translated("Types, charges and parameters of these residues are approximate: Palpa took "
+                   "them from similar model compounds of CGenFF, so their forces are rough. For "
+                   "better ones send the molecule to the CGenFF server (cgenff.com), then open the "
+                   "structure together with the stream file (.str) that it writes."));
 }
 
 void switch_sound(const OverlayStatus& status, std::vector<Action>& actions) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
     ImGui::TextUnformatted(translated("sound"));
-    tip(translated(
-        "S. The force on the hand as a tone: higher and louder is stronger, nothing is silence. "
-        "The choice is remembered."));
+    tip(
+        translated("S. Plays the force on the hand as a tone: a stronger force is higher and "
+                   "louder; silence means no force. Palpa remembers the choice."));
     ImGui::TableNextColumn();
     bool sounds = status.sounds;
     if (ImGui::Checkbox(labelled("force as a tone").c_str(), &sounds))
@@ -149,50 +147,51 @@ void Overlay::draw_scene(const Readout& readout, const OverlayStatus& status,
 void Overlay::draw_buttons(const Readout& readout, bool is_recording,
                            std::vector<Action>& actions) {
     button(readout.paused ? for_translation("Go on") : for_translation("Pause"),
-           for_translation("P. While paused nothing moves, and the hand feels nothing."),
+           for_translation("P. While paused, nothing moves and the hand feels no force."),
            Action::PauseOrGo, actions);
     same_line_if_it_fits(translated("Step"));
     button(for_translation("Step"),
-           for_translation("Full stop key. One step of the simulation, then pause."),
+           for_translation("Full stop key. Makes one step of the simulation, then pauses."),
            Action::StepOnce, actions);
     same_line_if_it_fits(translated("Reset"));
     button(for_translation("Reset"),
-           for_translation("R. Molecules and view go back to their start; the settings stay."),
+           for_translation("R. Puts molecules and view back to their start; the settings stay."),
            Action::Reset, actions);
     same_line_if_it_fits(translated("Open"));
     button(for_translation("Open"),
-           for_translation("Ctrl+O. Another scene, or a structure of your own."),
+           for_translation("Ctrl+O. Opens another scene, or a structure of your own."),
            Action::StartScreen, actions);
     same_line_if_it_fits(translated("Save"));
     button(for_translation("Save"),
-           for_translation("Ctrl+S. Writes the scene with these settings to a file of its own."),
+           for_translation("Ctrl+S. Saves the scene with these settings to a new file."),
            Action::Save, actions);
     same_line_if_it_fits(translated("Picture"));
-    button(for_translation("Picture"), for_translation("F12. A screenshot."), Action::Screenshot,
-           actions);
+    button(for_translation("Picture"), for_translation("F12. Saves a screenshot."),
+           Action::Screenshot, actions);
     same_line_if_it_fits(translated("Film"));
-    button(for_translation("Film"), for_translation("M. Films the window, until M again."),
+    button(for_translation("Film"), for_translation("M. Starts or ends a film of the window."),
            Action::Film, actions);
     same_line_if_it_fits(translated("Coordinates"));
     button(for_translation("Coordinates"),
-           for_translation("E. Saves what is shown, or in hand: PDB, mmCIF, GRO, PSF and CRD."),
+           for_translation("E. Saves the coordinates of what is shown, or of the molecule in hand: "
+                           "PDB, mmCIF, GRO, PSF and CRD."),
            Action::Export, actions);
     same_line_if_it_fits(
         translated(is_recording ? for_translation("End recording") : for_translation("Record")));
     button(is_recording ? for_translation("End recording") : for_translation("Record"),
-           for_translation(
-               "F9. Writes what happens to a new folder, from which palpa replay plays it again."),
+           for_translation("F9. Records the session into a new folder, for a replay."),
            Action::Record, actions);
     same_line_if_it_fits(translated("Add"));
     button(for_translation("Add"),
-           for_translation("Insert. A molecule more: a residue, a copy, or from a file."),
+           for_translation("Insert. Adds a molecule: a residue, a copy, or from a file."),
            Action::Add, actions);
     same_line_if_it_fits(translated("Remove"));
     button(for_translation("Remove"),
-           for_translation("Delete. The molecule in hand goes; Ctrl+Z brings it back."),
+           for_translation("Delete. Removes the molecule in hand; Ctrl+Z brings it back."),
            Action::Remove, actions);
     same_line_if_it_fits(translated("Keys"));
-    button(for_translation("Keys"), for_translation("H. All keys."), Action::ToggleHelp, actions);
+    button(for_translation("Keys"), for_translation("H. Shows all keys."), Action::ToggleHelp,
+           actions);
 }
 
 void Overlay::choose_mode(std::vector<Command>& commands) {
@@ -206,10 +205,10 @@ void Overlay::choose_mode(std::vector<Command>& commands) {
         }
         ImGui::EndCombo();
     }
-    tip(translated(
-        "The paper's five modes, keys 1 to 5, and guarded coupling, 6: there the servo moves the "
-        "molecule itself, in the field around it, a thousand times a second. The force gain is "
-        "F_h/F_m, the displacement gain A_d = dx_handle/dx_molecule."));
+    tip(
+        translated("The paper's five modes (keys 1 to 5) and guarded coupling (6), in which the 1 "
+                   "kHz servo itself moves the molecule in the force field around it. The force "
+                   "gain is F_h/F_m, the displacement gain A_d = dx_handle/dx_molecule."));
     int period = static_cast<int>(std::lround(settings_.period_ms));
     const LiveSettings before = settings_;
     ImGui::SetNextItemWidth(-scaled(70));
@@ -220,9 +219,10 @@ void Overlay::choose_mode(std::vector<Command>& commands) {
         change_settings(settings, commands);
     }
     remember_edit(before);
-    tip(translated(
-        "T_s, ms: how often the simulation answers the hand. In the paper's modes the hand feels a "
-        "force that is one period old, and held for one: the longer, the more it vibrates."));
+    tip(
+        translated("T_s, ms: time between two simulation steps. In the paper's modes the force on "
+                   "the hand is one period old and stays constant for one period: the longer the "
+                   "period, the more it vibrates."));
 }
 
 void Overlay::draw_readings(const Readout& readout, const OverlayStatus& status,
@@ -234,14 +234,14 @@ void Overlay::draw_readings(const Readout& readout, const OverlayStatus& status,
     reading(has_flexible_ ? translated("energy of all") : translated("energy"),
             fmt::format("{:.3f} kcal/mol", readout.contact.potential_kcal_per_mol),
             has_flexible_
-                ? translated("Of all molecules, bonded terms too, kcal/mol")
-                : translated("Of the molecule in hand with all others: Lennard-Jones and Coulomb, "
-                             "kcal/mol"));
+                ? translated("Potential energy of all molecules with bonded terms, kcal/mol")
+                : translated("Interaction energy of the molecule in hand with all others "
+                             "(Lennard-Jones and Coulomb), kcal/mol"));
     show_solvent(scene_.force_field.solvent, scene_.engine.has_value());
     show_approximate(scene_.molecules);
     if (status.devices.empty()) {
         reading(translated("device"), status.device_name,
-                translated("what the force is sent to, 1000 times a second"));
+                translated("the device that renders the force, 1000 times a second"));
     } else {
         choose_device(status);
     }
@@ -262,19 +262,17 @@ void Overlay::draw_forces(const ContactModel& contact) const {
         fmt::format("{:.3f} N{}", std::abs(last_.hand_N), doing(on_axis, last_.hand_N)),
         translated("F_h = f(F_m), N, as sent to the device; eq. 2 of the paper in modes 1 and 2"));
     if (has_flexible_) {
-        reading(translated("relaxation"), translated("not complete"),
-                translated("The surroundings follow the hand by a few steps and are not at rest "
-                           "meanwhile: the "
-                           "force can be several times that of surroundings at rest. Measured in "
-                           "scenes/hiv/results.md."));
+        reading(translated("relaxation"), translated("incomplete"),
+                translated("The surroundings make only a few relaxation steps while the hand "
+                           "moves, so they are not at rest: the force can be several times the "
+                           "force of relaxed surroundings (measured in scenes/hiv/results.md)."));
     }
     if (!on_axis && scene_.grab.atom.empty()) {  // a spring turns nothing
         reading(translated("torque"),
                 fmt::format("{:.3g} nN Å", 1e19 * contact.torque_newton_metre.norm()),
-                translated(
-                    "On the molecule in hand about its centre of mass. No motor plays it, so a "
-                    "molecule that is turned between the way in and the way out can give the hand "
-                    "energy."));
+                translated("Torque on the molecule in hand about its centre of mass. The device "
+                           "has no motor for it, so a molecule that is turned between the way in "
+                           "and the way out can give energy to the hand."));
     }
 }
 
@@ -284,10 +282,10 @@ void Overlay::draw_gain_readings(const ContactModel& contact) const {
     reading(
         translated("stiffness felt"),
         format_translated("{:.4g} of {:.4g} N/m", felt, stiffness_limit_),
-        translated(
-            "K = (dF_h/dF_m) k / A_d, N/m. Guarded: of the cap, half of what the device keeps "
-            "calm; A_d is raised until it holds. Else of the largest K that the hand keeps calm: "
-            "about B/(1.5 T_s), found from the eigenvalues of hand, device, period and delay."));
+        translated("K = (dF_h/dF_m) k / A_d, N/m, and its limit. Guarded coupling: the limit is "
+                   "the cap, half of the device's stability limit; A_d is raised until K is below "
+                   "it. Other modes: the limit is the largest stable K of this hand, about B/(1.5 "
+                   "T_s), from the eigenvalues for hand, device, period and delay."));
     reading(
         translated("displ. gain"),
         fmt::format("{:.2f} cm/Å", cm_per_angstrom(last_.displacement_gain)),
@@ -296,11 +294,9 @@ void Overlay::draw_gain_readings(const ContactModel& contact) const {
             "cm/Å is 1e8. Eq. 3 of the paper in modes 1 and 3"));
     reading(translated("force gain"), fmt::format("{:.3g}", force_gain_),
             translated("A_f = F_h/F_m, N/N"));
-    reading(
-        translated("work on hand"), fmt::format("{:+.2f} mJ", 1e3 * hand_energy_J_),
-        translated(
-            "Energy given to the hand so far, mJ: over a way there and back it should not be above "
-            "0."));
+    reading(translated("work on hand"), fmt::format("{:+.2f} mJ", 1e3 * hand_energy_J_),
+            translated("Energy given to the hand so far, mJ. On a path out and back it must not "
+                       "exceed 0 (passivity)."));
     if (is_guarded()) {
         reading(
             translated("overtravel"), fmt::format("{:.1f} mm", 1e3 * overtravel_m_),
@@ -319,31 +315,28 @@ void Overlay::draw_machine(const Readout& readout, const OverlayStatus& status) 
         fmt::format(fmt::runtime(translated_plural("{} degree of freedom", "{} degrees of freedom",
                                                    static_cast<std::size_t>(freedom))),
                     freedom),
-        translated("Degrees of freedom that a step may move"));
+        translated("Number of degrees of freedom that a step may move"));
     reading(translated("hand"), std::string(grip_names[static_cast<std::size_t>(scene_.hand.grip)]),
-            translated("The grip on the emulated handle; hand.grip of the scene"));
+            translated("How firmly the emulated hand holds the handle (hand.grip of the scene)"));
     reading(translated("step"),
             format_translated("{:.3f} ms of {} ms", readout.step_ms, settings_.period_ms),
             translated("Wall time of the last simulation step, and the declared period"));
     reading(translated("drawing"),
             format_translated("{:.1f} ms, scale {:.2f}", status.frame_ms, status.render_scale),
-            translated(
-                "Time of a frame. Where the machine cannot hold 30 Hz, effects are left out first, "
-                "then the picture is drawn smaller."));
+            translated("Time to draw a frame. If the frame rate falls below 30 Hz, Palpa first "
+                       "drops effects, then lowers the resolution."));
     const double ticks = 1e3 * last_.time_s;
-    reading(
-        translated("servo"),
-        format_translated(
-            "{:.2f} % of ticks missed{}",
-            ticks > 0 ? 100 * static_cast<double>(status.servo.overruns) / ticks : 0.0,
-            !status.servo.real_time ? translated(", ordinary priority")
-            : !status.servo.locked  ? translated(", memory not locked")
-                                    : ""),
-        translated(
-            "A force is sent every millisecond. Where the system was late, a tick was missed, and "
-            "the device kept the force before. Without real-time priority or locked memory that "
-            "happens more often: allow rtprio 50 and memlock for yourself in "
-            "/etc/security/limits.conf."));
+    reading(translated("servo"),
+            format_translated(
+                "{:.2f} % of ticks missed{}",
+                ticks > 0 ? 100 * static_cast<double>(status.servo.overruns) / ticks : 0.0,
+                !status.servo.real_time ? translated(", ordinary priority")
+                : !status.servo.locked  ? translated(", memory not locked")
+                                        : ""),
+            translated("The servo sends a force every millisecond. When the system is late, it "
+                       "misses a tick and the device keeps the previous force. This happens more "
+                       "often without real-time priority and locked memory: allow rtprio 50 and "
+                       "memlock for your user in /etc/security/limits.conf."));
     ImGui::EndTable();
     ImGui::TextDisabled("%s", status.gpu_name.c_str());
 }
@@ -353,14 +346,14 @@ void Overlay::choose_device(const OverlayStatus& status) {
     ImGui::TableNextColumn();
     ImGui::TextUnformatted(translated("device"));
     tip(translated(
-        "What the force is sent to, 1000 times a second. D takes the next one that is there. The "
-        "choice is remembered; a device that was unplugged is taken again when it is back."));
+        "The device that renders the force, 1000 times a second. D selects the next connected "
+        "device. Palpa remembers the choice, and uses an unplugged device again when it is back."));
     ImGui::TableNextColumn();
     ImGui::SetNextItemWidth(-1);
     if (!ImGui::BeginCombo("##device", status.device.c_str())) return;
     for (const DeviceOffer& offer : status.devices) {
         const std::string text =
-            fmt::format("{}{}", offer.name, offer.is_there ? "" : translated(" (not seen)"));
+            fmt::format("{}{}", offer.name, offer.is_there ? "" : translated(" (not connected)"));
         if (ImGui::Selectable(text.c_str(), offer.name == status.device)) device_ = offer.name;
         tip(translated(offer.summary.c_str()));
     }
@@ -371,29 +364,25 @@ void Overlay::choose_device(const OverlayStatus& status) {
 void Overlay::draw_comparison(const Readout& readout) {
     const CouplingDescription& c = settings_.coupling;
     if (const auto range = c.feel_pN; range && is_guarded()) {
-        reading(
-            translated("to be felt"),
-            format_translated("{:.4g} to {:.4g} pN, A_d x {:.2f}", (*range)[0], (*range)[1],
-                              cap_ratio_),
-            translated(
-                "Molecular forces that are felt as 0.3 N or more and 2.7 N or less, and how much "
-                "A_d is raised at this moment so that the stiffness felt stays under its cap: by "
-                "so much less the molecule goes."));
+        reading(translated("force range"),
+                format_translated("{:.4g} to {:.4g} pN, A_d x {:.2f}", (*range)[0], (*range)[1],
+                                  cap_ratio_),
+                translated("The molecular forces that are felt as 0.3 N and as 2.7 N, and the cap "
+                           "ratio: A_d is multiplied by it to keep the stiffness below its cap, so "
+                           "the molecule moves less far by this factor."));
     }
     if (!readout.error_pN) return;
     std::string error = fmt::format("{:.3g} pN", *readout.error_pN);
     if (const auto within_pN = c.feel_within_pN)
-        error += format_translated(" of {:.4g} pN allowed", *within_pN);
+        error += format_translated(" (limit {:.4g} pN)", *within_pN);
     if (readout.work_budget.steps > 0)
-        error += format_translated(", {} joints move", readout.work_budget.active);
+        error += format_translated(", {} active joints", readout.work_budget.active);
     if (const double age = readout.contact.model_age_angstrom; std::isfinite(age))
-        error += format_translated(", model {:.2f} Å old", age);
-    reading(
-        translated("error"), error,
-        translated(
-            "By how much the force differs from what it were if all joints relaxed completely on "
-            "all pairs, as estimated; and how far the hand has gone from where the model of the "
-            "force was made."));
+        error += format_translated(", contact model {:.2f} Å away", age);
+    reading(translated("error"), error,
+            translated("Estimated error of the force against complete relaxation of all joints "
+                       "with all pairs; and the distance of the hand from the place where the "
+                       "contact model was computed."));
 }
 
 }  // namespace palpa

@@ -39,13 +39,13 @@ PlaybackOrder play_from_start() { return {.paused = {}, .frames_per_s = {}, .fra
 void draw_playback_panel(const PlaybackState& state, const ScreenArea& area,
                          std::vector<Command>& commands) {
     begin_panel(playback_panel, area);
-    if (ImGui::Button(labelled(state.is_paused ? for_translation("Play (T)")
-                                               : for_translation("Stop here (T)"))
-                          .c_str()))
+    if (ImGui::Button(
+            labelled(state.is_paused ? for_translation("Play (T)") : for_translation("Stop (T)"))
+                .c_str()))
         commands.emplace_back(play_or_pause(state));
-    tip(translated(
-        "T. A frame is frozen while it stands: the hand feels the forces in it, and moves what it "
-        "holds from where it stands."));
+    tip(
+        translated("T. Stops at this frame: the hand feels the forces in it, and moves the "
+                   "molecule in hand from there."));
     ImGui::SameLine();
     if (ImGui::Button(labelled("From the beginning (Shift+T)").c_str()))
         commands.emplace_back(play_from_start());
@@ -57,14 +57,14 @@ void draw_playback_panel(const PlaybackState& state, const ScreenArea& area,
         commands.emplace_back(PlaybackOrder{
             .paused = true, .frames_per_s = {}, .frame = static_cast<std::size_t>(frame - 1)});
     }
-    tip(translated("The frame that is shown. Who moves it stops there."));
+    tip(translated("The frame that is shown. Moving the slider stops the trajectory there."));
     auto speed = static_cast<float>(state.frames_per_s);
     ImGui::SetNextItemWidth(-1);
     if (ImGui::SliderFloat("##speed", &speed, slowest, fastest, translated("%.1f frames a second"),
                            ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp)) {
         commands.emplace_back(PlaybackOrder{.paused = {}, .frames_per_s = speed, .frame = {}});
     }
-    tip(translated("How fast it plays."));
+    tip(translated("Speed of the trajectory."));
     if (!state.problem.empty()) ImGui::TextWrapped("%s", state.problem.c_str());
     ImGui::End();
 }

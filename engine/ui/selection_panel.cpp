@@ -121,7 +121,7 @@ void SelectionPanel::choose_look() {
     }
     ImGui::SameLine();
     ImGui::SetNextItemWidth(half);
-    const char* const usual = translated("coloured as all");
+    const char* const usual = translated("colours of the scene");
     const auto name = [](Colouring colouring) {
         return format_translated("by {}", shown_name(colouring));
     };
@@ -147,14 +147,14 @@ void SelectionPanel::draw_buttons(const SelectionStatus& status, const ViewAddit
                                           .colouring = colouring_});
     };
     const auto hide = [&] { add_new(changed.hidden, status.expression); };
-    if (button(for_translation("Add this look"), true)) add_layer();
-    tip(translated("drawn in this representation in addition"));
-    if (button(for_translation("Show only this look"))) hide(), add_layer();
-    tip(translated("drawn in this representation alone"));
+    if (button(for_translation("Add this representation"), true)) add_layer();
+    tip(translated("draws the selection in this representation, in addition to the others"));
+    if (button(for_translation("Show only this"))) hide(), add_layer();
+    tip(translated("draws the selection in this representation only"));
     if (button(for_translation("Hide"))) hide();
     if (button(for_translation("Label"))) add_new(changed.labels, status.expression);
-    tip(translated("labels its residues, or a single atom"));
-    if (button(for_translation("Look at it"))) order.focus = true;
+    tip(translated("labels the selected residues, or a single atom"));
+    if (button(for_translation("Centre"))) order.focus = true;
     if (button(for_translation("Clear (Esc)"))) order.select = "";
     if (changed != additions) order.additions = std::move(changed);
 }

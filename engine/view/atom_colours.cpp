@@ -331,24 +331,24 @@ std::vector<LegendEntry> find_legend(const World& world, Colouring colouring) {
                                    fmt::format("{:.0f} Å²", high));
         }
         case Colouring::Force:
-            return legend_of_scale("1 pN on what is in hand, or less", "30 pN", "1 nN or more");
+            return legend_of_scale("1 pN or less on the molecule in hand", "30 pN", "1 nN or more");
         case Colouring::Activity:
             switch (shown_activity(world)) {
                 case ShownActivity::BeyondFirstOrder:
-                    return legend_of_scale("joint beyond first order: 0.001° or less", "0.03°",
-                                           "1° or more");
+                    return legend_of_scale("joint angle beyond first order: 0.001° or less",
+                                           "0.03°", "1° or more");
                 case ShownActivity::Active:
                     return {{sequential_colour(0), "joint or base at rest"},
                             {sequential_colour(1), "active now"}};
                 case ShownActivity::Nothing:
-                    return {{no_value, "nothing here has joints that turn"}};
+                    return {{no_value, "no molecule has joints that can turn"}};
                 case ShownActivity::Turned:
                     break;
             }
             return legend_of_scale("joint not turned", "15°", "turned by 30° or more");
         case Colouring::Error:
             if (!world.find_resource<SecondOrder>())
-                return {{no_value, "no estimate: not of second order"}};
+                return {{no_value, "no estimate (only with the second-order method)"}};
             return legend_of_scale("estimated joint error: 0.001° or less", "0.03°", "1° or more");
     }
     return {};

@@ -201,7 +201,7 @@ void add_snap(const glm::vec3& place, double released, FrameScene& frame,
         const auto [first, second] = across(axis);
         add_arc({place, first, second, radius, 2 * pi}, {thick, force_colour, snap_pick}, frame, 2);
     }
-    labels.push_back({place, fmt::format("snap, {:.0f} kcal/mol set free", released)});
+    labels.push_back({place, fmt::format("snap, {:.0f} kcal/mol released", released)});
 }
 
 void add_wish(const glm::vec3& place, const glm::vec3& wish, const glm::vec3& towards_eye,

@@ -119,8 +119,8 @@ constexpr double double_click_pixels = 6, drag_pixels = 4;
 
 Window::Window(const std::string& title, std::uint32_t width, std::uint32_t height) {
     if (glfwInit() != GLFW_TRUE) {
-        throw PlatformError(
-            fmt::format("no display ({}); palpa run --headless needs none", last_glfw_error()));
+        throw PlatformError(fmt::format("no display ({}); palpa run --headless works without one",
+                                        last_glfw_error()));
     }
     glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
     window_ = glfwCreateWindow(static_cast<int>(width), static_cast<int>(height), title.c_str(),
@@ -128,7 +128,7 @@ Window::Window(const std::string& title, std::uint32_t width, std::uint32_t heig
     if (!window_) {
         const std::string reason = last_glfw_error();
         glfwTerminate();
-        throw PlatformError(fmt::format("no window can be opened ({})", reason));
+        throw PlatformError(fmt::format("a window cannot be opened ({})", reason));
     }
     glfwSetWindowSizeLimits(window_, 320, 240, GLFW_DONT_CARE, GLFW_DONT_CARE);
     glfwSetWindowUserPointer(window_, this);
@@ -230,7 +230,7 @@ std::vector<const char*> Window::vulkan_extensions() const {
     const char* const* const names = glfwGetRequiredInstanceExtensions(&count);
     if (!names) {
         throw PlatformError(
-            "Vulkan cannot draw into a window here; is a driver installed (mesa-vulkan-drivers)?");
+            "Vulkan cannot draw into a window; install a driver (Debian: mesa-vulkan-drivers)");
     }
     return {names, names + count};
 }

@@ -151,7 +151,7 @@ TEST_CASE("what a client pulls in a session is played again to the bit",
         const std::vector<std::string> notes = live.session->take_server_notes();
         CHECK(std::ranges::count(notes, "client 1 watches") == 1);
         CHECK(std::ranges::count(notes, "client 1 pulls") == 1);
-        CHECK(std::ranges::count(notes, "client 1 left in order") == 1);
+        CHECK(std::ranges::count(notes, "client 1 disconnected normally") == 1);
         live.session->end_recording();
     }
     const std::string journal = read_text_file(recording / "journal.txt");
@@ -172,7 +172,7 @@ TEST_CASE("a session that was recorded from its middle is played again to the bi
         REQUIRE(live.wait_for_steps(30));
         live.session->begin_recording(recording);
         CHECK_THAT(test::load_error_of([&] { live.session->begin_recording(folder.path() / "b"); }),
-                   Contains("another recording is under way"));
+                   Contains("another recording is running"));
         live.session->move_hand(Vec3(-0.09, 0, 0.01));
         REQUIRE(live.wait_for_steps(40));
         live.edit(TakeEdit{"fixed"});

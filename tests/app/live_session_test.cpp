@@ -311,7 +311,7 @@ TEST_CASE("a reset forgets edits, and another start is never one of before", "[a
     CHECK(start() > last);
     send(UndoEdit{});
     CHECK(live.wait_until([](const LiveFrame& f) {
-        return f.readout.problem == "not done: nothing is there to be undone";
+        return f.readout.problem == "not done: there is nothing to undo";
     }));
 }
 

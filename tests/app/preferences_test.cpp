@@ -32,13 +32,13 @@ TEST_CASE("preferences that are wrong say where", "[tools][preferences]") {
         return test::load_error_of([&] { (void)parse_preferences(text, "p.toml"); });
     };
     CHECK_THAT(told("device = omni"), Contains("p.toml:1:10"));
-    CHECK_THAT(told("\ndevice = 3"), Contains("p.toml:2:10: device is no text"));
-    CHECK_THAT(told("sound = 1"), Contains("p.toml:1:9: sound is no truth value"));
-    CHECK_THAT(told("scene = true"), Contains("p.toml:1:9: scene is no text"));
-    CHECK_THAT(told("text_scale = \"2\""), Contains("text_scale is no number from 0.5 to 4"));
-    CHECK_THAT(told("text_scale = 4.1"), Contains("p.toml:1:14: text_scale is no number"));
-    CHECK_THAT(told("text_scale = 0.4"), Contains("text_scale is no number from 0.5 to 4"));
-    CHECK_THAT(told("language = 1"), Contains("p.toml:1:12: language is no text"));
+    CHECK_THAT(told("\ndevice = 3"), Contains("p.toml:2:10: device is not text"));
+    CHECK_THAT(told("sound = 1"), Contains("p.toml:1:9: sound is not true or false"));
+    CHECK_THAT(told("scene = true"), Contains("p.toml:1:9: scene is not text"));
+    CHECK_THAT(told("text_scale = \"2\""), Contains("text_scale is not a number from 0.5 to 4"));
+    CHECK_THAT(told("text_scale = 4.1"), Contains("p.toml:1:14: text_scale is not a number"));
+    CHECK_THAT(told("text_scale = 0.4"), Contains("text_scale is not a number from 0.5 to 4"));
+    CHECK_THAT(told("language = 1"), Contains("p.toml:1:12: language is not text"));
     CHECK_THAT(told("devise = \"omni\""),
                Contains("p.toml:1:10: unknown key 'devise'") &&
                    Contains("device, sound, scene, recent, text_scale, language") &&
@@ -75,7 +75,7 @@ TEST_CASE("a file that cannot be read is not written over", "[tools][preferences
     CHECK_THAT(preferences.problem(), Contains("p.toml:2:10: unknown key 'colour'"));
     CHECK(preferences.now() == Preferences{});
     CHECK_THAT(test::load_error_of([&] { preferences.keep({.device = "mouse"}); }),
-               Contains("is not remembered: ") && Contains("unknown key"));
+               Contains("preferences cannot be saved: ") && Contains("unknown key"));
     CHECK(read_text_file(file) == "device = \"omni\"\ncolour = 3\n");
 }
 

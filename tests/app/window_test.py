@@ -573,7 +573,7 @@ class Session(unittest.TestCase):
                     (["--size", "99999x99999"], {}, "more than 67108864 pixels"),
                     (["--size", "99999x600"], {}, "a window of "),
                     ([], {"VK_DRIVER_FILES": "/nowhere", "VK_ICD_FILENAMES": "/nowhere"},
-                     "is a driver installed"),
+                     "install a driver"),
                     (["--screenshots", "/nowhere"], {}, "/nowhere"),
                     (["--after", "nan", "--shot", "x.png"], {}, "nan")):
                 with self.subTest(options=options):

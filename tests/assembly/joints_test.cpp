@@ -249,8 +249,9 @@ TEST_CASE("a scene is told which of its words on bonds cannot be met", "[assembl
         return test::load_error_of([&] { build_joints(ring, {.overrides = {{bond, motion}}}); });
     };
 
-    CHECK_THAT(error({0, 1}, BondMotion::Turn),
-               Contains("molecule.psf: A MOL 1 C0 - A MOL 1 C1 cannot turn: it is part of a ring"));
+    CHECK_THAT(
+        error({0, 1}, BondMotion::Turn),
+        Contains("molecule.psf: A MOL 1 C0 - A MOL 1 C1 cannot turn: this bond is in a ring"));
     CHECK_THAT(error({0, 4}, BondMotion::Turn), Contains("cannot turn"));
     CHECK_THAT(error({0, 3}, BondMotion::Spring), Contains("cannot be a spring"));
     CHECK_THAT(error({1, 3}, BondMotion::Rigid), Contains("are not bonded"));

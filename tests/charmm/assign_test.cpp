@@ -208,7 +208,7 @@ TEST_CASE("with a connectivity, numbers and order are its own and places are fou
               }) ==
               "t.psf:6: unknown atom type 'HX': no MASS line; did you mean 'HT'?; t.psf:6: atom "
               "type 'HX' has no NONBONDED parameters in a.str; t.psf:8: atom A TIP3 2 H1 has no "
-              "place in s.crd; s.crd:5: atom A TIP3 1 H1 is not in t.psf");
+              "coordinates in s.crd; s.crd:5: atom A TIP3 1 H1 is not in t.psf");
         CHECK(table.size() == 0);
         CHECK_THAT(load_error_of([&] {
                        add_segment_atoms(force_field, connectivity, small_structure(two_waters),
@@ -223,5 +223,6 @@ TEST_CASE("a residue whose atoms do not add up to its charge is told", "[charmm]
     text.replace(text.find("ATOM H2 HT 0.417"), 16, "ATOM H2 HT 0.451");
 
     CHECK(error_of(small_force_field(text + "END\n"), two_waters, "A") ==
-          "a.str:6: residue 'TIP3' is given 0 e, but its atoms add up to 0.0340 e");
+          "a.str:6: residue 'TIP3' is declared with 0 e, but the charges of its atoms add up to "
+          "0.0340 e");
 }

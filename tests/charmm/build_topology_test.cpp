@@ -229,6 +229,6 @@ TEST_CASE("a topology alone has no parameters", "[charmm][topology]") {
           "s.psf:1: no atom types in ; expected a file with MASS lines");
     const ForceField unnumbered = force_field_of("MASS -1 A 12.0 C\n");
     CHECK(load_error_of([&] { build_topology(chain_of({"56", "2"}), unnumbered); }) ==
-          "s.psf:1: atom types are numbers here, and no MASS line in a.rtf has one; expected the "
-          "topology file that numbers them");
+          "s.psf:1: atom types are given as numbers, but no MASS line in a.rtf has a number; "
+          "expected the topology file that numbers the types");
 }

@@ -380,22 +380,22 @@ TEST_CASE("a value that does not parse is told with its line", "[charmm][force_f
         {"ANGLES\nHT OT\n", "2", "no type3 here; expected: type1 type2 type3 k angle [k_UB S0]"},
         {"NONBONDED\nOT 0.0 -0.1\n", "2", "no Rmin/2 here"},
         {"NONBONDED\nOT 0.0 -0.1 -\n1e999\n", "2", "'1E999' is not a number"},
-        {"NONBONDED\nOT 0.0 0.1521 1.7682\n", "2", "CHARMM writes the depth as -epsilon"},
+        {"NONBONDED\nOT 0.0 0.1521 1.7682\n", "2", "expected -epsilon (0 or less)"},
         {"NONBONDED\nOT 0.0 -0.1521 -1.7682\n", "2", "Rmin/2 as 0 or more"},
         {"NBFIX\nHT\n", "2", "no type2 here"},
         {"MASS -1 OT 15.9994 OX\n", "1", "unknown element 'OX'"},
-        {"RESI A 0.0 NOBOND\n", "1", "'NOBOND' is no option of a residue"},
-        {"RESI A 0.0\nATOM O OT 0.1 0.2\n", "2", "'0.2' is more than stands on such a line"},
-        {"RESI A 0.0\nATOM O OT 0.1 ALPHA -0.2 THOLE 1.3\n", "2",
-         "'ALPHA' is more than stands on such a line"},
-        {"RESI A 0.0\nIMPR A B C\n", "2", "3 names on a IMPR line; expected 4 for each"},
+        {"RESI A 0.0 NOBOND\n", "1", "'NOBOND' is not an option of a residue"},
+        {"RESI A 0.0\nATOM O OT 0.1 0.2\n", "2", "extra word '0.2'"},
+        {"RESI A 0.0\nATOM O OT 0.1 ALPHA -0.2 THOLE 1.3\n", "2", "extra word 'ALPHA'"},
+        {"RESI A 0.0\nIMPR A B C\n", "2", "a IMPR line has 3 names; expected a multiple of 4"},
         {"RESI A 0.0\nIC A B C D 1.0 2.0\n", "2", "no dihedral here; expected: IC a b c d"},
-        {"RESI A 0.0\nPATCH MIDDLE X\n", "2", "'MIDDLE' is no end of a chain"},
+        {"RESI A 0.0\nPATCH MIDDLE X\n", "2", "'MIDDLE' is not an end of a chain"},
         {"RESI A 0.0\nDELETE GROUP A B\n", "2", "'GROUP' cannot be deleted"},
-        {"RESI A 0.0\nDELETE ANGLE A B\n", "2", "2 names on a DELETE line; expected 3 for each"},
+        {"RESI A 0.0\nDELETE ANGLE A B\n", "2",
+         "a DELETE line has 2 names; expected a multiple of 3"},
         {"AUTO BONDS\n", "1", "'BONDS' cannot be generated"},
         {"ANGLES\nA B C 1.0 90.0 2.0\n", "2", "no S0 here"},
-        {"BONDS\nA B 1.0 1.5 2.0\n", "2", "'2.0' is more than stands on such a line"},
+        {"BONDS\nA B 1.0 1.5 2.0\n", "2", "extra word '2.0'"},
         {"DIHEDRALS\nA B C D 1.0 1.5 0.0\n", "2", "'1.5' is not a whole number"},
         {"DIHEDRALS\nA B C D 1.0 -1 0.0\n", "2", "a multiplicity of -1; expected 0 to 12"},
         {"IMPROPER\nA B C D 1.0 13 0.0\n", "2", "a multiplicity of 13; expected 0 to 12"},
@@ -409,10 +409,10 @@ TEST_CASE("a value that does not parse is told with its line", "[charmm][force_f
         {"CMAP\nA B C D A B C D 2\n1 x\n", "3",
          "'X' is not a number; expected energy 2 of 4 of the map of a.str:2"},
         {"CMAP\nA B C D A B C D 2\n1 2\nO.5 2\n", "4", "'O.5' is not a number; expected energy 3"},
-        {"NONBONDED\nOT 0.0 -0.1 1.7 0.0 0.1 1.7\n", "2", "CHARMM writes the depth"},
+        {"NONBONDED\nOT 0.0 -0.1 1.7 0.0 0.1 1.7\n", "2", "expected -epsilon (0 or less)"},
         {"NONBONDED nbxmod 5 e14fac 0.5\n", "1", "E14FAC 0.5 is not supported"},
         {"NONBONDED geometric\n", "1", "'GEOMETRIC' is not supported"},
-        {"NBFIX\nHT OT 0.1 2.0\n", "2", "CHARMM writes the depth as -epsilon"},
+        {"NBFIX\nHT OT 0.1 2.0\n", "2", "expected -epsilon (0 or less)"},
         {"NBFIX\nHT OT -0.1 -2.0\n", "2", "Rmin as 0 or more"},
     }));
     INFO(row.text);
@@ -451,13 +451,13 @@ TEST_CASE("a file that ends inside a residue or a section is told as cut",
     };
 
     CHECK(error("MASS -1 OT 16.0\nRESI A 0.0\nATOM O OT 0.0\n") ==
-          "a.str:3: the file ends inside the residue of line 2, as if it were cut; expected END "
-          "behind it");
+          "a.str:3: the file ends inside the residue of line 2, so it may be cut off; expected END "
+          "after it");
     CHECK_THAT(error("PRES A 0.0\nEND\nRESI B 0.0"), StartsWith("a.str:3: the file ends inside"));
     CHECK(error("BONDS\nA B 1.0 1.0\nreturn\n") != "no error");
     CHECK(error("BONDS\nA B 1.0 1.0\n") ==
-          "a.str:2: the file ends inside a section of parameters, as if it were cut; expected END "
-          "behind it");
+          "a.str:2: the file ends inside a section of parameters, so it may be cut off; expected "
+          "END after it");
     CHECK_THAT(error("CMAP\nA B C D A B C D 2\n1 2\n"), Contains("2 numbers; expected 4"));
     CHECK(error("MASS -1 OT 16.0\n") == "no error");
     CHECK(error("read rtf\nRESI A 0.0\nEND\nreturn\n") == "no error");
@@ -601,7 +601,8 @@ TEST_CASE("words behind an ATOM line's charge are passed over and noted", "[char
 
     CHECK(force_field.residues.at("A").atoms[0].charge == 0.06);
     REQUIRE(force_field.notes.size() == 1);
-    CHECK(describe_note(force_field.notes[0]) == "a.str:2: 'C' behind an ATOM line is passed over");
+    CHECK(describe_note(force_field.notes[0]) ==
+          "a.str:2: extra word 'C' at the end of an ATOM line is ignored");
 }
 
 TEST_CASE("of many notes the first three are listed and all are counted", "[charmm][force_field]") {
@@ -613,10 +614,10 @@ TEST_CASE("of many notes the first three are listed and all are counted", "[char
     const std::vector<std::string> told = describe_notes(parsed(text).notes);
 
     REQUIRE(told.size() == 1);
-    CHECK_THAT(told[0], StartsWith("4 entries of the force field given again, the later counts: "
-                                   "a.str:3: bond A B replaces that of a.str:2; a.str:4: ") &&
-                            Contains("a.str:5: ") && Catch::EndsWith("; ...") &&
-                            !Contains("a.str:6: bond"));
+    CHECK_THAT(told[0],
+               StartsWith("4 entries of the force field defined again; the last definition is "
+                          "used: a.str:3: bond A B replaces that of a.str:2; a.str:4: ") &&
+                   Contains("a.str:5: ") && Catch::EndsWith("; ...") && !Contains("a.str:6: bond"));
     CHECK(describe_notes({}).empty());
 }
 

@@ -187,7 +187,7 @@ TEST_CASE("two CYS without HG1 are bonded where their sulphurs are near, or as n
             error_of(names, {.segments = {}, .patches = {{"DISU", {{"P", "1"}, {"P", "7"}}}}}),
             StartsWith("s.pdb: no residue P 7 for patch DISU"));
         CHECK_THAT(error_of(names, {.segments = {}, .patches = {{"DISU", {{"P", "1"}}}}}),
-                   Contains("patch 'DISU' has an atom '2SG'; it is used on 1 residues"));
+                   Contains("patch 'DISU' names an atom '2SG', but is applied to 1 residues"));
     }
 }
 
@@ -269,7 +269,7 @@ TEST_CASE("residues that CHARMM calls otherwise are told by its names", "[charmm
                StartsWith("s.pdb:1: no residue 'HIS' in a.rtf; expected HSD, HSE or HSP (by its "
                           "hydrogens)"));
     CHECK_THAT(error_of({{"P", "ACE", "1", "C"}}),
-               Contains("expected patch ACE on the residue behind it"));
+               Contains("expected patch ACE on the residue after it"));
     CHECK_THAT(error_of({{"P", "NME", "1", "C"}}),
                Contains("expected patch CT3 on the residue before it"));
     CHECK_THAT(error_of({{"P", "HOH", "1", "O"}}), Contains("expected TIP3"));
@@ -338,19 +338,19 @@ TEST_CASE("a bond over a gap is told with both atoms", "[charmm][generate]") {
     SECTION("of a chain") {
         CHECK(error() ==
               "s.pdb:2: a bond of 5.2 Å from P BEA 1 B to P BEA 2 A of line 5; expected at most 3 "
-              "Å: where a chain has a gap there are two segments, or a TER line between them");
+              "Å: split the chain into two segments at a gap, or put a TER line there");
     }
     SECTION("of a residue") {
         structure.positions[5].x() = 0;
         CHECK_THAT(error(), Contains("from P BEA 2 A to P BEA 2 B of line 6; expected at most 3 Å: "
-                                     "the atoms of a residue stand together"));
+                                     "check the coordinates of this residue"));
     }
     SECTION("of a patch") {
         structure = structure_of({{"P", "CYS", "1", "SG"}, {"Q", "CYS", "1", "SG"}});
         structure.positions[1].x() = 3.1;
         CHECK_THAT(error({.segments = {}, .patches = {{"DISU", {{"P", "1"}, {"Q", "1"}}}}}),
                    StartsWith("s.pdb:1: a bond of 3.1 Å from P CYS 1 SG to Q CYS 1 SG of line 2") &&
-                       Contains("a patch is for residues that touch"));
+                       Contains("apply a patch only to residues in contact"));
     }
     SECTION("not where a position is unknown") {
         structure.positions[4].setConstant(std::numeric_limits<double>::quiet_NaN());

@@ -244,7 +244,7 @@ TEST_CASE("ionic groups of the protease are found in its files, all in full", "[
     const std::vector<std::string> charged = charged_of(hiv);
     REQUIRE(charged.size() == 3);
     CHECK_THAT(charged[0], Contains("PROP of A PRO 1 (+1.00 e)") && Contains(" more"));
-    CHECK(charged[2] == "the whole has +7.00 e");
+    CHECK(charged[2] == "the total charge is +7.00 e, not 0");
 }
 
 TEST_CASE("groups with other charges than known ones stay as they are", "[charmm][charges]") {

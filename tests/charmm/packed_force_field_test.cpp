@@ -194,7 +194,7 @@ TEST_CASE("a folder of CHARMM's files is read in its order", "[charmm][force_fie
     CHECK(list_force_field_files("a.rtf") == std::vector<std::filesystem::path>{"a.rtf"});
     std::filesystem::create_directory(folder.path() / "empty");
     CHECK_THAT(load_error_of([&] { (void)list_force_field_files(folder.path() / "empty"); }),
-               Contains("holds no force field; expected files .rtf, .prm and .str"));
+               Contains("contains no force field files; expected .rtf, .prm or .str"));
 }
 
 TEST_CASE("the force field of the program is CHARMM's release", "[charmm][packed_force_field]") {

@@ -97,7 +97,7 @@ TEST_CASE("a condition that CHARMM alone knows is not true on one line, and no b
     CHECK(types_of("set n ?NATC\nif n eq 0 return\n" + part("A")) == "A");
     CHECK(types_of("set n 0\nif n eq 0 return\n" + part("A")).empty());
     CHECK_THAT(error_of("if ?NUMNODE gt 1 then\n" + part("A") + "endif\n"),
-               StartsWith("a.str:1: whether ?NUMNODE GT 1 is not known here"));
+               StartsWith("a.str:1: the variable of '?NUMNODE GT 1' has no value"));
     CHECK_THAT(error_of("if other eq 1 then\nendif\n"), StartsWith("a.str:1: whether OTHER EQ 1"));
 }
 
@@ -107,7 +107,7 @@ TEST_CASE("GOTO goes on behind its label, which comes later", "[charmm][script]"
     CHECK(types_of("set m 1\nif m eq 1 then\ngoto out\nendif\n" + part("A") + "label out\n" +
                    part("B")) == "B");
     CHECK(error_of("label first\n" + part("A") + "goto first\n") ==
-          "a.str:5: no label 'FIRST' behind this line; jumps back are not followed");
+          "a.str:5: there is no label 'FIRST' after this line; jumps backwards are not supported");
 }
 
 TEST_CASE("other files are noted and not read", "[charmm][script]") {
@@ -122,16 +122,14 @@ TEST_CASE("other files are noted and not read", "[charmm][script]") {
 
 TEST_CASE("a block without its end is refused as cut, an end without its block as wrong",
           "[charmm][script]") {
-    CHECK(
-        error_of("set m 1\nif m eq 1 then\n" + part("A")) ==
-        "a.str:5: the file ends inside the IF of line 2, as if it were cut; expected ENDIF behind "
-        "it");
+    CHECK(error_of("set m 1\nif m eq 1 then\n" + part("A")) ==
+          "a.str:5: the file ends inside the IF of line 2, so it may be cut off; expected ENDIF");
     CHECK_THAT(error_of("set m 1\nif m eq 2 then\n" + part("A")),
                Contains("inside the IF of line 2"));
     CHECK_THAT(error_of("endif\n"), StartsWith("a.str:1: 'ENDIF' without an IF"));
     CHECK_THAT(error_of("else\n"), StartsWith("a.str:1: 'ELSE' without an IF"));
     CHECK_THAT(error_of("set m 1\nif m is 1 then\nendif\n"),
-               StartsWith("a.str:2: 'IF M IS 1 THEN' is no condition that is understood"));
+               StartsWith("a.str:2: the condition 'IF M IS 1 THEN' is not supported"));
     CHECK_THAT(error_of("set m 1\nif m eq 1 energy\n"),
-               StartsWith("a.str:2: 'ENERGY' is no statement that may depend on IF"));
+               StartsWith("a.str:2: the statement 'ENERGY' is not supported after IF"));
 }

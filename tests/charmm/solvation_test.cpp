@@ -83,24 +83,24 @@ TEST_CASE("a solvation table is read by its types", "[charmm][solvation]") {
 }
 
 TEST_CASE("what is wrong with a solvation table is told with its line", "[charmm][solvation]") {
-    CHECK(error_of("") == "t.csv: no atom type; expected a line for each");
-    CHECK_THAT(error_of("type,volume\n"), Contains("t.csv:1: 'type,volume' is no head"));
+    CHECK(error_of("") == "t.csv: the table has no atom types; expected one line for each");
+    CHECK_THAT(error_of("type,volume\n"), Contains("t.csv:1: 'type,volume' is not the header"));
     CHECK_THAT(error_of(head), Contains("no atom type"));
     CHECK_THAT(error_of(head + "C,1,2,3\n"), Contains("t.csv:2: 4 fields; expected 9"));
     CHECK_THAT(error_of(head + "# x\nC,x,0,0,0,0,3.5,2,a\n"),
                Contains("t.csv:3: 'x' is not a volume; expected a number, in Å^3"));
     CHECK_THAT(error_of(head + "C,nan,0,0,0,0,3.5,2,a\n"), Contains("is not a volume"));
     CHECK_THAT(error_of(head + "C,1,0,0,0,0,,2,a\n"), Contains("'' is not a lambda"));
-    CHECK_THAT(error_of(head + "C,1,0,0,0,0,0,2,a\n"), Contains("a lambda of 0 Å"));
-    CHECK_THAT(error_of(head + "C,-1,0,0,0,0,3.5,2,a\n"), Contains("a volume of -1 Å^3"));
-    CHECK_THAT(error_of(head + "C,1,0,0,0,0,3.5,-2,a\n"), Contains("a radius of -2 Å"));
-    CHECK_THAT(error_of(head + "C,1e5,0,0,0,0,3.5,2,a\n"), Contains("a volume of 100000 Å^3"));
+    CHECK_THAT(error_of(head + "C,1,0,0,0,0,0,2,a\n"), Contains("lambda is 0 Å"));
+    CHECK_THAT(error_of(head + "C,-1,0,0,0,0,3.5,2,a\n"), Contains("the volume is -1 Å^3"));
+    CHECK_THAT(error_of(head + "C,1,0,0,0,0,3.5,-2,a\n"), Contains("the radius is -2 Å"));
+    CHECK_THAT(error_of(head + "C,1e5,0,0,0,0,3.5,2,a\n"), Contains("the volume is 100000 Å^3"));
     CHECK_THAT(error_of(head + "C,1,0,-1e5,0,0,3.5,2,a\n"), Contains("an energy of -100000"));
-    CHECK_THAT(error_of(head + "C,1,0,0,0,0,1e4,2,a\n"), Contains("a lambda of 10000 Å"));
-    CHECK_THAT(error_of(head + "C,1,0,0,0,0,3.5,1e3,a\n"), Contains("a radius of 1000 Å"));
-    CHECK_THAT(error_of(head + "C,1,0,0,0,0,3.5,2,a,b\n"), Contains("'a,b' is no source"));
-    CHECK_THAT(error_of(head + "C,1,0,0,0,0,3.5,2,\"a\n"), Contains("is no source"));
-    CHECK_THAT(error_of(head + ",1,0,0,0,0,3.5,2,a\n"), Contains("'' is no atom type"));
+    CHECK_THAT(error_of(head + "C,1,0,0,0,0,1e4,2,a\n"), Contains("lambda is 10000 Å"));
+    CHECK_THAT(error_of(head + "C,1,0,0,0,0,3.5,1e3,a\n"), Contains("the radius is 1000 Å"));
+    CHECK_THAT(error_of(head + "C,1,0,0,0,0,3.5,2,a,b\n"), Contains("'a,b' is not a valid source"));
+    CHECK_THAT(error_of(head + "C,1,0,0,0,0,3.5,2,\"a\n"), Contains("is not a valid source"));
+    CHECK_THAT(error_of(head + ",1,0,0,0,0,3.5,2,a\n"), Contains("'' is not an atom type"));
     CHECK_THAT(error_of(head + "C,1,0,0,0,0,3.5,2,a\nc,1,0,0,0,0,3.5,2,a\n"),
                Contains("t.csv:3: type C again, first on line 2"));
 }

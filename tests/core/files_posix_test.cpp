@@ -20,7 +20,7 @@ TEST_CASE("what is no regular file is refused at once", "[core][files]") {
     REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
     for (const fs::path& path : {pipe, fs::path("/dev/zero")}) {
         CHECK(load_error_of([&] { read_text_file(path); }) ==
-              path.string() + ": is no regular file, one was expected");
+              path.string() + ": is not a regular file; expected one");
     }
 }
 

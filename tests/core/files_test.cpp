@@ -55,10 +55,10 @@ TEST_CASE("what is there is replaced only where that is said", "[core][files]") 
     const fs::path path = folder.add_file("a", "old");
 
     CHECK(load_error_of([&] { write_text_file(path, "new"); }) ==
-          path.string() + ": is there already; expected another name, or --overwrite");
+          path.string() + ": already exists; expected another name, or --overwrite");
     CHECK(load_error_of([&] {
               write_text_files(std::vector<TextFile>{{folder.path() / "b", "1"}, {path, "2"}});
-          }) == path.string() + ": is there already; expected another name, or --overwrite");
+          }) == path.string() + ": already exists; expected another name, or --overwrite");
     CHECK(read_text_file(path) == "old");
     CHECK(files_in(folder.path()) == 1);
 

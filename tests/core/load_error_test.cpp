@@ -22,8 +22,8 @@ TEST_CASE("a load error says its place before its message", "[core][load_error]"
     const std::runtime_error& as_any_handler_sees_it = error;
 
     CHECK(std::string(as_any_handler_sees_it.what()) == "water.str:3: no {} here");
-    CHECK(std::string(LoadError({"a\n.pdb", 1, 0}, "'\x01' is no name").what()) ==
-          "a\\x0a.pdb:1: '\\x01' is no name");
+    CHECK(std::string(LoadError({"a\n.pdb", 1, 0}, "'\x01' is not a name").what()) ==
+          "a\\x0a.pdb:1: '\\x01' is not a name");
 }
 
 TEST_CASE("a load error keeps the problems that its message only counts", "[core][load_error]") {

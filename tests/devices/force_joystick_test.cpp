@@ -245,7 +245,7 @@ TEST_CASE("a stick that lacks what a constant force takes says what", "[devices]
                                 range.end());
     REQUIRE(at != unsigned_magnitude.end());
     at[1] = at[2] = 0;
-    CHECK(ForceJoystickProtocol().use(unsigned_magnitude) == "its magnitude has no sign");
+    CHECK(ForceJoystickProtocol().use(unsigned_magnitude) == "its force magnitude has no sign");
     Bytes cut = test::joined(whole);
     cut.pop_back();
     CHECK(ForceJoystickProtocol().use(cut) ==
@@ -255,8 +255,8 @@ TEST_CASE("a stick that lacks what a constant force takes says what", "[devices]
     const DeviceCheck plain = last_check({0x044f, 0xb108, 1, 4, false, "a plain stick"});
     CHECK(plain.layer == "bus");
     CHECK_THAT(plain.found, Catch::Contains("no force-feedback joystick among 1 inputs") &&
-                                Catch::Contains("044f:b108 is a stick without a force for us: its "
-                                                "report descriptor has no X axis"));
+                                Catch::Contains("044f:b108 is a joystick without a usable force: "
+                                                "its report descriptor has no X axis"));
 }
 
 TEST_CASE("a stick with room for one effect plays it, and one without any is not used",
@@ -297,7 +297,7 @@ TEST_CASE("a stick with room for one effect plays it, and one without any is not
         if (which == 3) answers = {test::loaded_block(0, 1)};
         const DeviceCheck refused = last_check(hid);
         CHECK(refused.layer == "effects");
-        CHECK_THAT(refused.found, Catch::Contains("does not take a constant force"));
+        CHECK_THAT(refused.found, Catch::Contains("does not accept a constant force"));
         CHECK_FALSE(refused.remedy.empty());
     }
 }

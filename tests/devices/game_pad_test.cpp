@@ -102,5 +102,5 @@ TEST_CASE("without a window a pad says so", "[devices][pad]") {
     const OpenedDevice opened = open_game_pad({});
 
     CHECK_FALSE(opened.device);
-    CHECK(opened.checks.back().found == "game pads are seen by the window alone");
+    CHECK(opened.checks.back().found == "only the window sees game pads");
 }

@@ -219,12 +219,12 @@ TEST_CASE("a descriptor that is none says why", "[devices][hid-descriptor]") {
     CHECK(behind({0xfe}) == "it ends in the middle of an item");
     CHECK(behind({0xfe, 0x02, 0x10, 0x00}) == "it ends in the middle of an item");
     CHECK(behind({0xa1, 0x01}) == "it ends in a collection");
-    CHECK(behind({0xc0}) == "it ends a collection that was not begun");
-    CHECK(behind({0xb4}) == "it pops what was not pushed");
-    CHECK(behind({0x85, 0x00}) == "a report has no such number");
-    CHECK(behind({0x86, 0x00, 0x01}) == "a report has no such number");
-    CHECK(behind(often({0xa4}, 17)) == "too much is pushed");
-    CHECK(behind(often({0xa1, 0x01}, 33)) == "its collections are too deep");
+    CHECK(behind({0xc0}) == "it ends a collection that did not begin");
+    CHECK(behind({0xb4}) == "it has a POP item without a PUSH");
+    CHECK(behind({0x85, 0x00}) == "a report has an invalid number");
+    CHECK(behind({0x86, 0x00, 0x01}) == "a report has an invalid number");
+    CHECK(behind(often({0xa4}, 17)) == "it has too many PUSH items");
+    CHECK(behind(often({0xa1, 0x01}, 33)) == "its collections are nested too deeply");
     CHECK(behind({0x97, 0xff, 0xff, 0xff, 0xff, 0x77, 0xff, 0xff, 0xff, 0xff, 0x81, 0x02}) ==
           "a report of it is longer than 4096 bytes");
     CHECK(behind({0x09, 0x30, 0x75, 0x01, 0x96, 0x01, 0x10, 0x81, 0x02}) ==

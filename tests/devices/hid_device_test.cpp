@@ -119,7 +119,7 @@ TEST_CASE("a pad that is silent is told from one that speaks", "[devices][hid]")
 
     CHECK(opened.device);
     CHECK(find_check(opened, "reports")->outcome == CheckOutcome::Failed);
-    CHECK(find_check(opened, "reports")->found == "none came");
+    CHECK(find_check(opened, "reports")->found == "it sent no report");
 }
 
 TEST_CASE("a pushed cap moves the handle, by both kinds of reports", "[devices][hid]") {
@@ -217,7 +217,7 @@ TEST_CASE("two hands have a device each, and a third none", "[devices][hid]") {
         CHECK_FALSE(opened.device);
         CHECK(opened.checks.back().layer == "open");
         CHECK(opened.checks.back().outcome == CheckOutcome::Failed);
-        CHECK(opened.checks.back().found == "it is in use by the other hand");
+        CHECK(opened.checks.back().found == "the other hand uses it");
     };
     check_taken(open_cap());
 

@@ -48,9 +48,9 @@ TEST_CASE("a device that plays a file names it, others name none", "[devices][op
     CHECK(open_device("script:" + good.string(), {}).device->read().position_m.x() == 0.01);
     CHECK_THAT(told("script"), Catch::Contains("expected script:FILE"));
     CHECK_THAT(told("replay:"), Catch::Contains("expected replay:FOLDER"));
-    CHECK_THAT(told("mouse:x"), Catch::Contains("plays no file; expected mouse alone"));
+    CHECK_THAT(told("mouse:x"), Catch::Contains("does not play a file; expected mouse alone"));
     CHECK_THAT(told("scrip:x"), Catch::Contains("did you mean 'script'"));
-    CHECK_THAT(told("script:" + bad.string()), Catch::Contains("bad.csv:2: 'up' is no number"));
+    CHECK_THAT(told("script:" + bad.string()), Catch::Contains("bad.csv:2: 'up' is not a number"));
     CHECK_THAT(told("replay:" + folder.path().string()), Catch::Contains("trace.csv"));
 }
 

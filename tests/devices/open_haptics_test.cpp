@@ -96,7 +96,7 @@ TEST_CASE("limits are those that the library says", "[devices][open-haptics]") {
     }
     CHECK(check_of(omni.opened, "library").found == PALPA_OPEN_HAPTICS_STUB);
     CHECK(check_of(omni.opened, "rate").found == "1000 ticks a second");
-    CHECK(check_of(omni.opened, "motors").found == "at 25 % of the warmth they stand");
+    CHECK(check_of(omni.opened, "motors").found == "at 25 % of their thermal limit");
 }
 
 TEST_CASE("the pose comes from the transform, columns first, millimetres made metres",

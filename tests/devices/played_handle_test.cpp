@@ -107,14 +107,14 @@ TEST_CASE("what cannot be played is told with its line", "[devices][played]") {
     CHECK_THAT(told("time_s,handle_x_m,handle_ym,handle_z_m\n"),
                Contains("did you mean 'handle_y_m'"));
     CHECK_THAT(told("time_s,handle_x_m,handle_y_m\n"), Contains("'handle_z_m' is missing"));
-    CHECK_THAT(told("time_s,time_s\n"), Contains("'time_s' is there twice"));
+    CHECK_THAT(told("time_s,time_s\n"), Contains("'time_s' is repeated"));
     CHECK_THAT(told(header + "0,0,0\n"), Contains("hand.csv:2: 3 values; expected 4"));
     CHECK_THAT(told(header + "0,0,0,0,0\n"), Contains("hand.csv:2: 5 values; expected 4"));
     CHECK_THAT(told(header + "0,0,0,up\n"),
-               Contains("hand.csv:2: 'up' is no number; expected one for handle_z_m"));
-    CHECK_THAT(told(header + "0,0,nan,0\n"), Contains("'nan' is no number"));
+               Contains("hand.csv:2: 'up' is not a number; expected one for handle_z_m"));
+    CHECK_THAT(told(header + "0,0,nan,0\n"), Contains("'nan' is not a number"));
     CHECK_THAT(told(header + "0,0,0,0\n0,0,0,0\n"),
-               Contains("hand.csv:3: 0 s after 0 s; expected times that ascend"));
+               Contains("hand.csv:3: the time 0 s follows 0 s; expected ascending times"));
     CHECK_THAT(told(header + "0,0,20,0\n"), Contains("20 m from the middle"));
     CHECK_THAT(told("clutch," + header + "2,0,0,0,0\n"), Contains("clutch is 2"));
     CHECK_THAT(test::load_error_of([] { (void)read_script("/nowhere/hand.csv"); }),

@@ -97,35 +97,36 @@ TEST_CASE("a file of poses may have the line ends of Windows", "[experiments][re
 TEST_CASE("what is wrong with a file of poses is said with its line", "[experiments][rest_poses]") {
     CHECK(error_of(good) == "no error");
     const std::vector<WrongLine> wrong_lines{
-        {"# Palpa poses 1", "# Palpa poses 2", 1, "is no file of poses; expected # Palpa poses 1"},
+        {"# Palpa poses 1", "# Palpa poses 2", 1,
+         "is not a file of poses; expected # Palpa poses 1"},
         {"scene 12", "scenes 12", 2, "has no scene; expected scene, the numbers of atoms"},
         {"scene 12 2 1 1 12.5", "scene 12 2 1 12.5", 2, "4 words follow 'scene'"},
-        {"scene 12", "scene -1", 2, "'-1' is no count; expected a whole number"},
-        {"scene 12", "scene 1e3", 2, "'1e3' is no count"},
-        {"1 12.5", "1 0", 2, "the cutoff is not above 0"},
+        {"scene 12", "scene -1", 2, "'-1' is not a whole number; expected a whole number"},
+        {"scene 12", "scene 1e3", 2, "'1e3' is not a whole number"},
+        {"1 12.5", "1 0", 2, "the cutoff is not greater than 0"},
         {"pose\nrest", "pose 1\nrest", 3, "1 words follow 'pose'; expected nothing"},
-        {"pose\nrest", "rest", 3, "comes before a line 'pose'"},
-        {"pose\nrest all -1.5 1 2 3", "pose", 4, "comes before a line 'rest'"},
+        {"pose\nrest", "rest", 3, "stands before any line 'pose'"},
+        {"pose\nrest all -1.5 1 2 3", "pose", 4, "stands before any line 'rest'"},
         {"rest all", "rest cutoff", 4, "is of 'cutoff'; expected 'all'"},
-        {"rest all -1.5", "rest all x", 4, "'x' is no number; expected a number of 1e9 at most"},
-        {"rest all -1.5", "rest all nan", 4, "'nan' is no number"},
-        {"rest all -1.5", "rest all 1e10", 4, "'1e10' is no number"},
+        {"rest all -1.5", "rest all x", 4, "'x' is not a number; expected a number of 1e9 at most"},
+        {"rest all -1.5", "rest all nan", 4, "'nan' is not a number"},
+        {"rest all -1.5", "rest all 1e10", 4, "'1e10' is not a number"},
         {"rest all -1.5 1 2 3", "rest all -1.5 1 2", 4, "4 words follow 'rest'"},
         {"angles 0.5 -0.25", "angles 0.5", 5, "expected 2 angles, one of each body"},
         {"angles 0.5 -0.25\n", "", 4, "has no angles"},
-        {"base", "angles 0.5 -0.25\nbase", 6, "has angles twice"},
+        {"base", "angles 0.5 -0.25\nbase", 6, "repeats the angles of this pose"},
         {"base 0.6", "base 0.7", 6, "the turn has the length 1.06301; expected 1"},
-        {"base 0.6 0.8 0 0 1 -2 3e-5\n", "", 4, "0 of the lines 'base' are there; expected 1"},
+        {"base 0.6 0.8 0 0 1 -2 3e-5\n", "", 4, "has 0 of the lines 'base'; expected 1"},
         {"spring 1 2 3", "spring 1 2", 7, "expected a place: three numbers"},
-        {"spring 1 2 3\n", "", 4, "0 of the lines 'spring' are there; expected 1"},
-        {"spring", "springs", 7, "'springs' is no kind of line; expected pose, rest, angles"},
-        {"spring", "\x1b[31m", 7, "'\\x1b[31m' is no kind of line"},
-        {"spring", "\nspring", 7, "'' is no kind of line"},
-        {"0.5 0\n", "0.5 2\n", 8, "'2' is no snap; expected 0 or 1"},
+        {"spring 1 2 3\n", "", 4, "has 0 of the lines 'spring'; expected 1"},
+        {"spring", "springs", 7, "'springs' is not a kind of line; expected pose, rest, angles"},
+        {"spring", "\x1b[31m", 7, "'\\x1b[31m' is not a kind of line"},
+        {"spring", "\nspring", 7, "'' is not a kind of line"},
+        {"0.5 0\n", "0.5 2\n", 8, "'2' does not say whether this move is a snap; expected 0 or 1"},
         {"0.5 0\n", "0.5\n", 8, "6 words follow 'move'"},
         {"rest cutoff", "rest all", 10, "is of 'all'; expected 'cutoff': all first, then cutoff"},
         {"rest cutoff -1.25 4 5 6\n", "pose\nrest cutoff -1.25 4 5 6\n", 3,
-         "the pose has 1 of its two lines 'rest'"},
+         "the pose has 1 of two lines 'rest'"},
     };
     for (const WrongLine& wrong : wrong_lines) {
         INFO(wrong.old << " -> " << wrong.now);
@@ -139,7 +140,7 @@ TEST_CASE("what is wrong with a file of poses is said with its line", "[experime
 
 TEST_CASE("a file of poses that ends within a pose is refused", "[experiments][rest_poses]") {
     CHECK_THAT(error_of(""), Contains("poses.txt: is empty; expected # Palpa poses 1"));
-    CHECK_THAT(error_of("# Palpa poses 1\n"), Contains(":1: ends before the scene"));
+    CHECK_THAT(error_of("# Palpa poses 1\n"), Contains(":1: ends before the line 'scene'"));
     CHECK_THAT(error_of(good.substr(0, good.find("pose\n"))), Contains("has no poses"));
     // Lines end whole: a digit less is another number, which nobody can see.
     for (std::size_t end = good.find('\n'); end + 1 < good.rfind("move 0.1");
@@ -147,7 +148,8 @@ TEST_CASE("a file of poses that ends within a pose is refused", "[experiments][r
         INFO(good.substr(0, end));
         CHECK(error_of(good.substr(0, end)) != "no error");
     }
-    CHECK_THAT(error_of(good + "rest all 1 2 3 4\n"), Contains(":16: is the third of its pose"));
+    CHECK_THAT(error_of(good + "rest all 1 2 3 4\n"),
+               Contains(":16: is the third line 'rest' of its pose"));
     CHECK_THAT(error_of(good.substr(0, good.rfind("move 0.1"))), Contains(":10: has no moves"));
 }
 

@@ -170,15 +170,15 @@ TEST_CASE("lists and products of operators in every form", "[formats][assembly]"
 
 TEST_CASE("a broken REMARK 350 is refused with its line", "[formats][assembly]") {
     CHECK(pdb_error("-0.500000  0.866025", "-0.5x0000  0.866025") ==
-          "w.pdb:11: '-0.5x0000' is no number");
+          "w.pdb:11: '-0.5x0000' is not a number");
     CHECK_THAT(pdb_error("     27.41300", "1000000.0000"),
-               Contains("w.pdb:13: '1000000.0000' is no translation"));
+               Contains("w.pdb:13: '1000000.0000' is not a translation"));
     CHECK_THAT(pdb_error("BIOMT2   2", "BIOMT3   2"),
                Contains("w.pdb:12: 'BIOMT3 2'; expected BIOMT2 2"));
     CHECK_THAT(pdb_error("BIOMT2   2", "BIOMT2   3"),
                Contains("w.pdb:12: 'BIOMT2 3'; expected BIOMT2 2"));
     CHECK_THAT(pdb_error("  0.000000 -1.000000       27.41300", " 0.0 -1.0"),
-               Contains("w.pdb:13: 5 words behind REMARK 350; expected 6"));
+               Contains("w.pdb:13: 5 words after REMARK 350; expected 6"));
     CHECK_THAT(
         pdb_error("REMARK 350   BIOMT3   2  0.000000  0.000000 -1.000000       27.41300\n", ""),
         Contains("w.pdb:11: operator 2 has no row BIOMT3"));
@@ -197,12 +197,12 @@ TEST_CASE("broken assemblies of an mmCIF file are refused with their lines",
     CHECK_THAT(cif_error("1 1,2 A,B", "1 1,3 A,B"), Contains("w.cif:6:3: no operator '3'"));
     CHECK_THAT(cif_error("1 1,2 A,B", "1 1-60 A,B"), Contains("w.cif:6:3: no operator '3'"));
     CHECK_THAT(cif_error("1 1,2 A,B", "1 2-1 A,B"), Contains("'2-1' runs backwards"));
-    CHECK_THAT(cif_error("1 1,2 A,B", "1 (1,2 A,B"), Contains("'(1,2' is no expression"));
-    CHECK_THAT(cif_error("1 1,2 A,B", "1 (1)2 A,B"), Contains("'(1)2' is no expression"));
+    CHECK_THAT(cif_error("1 1,2 A,B", "1 (1,2 A,B"), Contains("'(1,2' is not an expression"));
+    CHECK_THAT(cif_error("1 1,2 A,B", "1 (1)2 A,B"), Contains("'(1)2' is not an expression"));
     CHECK_THAT(cif_error("1 1,2 A,B", "1 ? A,B"),
                Contains("w.cif:6:3: no value of _pdbx_struct_assembly_gen.oper_expression"));
     CHECK_THAT(cif_error("0.866025 0.0 0.0 0.866025", "0.866025 0.0 0.0 x"),
-               Contains("'x' in _pdbx_struct_oper_list.matrix[2][1] is no number"));
+               Contains("'x' in _pdbx_struct_oper_list.matrix[2][1] is not a number"));
     CHECK_THAT(cif_error("-1.0 27.413", "-1.0 ?"), Contains("w.cif:26:"));
     CHECK_THAT(cif_error("-1.0 27.413", "-1.0"), Contains("ends after 14 of 15 values"));
     CHECK_THAT(cif_error("2 'cry", "1 'cry"), Contains("w.cif:26:1: operator 1 again"));

@@ -176,7 +176,7 @@ TEST_CASE("a field that is blank or cut off is told with line and column", "[for
         error_of(replaced(normal, "WATA 1      0.00000\n    3", "     1      0.00000\n    3")),
         StartsWith("w.crd:5:52: no segment name"));
     CHECK_THAT(error_of(replaced(normal, "WATA 1      0.00000\n    3", "WATA\n    3")),
-               StartsWith("w.crd:5:57: no residue number"));
+               StartsWith("w.crd:5:57: the residue number is missing"));
     CHECK_THAT(
         error_of(replaced(normal, "  -2.50000   0.00000 WATA", "  -2.50000            WATA")),
         StartsWith("w.crd:5:41: no coordinate"));

@@ -298,7 +298,7 @@ TEST_CASE("a DCD file cut anywhere is noted, and its whole frames are read", "[f
             const auto cut = open_dcd_bytes(whole.substr(0, length));
             REQUIRE(cut->frame_count() == 1);
             REQUIRE_FALSE(cut->notes().empty());  // the header says of two
-            REQUIRE_THAT(cut->notes().back(), Contains("has 2 frames by its header and holds 1"));
+            REQUIRE_THAT(cut->notes().back(), Contains("announces 2 frames and contains 1"));
             REQUIRE(test::positions_of(*cut, 0) == test::positions_of(*all, 0));
             ++noted;
         });
@@ -329,7 +329,7 @@ TEST_CASE("what is wrong with a DCD file is reported", "[formats][dcd]") {
     DcdByHand hand;
     const std::string frames = hand.frame(first) + hand.frame(second);
 
-    CHECK_THAT(error_of_bytes(std::string(200, 'x')), Contains("w.dcd: is no DCD file"));
+    CHECK_THAT(error_of_bytes(std::string(200, 'x')), Contains("w.dcd: is not a DCD file"));
     hand.kind = "VELD";
     CHECK_THAT(error_of_bytes(hand.head() + frames), Contains("velocities (VELD)"));
     hand.kind = "CORR";
@@ -356,12 +356,12 @@ TEST_CASE("what is wrong with a DCD file is reported", "[formats][dcd]") {
     hand = {};
     Bytes wide(std::endian::little);
     wide.add(std::int64_t{84}).text += "CORD" + std::string(80, '\0');
-    CHECK_THAT(error_of_bytes(wide.text), Contains("marks of 8 bytes"));
+    CHECK_THAT(error_of_bytes(wide.text), Contains("record lengths of 8 bytes"));
 
     std::string damaged = hand.head() + frames;
     damaged[damaged.size() - 4] = 13;
     CHECK(load_error_of([&] { test::positions_of(*open_dcd_bytes(damaged), 1); }) ==
-          "w.dcd: frame 2: a mark of the coordinates says 13 bytes; expected 12");
+          "w.dcd: frame 2: the record length of the coordinates is 13 bytes; expected 12");
     CHECK(test::positions_of(*open_dcd_bytes(damaged), 0) == first_positions);
     auto infinite = second;
     infinite[1][2] = std::numeric_limits<double>::infinity();
@@ -373,9 +373,8 @@ TEST_CASE("what is wrong with a DCD file is reported", "[formats][dcd]") {
                Contains("frame 2: atom 3 has the coordinate inf"));
     hand.control[1] = 7;
     CHECK(open_dcd_bytes(hand.head() + frames)->notes() ==
-          std::vector<std::string>{
-              "has 7 frames by its header and holds 2: the file may have been cut off, "
-              "or its writer interrupted"});
+          std::vector<std::string>{"announces 7 frames and contains 2: the file may be cut off, or "
+                                   "its writer was interrupted"});
 }
 
 TEST_CASE("what cannot be written to a DCD file is told", "[formats][dcd]") {
@@ -399,7 +398,7 @@ TEST_CASE("what cannot be written to a DCD file is told", "[formats][dcd]") {
                Contains("frame 1: a box; expected none"));
     CHECK_THAT(load_error_of([&] { boxed.add_frame(positions); }), Contains("no box"));
     CHECK_THAT(load_error_of([&] { boxed.add_frame(positions, turned); }),
-               Contains("a box that a DCD file cannot tell"));
+               Contains("a DCD file cannot hold this box"));
     positions[1].z() = 1e6;
     CHECK_THAT(load_error_of([&] { writer.add_frame(positions); }),
                Contains("frame 1: atom 2 has the coordinate 1000000"));

@@ -79,7 +79,7 @@ TEST_CASE("what does not fit a GRO file is reported", "[formats][gro]") {
           "w.pdb:7: A RESIDUE 1 CA: the residue name 'RESIDUE' does not fit the 5 columns of a GRO "
           "file");
     CHECK_THAT(gro_error({"A", "ALA", "1", "ATOM00"}), Contains("the atom name 'ATOM00'"));
-    CHECK_THAT(gro_error({"A", "ALA", "x", "CA"}), Contains("'x' is no residue number"));
+    CHECK_THAT(gro_error({"A", "ALA", "x", "CA"}), Contains("'x' is not a residue number"));
     CHECK_THAT(gro_error({"A", "ALA", "-10000", "CA"}), Contains("'-10000'"));
     CHECK_THAT(gro_error({"A", "ALA", "1", "CA"}, {0, 1e5, 0}),
                Contains("the coordinate 100000 Å"));
@@ -144,7 +144,7 @@ TEST_CASE("a GRO file that cannot be read is refused with its line", "[formats][
                Contains("w.gro:3") && Contains("is not a coordinate"));
     CHECK_THAT(error("t\n1\n    1TIP3   OH2    1   0,100\n1 1 1\n"), Contains("three coordinates"));
     CHECK_THAT(error("t\n1\n    xTIP3   OH2    1   0.100   0.200   0.300\n1 1 1\n"),
-               Contains("'x' is no residue number"));
+               Contains("'x' is not a residue number"));
 }
 
 TEST_CASE("groups of an index file", "[formats][gro]") {
@@ -161,9 +161,9 @@ TEST_CASE("groups of an index file", "[formats][gro]") {
         return load_error_of([&] { (void)parse_index_file(text, "i.ndx"); });
     };
     CHECK_THAT(error(""), Contains("has no group"));
-    CHECK_THAT(error("1 2"), Contains("before any group"));
-    CHECK_THAT(error("[ a ]\n0"), Contains("i.ndx:2") && Contains("'0' is no atom"));
-    CHECK_THAT(error("[ a"), Contains("is no group"));
+    CHECK_THAT(error("1 2"), Contains("before the first group"));
+    CHECK_THAT(error("[ a ]\n0"), Contains("i.ndx:2") && Contains("'0' is not an atom number"));
+    CHECK_THAT(error("[ a"), Contains("is not the name of a group"));
 }
 
 TEST_CASE("a GRO file of more decimals has wider columns", "[formats][gro]") {

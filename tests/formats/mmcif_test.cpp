@@ -162,11 +162,11 @@ TEST_CASE("what is wrong in an mmCIF file is told with its line and column", "[f
         {"CA 1\nATOM   3", "CA x\nATOM   3",
          "w.cif:34:77: 'x' in _atom_site.pdbx_PDB_model_num is not a whole number"},
         {"CA   B ALA", "CA  BC ALA", "w.cif:35:17: 'BC' in _atom_site.label_alt_id is not one"},
-        {"ATOM   1 N", "ATOM   1 Q", "w.cif:33: 'Q' is no element"},
+        {"ATOM   1 N", "ATOM   1 Q", "w.cif:33: 'Q' is not an element"},
         {"ATOM   1", "ATQM   1", "w.cif:33:1: 'ATQM' in _atom_site.group_PDB is not ATOM or"},
         {"_atom_site.Cartn_y\n", "_atom_site.Cartn_q\n",
-         "w.cif:12: atoms without a column _atom_site.Cartn_y; expected a coordinate "
-         "within ±100000 Å"},
+         "w.cif:12: the column _atom_site.Cartn_y is missing; expected a coordinate within ±100000 "
+         "Å"},
         {"_atom_site.Cartn_y\n", "_atom_site.Cartn_X\n",
          "w.cif:23:1: column _atom_site.Cartn_X again"},
         {" XX ? 2\n", " XX ?\n", "w.cif:39: a row of _atom_site ends after 20 of 21 values"},
@@ -176,7 +176,7 @@ TEST_CASE("what is wrong in an mmCIF file is told with its line and column", "[f
         {"   HAND\n", "\n", "w.cif:4:1: no CIF: the tag before has no value"},
         {"ATOM   3", "_ATOM   3", "w.cif:"},
         {"ATOM   3", "loop_   3", "w.cif:"},
-        {"ATOM   3", "\x01TOM   3", "w.cif:35:1: no CIF"},
+        {"ATOM   3", "\x01TOM   3", "w.cif:35:1: is not a CIF file"},
     }));
     INFO(row.old << " -> " << row.by);
 
@@ -188,15 +188,14 @@ TEST_CASE("one table of atoms is expected, and one there must be", "[formats][mm
     CHECK_THAT(mmcif_error_of("data_x\n_entry.id x\n"),
                StartsWith("w.cif:2: ends without any atom"));
     CHECK_THAT(mmcif_error_of(small + small.substr(7)),
-               StartsWith("w.cif:13:1: atoms again, first on "
-                          "line 3"));
+               StartsWith("w.cif:13:1: a second table of atoms, first on line 3"));
     CHECK_THAT(mmcif_error_of(small + single),
-               StartsWith("w.cif:13:1: atoms again, first on line 3"));
+               StartsWith("w.cif:13:1: a second table of atoms, first on line 3"));
     CHECK_THAT(mmcif_error_of("data_x\nloop_\n_atom_site.id\n"), StartsWith("w.cif:"));
     // A dictionary's residue has coordinates as well.
     CHECK_THAT(
         mmcif_error_of("data_comp_X\nloop_\n_chem_comp_atom.atom_id\n_chem_comp_atom.x\nC1 0.5\n"),
-        StartsWith("w.cif:3: no structure but a dictionary"));
+        StartsWith("w.cif:3: is a chemical component (_chem_comp_atom"));
 }
 
 TEST_CASE("an mmCIF file cut off within its atoms is refused, or the cut is noted",
@@ -356,8 +355,8 @@ TEST_CASE("what cannot be written to an mmCIF file is told", "[formats][mmcif]")
     CHECK(error_with({"A", "ALA", "1", "CA"}) == "no error");
     CHECK_THAT(error_with({"A", "AL A", "1", "CA"}), StartsWith("w.crd:4: 'AL A' of A AL A 1 CA"));
     CHECK_THAT(error_with({"A", "ALA", "1AB", "CA"}),
-               Contains("'1AB'") && Contains("no residue number"));
-    CHECK_THAT(error_with({"A", "ALA", "", "CA"}), Contains("no residue number"));
+               Contains("'1AB'") && Contains("is not a residue number"));
+    CHECK_THAT(error_with({"A", "ALA", "", "CA"}), Contains("is not a residue number"));
     CHECK_THAT(error_with({"A", "ALA", "1", "1"}), Contains("gives no element"));
 }
 
@@ -404,5 +403,5 @@ TEST_CASE("of atoms that an mmCIF file repeats the first are taken", "[formats][
     const Structure structure = parse_mmcif(replaced(text, "CA   B ALA", "CA   A ALA"), "w.cif");
 
     CHECK_THAT(structure.repeated,
-               StartsWith("atom chain H ALA 27 CA (location A) of line 34 again on line 35"));
+               StartsWith("atom chain H ALA 27 CA (location A) of line 34 is repeated on line 35"));
 }

@@ -99,12 +99,12 @@ TEST_CASE("what a user must decide is noted", "[formats][pdb]") {
           "1 atom in residues with insertion codes, the first on line 7: chain A ALA 27A O");
     CHECK(notes[2] == "1 HETATM atom of CA");
     CHECK(notes[3] == "1 HETATM atom of HOH");
-    CHECK_THAT(notes[4], StartsWith("1 atom without an element, guessed from the name, the first "
-                                    "on line 11: chain B HOH 201 O"));
+    CHECK_THAT(notes[4], StartsWith("1 atom without an element symbol (element guessed from the "
+                                    "atom name), the first on line 11: chain B HOH 201 O"));
 
     const std::string plain = atom_line("1", "1", "1.000");
     CHECK(parse_pdb(plain + "FOOBAR\n", "w.pdb").notes.front() ==
-          "no END record: the file may have been cut off");
+          "no END record: the file may be cut off");
     CHECK(parse_pdb(plain + "FOOBAR\nEND\n", "w.pdb").notes.front() ==
           "records left out as unknown: FOOBAR");
 }
@@ -123,11 +123,11 @@ TEST_CASE("models are read one behind the other", "[formats][pdb]") {
     CHECK_THAT(pdb_error_of(replaced(models, "MODEL        3\n", "")),
                StartsWith("w.pdb:5: ENDMDL"));
     CHECK_THAT(pdb_error_of(replaced(models, "ENDMDL\nMODEL", "MODEL")),
-               StartsWith("w.pdb:3: a model within the model of line 1"));
+               StartsWith("w.pdb:3: a MODEL inside the model of line 1"));
     CHECK_THAT(pdb_error_of(replaced(models, "       3", "       1")),
                StartsWith("w.pdb:4: model 1 again"));
     CHECK_THAT(pdb_error_of(replaced(models, "       3", "       x")),
-               StartsWith("w.pdb:4:11: 'x' in columns 11 to 14 is no number of a model"));
+               StartsWith("w.pdb:4:11: 'x' in columns 11 to 14 is not a model number"));
     CHECK_THAT(pdb_error_of(replaced(models, "ENDMDL\nEND\n", "END\n")),
                StartsWith("w.pdb:6: ends within the model of line 4"));
 }
@@ -181,38 +181,41 @@ TEST_CASE("what is wrong in a PDB file is told with line, columns and what would
     };
     const auto row = GENERATE(values<Row>({
         {"  11.104", "  11.1x4",
-         "w.pdb:3:31: '11.1x4' in columns 31 to 38 is no coordinate; expected a number within "
+         "w.pdb:3:31: '11.1x4' in columns 31 to 38 is not a coordinate; expected a number within "
          "±100000 Å"},
-        {"  11.104", "  abcdef", "w.pdb:3:31: 'abcdef' in columns 31 to 38 is no coordinate"},
-        {"  11.104", "  11. 04", "w.pdb:3:31: '11. 04' in columns 31 to 38 is no coordinate"},
-        {"  11.104", "        ", "w.pdb:3:31: '' in columns 31 to 38 is no coordinate"},
+        {"  11.104", "  abcdef", "w.pdb:3:31: 'abcdef' in columns 31 to 38 is not a coordinate"},
+        {"  11.104", "  11. 04", "w.pdb:3:31: '11. 04' in columns 31 to 38 is not a coordinate"},
+        {"  11.104", "        ", "w.pdb:3:31: '' in columns 31 to 38 is not a coordinate"},
         {"  11.104", "     nan", "w.pdb:3:31: 'nan' in columns 31 to 38"},
-        {"  11.104", "   11.104", "w.pdb:3:39: '4   6.13' in columns 39 to 46 is no coordinate"},
-        {"  11.104", "  1.1e05", "w.pdb:3:31: '1.1e05' in columns 31 to 38 is no coordinate"},
-        {"  -6.504", "-1000000", "w.pdb:3:47: '-1000000' in columns 47 to 54 is no coordinate"},
+        {"  11.104", "   11.104", "w.pdb:3:39: '4   6.13' in columns 39 to 46 is not a coordinate"},
+        {"  11.104", "  1.1e05", "w.pdb:3:31: '1.1e05' in columns 31 to 38 is not a coordinate"},
+        {"  -6.504", "-1000000", "w.pdb:3:47: '-1000000' in columns 47 to 54 is not a coordinate"},
         {"   6.134", "     inf", "w.pdb:3:39: 'inf' in columns 39 to 46"},
         {"  -6.504", "  -6,504", "w.pdb:3:47: '-6,504' in columns 47 to 54"},
-        {"  1.00 10.50", "  l.00 10.50", "w.pdb:3:55: 'l.00' in columns 55 to 60 is no occupancy"},
-        {"  1.00 10.50", "  1.00******", "w.pdb:3:61: '******' in columns 61 to 66 is no B-factor"},
+        {"  1.00 10.50", "  l.00 10.50",
+         "w.pdb:3:55: 'l.00' in columns 55 to 60 is not an occupancy"},
+        {"  1.00 10.50", "  1.00******",
+         "w.pdb:3:61: '******' in columns 61 to 66 is not a B-factor"},
         {"           N\n", "           Q\n",
-         "w.pdb:3: 'Q' is no element; expected a symbol such as C or MG"},
-        {"CA2+", "CA++", "w.pdb:10:79: '++' in columns 79 to 80 is no charge"},
-        {"      1  N ", "      x  N ", "w.pdb:3:7: 'x' in columns 7 to 11 is no serial"},
-        {"  N   ALA", "  \x1bN  ALA", "w.pdb:3:13: '\\x1bN' in columns 13 to 16 is no atom name"},
-        {"  N   ALA", "      ALA", "w.pdb:3:13: '' in columns 13 to 16 is no atom name"},
-        {"  N   ALA", "  N A ALA", "w.pdb:3:13: 'N A' in columns 13 to 16 is no atom name"},
-        {"  N   ALA", "  N      ", "w.pdb:3:18: '' in columns 18 to 21 is no residue name"},
-        {"A  27      11", "A  2x      11", "w.pdb:3:23: '2x' in columns 23 to 26 is no residue"},
-        {"A  27      11", "A          11", "w.pdb:3:23: '' in columns 23 to 26 is no residue"},
-        {"A  27      11", "A  27?     11", "w.pdb:3:27: '?' in column 27 is no insertion code"},
+         "w.pdb:3: 'Q' is not an element; expected a symbol such as C or MG"},
+        {"CA2+", "CA++", "w.pdb:10:79: '++' in columns 79 to 80 is not a charge"},
+        {"      1  N ", "      x  N ", "w.pdb:3:7: 'x' in columns 7 to 11 is not an atom serial"},
+        {"  N   ALA", "  \x1bN  ALA",
+         "w.pdb:3:13: '\\x1bN' in columns 13 to 16 is not an atom name"},
+        {"  N   ALA", "      ALA", "w.pdb:3:13: '' in columns 13 to 16 is not an atom name"},
+        {"  N   ALA", "  N A ALA", "w.pdb:3:13: 'N A' in columns 13 to 16 is not an atom name"},
+        {"  N   ALA", "  N      ", "w.pdb:3:18: '' in columns 18 to 21 is not a residue name"},
+        {"A  27      11", "A  2x      11", "w.pdb:3:23: '2x' in columns 23 to 26 is not a residue"},
+        {"A  27      11", "A          11", "w.pdb:3:23: '' in columns 23 to 26 is not a residue"},
+        {"A  27      11", "A  27?     11", "w.pdb:3:27: '?' in column 27 is not an insertion code"},
         {"  CA BALA", "  CA AGLY",
          "w.pdb:5: atom chain A GLY 27 CA (location A) again, first on line 4"},
         {"ATOM      1", "ATQM      1",
-         "w.pdb:3: 'ATQM' in columns 1 to 6 is no record; did you "
+         "w.pdb:3: 'ATQM' in columns 1 to 6 is not a record; did you "
          "mean 'ATOM'?"},
-        {"ATOM      1", " ATOM     1", "w.pdb:3: 'ATOM' in columns 1 to 6 is no record"},
-        {"ATOM      1", "atom      1", "w.pdb:3: 'atom' in columns 1 to 6 is no record"},
-        {"HEADER    T", "END\n       T", "w.pdb:4: an atom behind the END of line 1"},
+        {"ATOM      1", " ATOM     1", "w.pdb:3: 'ATOM' in columns 1 to 6 is not a record"},
+        {"ATOM      1", "atom      1", "w.pdb:3: 'atom' in columns 1 to 6 is not a record"},
+        {"HEADER    T", "END\n       T", "w.pdb:4: an atom after the END of line 1"},
         {"HEADER    T", "ENDMDL\n    T", "w.pdb:1: ENDMDL without a MODEL"},
     }));
     INFO(row.old << " -> " << row.by);
@@ -225,8 +228,8 @@ TEST_CASE("of atoms that a PDB file repeats the first are taken", "[formats][pdb
 
     CHECK(structure.names.size() == parse_pdb(pdb_text, "w.pdb").names.size() - 1);
     CHECK(structure.positions[1].x() == 11.639);
-    CHECK_THAT(structure.repeated, StartsWith("atom chain A ALA 27 CA (location A) of line 4 again "
-                                              "on line 5"));
+    CHECK_THAT(structure.repeated,
+               StartsWith("atom chain A ALA 27 CA (location A) of line 4 is repeated on line 5"));
 
     std::string many;
     for (int i = 0; i < 60; ++i) many += atom_line("1", "7", "1.000");

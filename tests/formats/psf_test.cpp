@@ -188,13 +188,13 @@ TEST_CASE("what is wrong in a PSF file is told with its line", "[formats][psf]")
         const char *old, *by, *error;
     };
     const auto row = GENERATE(values<Row>({
-        {"PSF CMAP", "psf CMAP", "w.psf:1: no PSF file"},
-        {"CHEQ", "DRUDE", "w.psf:1: 'DRUDE' is no kind"},
+        {"PSF CMAP", "psf CMAP", "w.psf:1: is not a PSF file"},
+        {"CHEQ", "DRUDE", "w.psf:1: the PSF format 'DRUDE' is not supported"},
         {"5 !NATOM", "0 !NATOM", "w.psf:6: no atoms"},
         {"5 !NATOM", "6 !NATOM", "w.psf:12: ends after 5 of 6 atoms"},
         {"5 !NATOM", "4 !NATOM", "w.psf:11: '5 SOLV 2A"},
         {"5 !NATOM", "-5 !NATOM", "w.psf:6: '-5' is not a count"},
-        {"5 !NATOM", "5 NATOM", "w.psf:6: '5 NATOM' is no head"},
+        {"5 !NATOM", "5 NATOM", "w.psf:6: '5 NATOM' is not the header"},
         {"       3 SOLV", "       4 SOLV", "w.psf:9: atom number 4; expected 3"},
         {"2A   TIP3 H2 ", "2A   TIP3 H1 ",
          "w.psf:11: atom SOLV TIP3 2A H1 again, first on line 10"},
@@ -212,12 +212,12 @@ TEST_CASE("what is wrong in a PSF file is told with its line", "[formats][psf]")
         {"       3       5\n\n       1 !NTHETA", "       5       5\n\n       1 !NTHETA",
          "w.psf:14: atom number 5 twice"},
         {"       3       5\n\n       1 !NTHETA", "       4       3\n\n       1 !NTHETA",
-         "the bond of SOLV TIP3 2A H1 and SOLV TIP3 2A OH2 comes twice"},
+         "the bond of SOLV TIP3 2A H1 and SOLV TIP3 2A OH2 is listed twice"},
         {"!NTHETA", "!NBOND", "w.psf:16: section !NBOND again, first on line 13"},
         {"1 !NPHI", "1 !NFOO", "w.psf:19: section !NFOO is not empty"},
         {"1       0       3       0", "1       0       3       x", "'x' is not a whole number"},
         {"0       0 !NUMLP", "1       0 !NUMLP", "section !NUMLP is not empty"},
-        {"1 !NCRTERM", "0 !NUMOTHER", "is no head of a section"},
+        {"1 !NCRTERM", "0 !NUMOTHER", "is not the header of a section"},
     }));
     INFO(row.old << " -> " << row.by);
 
@@ -233,7 +233,7 @@ TEST_CASE("a PSF file that is cut off anywhere is refused", "[formats][psf]") {
         INFO(length);
         CHECK_THAT(error, StartsWith("w.psf:"));
     }
-    CHECK_THAT(psf_error_of(""), StartsWith("w.psf:1: no PSF file"));
+    CHECK_THAT(psf_error_of(""), StartsWith("w.psf:1: is not a PSF file"));
 }
 
 TEST_CASE("CHARMM's trialanine is read", "[formats][psf]") {

@@ -121,11 +121,11 @@ TEST_CASE("a structure file is read as its name says", "[formats][structure]") {
 }
 
 TEST_CASE("a structure file of another name is refused", "[formats][structure]") {
-    CHECK(
-        load_error_of([] { read_structure("a.xyz"); }) ==
-        "a.xyz: '.xyz' is no ending of a structure file; expected .pdb, .ent, .cif, .mmcif, .crd, "
-        ".cor or .gro, or one of these with .gz behind it");
-    CHECK_THAT(load_error_of([] { read_structure("a"); }), Catch::StartsWith("a: '' is no ending"));
+    CHECK(load_error_of([] { read_structure("a.xyz"); }) ==
+          "a.xyz: '.xyz' is not the ending of a structure file; expected .pdb, .ent, .cif, .mmcif, "
+          ".crd, .cor or .gro, or one of these followed by .gz");
+    CHECK_THAT(load_error_of([] { read_structure("a"); }),
+               Catch::StartsWith("a: '' is not the ending"));
     CHECK_THAT(load_error_of([] { read_structure("a.gz"); }), Catch::Contains("'.gz' is no"));
     CHECK(load_error_of([] { read_structure("none.pdb"); }) == "none.pdb: no such file");
     const test::TemporaryFolder folder;

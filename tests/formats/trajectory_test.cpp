@@ -207,7 +207,7 @@ TEST_CASE("what is wrong with models is told with its frame", "[formats][traject
                              "REMARK    2  H1  TIP3W   1      -1.5")) ==
           "w.pdb: frame 2: has 1 atoms; expected 2, as in the frames before");
     CHECK_THAT(pdb_error(replaced(two_models, "ENDMDL\nTITLE", "TITLE")),
-               Contains("frame 1: a model within a model"));
+               Contains("frame 1: a MODEL inside another model"));
     CHECK_THAT(pdb_error("REMARK\nEND\n"), Contains("ends without any atom"));
     CHECK_THAT(pdb_error(""), Contains("ends without any atom"));
     CHECK(cif_error(replaced(two_cif_models, "-999.999", "?")) ==
@@ -217,9 +217,9 @@ TEST_CASE("what is wrong with models is told with its frame", "[formats][traject
     CHECK_THAT(cif_error(replaced(two_cif_models, "H 2\n", "H 1\n")), Contains("model 1 again"));
     CHECK_THAT(cif_error(replaced(two_cif_models, "H 2\n", "H\n")), Contains("ends after 5 of 6"));
     CHECK_THAT(cif_error(replaced(two_cif_models, "_atom_site.Cartn_y", "_atom_site.y")),
-               Contains("without a column _atom_site.Cartn_x, Cartn_y or Cartn_z"));
+               Contains("a column _atom_site.Cartn_x, Cartn_y or Cartn_z is missing"));
     CHECK_THAT(cif_error("data_x\n"), Contains("ends without any atom"));
-    CHECK_THAT(cif_error("x"), Contains("no CIF"));
+    CHECK_THAT(cif_error("x"), Contains("is not a CIF file"));
 }
 
 TEST_CASE("a trajectory is opened by the ending of its name", "[formats][trajectory]") {
@@ -240,12 +240,12 @@ TEST_CASE("a trajectory is opened by the ending of its name", "[formats][traject
         CHECK(trajectory->atom_count() == atoms);
     }
     CHECK_THAT(load_error_of([&] { open_trajectory("w.nc"); }),
-               Contains("w.nc: '.nc' is no ending of a trajectory; expected .dcd"));
+               Contains("w.nc: '.nc' is not the ending of a trajectory file; expected .dcd"));
     CHECK(load_error_of([&] { open_trajectory(folder.path() / "w.xtc"); }) ==
           (folder.path() / "w.xtc").string() + ": no such file");
     std::filesystem::create_directory(folder.path() / "f.dcd");
     CHECK_THAT(load_error_of([&] { open_trajectory(folder.path() / "f.dcd"); }),
-               Contains("is no regular file"));
+               Contains("is not a regular file"));
 }
 
 TEST_CASE("a file that shrinks behind an open trajectory is told", "[formats][trajectory]") {

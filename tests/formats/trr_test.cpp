@@ -148,7 +148,7 @@ TEST_CASE("frames without positions are left out and counted", "[formats][trr]")
 
     CHECK(trajectory->frame_count() == 2);
     CHECK(test::positions_of(*trajectory, 1)[0] == Vec3(5, -10, 20));
-    CHECK(trajectory->notes() == std::vector<std::string>{"2 frames without positions left out"});
+    CHECK(trajectory->notes() == std::vector<std::string>{"2 frames without positions ignored"});
     CHECK(load_error_of([&] { open_trr_bytes(without.text()); }) ==
           "w.trr: has no frame with positions");
 }
@@ -203,7 +203,7 @@ TEST_CASE("what is wrong with a TRR file is reported with its frame", "[formats]
 
     CHECK(open_error(one + with(0, 1995)) ==
           "w.trr: frame 2: begins with 1995; expected 1993, as every frame of a TRR file");
-    CHECK_THAT(open_error(with(12, 0)), Contains("frame 1: is of another version"));
+    CHECK_THAT(open_error(with(12, 0)), Contains("frame 1: has a different TRR version"));
     CHECK_THAT(open_error(with(24, -4)), Contains("frame 1: has a block of -4 bytes"));
     CHECK_THAT(open_error(with(64, 0)), Contains("frame 1: has 0 atoms"));
     CHECK_THAT(open_error(with(52, 28)),
@@ -217,5 +217,5 @@ TEST_CASE("what is wrong with a TRR file is reported with its frame", "[formats]
     CHECK_THAT(open_error(one + three), Contains("frame 2: has 3 atoms; expected 2"));
     const std::string nan = with(one.size() - 4, 0x7fc00000);
     CHECK(load_error_of([&] { test::positions_of(*open_trr_bytes(nan), 0); }) ==
-          "w.trr: frame 1: atom 2 has a force that is no finite number");
+          "w.trr: frame 1: atom 2 has a force that is not a finite number");
 }

@@ -323,7 +323,7 @@ TEST_CASE("what is wrong with an XTC file is reported with its frame", "[formats
                Contains("frame 2: has 10 atoms; expected 2"));
     CHECK_THAT(open_error(with(hand_packed_frame(), 88, 2)), Contains("no room"));
     CHECK_THAT(read_error(with(hand_packed_frame(), 84, 8)),
-               Contains("frame 1: small differences of 8 bits"));
+               Contains("frame 1: differences of 8 bits"));
     CHECK_THAT(read_error(with(hand_packed_frame(), 56, 0)),
                Contains("frame 1: has the precision"));
     CHECK_THAT(read_error(with(hand_packed_frame(), 72, -1)),
@@ -351,7 +351,8 @@ TEST_CASE("what cannot be written to an XTC file is reported", "[formats][xtc]")
                Contains("frame 1: 9 atoms; expected 10"));
     positions[3].y() = 30000;
     CHECK_THAT(load_error_of([&] { writer.add_frame(positions, 0, 0); }),
-               Contains("frame 1: coordinates that have no room") && Contains("precision"));
+               Contains("frame 1: the coordinates are too large for a precision") &&
+                   Contains("precision"));
     positions[3].y() = std::nan("");
     CHECK_THAT(load_error_of([&] { writer.add_frame(positions, 0, 0); }),
                Contains("frame 1: atom 4 has the coordinate nan"));

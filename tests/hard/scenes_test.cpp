@@ -226,7 +226,7 @@ TEST_CASE("a molecule that starts in the other one, and is warned of", "[hard]")
         INFO(way.name);
         Watched watched(peptides, way, {"hand.start_offset_angstrom=[-11, -2, -1]"});
         CHECK_THAT(all_of(list_warnings(watched.scene(), watched.world(), {})),
-                   Contains("atoms are on each other at the start: PEP") && Contains(" Å apart"));
+                   Contains("atoms overlap at the start: PEP") && Contains(" Å apart"));
 
         watched.rest(30);
         watched.look_back();
@@ -254,7 +254,7 @@ TEST_CASE("molecules that lie on each other in the file come apart, or are told 
         if (world.resource<StartReport>().joints_at_rest.value().end != RelaxEnd::Converged)
             CHECK_THAT(warnings, Contains("not at rest at the start"));
         if (world.resource<TorsionState>().energy() > 1e6)
-            CHECK_THAT(warnings, Contains("atoms are on each other at the start"));
+            CHECK_THAT(warnings, Contains("atoms overlap at the start"));
 
         watched.rest(20);
         watched.look_back();
@@ -275,9 +275,11 @@ TEST_CASE("charges whose energies are no numbers are refused in words", "[hard]"
                      {"molecules.resting.topology=" + file, "molecules.held.topology=" + file,
                       std::string(allow_outside)});
 
-        CHECK_THAT(test::load_error_of([&] { load_world(scene); }),
-                   Contains("scene.toml:") && Contains("the energy at the start is not finite; "
-                                                       "expected atoms apart from each other"));
+        CHECK_THAT(
+            test::load_error_of([&] { load_world(scene); }),
+            Contains("scene.toml:") &&
+                Contains(
+                    "the energy at the start is not finite; expected atoms that do not overlap"));
     }
 }
 
@@ -342,7 +344,7 @@ TEST_CASE("a run that rams one molecule through the other says so in words", "[h
         const std::string warnings = all_of(summary.warnings);
         CHECK_THAT(warnings, Contains("the hand pushed the molecule through the other one"));
         CHECK((summary.sums_in_double > 0) == way.forces.fast);
-        if (way.forces.fast) CHECK_THAT(warnings, Contains("sums of forces were in double"));
+        if (way.forces.fast) CHECK_THAT(warnings, Contains("force sums were computed in double"));
     }
 }
 
@@ -351,7 +353,7 @@ TEST_CASE("TL-3 started in the wall of the protease", "[hard][long]") {
         INFO(way.name);
         Watched watched(protease, way, {"hand.start_offset_angstrom=[0, 6, 2]"});
         CHECK_THAT(all_of(list_warnings(watched.scene(), watched.world(), {})),
-                   Contains("atoms are on each other at the start"));
+                   Contains("atoms overlap at the start"));
 
         watched.rest(way.forces.fast ? 20 : 4);
         watched.look_back();

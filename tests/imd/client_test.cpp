@@ -224,7 +224,7 @@ TEST_CASE("an orderly end lets go, resumes and leaves", "[imd][client]") {
     session.engine.close();
     session.until([&] { return session.client->state() == ImdState::Closed; });
 
-    CHECK_THAT(session.client->why(), EndsWith("was left in order"));
+    CHECK_THAT(session.client->why(), EndsWith("was disconnected normally"));
     CHECK(session.client->pull(both_atoms, two_forces) == session.client->why());
 }
 
@@ -314,7 +314,7 @@ TEST_CASE("an engine that says what is no IMD is left with a sentence", "[imd][c
         Session session;
         session.accept();
         session.engine.send(test::handshake(native, 3) + hex("0000000a 00000007 01010100000000"));
-        session.expect_lost("it announced frames without coordinates, expected some");
+        session.expect_lost("its frames have no coordinates, expected coordinates");
     }
     {
         Session session({.limits = {.atoms = 3}});
@@ -358,13 +358,13 @@ TEST_CASE("an engine that is not there, or says nothing, is lost in time", "[imd
     refused.connect(0);
     test::until([&] { return refused.state() == ImdState::Lost; },
                 [&] { refused.poll(0, test::a_moment_ms); });
-    CHECK_THAT(refused.why(), Contains(" cannot be connected to: "));
+    CHECK_THAT(refused.why(), Contains(" does not accept the connection: "));
 
     ImdClient named({.address = "engine.example"});
     named.connect(0);
     CHECK(named.state() == ImdState::Lost);
     CHECK(named.why() ==
-          "the engine at engine.example:8888 is no address of numbers, as 127.0.0.1 is");
+          "the engine at engine.example:8888 is not a numeric address such as 127.0.0.1");
 
     Session silent({.answer_within_s = 5});
     silent.accept();
@@ -378,16 +378,16 @@ TEST_CASE("an engine that ended over an error is reported with its first error",
     Session session({.version = 3, .retry_after_s = 2});
     session.accept();
     session.engine.send(test::handshake(native, 2), [&] { session.poll(); });
-    session.expect_lost("is left: it speaks version 2, expected 3");
+    session.expect_lost("was disconnected: it uses IMD version 2, expected 3");
     CHECK(session.client->lack() == ImdLack::Version);
     session.engine.close();
     session.listening = Socket();
     session.now += 3;
     session.poll();
     session.until([&] { return session.client->state() == ImdState::Lost; });
-    CHECK_THAT(session.client->why(), Contains("cannot be connected to"));
+    CHECK_THAT(session.client->why(), Contains("does not accept the connection"));
     CHECK_THAT(session.client->why(),
-               EndsWith("before, it is left: it speaks version 2, expected 3"));
+               EndsWith("before, it was disconnected: it uses IMD version 2, expected 3"));
     CHECK(session.client->lack() == ImdLack::Version);
 }
 
@@ -461,7 +461,7 @@ TEST_CASE("forces that no engine could use are not sent", "[imd][client]") {
     CHECK(pull({2}, {Vec3::Zero()}) == "a force on atom 2, expected one from 0 to 1");
     CHECK(pull({-1}, {Vec3::Zero()}) == "a force on atom -1, expected one from 0 to 1");
     CHECK(pull({1, 1}, two_forces) == "two forces on atom 1, expected one at most");
-    CHECK(pull({1}, two_forces) == "2 forces for 1 atoms, expected one each");
+    CHECK(pull({1}, two_forces) == "2 forces for 1 atoms, expected one for each atom");
     CHECK_THAT(pull({1}, {Vec3(0, nan, 0)}), EndsWith("expected a million at most"));
     CHECK_THAT(pull({1}, {Vec3(0, 2e6, 0)}), EndsWith("expected a million at most"));
     for (int i = 0; i < 5; ++i) session.poll();

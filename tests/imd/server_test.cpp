@@ -181,7 +181,7 @@ TEST_CASE("the first client that sends forces pulls, until it leaves", "[imd][se
     CHECK(engine.server->pull().forces == std::vector<Vec3>{Vec3(1, 0, 0)});
 
     puller.send(leave);
-    engine.expect_note("client 2 left in order");
+    engine.expect_note("client 2 disconnected normally");
     CHECK(engine.server->pull().atoms.empty());
     CHECK(engine.server->pull().forces.empty());
     engine.expect_end(puller);
@@ -247,7 +247,7 @@ TEST_CASE("who says no go in time, or no IMD, is dropped with a sentence", "[imd
     Peer silent = engine.connect();
     engine.expect(silent, greeting_of_2);
     engine.now += 1.5;
-    engine.expect_note("client 1 was dropped: it said no go within 1 s");
+    engine.expect_note("client 1 was dropped: it did not send IMD_GO within 1 s");
     engine.expect_end(silent);
 
     Peer web = engine.connect();
@@ -274,7 +274,7 @@ TEST_CASE("more clients than may be are turned away", "[imd][server]") {
     Engine engine({.max_clients = 2});
     Peer first = engine.join(), second = engine.join();
     Peer third = engine.connect();
-    engine.expect_note("client 3 was turned away: 2 are here, which is the most");
+    engine.expect_note("client 3 was refused: 2 clients are connected, which is the limit");
     engine.expect_end(third);
     CHECK(third.received.empty());
     engine.step(made_frame(1));
@@ -305,7 +305,7 @@ TEST_CASE("a client that does not read goes without frames, then is dropped", "[
     CHECK(engine.server->clients() == 2);
 
     engine.now += 11;
-    engine.expect_note("client 1 was dropped: it took nothing for 11.0 s");
+    engine.expect_note("client 1 was dropped: it received nothing for 11.0 s");
     CHECK(engine.server->clients() == 1);
     CHECK(engine.server->pull().atoms.empty());
 }
@@ -362,7 +362,7 @@ TEST_CASE("another number of atoms drops who knows the old one", "[imd][server]"
     CHECK(engine.server->pull().atoms.empty());
     engine.expect_end(first);
     engine.expect_end(silent);
-    engine.expect_note("client 1 was dropped: there are 1 atoms now, no more 3");
+    engine.expect_note("client 1 was dropped: the number of atoms is now 1, no longer 3");
     Peer again = engine.join();
     again.send(test::client_forces(native, {0}, {1, 0, 0}));
     engine.until([&] { return engine.server->pull().atoms.size() == 1; });
@@ -396,7 +396,7 @@ TEST_CASE(
     CHECK(ImdServerOptions{}.address == "127.0.0.1");
     const Engine engine;
     const ImdServer second({.port = engine.server->port(), .atoms = 1});
-    CHECK_THAT(second.problem(), Contains("cannot be listened at: "));
+    CHECK_THAT(second.problem(), Contains("cannot listen at "));
     const ImdServer named({.address = "engine.example", .atoms = 1});
-    CHECK(named.problem() == "'engine.example' is no address of numbers, as 127.0.0.1 is");
+    CHECK(named.problem() == "'engine.example' is not a numeric address such as 127.0.0.1");
 }

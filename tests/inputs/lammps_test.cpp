@@ -56,7 +56,8 @@ TEST_CASE("bonds to hydrogens and waters are rigid in LAMMPS", "[inputs][lammps]
 TEST_CASE("what LAMMPS lacks is refused", "[inputs][lammps]") {
     RunSystem system = test::four_in_a_row();
     system.topology.dihedrals = {{0, 1, 2, 3, 1, 0.5, 0.3}};
-    CHECK_THAT(load_error_of([&] { (void)format_lammps(system, {}); }), Contains("whole ones"));
+    CHECK_THAT(load_error_of([&] { (void)format_lammps(system, {}); }),
+               Contains("expected whole degrees"));
     system = test::four_in_a_row();
     system.topology.impropers = {{0, 1, 2, 3, 10, 0.6}};
     CHECK_THAT(load_error_of([&] { (void)format_lammps(system, {}); }), Contains("0 and 180"));

@@ -57,5 +57,5 @@ TEST_CASE("a monomer library's delocalised bonds are open", "[ligands][cif]") {
 TEST_CASE("an element that is none is named with its line", "[ligands][cif]") {
     const std::string text = library.substr(0, library.find("ACT O O")) + "ACT O Qq 0 0 0\n";
     CHECK(test::load_error_of([&] { (void)find_chem_comp(text, "ACT.cif", "ACT"); }) ==
-          "ACT.cif:10:1: atom O: 'QQ' is no element; expected a symbol such as C");
+          "ACT.cif:10:1: atom O: 'QQ' is not an element; expected a symbol such as C");
 }

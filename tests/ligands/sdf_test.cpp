@@ -108,13 +108,13 @@ TEST_CASE("what is wrong in a ligand's file is named with its line", "[ligands][
     CHECK(message_of_sdf("a\n") ==
           "a.sdf:1: the file ends here; expected a line about the program");
     CHECK(message_of_sdf(replaced(acetate_v2000, "  4  3  0", "  x  3  0")) ==
-          "a.sdf:4: 'x' is no number of atoms; expected a whole number");
+          "a.sdf:4: 'x' is not a whole number; expected the number of atoms");
     CHECK(message_of_sdf(replaced(acetate_v2000, "1.5000", "1.5e99")).find("a.sdf:6: ") == 0);
     CHECK(message_of_sdf(
               replaced(acetate_v2000, "O   0  0\n    2.1000   -", "Qq  0  0\n    2.1000   -")) ==
-          "a.sdf:7: 'Qq' is no element; expected a symbol such as C or Cl");
+          "a.sdf:7: 'Qq' is not an element; expected a symbol such as C or Cl");
     CHECK(message_of_sdf(replaced(acetate_v2000, "  2  4  1", "  2  9  1")) ==
-          "a.sdf:11: a bond of atoms 2 and 9; expected two of 1 to 4");
+          "a.sdf:11: a bond of atoms 2 and 9; expected two different atoms from 1 to 4");
     CHECK(message_of_sdf(replaced(acetate_v2000, "  2  4  1", "  2  3  1")) ==
           "a.sdf:11: the bond of atoms 2 and 3 again");
     CHECK(message_of_sdf(replaced(acetate_v2000, "  2  3  2", "  2  3  7")) ==

@@ -36,16 +36,18 @@ std::string error_of(const Structure& structure) {
 TEST_CASE("an atom in alternate locations or models is refused with both places", "[molecule]") {
     CHECK(error_of(structure_of("A", "1")) == "no error");
     CHECK(error_of(structure_of("AB", "11")) ==
-          "a.pdb:2: atom A PHE 53 N again in location B, first in location A on line 1; expected "
-          "one place for each atom: choose one, as palpa prepare does");
+          "a.pdb:2: atom A PHE 53 N is repeated in location B, first in location A on line 1; "
+          "expected one position for each atom (palpa prepare chooses one)");
     CHECK_THAT(error_of(structure_of("  ", "12")),
                Catch::StartsWith("a.pdb:2: atom A PHE 53 N again in model 2, first in model 1 on "
                                  "line 1; expected"));
-    CHECK_THAT(error_of(structure_of("ABC", "111")), Catch::Contains("on line 1 (2 such lines);"));
+    CHECK_THAT(error_of(structure_of("ABC", "111")),
+               Catch::Contains("on line 1 (2 repeated lines);"));
     // Two residues in one place are alternatives as well.
     Structure mixed = structure_of("AB", "11");
     mixed.names[1].residue = "TYR";
-    CHECK_THAT(error_of(mixed), Catch::StartsWith("a.pdb:2: atom A TYR 53 N again in location B"));
+    CHECK_THAT(error_of(mixed),
+               Catch::StartsWith("a.pdb:2: atom A TYR 53 N is repeated in location B"));
     mixed.names[1].number = "53A";
     CHECK(error_of(mixed) == "no error");
 }

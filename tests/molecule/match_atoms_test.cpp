@@ -107,12 +107,12 @@ TEST_CASE("of chains alike a segment's name may tell which", "[molecule]") {
           std::vector<double>{2, 3, 0, 1});
     // Which of them is meant is not for us to guess.
     CHECK(error_of(chain("P1"), joined(chain("A"), chain("B"))) ==
-          "a.psf:8: 2 of its 2 atoms are not in b.crd: P1 ALA 1 N, P1 ALA 1 C; segments here: P1; "
-          "segments or chains there: A, B; segment P1 fits A (b.crd:1) and B (b.crd:3) alike; "
-          "expected one only, or one called like the segment or its end");
+          "a.psf:8: 2 of its 2 atoms are not in b.crd: P1 ALA 1 N, P1 ALA 1 C; segments of this "
+          "file: P1; segments or chains of the other: A, B; segment P1 matches A (b.crd:1) and B "
+          "(b.crd:3) equally well; expected one match, or one named like the segment or its end");
     CHECK(error_of(joined(chain("P1"), chain("P2")), chain("A")) ==
-          "a.psf:10: 2 of its 4 atoms are not in b.crd: P2 ALA 1 N, P2 ALA 1 C; segments here: P1, "
-          "P2; segments or chains there: A");
+          "a.psf:10: 2 of its 4 atoms are not in b.crd: P2 ALA 1 N, P2 ALA 1 C; segments of this "
+          "file: P1, P2; segments or chains of the other: A");
 }
 
 TEST_CASE("a chain counts beside a segment", "[molecule]") {
@@ -138,7 +138,7 @@ TEST_CASE("residues that are numbered or called otherwise are told", "[molecule]
                Catch::Contains("numbers 1 lower in P"));
     CHECK_THAT(error_of(chain_of("P", {{"ALA", "-9223372036854775808"}}),
                         chain_of("A", {{"ALA", "9223372036854775807"}})),
-               Catch::EndsWith("segments or chains there: A"));
+               Catch::EndsWith("segments or chains of the other: A"));
     CHECK_THAT(
         error_of(wanted, chain_of("P", {{"ALA", "1"}, {"HIS", "2"}, {"ALA", "3"}})),
         Catch::StartsWith("a.psf:10: 2 of its 6 atoms are not in b.crd: P HSD 2 N, P HSD 2 C") &&

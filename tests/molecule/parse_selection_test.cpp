@@ -38,14 +38,14 @@ TEST_CASE("an error says the column and what would be right", "[molecule][select
         {"(water",
          "selection, column 7: the expression ends here, expected ')' for the '(' of column 1", ""},
         {"(water ion)", "selection, column 8: 'ion', expected 'and', 'or', or ')'", ""},
-        {"water)", "selection, column 6: ')' closes nothing", ""},
+        {"water)", "selection, column 6: ')' has no '(' before it", ""},
         {"()", "selection, column 2: ')', expected an expression", ""},
         {"name", "selection, column 5: the expression ends here, expected a name after 'name'", ""},
         {"name and water", "selection, column 6: 'and', expected a name after 'name'", ""},
         {"name CA,", "selection, column 9: the expression ends here, expected a name", ""},
         {"name , CA", "selection, column 6: ',', expected a name", ""},
         {"name CA chain A", "selection, column 9: 'chain', expected 'and' or 'or' before it", ""},
-        {"name \"CA", "selection, column 6: the quote has no end", ""},
+        {"name \"CA", "selection, column 6: the quotation mark has no end", ""},
         {"element C Qq", "selection, column 11: 'Qq', expected the symbol of an element", ""},
         {"resid", "selection, column 6: the expression ends here, expected numbers", ""},
         {"resid ALA", "selection, column 7: 'ALA', expected numbers after 'resid'", ""},
@@ -54,7 +54,7 @@ TEST_CASE("an error says the column and what would be right", "[molecule][select
         {"resid 5:6:7", "selection, column 7: '5:6:7'", ""},
         {"resid 5 to", "selection, column 11: the expression ends here", ""},
         {"resid 5:6 to 8", "selection, column 7: two ranges in one", ""},
-        {"resid 8:5", "selection, column 7: 8 is after 5", ""},
+        {"resid 8:5", "selection, column 7: 8 is larger than 5", ""},
         {"resid 99999999999999999999", "selection, column 7: '9999", ""},
         {"resid 5 6 water", "selection, column 11: 'water', expected 'and' or 'or' before it", ""},
         {"index 5A", "selection, column 7: '5A', expected numbers after 'index'", ""},
@@ -98,7 +98,7 @@ TEST_CASE("expressions may be long but not deep", "[molecule][selection]") {
     CHECK(parse_error(repeated("(", 90) + "water" + repeated(")", 90)) == "no error");
     CHECK(parse_error(repeated("not ", 99) + "water") == "no error");
     CHECK_THAT(parse_error(repeated("not ", 100) + "water"),
-               StartsWith("selection, column 401: expressions are more than 100 deep"));
+               StartsWith("selection, column 401: expressions are nested more than 100 deep"));
     CHECK_THAT(parse_error(repeated("(", 100'000)), Contains("more than 100 deep"));
     CHECK_THAT(parse_error(repeated("byres within 5 of ", 50'000)), Contains("more than 100 deep"));
 }

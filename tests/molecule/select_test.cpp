@@ -213,7 +213,7 @@ TEST_CASE("what the context lacks is refused", "[molecule][selection]") {
     const std::vector<NamedRange> molecules{{"protease_a", {0, 8}}, {"inhibitor", {8, 36}}};
 
     CHECK(refusal({atoms, {}}, "protein and helix") ==
-          "selection, column 13: the secondary structure is not known here, expected an expression "
+          "selection, column 13: the secondary structure is unknown here, expected an expression "
           "without helix, strand and coil");
     CHECK(refusal({atoms, molecules}, "not molecule inhibitor protase_a") ==
           "selection, column 24: no molecule 'protase_a', expected one of protease_a, inhibitor; "

@@ -72,7 +72,7 @@ TEST_CASE("an amide turns over as asked, with its hydrogens and alone", "[prepar
     for (std::size_t atom = 0; atom < writer.structure().names.size(); ++atom) {
         check_turned(writer.structure(), named.structure, atom, atom >= 7 && atom <= 9);
     }
-    CHECK_THAT(report.to_text(), Contains("GLN A 1: turned over, as asked"));
+    CHECK_THAT(report.to_text(), Contains("GLN A 1: flipped, as requested"));
 }
 
 TEST_CASE("an amide turned over as asked is not turned back", "[prepare]") {
@@ -106,7 +106,7 @@ TEST_CASE("an imidazole turns over as asked, whoever chooses its tautomer", "[pr
 TEST_CASE("what cannot be turned over is said", "[prepare]") {
     CHECK_THAT(refusal(two_ends(), turning("A", "7")), Contains("--flip: no residue A:7 here"));
     CHECK_THAT(refusal(two_ends(), turning("C", "3")),
-               Contains("--flip: ALA C 3 has no end to turn over; expected an ASN, GLN or HIS"));
+               Contains("--flip: ALA C 3 cannot be flipped; expected an ASN, GLN or HIS"));
     StructureWriter broken;
     broken.backbone("GLN", "A", 1, 0);
     CHECK_THAT(refusal(broken, turning("A", "1")), Contains("--flip: GLN A 1 has no atom CG"));

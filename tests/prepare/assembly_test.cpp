@@ -153,7 +153,7 @@ TEST_CASE("PDB and mmCIF give the same assembly, what lies on the axis once",
                                   "its occupancy is 1/2, as on a two-fold axis\n"));
         CHECK_THAT(text, Contains("CL A 102 lies on a symmetry axis: 1 of its 1 heavy atoms come "
                                   "within 1.5 Å of it by operator 2; only the original is kept\n"));
-        CHECK_THAT(text, Contains("1 copy of waters on a symmetry axis left out\n"));
+        CHECK_THAT(text, Contains("left out 1 copy of waters on a symmetry axis\n"));
         CHECK(report.warnings().empty());
     }
 }
@@ -302,7 +302,7 @@ TEST_CASE("assemblies that are not there, or not of this world, are refused",
     structure.operators = {{"7", diagonal(1, 1, -1), Vec3::Zero(), 41}, identity};
     structure.assemblies = {{"1", {{"A,", {{0}}}}}, {"PAU", {}}, {"3", {{"X,", {{1}}}}}};
     CHECK_THAT(error(2), Contains("no assembly 2 (only 1, PAU, 3)"));
-    CHECK_THAT(error(1), Contains("small.pdb:41: operator 7 is no rotation"));
+    CHECK_THAT(error(1), Contains("small.pdb:41: operator 7 is not a rotation"));
     CHECK_THAT(error(3), Contains("the assembly has no atom"));
     CHECK_THAT(report.to_text(), Contains("chains of the assembly that are not in the file: X"));
 }
@@ -314,8 +314,9 @@ TEST_CASE("what is chosen is of the assembly, and without one a warning names th
     Report report;
     CHECK(choose_atoms(parse_pdb(pdb, "w.pdb"), settings, report).names.size() == 9);
     REQUIRE(report.warnings().size() == 1);
-    CHECK_THAT(report.warnings()[0], Contains("has 2 copies of its chains, made by symmetry "
-                                              "(--assembly 1 builds it)"));
+    CHECK_THAT(report.warnings()[0],
+               Contains("biological assembly 1 has 2 more copies of chains by symmetry, which were "
+                        "not built; --assembly 1 builds them"));
 
     Report quiet;
     settings.assembly = 1;

@@ -70,7 +70,7 @@ ChosenState state_of(const StructureWriter& writer, const std::vector<Vec3>& wat
 
 TEST_CASE("a histidine's neighbours decide where its hydrogen is", "[prepare]") {
     CHECK(state_of(histidine()).histidine == "HSE");
-    CHECK_THAT(state_of(histidine()).reason, Contains("nothing near decides"));
+    CHECK_THAT(state_of(histidine()).reason, Contains("no hydrogen bond decides"));
     StructureWriter acceptor = histidine();
     add_carbonyl(acceptor, 9, {0.3, -2.8, 0}, {0.3, -4.0, 0});
     CHECK(state_of(acceptor).histidine == "HSD");

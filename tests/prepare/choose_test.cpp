@@ -89,8 +89,8 @@ TEST_CASE("waters go, ions stay, and what is asked for goes", "[prepare]") {
     }
     settings.without = {"MK2"};
     CHECK_THAT(load_error_of([&] { choose_atoms(writer.structure(), settings, report); }),
-               Contains("nothing here is 'MK2'; did you mean 'MK1'?"));
+               Contains("the structure has no 'MK2'; did you mean 'MK1'?"));
     settings.without = {"ALA", "MK1", "HOH"};
     CHECK_THAT(load_error_of([&] { choose_atoms(writer.structure(), settings, report); }),
-               Contains("no atom is left"));
+               Contains("no atom remains"));
 }

@@ -206,7 +206,7 @@ TEST_CASE("a link that a file states is a bond, and one without a patch is warne
     structure.positions.back() = structure.positions[16] + Vec3(0, 2.9, 0);
     const Linked without = link_all(structure);
     REQUIRE(without.report.warnings().size() >= 1);
-    CHECK_THAT(without.report.warnings()[0], Contains("there is no patch"));
+    CHECK_THAT(without.report.warnings()[0], Contains("the force field has no patch"));
 }
 
 TEST_CASE("nucleotides without O2' are DNA, with ends by their phosphates", "[prepare][links]") {
@@ -262,10 +262,16 @@ TEST_CASE("residues that a force field lacks are listed by kind with what to do"
     const NamedResidues named = name_residues(linked_force_field(), writer.structure(), {}, report);
     REQUIRE(named.unknown.size() == 2);
     CHECK(named.unknown[1].meaning == "beta-D-mannose");
-    CHECK_THAT(named.unknown[1].advice, Contains("add top_all36_carb.rtf"));
+    CHECK_THAT(advise(named.unknown[1], AdviceFor::CommandLine),
+               StartsWith("add top_all36_carb.rtf, par_all36_carb.prm and ") &&
+                   EndsWith(" (--toppar), leave it out (--without BMA) or approximate it "
+                            "(--approximate-ligands)"));
     CHECK(named.unknown[0].meaning == "AMP-PNP, an analogue of ATP");
     CHECK(named.unknown[0].where == std::vector<std::string>{"A:2"});
-    CHECK_THAT(named.unknown[0].advice, Contains("--without ANP"));
+    CHECK_THAT(advise(named.unknown[0], AdviceFor::CommandLine), Contains("--without ANP"));
+    // The window has keys, not options.
+    CHECK_THAT(advise(named.unknown[0], AdviceFor::Window),
+               Contains("leave it out (L) or approximate it (A)") && !Contains("--"));
 }
 
 TEST_CASE("no name stands in two tables, and all have letters of the PDB", "[prepare][links]") {

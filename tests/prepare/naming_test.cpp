@@ -226,18 +226,18 @@ TEST_CASE("all that keeps a structure from becoming a system is in one message",
     halves.atom("LIG", "A", 1, "C1", {0, 0, 0}, "C").end_chain();
     halves.atom("LIG", "B", 1, "C1", {3, 0, 0}, "C");
     CHECK_THAT(load_error_of([&] { name_all(halves.structure()); }),
-               Contains("LIG A:1 and B:1 have each 1 of its 3 heavy atoms (C2 C3 lack)") &&
+               Contains("LIG A:1 and B:1 have each 1 of its 3 heavy atoms (C2 C3 missing)") &&
                    Contains("--without LIG"));
 
     StructureWriter twice;
     twice.backbone("ALA", "A", 1, 0).backbone("ASP", "A", 1, 3.8);
     CHECK_THAT(load_error_of([&] { name_all(twice.structure()); }),
-               Contains("ASP A 1 has the number of ALA (line 1)"));
+               Contains("ASP A 1 has the same number as ALA (line 1)"));
 
     StructureWriter stranger;
     stranger.backbone("ALA", "A", 1, 0).atom("ALA", "A", 1, "XG", {1.2, 2.3, 0}, "S");
     CHECK_THAT(load_error_of([&] { name_all(stranger.structure()); }),
-               Contains("ALA A 1 has an atom 'XG' that its topology does not know"));
+               Contains("ALA A 1 has an atom 'XG' that is not in its topology"));
 }
 
 TEST_CASE("elements that contradict the names are put right and told", "[prepare]") {

@@ -138,7 +138,7 @@ TEST_CASE("with EEF1-SB ionic groups are neutral, and all of it is told", "[prep
     CHECK_THAT(report, Contains("CTER neutral, not -1 e (1): A 4\n"));
     CHECK_THAT(report, Contains("charge groups, all neutral"));
     CHECK_THAT(report, Contains("charge +0.00 e") || Contains("charge -0.00 e"));
-    CHECK_THAT(report, Contains("NBFIX of NC2 and OC: off"));
+    CHECK_THAT(report, Contains("NBFIX of NC2 and OC: switched off"));
     CHECK_THAT(report,
                Contains("left out: the parameter files do not have it; EEF1-SB with CHARMM36m"));
 
@@ -162,7 +162,8 @@ TEST_CASE("coordinates are the same with and without a solvent", "[prepare][solv
 TEST_CASE("left open, the solvent is EEF1-SB where it covers everything", "[prepare][solvent]") {
     const PreparedSystem covered = prepared(peptide(), with({}));
     CHECK(covered.solvent == Solvent::Eef1Sb);
-    CHECK_THAT(covered.report.to_text(), Contains("implicit water, which covers every type"));
+    CHECK_THAT(covered.report.to_text(),
+               Contains("implicit water, EEF1-SB, because it covers every atom type"));
 
     Structure with_ion = peptide();
     add(with_ion, "I", "SOD", "1", "SOD", {0, 0, 20});
@@ -170,8 +171,9 @@ TEST_CASE("left open, the solvent is EEF1-SB where it covers everything", "[prep
     CHECK(ion.solvent == Solvent::None);
     CHECK_FALSE(ion.topology.solvation);
     CHECK(charge_of(ion, "3", "CZ") == 0.64);
-    CHECK_THAT(ion.report.to_text(),
-               Contains("none, vacuum: EEF1-SB has no numbers for a type of atoms: SOD ("));
+    CHECK_THAT(
+        ion.report.to_text(),
+        Contains("none (vacuum), because EEF1-SB has no parameters for a type of atoms: SOD ("));
 
     Structure with_water = peptide();
     add_water(with_water, "1", 0);
@@ -183,7 +185,8 @@ TEST_CASE("left open, the solvent is EEF1-SB where it covers everything", "[prep
     keeping.keeps_waters = true;
     const PreparedSystem kept = prepared(with_water, keeping);
     CHECK(kept.solvent == Solvent::None);
-    CHECK_THAT(kept.report.to_text(), Contains("none, vacuum: waters are kept"));
+    CHECK_THAT(kept.report.to_text(),
+               Contains("none (vacuum), because the system has explicit waters"));
 }
 
 TEST_CASE("EEF1-SB that was asked for and cannot be is refused with what to do",
@@ -210,7 +213,7 @@ TEST_CASE("EEF1-SB that was asked for and cannot be is refused with what to do",
     PrepareSettings keeping = with(Solvent::Eef1Sb);
     keeping.keeps_waters = true;
     CHECK_THAT(error(with_water, keeping),
-               Contains("counted twice") && Contains("--structural-water"));
+               Contains("count twice") && Contains("--structural-water"));
 }
 
 TEST_CASE("a structural water stays, and counts for nothing", "[prepare][solvent]") {
@@ -226,7 +229,7 @@ TEST_CASE("a structural water stays, and counts for nothing", "[prepare][solvent
     CHECK(system.topology.solvation->dg_ref.end()[-3] == 0);
     CHECK(system.topology.charge.end()[-3] == -0.834);
     CHECK_THAT(system.report.to_text(),
-               Contains("structural waters, as asked: 1,") && Contains("left out 1 waters"));
+               Contains("structural waters, as requested: 1,") && Contains("left out 1 waters"));
     settings.structural_waters = {{"X", "3"}};
     CHECK_THAT(load_error_of([&] { (void)prepared(structure, settings); }),
                Contains("--structural-water X:3: no water there"));

@@ -147,7 +147,7 @@ TEST_CASE("a journal has the forces of clients, within their bounds", "[session]
         return error_of(fmt::format("c 1 {{\"pull\":{},\"of\":3}}\n", pulls));
     };
     CHECK(parse("c 1 {\"pull\":[[2,0,0,143.9]],\"of\":3}\n").events.size() == 1);
-    CHECK_THAT(error_of_pull("5"), Contains("'pull' is no list"));
+    CHECK_THAT(error_of_pull("5"), Contains("'pull' is not a list"));
     CHECK_THAT(error_of_pull("[[1,2,3]]"), Contains("four numbers"));
     CHECK_THAT(error_of_pull("[[1,2,3,null]]"), Contains("four numbers"));
     CHECK_THAT(error_of_pull("[[3,1,0,0]]"), Contains("atom 3 is pulled"));
@@ -166,20 +166,22 @@ TEST_CASE("what a journal cannot hold is refused with its line", "[session][jour
     const auto whole = [](const std::string& text) {
         return test::load_error_of([&] { (void)parse_journal(text, "journal.txt"); });
     };
-    CHECK_THAT(whole(""), Contains("journal.txt") && Contains("holds no whole line of a hand"));
+    CHECK_THAT(whole(""), Contains("journal.txt") && Contains("has no complete line for a hand"));
     CHECK_THAT(whole("time_s,handle_x_m\n"),
-               Contains("journal.txt:1") && Contains("is no journal"));
-    CHECK_THAT(whole(fmt::format("{}\nt 0 -\n", journal_mark)), Contains("begins without a hand"));
-    CHECK_THAT(error_of("q 1\n"), Contains("journal.txt:3") && Contains("'q' is no kind of line"));
+               Contains("journal.txt:1") && Contains("is not a journal"));
+    CHECK_THAT(whole(fmt::format("{}\nt 0 -\n", journal_mark)),
+               Contains("has no hand before the first event"));
+    CHECK_THAT(error_of("q 1\n"),
+               Contains("journal.txt:3") && Contains("'q' is not a kind of line"));
     CHECK_THAT(error_of("s 1\n"), Contains("a step has no time"));
     CHECK_THAT(error_of("s 1 nan\n"), Contains("a step has no time"));
-    CHECK_THAT(error_of("s 5 1\ns 4 1\n"), Contains("a pose is older than the one before"));
+    CHECK_THAT(error_of("s 5 1\ns 4 1\n"), Contains("the number of a pose does not rise"));
     CHECK_THAT(error_of("p -1\n"), Contains("a pose has no number"));
-    CHECK_THAT(error_of("p 1 2\n"), Contains("words too many"));
+    CHECK_THAT(error_of("p 1 2\n"), Contains("too many words"));
     CHECK_THAT(error_of("t x -\n"), Contains("a tick has no time"));
     CHECK_THAT(error_of("t 0 z\n"), Contains("a tick has no flags"));
-    CHECK_THAT(error_of("t 0 - 1 2\n"), Contains("'2' is no value"));
-    CHECK_THAT(error_of("t 0 - | 1\n"), Contains("words too many"));
+    CHECK_THAT(error_of("t 0 - 1 2\n"), Contains("'2' is not a value"));
+    CHECK_THAT(error_of("t 0 - | 1\n"), Contains("too many words"));
     CHECK_THAT(error_of("record\nrecord\n"), Contains("a second recording"));
     CHECK_THAT(error_of("c 1 [1]\n"), Contains("has no object"));
     CHECK_THAT(error_of("c 1 {}\n"), Contains("has no 'edit'"));
@@ -198,12 +200,12 @@ TEST_CASE("what a journal cannot hold is refused with its line", "[session][jour
     CHECK_THAT(
         error_of("c 1 {\"edit\":\"[[edits]]\\nat_s = 0\\nadd = { structure = 'inputs/no.crd', "
                  "name = 'w', at_angstrom = [0, 0, 0] }\"}\n"),
-        Contains("journal.txt:3") && Contains("names no file"));
+        Contains("journal.txt:3") && Contains("names a file that does not exist"));
     CHECK_THAT(error_of("c 1 {\"coupling\":[\"mode = 9\"],\"period_ms\":1}\n"), Contains("mode"));
     CHECK_THAT(error_of("c 1 {\"coupling\":[],\"period_ms\":0}\n"), Contains("period"));
     CHECK_THAT(error_of("d 1 {\"slot\":3}\n"), Contains("there is no hand 3"));
     CHECK_THAT(error_of("d 1 {\"slot\":0}\n"), Contains("has no 'name'"));
-    CHECK_THAT(error_of("p 1\n" + hand_line), Contains("a hand comes late"));
+    CHECK_THAT(error_of("p 1\n" + hand_line), Contains("a hand is declared too late"));
 }
 
 TEST_CASE("a journal that is none of its scene is refused where that is seen",
@@ -213,9 +215,10 @@ TEST_CASE("a journal that is none of its scene is refused where that is seen",
         return test::load_error_of([&] { play_journal(scene, parse(lines), {}); });
     };
     CHECK(error_of_playing("t 0 f 0 1 0 0 0 1 1\nt 0.001 -\n") == "no error");
-    CHECK_THAT(error_of_playing("t 0 f 0 1 0 0 0 2 1\n"), Contains("uses what no step has posted"));
+    CHECK_THAT(error_of_playing("t 0 f 0 1 0 0 0 2 1\n"),
+               Contains("uses a result that no step has produced"));
     CHECK_THAT(error_of_playing("p 9\nt 0 f 0 1 0 0 0 2 1\n"), Contains("pose 9 of hand 1"));
     CHECK_THAT(error_of_playing("p 0\np 0\nt 0 f 0 1 0 0 0 3 1\nt 0 - = = = = = 2\n"),
-               Contains("goes back to what was posted as 2"));
+               Contains("refers to result 2"));
     CHECK_THAT(error_of_playing(hand_line + "t 0 - 1 | 1\n"), Contains("2 hands"));
 }

@@ -66,7 +66,7 @@ TEST_CASE("a force that the molecules never reach is an error at the peak's key"
           "[session][hand]") {
     // At 2.4 Å they repel with more than 3 nN already.
     CHECK_THROWS_WITH(plan({"hand.start_angstrom=2.4", "peak_nN=3"}),
-                      Equals("--set peak_nN=3: the repulsion reaches 3 nN nowhere inside of 2.4 Å; "
+                      Equals("--set peak_nN=3: the repulsion does not reach 3 nN within 2.4 Å; "
                              "expected another hand.peak_nN or hand.start_angstrom"));
 }
 

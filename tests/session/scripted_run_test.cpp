@@ -244,7 +244,7 @@ TEST_CASE("lines that are wrong are refused and change nothing", "[session][comm
     CHECK_THAT(why("take = \"moved\", let_go = true"), Contains("expected one of them"));
     CHECK_THAT(why("at_s = 3, let_go = true"), Contains("unknown key 'at_s'"));
     CHECK_THAT(why("let_go = false"), Contains("expected true"));
-    CHECK_THAT(why("add = { residue = \"TIP3\" }"), Contains("no key 'add.name'"));
+    CHECK_THAT(why("add = { residue = \"TIP3\" }"), Contains("the key 'add.name' is missing"));
     CHECK_THAT(why("add = { structure = \"/etc/passwd\", name = \"x\", at_angstrom = [0,0,0] }"),
                Contains("outside of the scene's folder"));
     CHECK_THAT(why("mobility = { molecule = \"moved\" }"), Contains("changes nothing"));

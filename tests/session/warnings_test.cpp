@@ -68,7 +68,8 @@ TEST_CASE("a run that is too short for its stroke, or goes through, says so",
         return all;
     };
 
-    CHECK_THAT(warnings({"stroke_s=20"}), Contains("the stroke takes 41.6 s, the run only 10 s"));
+    CHECK_THAT(warnings({"stroke_s=20"}),
+               Contains("the stroke takes 41.6 s, but the run only 10 s"));
     CHECK_THAT(
         warnings({"mode=2", "grip=firm", "stroke=path", "hand.path=[[0, 60], [3, -70], [4, -70]]",
                   "hand.start_angstrom=4", "clamp_N=1"}),
@@ -102,7 +103,7 @@ TEST_CASE("settings that vibrate or gain energy by themselves are warned of",
         const std::string workspace = GENERATE("clutch", "bubble");
         const Knocked knocked({"encoder_step_mm=" + step, "workspace=" + workspace});
         CHECK(knocked.is_bad);
-        CHECK_THAT(knocked.words, Contains("a step of its position sensor of " + step + " mm"));
+        CHECK_THAT(knocked.words, Contains("one step of its position sensor (" + step + " mm"));
     }
     SECTION("strong damping of a handle that is read in steps") {
         const Knocked knocked({"damping_N_s_per_m=" + std::string(GENERATE("2", "5"))});
@@ -112,7 +113,7 @@ TEST_CASE("settings that vibrate or gain energy by themselves are warned of",
     SECTION("a law as steep as rounding errors are small") {
         const Knocked knocked({"force_law=perceptual", "F_lo_pN=0.001",
                                "F_hi_nN=" + std::string(GENERATE("3", "1"))});
-        CHECK_THAT(knocked.words, Contains("this force law plays rounding errors"));
+        CHECK_THAT(knocked.words, Contains("this force law makes rounding errors felt"));
     }
 }
 

@@ -417,15 +417,16 @@ TEST_CASE("an edit that cannot be made leaves everything as it was, and says why
         {TakeEdit{"nobody"}, "there is no molecule 'nobody'; there are resting, held"},
         {TakeEdit{"held:99"}, "'held' has no residue or atom \"99\""},
         {AddEdit{"XYZ", "", "new", {}}, "no residue 'XYZ'"},
-        {AddEdit{"", "held", "resting", {}}, "there is a molecule 'resting' already"},
-        {AddEdit{"", "held", "a:b", {}}, "'a:b' is no name of a molecule"},
+        {AddEdit{"", "held", "resting", {}}, "there is already a molecule 'resting'"},
+        {AddEdit{"", "held", "a:b", {}}, "'a:b' is not a name of a molecule"},
         {AddEdit{"", "held", "", {}}, "has no name"},
         {RemoveEdit{"nobody"}, "there is no molecule 'nobody'"},
         {PinEdit{{"held"}}, "is a whole molecule; expected \"held:25\""},
         {RestraintEdit{{"held:2 CA"}, {}, 20, 0}, "between two atoms or residues"},
-        {MobilityEdit{"held", Motion::Translate, {}}, "only a hand guides a molecule"},
+        {MobilityEdit{"held", Motion::Translate, {}},
+         "this motion needs a hand that holds the molecule"},
         {CouplingEdit{{"mode=9"}}, "mode"},
-        {UndoEdit{}, "nothing is there to be undone"},
+        {UndoEdit{}, "there is nothing to undo"},
     }));
     World world = load_two();
     const std::string before = world_bytes(world);
@@ -515,10 +516,10 @@ TEST_CASE("nothing is added on top of what is there, and the message says where 
 
     const std::string error = load_error_of([&] { add_molecule(world, add); });
 
-    CHECK_THAT(error, Contains("'copy' would overlap") &&
+    CHECK_THAT(error, Contains("'copy' would overlap another molecule") &&
                           Contains(fmt::format("copy TIP3 1 {} is {:.2f} Å from {}", one, nearest,
                                                other)) &&
-                          Contains("expected a place (at_angstrom) with 1 Å or more"));
+                          Contains("expected a place (at_angstrom) with at least 1 Å"));
     CHECK(world_bytes(world) == before);
     add.at_angstrom[2] += 6;
     add_molecule(world, add);

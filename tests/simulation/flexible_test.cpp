@@ -568,10 +568,11 @@ TEST_CASE("a scene is told which of its joints, atoms and springs are not there"
     };
     const auto row = GENERATE(values<Row>({
         {"joints", "turn = [\"PEPB 2 CA CX\"]",
-         "\"PEPB 2 CA CX\" names atom 'CX' of residue 2 of segment 'PEPB', which is not there"},
+         "\"PEPB 2 CA CX\" names atom 'CX' of residue 2 of segment 'PEPB', which does not exist"},
         {"joints", "rigid = [\"PEPC 2 C 3 N\"]", "segment 'PEPC', which is not"},
         {"joints", "springs = [\"PEPB 2 CA\"]",
-         "\"PEPB 2 CA\" is no bond; expected \"A 25 CB CG\" or, between residues, \"A 25 C 26 N\""},
+         "\"PEPB 2 CA\" is not a bond; expected \"A 25 CB CG\" or, between residues, \"A 25 C 26 "
+         "N\""},
         {nullptr, "atom = \"7 CA\"",
          "'held' has no atom or residue \"7 CA\"; expected \"25 CA\" or \"25\""},
         {nullptr, "atom = \"2 CA CB\"", "has no atom or residue"},
@@ -612,7 +613,7 @@ TEST_CASE("molecules that are bonded across segments cannot move apart",
 
     CHECK_THAT(error, Contains("both.psf:"));
     CHECK_THAT(error, Contains("PEPB ARG 3 C and TAIL ALA 4 N are bonded, across segments"));
-    CHECK_THAT(error, Contains("expected molecules that are not bonded to others"));
+    CHECK_THAT(error, Contains("expected molecules without bonds between them"));
 }
 
 TEST_CASE("a hand holds one molecule, not two under one name", "[simulation][flexible][errors]") {
@@ -632,9 +633,9 @@ TEST_CASE("a hand holds one molecule, not two under one name", "[simulation][fle
     connectivity.names = structure.names;
     const ChangedPeptides broken(structure, connectivity);
 
-    CHECK_THAT(
-        load_error_of([&] { load_world(broken.scene()); }),
-        Contains("scene.toml:18:") && Contains("'held' is not all bonded together; expected"));
+    CHECK_THAT(load_error_of([&] { load_world(broken.scene()); }),
+               Contains("scene.toml:18:") &&
+                   Contains("'held' has parts without bonds between them; expected"));
     // A spring may hold one of them.
     CHECK(model_of(load_world(broken.scene(by_spring))).bases.size() == 3);
 }

@@ -104,7 +104,7 @@ TEST_CASE("a remote engine's atoms are taken by springs, and nothing else is cha
     EditDescription remove;
     remove.action = RemoveEdit{"ion"};
     CHECK_THAT(load_error_of([&] { (void)make_edit(world, remove); }),
-               Contains("a remote engine moves everything"));
+               Contains("a remote engine moves the atoms of this scene"));
 }
 
 TEST_CASE("an engine's atoms are found by number", "[simulation][engine]") {
@@ -128,6 +128,6 @@ TEST_CASE("a table [engine] that is wrong is refused", "[simulation][engine]") {
     };
     CHECK_THAT(error("address = \"nowhere\"\n"), Contains("expected HOST:PORT"));
     CHECK_THAT(error("address = \"127.0.0.1:70000\"\n"), Contains("expected HOST:PORT"));
-    CHECK_THAT(error("program = \"lammps\"\nrate = 1\n"), Contains("LAMMPS takes no forces"));
+    CHECK_THAT(error("program = \"lammps\"\nrate = 1\n"), Contains("LAMMPS accepts forces only"));
     CHECK_THAT(error("atoms = \"w.gro.txt\"\n"), Contains("w.gro.txt"));
 }

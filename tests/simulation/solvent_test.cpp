@@ -117,7 +117,7 @@ TEST_CASE("charges that do not go with the solvent are refused with what to do",
                Contains("neutral charges (ASP of A ASP 2 is neutral, 2 ionic groups in all)") &&
                    Contains("expected solvent = \"eef1-sb\""));
     CHECK_THAT(error_of(scene_of("hiv/flexible.toml", {"force_field.solvent=eef1-sb"})),
-               Contains("the whole has +7.00 e"));
+               Contains("the total charge is +7.00 e, not 0"));
     CHECK(error_of(scene_of("hiv/charged")) == "no error");
 }
 
@@ -136,7 +136,8 @@ TEST_CASE("water is refused in implicit water unless it is structural", "[simula
 
     SceneDescription bridge = scene_of("salt-bridge/solvent.toml");
     bridge.molecules[0].structural_water = true;
-    CHECK_THAT(error_of(bridge), Contains("is of no water; expected a molecule of waters alone"));
+    CHECK_THAT(error_of(bridge),
+               Contains("is not part of a water; expected a molecule of waters only"));
 }
 
 TEST_CASE("what is added to a scene must go with its solvent", "[simulation][solvent]") {

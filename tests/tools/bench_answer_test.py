@@ -115,9 +115,9 @@ class BenchAnswer(unittest.TestCase):
         energy = text.splitlines()[3].split()[2]
         for told, path in (
                 ("no.txt", Path(self.folder.name) / "no.txt"),
-                ("both.crd:1: is no file of poses", PEPTIDES / "both.crd"),
+                ("both.crd:1: is not a file of poses", PEPTIDES / "both.crd"),
                 (":2: holds poses of another scene", self.poses_with("atoms.txt", f"scene {atoms}", "scene 7")),
-                (":4: energy and force here are -1 kcal/mol",
+                (":4: energy and force differ by -1 kcal/mol",
                  self.poses_with("energy.txt", energy, str(float(energy) + 1)))):
             with self.subTest(told=told):
                 self.assert_refused("--poses-file", path, told=told)
@@ -129,7 +129,7 @@ class BenchAnswer(unittest.TestCase):
         mine = Path(self.folder.name) / "mine.txt"
         mine.write_text("mine\n")
         for option in "--save-poses", "--plot":
-            self.assert_refused(option, mine, "--overwrite", told="is no file that this command")
+            self.assert_refused(option, mine, "--overwrite", told="was not written by this command")
         result = bench(PEPTIDES, "--answer", "--no-ways", "--poses", 1, "--poses-file", self.poses,
                        "--plot", self.picture, "--overwrite")
         self.assertEqual(result.returncode, 0, result.stderr)

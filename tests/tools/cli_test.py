@@ -166,7 +166,7 @@ class Cli(unittest.TestCase):
             (self.tmp / name).write_text("END\n")
             self.assert_bad_input(self.palpa("run", name), said)
             if name == "1abc.tar.gz":
-                self.assert_bad_input(self.palpa(name), "no command", said)
+                self.assert_bad_input(self.palpa(name), "unknown command", said)
 
     def test_an_error_cites_what_was_typed(self):
         for arguments in (["--mode", "7"], ["--mode=7"]):
@@ -211,25 +211,25 @@ class Cli(unittest.TestCase):
                          re.findall(r"^\| `(view\.\S+)`", keys, re.M))
         wrong = self.palpa("scene", "coupling.mod")
         self.assertEqual(wrong.returncode, 2)
-        self.assertIn("no key or table 'coupling.mod'; did you mean 'coupling.mode'?", wrong.stderr)
+        self.assertIn("unknown key or table 'coupling.mod'; did you mean 'coupling.mode'?", wrong.stderr)
 
     def test_wrong_usage_is_bad_input(self):
-        for arguments, said in ((["fly"], "palpa: no command 'fly'"),
+        for arguments, said in ((["fly"], "palpa: unknown command 'fly'"),
                                 (["run"], "palpa run: scene is required; 'palpa' alone lists"),
                                 (["run", WATER, "--speed", "3"], "palpa run: no option '--speed'"),
-                                (["run", WATER, WATER], "is one argument too many"),
+                                (["run", WATER, WATER], "unexpected argument"),
                                 (["prepare", "a.pdb", "-o", "x", "--model", "two"],
-                                 "--model: 'two' is no number"),
+                                 "--model: 'two' is not a number"),
                                 (["prepare", "--without", "MK1", "1abc.pdb", "--toppar", "a.rtf", "-o",
                                   "x"],
-                                 "structure is required; it stands before options"),
-                                (["run", WATER, "--mode"], "palpa run: no value for --mode;"),
-                                (["--speed"], "palpa: no option '--speed' without a command"),
+                                 "a structure file is required; write it before options"),
+                                (["run", WATER, "--mode"], "palpa run: the option --mode needs a value;"),
+                                (["--speed"], "palpa: unknown option '--speed' without a command"),
                                 (["bench"], "palpa bench: a scene"), (["bench", "--json"], "a scene"),
-                                (["help", "fly"], "palpa: no command 'fly'"),
-                                (["feel", WATER], "palpa feel is now palpa accuracy"),
-                                (["help", "loops"], "palpa loops is now palpa closed-paths"),
-                                (["journey"], "palpa journey is now palpa unbind")):
+                                (["help", "fly"], "palpa: unknown command 'fly'"),
+                                (["feel", WATER], "'palpa feel' has a new name: 'palpa accuracy'"),
+                                (["help", "loops"], "'palpa loops' has a new name: 'palpa closed-paths'"),
+                                (["journey"], "'palpa journey' has a new name: 'palpa unbind'")):
             with self.subTest(arguments=arguments):
                 self.assert_bad_input(self.palpa(*arguments), said)
 
@@ -294,7 +294,7 @@ class Cli(unittest.TestCase):
     def test_check_only_checks(self):
         result = self.palpa("run", "--check", WATER, "--record", self.tmp / "none")
         self.assertEqual(result.returncode, 0)
-        self.assertIn("nothing wrong", result.stdout)
+        self.assertIn("no problems", result.stdout)
         self.assertFalse((self.tmp / "none").exists())
 
     def test_every_thins_the_trace(self):
@@ -336,12 +336,12 @@ class Cli(unittest.TestCase):
     def test_check_tells_what_the_line_is_like(self):
         result = self.palpa("run", "--check", WATER)
         for text in ("-6.594 kcal/mol at 2.767 Å, 29.3 N/m", "0.322 nN at 3.10 Å, felt as 0.896 N",
-                     "3 nN at 2.473 Å, felt as 2.120 N", "200 N/m felt at"):
+                     "3 nN at 2.473 Å, felt as 2.120 N", "200 N/m on the hand at"):
             self.assertIn(text, result.stdout)
         in_space = self.palpa("run", "--check", ROOT / "scenes" / "hiv").stdout
         self.assertIn("5 nN at x = -0.300 Å", in_space)  # a place on a line, which is no distance
         self.assertNotIn("repulsion", in_space)
-        self.assertIn("663 N/m felt at 2.760 Å",
+        self.assertIn("663 N/m on the hand at 2.760 Å",
                       self.palpa("run", "--check", WATER, "--mode", "2").stdout)
         self.assertIn("vibrates", self.palpa("run", "--check", WATER, "--mode", "1").stdout)
 
@@ -413,14 +413,15 @@ class Cli(unittest.TestCase):
         self.assertEqual((self.tmp / "mine" / "trace.csv").read_text(), "not a recording's")
 
     def test_settings_that_name_nothing(self):
-        for setting, expected in (("speed=3", "no field"), ("hand.strok=hold", "unknown key"),
+        for setting, expected in (("speed=3", "no scene key"), ("hand.strok=hold", "unknown key"),
                                   ("seconds", "KEY=VALUE"), ("mode=six", "expected one of"),
-                                  ("hand.grip=[1", "neither TOML nor a bare word")):
+                                  ("hand.grip=[1", "not valid TOML")):
             with self.subTest(setting=setting):
                 self.assert_bad_input(self.palpa("run", WATER, "--set", setting), "--set", expected)
 
     def test_sound_without_a_window(self):
-        self.assert_bad_input(self.palpa("run", WATER, "--headless", "--sound"), "--sound", "needs the window")
+        self.assert_bad_input(self.palpa("run", WATER, "--headless", "--sound"), "--sound",
+                             "needs a window")
 
     def test_no_message_names_a_place_in_our_sources(self):
         result = self.palpa("run", "nowhere")

@@ -32,7 +32,7 @@ class ClosedPaths(unittest.TestCase):
                 result = closed_paths(SPACE, "--count", 1, "--set", setting)
                 self.assertEqual(result.returncode, 2, result.stdout)
                 self.assertEqual(len(result.stderr.splitlines()), 1)
-                self.assertIn("a course and a length of its own", result.stderr)
+                self.assertIn("sets the path and its duration itself", result.stderr)
         self.assertEqual(closed_paths(SPACE, "--count", 1, "--set", "hand.grip=firm").returncode, 0)
 
     def test_what_takes_hours_is_said_before(self):

@@ -102,7 +102,7 @@ class Connected(unittest.TestCase):
         result = self.connect(engine, "--seconds", 1, "--protocol", "3", "--wait", 2)
         self.assertEqual(result.returncode, 4)
         # What came first, and neither what follows nor advice to start what is there.
-        self.assertIn("speaks version 2, expected 3; leave --protocol out", result.stderr)
+        self.assertIn("uses IMD version 2, expected 3; leave --protocol out", result.stderr)
         self.assertNotIn("start it first", result.stderr)
 
     def test_another_number_of_atoms_is_refused_with_both(self):
@@ -121,7 +121,7 @@ class Connected(unittest.TestCase):
         self.assertIn("has not sent its handshake; another client may hold it", result.stderr)
 
     def test_bad_arguments_are_named(self):
-        cases = ((("--lead", "nan,0,0"), "--lead"), (("--record", self.topology / "r"), "is no folder"))
+        cases = ((("--lead", "nan,0,0"), "--lead"), (("--record", self.topology / "r"), "is not a folder"))
         for arguments, expected in cases:
             result = self.connect(1, *arguments)
             self.assertEqual(result.returncode, 2, result.stderr)
@@ -130,7 +130,7 @@ class Connected(unittest.TestCase):
             result = subprocess.run([PROGRAM, "connect", address, "--topology", self.topology, "--headless"],
                                     capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=60)
             self.assertEqual(result.returncode, 2, result.stderr)
-            self.assertIn("is no address of an engine", result.stderr)
+            self.assertIn("is not the address of an engine", result.stderr)
         wrong = self.folder / "run.txt"
         wrong.write_text("")
         for topology in (wrong, self.folder):
@@ -144,7 +144,7 @@ class Connected(unittest.TestCase):
         self.assertNotIn("run it again", (self.folder / "record" / "session.toml").read_text())
         result = subprocess.run([PROGRAM, "replay", self.folder / "record"], capture_output=True, text=True, timeout=60)
         self.assertEqual(result.returncode, 2)
-        self.assertIn("its frames are not in the recording", result.stderr)
+        self.assertIn("the recording does not have its frames", result.stderr)
 
     def test_an_atom_is_held_by_number_and_by_name(self):
         for hold in ("5", "HW1 2", "2 HW1", "WAT HW1 2"):
@@ -154,7 +154,7 @@ class Connected(unittest.TestCase):
                 self.assertEqual(result.returncode, 0, result.stderr)
                 self.assertEqual({atom for _, pulls in engine.history for atom in pulls}, {4})
                 engine.stop()
-        for hold, why in (("99", "is none of 9 atoms"), ("XX 2", "names 0 atoms"), ("what is that", "names 0 atoms")):
+        for hold, why in (("99", "is not one of 9 atoms"), ("XX 2", "names 0 atoms"), ("what is that", "names 0 atoms")):
             with self.subTest(hold=hold):
                 result = self.connect(1, "--hold", hold)
                 self.assertEqual(result.returncode, 2)
@@ -184,7 +184,7 @@ class Connected(unittest.TestCase):
         engine.script = lambda peer, number: peer.sessions == 1
         result = self.connect(engine, "--seconds", 100)
         self.assertEqual(result.returncode, 4)
-        self.assertIn("expected one that listens there", result.stderr)
+        self.assertIn("expected an engine that listens there", result.stderr)
 
     def test_no_force_while_it_is_late_and_it_comes_back(self):
         def stall(peer, number):
@@ -260,7 +260,7 @@ class Connected(unittest.TestCase):
                 self.assertEqual({atom for _, pulls in engine.history for atom in pulls}, held)
         result = self.connect(1, "--hold", "M1", "--set", f"engine.atoms={water}")
         self.assertEqual(result.returncode, 2)
-        self.assertIn("expected one, for", result.stderr)
+        self.assertIn("expected exactly one, to match", result.stderr)
 
 
 if __name__ == "__main__":

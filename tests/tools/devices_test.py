@@ -57,7 +57,7 @@ class Devices(unittest.TestCase):
             self.assertEqual(checks[layer]["outcome"], "ok", checks[layer])
         self.assertIn("12 N", checks["limits"]["found"])
         self.assertEqual(examine(1, stub="absent")["init"]["found"], "no device found")
-        self.assertIn("rest place", examine(1, stub="uncalibrated")["calibration"]["remedy"])
+        self.assertIn("rest position", examine(1, stub="uncalibrated")["calibration"]["remedy"])
         missing = examine(1, PALPA_FORCE_DIMENSION="/nowhere/libdhd.so.3")["library"]
         self.assertIn("/nowhere/libdhd.so.3", missing["found"])
         self.assertIn("www.forcedimension.com", missing["remedy"])
@@ -72,9 +72,9 @@ class Devices(unittest.TestCase):
         self.assertEqual(json.loads(run(two, "--second", "emulated").stdout)["hand_2"]["net_work_J"],
                          both["hand_2"]["net_work_J"])
         self.assertNotIn("hand_2", json.loads(run(WATER).stdout))
-        for scene, name, reason in ((WATER, "emulated", "says what a second hand holds"),
-                                    (two, "mouse", "needs the window"),
-                                    (two, "omni", "needs the window")):
+        for scene, name, reason in ((WATER, "emulated", "with a second hand"),
+                                    (two, "mouse", "needs a person and a window"),
+                                    (two, "omni", "needs a person and a window")):
             result = run(scene, "--second", name)
             self.assertEqual(result.returncode, 2)
             self.assertIn(reason, result.stderr)
@@ -91,7 +91,7 @@ class Devices(unittest.TestCase):
 
     def test_the_handle_is_pushed_only_by_consent(self):
         checks, _ = self.examine(0, "--force-test", answer="no\n")
-        self.assertEqual(checks["force"]["found"], "not tried")
+        self.assertEqual(checks["force"]["found"], "skipped")
         checks, _ = self.examine(0, "--force-test", answer="\n")
         self.assertEqual(checks["force"]["outcome"], "ok", checks["force"])
 
@@ -108,7 +108,7 @@ class Devices(unittest.TestCase):
         self.assertIn("found: emulated PHANTOM Omni", listed.stdout)
         self.assertIn("not found: init", palpa("run", "--device", "list", stub="absent").stdout)
         for arguments, told in ((["--device", "omi"], "did you mean 'omni'"),
-                                (["--device", "omni", "--headless"], "needs the window"),
+                                (["--device", "omni", "--headless"], "needs a person and a window"),
                                 (["--device", "omni", "--play"], "--play")):
             with self.subTest(arguments=arguments):
                 result = palpa("run", WATER, *arguments)
@@ -129,7 +129,7 @@ class Devices(unittest.TestCase):
                              (second / "trace.csv").read_bytes())
             verified = palpa("replay", second, "--verify")
             self.assertEqual(verified.returncode, 2)
-            self.assertIn("expected one of the emulated hand", verified.stderr)
+            self.assertIn("expected a recording of the emulated hand", verified.stderr)
 
     def test_a_script_leads_the_molecule_in(self):
         with tempfile.TemporaryDirectory() as folder:

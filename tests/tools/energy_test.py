@@ -156,7 +156,7 @@ class Energy(unittest.TestCase):
         self.assertEqual(self.palpa(BRIDGE / "solvent.psf", *arguments).stderr, "")
         vacuum = self.palpa(BRIDGE / "solvent.psf", *arguments[:-2])
         self.assertEqual(vacuum.returncode, 0, vacuum.stderr)
-        self.assertIn("has EEF1-SB's neutral charges, and this is in vacuum", vacuum.stderr)
+        self.assertIn("has EEF1-SB's neutral charges, but the energy is computed in vacuum", vacuum.stderr)
         self.assertEqual(self.palpa(BRIDGE / "vacuum.psf", *arguments[:-2]).stderr, "")
 
     def test_a_psf_has_the_terms_that_scenes_have(self):
@@ -215,7 +215,7 @@ class Energy(unittest.TestCase):
                 ([path, *toppar, "--structural-water"], "expected --solvent eef1-sb"),
                 ([path, *toppar, "--solvent", "eef1-sb", "--method", "cutoff"], "--solvent-end sharp"),
                 ([path, *toppar, "--solvent", "eef1-sb", "--solvent-table", PEPTIDES / "aera_c36m.prm"],
-                 "no head of a solvation table"),
+                 "not the header of a solvation table"),
                 ([path, *toppar, "--dielectric", "nan"], "nan")):
             with self.subTest(arguments=arguments):
                 result = self.palpa(*arguments)
@@ -245,7 +245,7 @@ class Energy(unittest.TestCase):
                     *lines[1:]]
         def in_two_models(lines):
             return ["MODEL        1", *lines, "ENDMDL", "MODEL        2", *lines, "ENDMDL"]
-        for edit, expected in ((without_hydrogens, ".pdb:1: the structure holds no hydrogens"),
+        for edit, expected in ((without_hydrogens, ".pdb:1: the structure has no hydrogens"),
                                (in_two_places, " again in location B, first in location A on line 1"),
                                (in_two_models, " again in model 2, first in model 1 on line 2 (")):
             with self.subTest(edit=edit.__name__):

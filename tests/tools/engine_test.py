@@ -101,7 +101,7 @@ class Gromacs(Case):
 
     def test_a_peptide_in_water_runs(self):
         result = self.write("gromacs", box("peptide"), "--box", EDGES, "--steps", 100)
-        self.assertIn("8.3 Å instead", result.stderr)
+        self.assertIn("8.3 Å is used instead", result.stderr)
         start = (self.folder / "run.sh").read_text()
         self.assertIn("-imdport 8888 -imdwait -imdpull", start)
         grompp = re.search(r"grompp (.*?) &&", start)[1].split()
@@ -226,7 +226,7 @@ class Files(Case):
                 ([ROOT / "scenes/hairpin"], "implicit water"),
                 ([], "expected a scene, or --psf"),
                 (["--psf", psf], "--psf, --coordinates and --toppar together"),
-                (["--box", "8,30,30", *system], "no room for a cutoff"),
+                (["--box", "8,30,30", *system], "too short for a cutoff"),
                 (["--box", "18,18", *system], "expected three edges"),
                 (["--send", "PEPX", *system], "no such segment; did you mean 'PEPA'"),
         ):
@@ -235,7 +235,7 @@ class Files(Case):
             self.assertIn(message, result.stderr)
         result = palpa("engine", "box", "-o", self.folder, "--waters", 100, "--toppar", *toppar)
         self.assertEqual(result.returncode, 2)
-        self.assertIn("eight times a cube", result.stderr)
+        self.assertIn("8 times a cube number", result.stderr)
         self.assertFalse(self.folder.exists())
 
 

@@ -35,7 +35,7 @@ class BundledScene(unittest.TestCase):
     def test_a_region_holds_the_rest(self):
         check = self.palpa("run", "--check", self.SCENE, "--set", "joints.within_angstrom=8",
                            "--set", "statics.relax_steps=0")
-        self.assertIn("498 joints further away are held", check.stdout)
+        self.assertIn("498 joints outside of the region are fixed", check.stdout)
 
 
 if __name__ == "__main__":

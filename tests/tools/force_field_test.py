@@ -62,7 +62,7 @@ class ForceField(unittest.TestCase):
         (self.folder / "about.txt").write_text("Waters\nCite nobody.\n")
         pack = ("force-field", "pack", "toppar", "--about", "about.txt", "-o", "waters.ff")
         packed = self.palpa(*pack)
-        self.assertIn("1 entry of the force field given again, the later counts: toppar/other.prm:3: bond A B "
+        self.assertIn("1 entry of the force field defined again; the last definition is used: toppar/other.prm:3: bond A B "
                       "replaces that of toppar/other.prm:2", packed.stderr)
         self.palpa(*pack, code=2)
         counts = json.loads(self.palpa(*pack, "--overwrite", "--json").stdout)

@@ -150,7 +150,7 @@ class HostileFiles(unittest.TestCase):
                 (copy / name).unlink()
                 os.mkfifo(copy / name)
                 self.assert_refused(self.palpa("replay", copy, "--verify"), name,
-                                    "is no regular file")
+                                    "is not a regular file")
                 self.assertEqual(self.palpa("run", WATER, "--headless", "--record", copy,
                                             "--overwrite").returncode, 2)
 

@@ -81,7 +81,7 @@ class Lessons(unittest.TestCase):
 
     def test_what_is_wrong_is_said(self):
         for arguments, message in ((["play", "watr"], "no lesson 'watr'; expected one of"),
-                                   (["play"], "says not which one"),
+                                   (["play"], "needs a lesson"),
                                    (["play", "water", "--idle"], "--headless"),
                                    (["ply", "water"], "play")):
             with self.subTest(arguments=arguments):

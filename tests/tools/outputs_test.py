@@ -59,7 +59,7 @@ class Outputs(unittest.TestCase):
                 self.palpa(*command, output, "--overwrite", code=code)
                 self.assertEqual(output.read_bytes(), before)
                 output.write_text("mine\n")
-                self.assert_refused(*command, output, "--overwrite", told="is no file that this")
+                self.assert_refused(*command, output, "--overwrite", told="was not written by this")
                 self.assertEqual(output.read_text(), "mine\n")
         self.assertEqual(sorted(path.name for path in self.tmp.iterdir()),
                          ["forces.csv", "rest.crd"])
@@ -109,7 +109,7 @@ class Outputs(unittest.TestCase):
         prepare = ("prepare", WATER / "dimer.crd", "--keep-waters", "--toppar", WATER / "tip3p.str",
                    "-o", folder)
         self.assert_refused(*prepare, told="report.txt: is there already")
-        self.assert_refused(*prepare, "--overwrite", told="report.txt: is no file that this")
+        self.assert_refused(*prepare, "--overwrite", told="report.txt: was not written by this")
         self.assertEqual(self.files(), {Path("out/report.txt"): b"mine"})
 
     # ---- recordings
@@ -118,7 +118,7 @@ class Outputs(unittest.TestCase):
         self.record()
         before = self.files()
         result = self.record(code=2)
-        self.assertIn("holds a recording already", result.stderr)
+        self.assertIn("already contains a recording", result.stderr)
         self.assertEqual(self.files(), before)
         self.record("--overwrite")
         self.assertEqual(set(self.files()), set(before))
@@ -147,7 +147,7 @@ class Outputs(unittest.TestCase):
         before = self.files()
         result = self.palpa("run", other, "--headless", "--seconds", "0.01", "--record",
                             self.folder, "--overwrite", code=2)
-        self.assertIn("mine.str: is no file of this recording", result.stderr)
+        self.assertIn("mine.str: is not part of this recording", result.stderr)
         self.assertEqual(self.files(), before)
 
     def test_inputs_with_names_that_toml_escapes_are_recorded_twice(self):
@@ -165,7 +165,7 @@ class Outputs(unittest.TestCase):
         self.folder.mkdir()
         (self.folder / "session.toml").write_text('# replaces "# A recorded Palpa session"\n')
         (self.folder / "trace.csv").write_text("mine")
-        self.assertIn("no recording", self.record("--overwrite", code=2).stderr)
+        self.assertIn("not a recording", self.record("--overwrite", code=2).stderr)
         self.assertEqual((self.folder / "trace.csv").read_text(), "mine")
 
     def test_links_in_a_recording_are_not_followed(self):
@@ -186,8 +186,8 @@ class Outputs(unittest.TestCase):
     def test_a_folder_without_a_recording_is_not_overwritten(self):
         self.folder.mkdir()
         (self.folder / "trace.csv").write_text("mine")
-        self.assertIn("no recording", self.record(code=2).stderr)
-        self.assertIn("no recording", self.record("--overwrite", code=2).stderr)
+        self.assertIn("not a recording", self.record(code=2).stderr)
+        self.assertIn("not a recording", self.record("--overwrite", code=2).stderr)
         self.assertEqual(self.files(), {Path("recording/trace.csv"): b"mine"})
 
     def test_of_two_runs_into_one_folder_the_second_is_refused(self):
@@ -214,7 +214,7 @@ class Outputs(unittest.TestCase):
         self.assertIn("no.crd", result.stderr)  # the scene is read first
         result = self.palpa("run", WATER, "--headless", "--record", self.folder, "--set",
                             "molecules.moved.segment=NONE", code=2)
-        self.assertIn("holds a recording already", result.stderr)
+        self.assertIn("already contains a recording", result.stderr)
 
     # ---- studies
 
@@ -225,7 +225,7 @@ class Outputs(unittest.TestCase):
                 folder.mkdir()
                 (folder / name).write_text("mine")
                 self.assert_refused("study", WATER, "--operators", "1", "--rounds", "1", "--modes",
-                                    "4", "-o", folder, told="holds a study already")
+                                    "4", "-o", folder, told="already exists, so the folder contains a study")
                 self.assertEqual((folder / name).read_text(), "mine")
 
 

@@ -55,7 +55,7 @@ class PeptideScenes(unittest.TestCase):
     def assert_opens_at_rest(self, scene):
         check = palpa("run", "--check", scene)
         self.assertEqual((check.returncode, check.stderr), (0, ""))
-        self.assertIn("nothing wrong found", check.stdout)
+        self.assertIn("no problems found", check.stdout)
         self.assertIn(", 0.000 nN", check.stdout)
         self.assertEqual(json.loads(palpa("relax", scene, "--json").stdout)["steps"], 0)
 

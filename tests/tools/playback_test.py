@@ -97,7 +97,7 @@ class Played(Trajectories):
     def test_a_damaged_frame_is_warned_of_and_the_one_before_it_stays(self):
         path = self.write([0, 0.5, float("nan"), 1.5])
         folder, rows = self.play(path, "--seconds", "1", "--trajectory-speed", "10")
-        self.check_warned(folder, "stands at frame 2 of 4", "frame 3", "coordinate")
+        self.check_warned(folder, "stopped at frame 2 of 4", "frame 3", "coordinate")
         self.assertAlmostEqual(rows[-1]["molecule_x_angstrom"] - rows[0]["molecule_x_angstrom"], 0.5, delta=0.02)
         self.refused("coordinate", WATER, "--headless", "--trajectory", path, "--trajectory-frame", 3)
 
@@ -112,7 +112,7 @@ class Played(Trajectories):
         self.assertNotIn("run it again", (folder / "session.toml").read_text())
         result = self.palpa("replay", folder, "--verify")
         self.assertEqual(result.returncode, 2)
-        self.assertIn("its frames are not in", result.stderr)
+        self.assertIn("does not have its frames", result.stderr)
 
     def test_models_of_a_pdb_file_are_frames(self):
         first, second = self.tmp / "1.pdb", self.tmp / "2.pdb"

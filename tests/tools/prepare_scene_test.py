@@ -83,7 +83,7 @@ class PrepareScene(PrepareCase):
         self.check_felt(100)
         self.check_range_is_of_these_forces()
         check = palpa("run", "--check", self.folder / "mine")
-        self.assertRegex(check.stdout, "in 0 steps, moved 0.000 Å")  # it opens at rest
+        self.assertRegex(check.stdout, "in 0 steps, largest move 0.000 Å")  # it opens at rest
 
     def most_exposed(self, structure, chain):
         residues, heavy = {}, []
@@ -152,7 +152,7 @@ class PrepareScene(PrepareCase):
     def test_a_folder_that_cannot_be_made_is_refused_before_the_work(self):
         (self.folder / "file").write_text("")
         # The structure is not there either: it was not looked for.
-        for folder, expected in ((self.folder / "file" / "mine", "file is no folder"),
+        for folder, expected in ((self.folder / "file" / "mine", "file is not a folder"),
                                  (self.folder / "file", "file")):
             result = palpa("prepare", "--only-toppar", self.folder / "absent.pdb", "-o", folder, "--toppar",
                            *self.toppar)
@@ -166,7 +166,7 @@ class PrepareScene(PrepareCase):
                                       self.data / "structures" / "alanine_dipeptide.pdb", "-o",
                                       self.folder / "mine", "--toppar", *self.toppar])
         self.assertEqual(code, 0)
-        for stage in ("reading the force field", "relaxing clashes", "looking for the forces",
+        for stage in ("reading the force field", "relaxing clashes", "measuring the forces",
                       "playing the scene"):
             self.assertIn(stage, text)
         self.assertRegex(text, r"playing the scene +\d+ %")

@@ -141,7 +141,7 @@ class Prepare(PrepareCase):
         result = self.palpa("prepare", peptide, "-o", self.folder / "two", "--toppar", *toppar,
                             peptide)
         self.assertEqual(result.returncode, 2)
-        self.assertIn("one argument too many", result.stderr)
+        self.assertIn("unexpected argument", result.stderr)
 
     def test_a_protein_alone_goes_with_implicit_water_if_that_is_left_open(self):
         ubiquitin = self.data / "structures" / "1ubq.pdb"
@@ -155,13 +155,13 @@ class Prepare(PrepareCase):
         self.assertIn(" REMARKS Charges: EEF1-SB", (folder / "system.psf").read_text())
         self.assertEqual((folder / "system.crd").read_text(), places)
         report = (folder / "report.txt").read_text()
-        self.assertIn("which covers every type", report)
+        self.assertIn("because it covers every atom type", report)
         self.assertIn("left out 58 waters", report)
         self.assertAlmostEqual(sum(atom[5] for atom in after), 0, delta=1e-6)
         self.assertNotIn("NBFIX", (folder / "system.prm").read_text())
         self.energy(folder)  # has all of its parameters
         kept = self.prepare(ubiquitin, self.toppar(), "--keep-waters", "--no-relax")
-        self.assertIn("none, vacuum: waters are kept", (kept / "report.txt").read_text())
+        self.assertIn("none (vacuum), because the system has explicit waters", (kept / "report.txt").read_text())
         self.assertNotIn("EEF1-SB", (kept / "system.psf").read_text())
 
     def test_a_prepared_scene_in_implicit_water_can_be_run(self):
@@ -170,7 +170,7 @@ class Prepare(PrepareCase):
                             *self.toppar()[:2], "-o", folder, "--solvent", "eef1-sb")
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn('solvent = "eef1-sb"', (folder / "scene.toml").read_text())
-        self.assertIn("joints turn, in EEF1-SB's implicit water", (folder / "report.txt").read_text())
+        self.assertIn("joints can turn, in EEF1-SB's implicit water", (folder / "report.txt").read_text())
         checked = self.palpa("run", "--check", folder)
         self.assertEqual(checked.returncode, 0, checked.stderr)
         vacuum = self.palpa("run", "--check", folder, "--set", "force_field.solvent=none")
@@ -285,7 +285,7 @@ class Prepare(PrepareCase):
         with self.subTest(name="a clash of the file's own hydrogens is reported"):
             folder = self.prepare(hiv / "1tw7_charmm_allH.pdb", self.toppar()[:2])
             self.assertRegex((folder / "report.txt").read_text(),
-                             "a clash is left: .*PROA GLN 2 HE22 and PROB ASN 98 HD22")
+                             "a clash remains: .*PROA GLN 2 HE22 and PROB ASN 98 HD22")
         with self.subTest(name="alanine dipeptide"):
             folder = self.prepare(self.data / "structures" / "alanine_dipeptide.pdb",
                                   self.toppar()[:2])
@@ -305,7 +305,7 @@ class Prepare(PrepareCase):
         hiv = self.data / "hiv"
         one_line = [
             (hiv / "1hsg_protein.pdb", ["--protonation", "A:25=ASPX"], "did you mean 'ASPP'"),
-            (hiv / "1hsg_protein.pdb", ["--without", "HOH"], "nothing here is 'HOH'"),
+            (hiv / "1hsg_protein.pdb", ["--without", "HOH"], "the structure has no 'HOH'"),
             (hiv / "1hsg_protein.pdb", ["--first", "C=NTER"], "no chain or segment 'C'"),
             (hiv / "absent.pdb", [], "absent.pdb"),
             (hiv / "1hpv_protein.pdb", ["--protonation", "A:69=XXX"], "no residue and no patch 'XXX'"),
@@ -315,7 +315,7 @@ class Prepare(PrepareCase):
              "two states for ASP A 25"),
             (hiv / "1hpv_protein.pdb", ["--flip", "A:125"], "--flip: no residue A:125 here"),
             (hiv / "1hpv_protein.pdb", ["--flip", "A:25"],
-             "--flip: ASP A 25 has no end to turn over; expected an ASN, GLN or HIS"),
+             "--flip: ASP A 25 cannot be flipped; expected an ASN, GLN or HIS"),
             (hiv / "1hpv_protein.pdb", ["--flip", "25"], "--flip 25: expected CHAIN:NUMBER"),
             (hiv / "1hpv_protein.pdb", ["--first", "A=NTER"], "NTER is not for PRO A 1"),
             (hiv / "1hpv_protein.pdb", ["--as", "QQQ=ALA"], "no residue 'QQQ' here"),
@@ -365,7 +365,7 @@ class Prepare(PrepareCase):
 
     def test_single_residues_beside_a_gap(self):
         for gap, warning in (("A:45", "gap between ALA A 44|gap between TYR A 44"),
-                             ("A:2", "THR A 1 stands alone before a gap")):
+                             ("A:2", "THR A 1 is a single residue before a gap")):
             with self.subTest(gap=gap):
                 folder = self.prepare(self.data / "structures" / "1crn.pdb", self.toppar()[:2],
                                       "--without", gap)

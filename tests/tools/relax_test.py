@@ -89,12 +89,12 @@ class Relax(unittest.TestCase):
             lines[i + atoms] = lines[i + atoms][:40] + lines[i][40:100] + lines[i + atoms][100:]
         (self.folder / "both.crd").write_text("\n".join(lines) + "\n")
         result = self.palpa("relax", self.folder, "--set", "statics.relax_steps=0")
-        self.assertRegex(result.stderr, r"^warning: atoms are on each other: PEP. .* are 0\.00 Å "
+        self.assertRegex(result.stderr, r"^warning: atoms overlap: PEP. .* are 0\.00 Å "
                                         rf"apart, and {atoms - 1} more such pairs\n$")
 
     def test_a_rigid_scene_has_nothing_to_relax(self):
         self.assert_bad_input(self.palpa("relax", ROOT / "scenes" / "water"), "scene.toml: ",
-                              "nothing moves by itself", 'shape = "flexible"')
+                              "no molecule of this scene moves by itself", 'shape = "flexible"')
 
     def test_bad_input_is_told_with_file_and_line(self):
         (self.folder / "scene.toml").write_text(SCENE + '[joints]\nturn = ["PEPA 2 CA CX"]\n')

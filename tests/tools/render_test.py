@@ -332,7 +332,7 @@ class Render(unittest.TestCase):
         result, recording = self.run_recorded("--fps", "4", VK_DRIVER_FILES="/nowhere",
                                               VK_ICD_FILENAMES="/nowhere")
         self.assertEqual(result.returncode, 0, result.stderr)
-        said = [line for line in result.stderr.splitlines() if "no frames" in line]
+        said = [line for line in result.stderr.splitlines() if "frames cannot be drawn" in line]
         self.assertEqual(len(said), 1, result.stderr)
         self.assertEqual(len((recording / "trace.csv").read_text().splitlines()), 2001)
         self.assertFalse((recording / "frames").exists())
@@ -340,7 +340,7 @@ class Render(unittest.TestCase):
     def test_sizes_that_are_none(self):
         for size in ("0x10", "10x0", "10", "axb", "-1x5", "1e3x5"):
             with self.subTest(size=size):
-                self.assert_bad_input(self.render("-o", self.image, "--size", size), "is no size")
+                self.assert_bad_input(self.render("-o", self.image, "--size", size), "is not a size")
         self.assert_bad_input(self.render("-o", self.image, "--size", "99999x99999"),
                               "has more than")
 

@@ -90,7 +90,7 @@ class Replay(unittest.TestCase):
         self.assertEqual((code, report["different"], report["surplus"]), (1, 0, 1))
         self.assertFalse(report["cut_off"])
         told = palpa("replay", self.folder, "--verify").stdout
-        self.assertIn("rows behind the session's end: 1", told)
+        self.assertIn("rows after the end of the session: 1", told)
 
     def test_columns_too_many_or_too_few_are_told(self):
         self.record("--seconds", "0.2", WATER)
@@ -108,7 +108,7 @@ class Replay(unittest.TestCase):
                 self.assertEqual((report["first"]["recorded"], report["first"]["played"]),
                                  (str(has), str(columns)))
                 told = palpa("replay", self.folder, "--verify").stdout
-                self.assertNotIn("all the same", told)
+                self.assertNotIn("all identical", told)
 
     def test_a_force_that_was_another_is_told_with_its_place(self):
         self.record("--seconds", "1", WATER)
@@ -131,15 +131,15 @@ class Replay(unittest.TestCase):
         session.write_text(text.replace("[statics]\n", "[statics]\nbudget_us = 5000.0\n"))
         result = palpa("replay", self.folder, "--verify")
         self.assertEqual(result.returncode, 2)
-        self.assertIn("do not repeat", result.stderr)
+        self.assertIn("depends on the speed of the machine", result.stderr)
         session.write_text(text)
         self.trace.write_text("time_s,handle_x_m\n0,0\n")
         result = palpa("replay", self.folder, "--verify")
         self.assertEqual(result.returncode, 2)
-        self.assertIn("other columns", result.stderr)
+        self.assertIn("different columns", result.stderr)
         result = palpa("replay", ROOT / "scenes", "--verify")
         self.assertEqual(result.returncode, 2)
-        self.assertIn("holds no session.toml", result.stderr)
+        self.assertIn("has no session.toml", result.stderr)
 
 
 if __name__ == "__main__":

@@ -57,9 +57,9 @@ class Report(unittest.TestCase):
                 ("is a folder", ("-o", self.tmp), {}),
                 ("cannot be written", ("-o", "/proc/report.html"), {}),
                 ("typo.toml", ("-o", page, "--hiv", self.tmp / "typo.toml"), {}),
-                ("guarded coupling's", ("-o", page, "--set", "mode=2"), {}),
+                ("guarded coupling", ("-o", page, "--set", "mode=2"), {}),
                 ("start_angstrom", ("-o", page, "--set", "hand.start_angstrom=6"), {}),
-                ("a course and a length of its own", ("-o", page, "--set", "seconds=3"), {}),
+                ("sets the path and its duration itself", ("-o", page, "--set", "seconds=3"), {}),
                 ("--seed", ("-o", page, "--seed", "-1"), {}),
                 ("coupling.modes", ("-o", page, "--set", "coupling.modes=2"), {})):
             with self.subTest(expected=expected):

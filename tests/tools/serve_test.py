@@ -157,7 +157,7 @@ class Served:
         self.watchdog = threading.Timer(5 * PATIENCE_S, self.program.kill)
         self.watchdog.start()
         line = self.program.stdout.readline()
-        found = re.fullmatch(rf"serves on {re.escape(address)}:(\d+)\n", line)
+        found = re.fullmatch(rf"serving on {re.escape(address)}:(\d+)\n", line)
         if not found:
             raise AssertionError(line + self.program.communicate()[1])
         self.port = int(found.group(1))
@@ -252,7 +252,7 @@ class Serve(unittest.TestCase):
                 self.assertTrue(client.is_closed())
                 _, err = self.stop_well(run)
                 self.assertIn("serve: client 1 watches\n", err)
-                self.assertIn("serve: client 1 left in order\n", err)
+                self.assertIn("serve: client 1 disconnected normally\n", err)
 
     def test_a_run_that_is_watched_gives_the_bytes_of_one_that_is_not(self):
         arguments = [WATER, "--seconds", 0.5, "--record"]
@@ -317,8 +317,8 @@ class Serve(unittest.TestCase):
             _, err = self.stop_well(run)
         self.assertIn("serve: client 1 pulls\n", err)
         self.assertIn("serve: client 2 may not pull: client 1 pulls\n", err)
-        self.assertEqual(err.count("the most on one atom is 10 nN"), 1)
-        self.assertEqual(err.count("forces on 1 of 2 atoms do nothing"), 1)
+        self.assertEqual(err.count("the limit for one atom is 10 nN"), 1)
+        self.assertEqual(err.count("forces on 1 of 2 atoms have no effect"), 1)
         # Its forces are in no file, so it cannot be played again, and says so.
         summary = json.loads((self.tmp / "pulled" / "summary.json").read_text())
         self.assertGreater(summary["client_pulls"], 600)
@@ -422,8 +422,8 @@ class Serve(unittest.TestCase):
 
     def test_what_cannot_be_listened_at_is_bad_input(self):
         with Served(WATER, *LONG) as run:
-            for arguments, said in ((("--serve", run.port), "cannot be listened at"),
-                                    (("--serve", 0, "--listen", "my.host"), "is no address of numbers"),
+            for arguments, said in ((("--serve", run.port), "cannot listen at"),
+                                    (("--serve", 0, "--listen", "my.host"), "is not a numeric address"),
                                     (("--serve", 70000), "--serve"),
                                     (("--serve-wait",), "--serve"),
                                     (("--serve", 0, "--serve-version", 4), "--serve-version")):
@@ -449,7 +449,7 @@ add = { residue = "TIP3", name = "fourth", at_angstrom = [0.0, 0.0, 40.0] }
             with Client(run.port) as client:
                 self.assertEqual(len(client.frame().places), 12)
             _, err = self.stop_well(run)
-        self.assertIn("client 1 was dropped: there are 12 atoms now, no more 9", err)
+        self.assertIn("client 1 was dropped: the number of atoms is now 12, no longer 9", err)
 
 
 def own_addresses():

@@ -141,7 +141,7 @@ class Study(unittest.TestCase):
         rows = read_rows(folder / "choices.csv")
         modes = json.loads((folder / "summary.json").read_text())["modes"]
         self.assertEqual([mode["mode"] for mode in modes], ["4", "5"])
-        self.assertIn("the ratio hardly matters", table)
+        self.assertIn("hardly depend on the ratio", table)
         for mode in modes:
             own = [row for row in rows if row["mode"] == mode["mode"]]
             self.assertEqual(len(own), 10 * 3)
@@ -151,14 +151,14 @@ class Study(unittest.TestCase):
                 self.assertEqual(level["more"], sum(int(row["is_more"]) for row in there))
         self.assertEqual(modes[0]["end"], "found")
         self.assertNotIn("threshold_log", modes[1])
-        self.assert_bad_input("holds a study already", WATER, "--operators", 1, "--forced-choice",
+        self.assert_bad_input("already exists, so the folder contains a study", WATER, "--operators", 1, "--forced-choice",
                               "stiffer", "-o", folder)
 
     def test_a_study_is_never_written_over(self):
         folder = self.tmp / "study"
         self.study("--operators", 1, "--rounds", 1, "--modes", "4", "-o", folder)
         before = (folder / "trials.csv").read_bytes()
-        self.assert_bad_input("holds a study already", WATER, "--operators", 2, "-o", folder)
+        self.assert_bad_input("already exists, so the folder contains a study", WATER, "--operators", 2, "-o", folder)
         self.assertEqual((folder / "trials.csv").read_bytes(), before)
 
     def test_bad_input_is_one_line(self):
@@ -166,7 +166,7 @@ class Study(unittest.TestCase):
         self.assert_bad_input("every mode once", WATER, "--operators", 1, "--modes", "2,4,2")
         self.assert_bad_input("did you mean 'careful'", WATER, "--operators", 1, "--operator",
                               "carefull")
-        self.assert_bad_input("one place on a line", ROOT / "scenes" / "hiv", "--operators", 1)
+        self.assert_bad_input("confined to a line", ROOT / "scenes" / "hiv", "--operators", 1)
         self.assert_bad_input("no hand", WATER, "--operators", 1, "--hand", "none", "--set",
                               "hand.stroke=hold")
         self.assert_bad_input("--operators", WATER, "--operators", 0)
@@ -174,12 +174,12 @@ class Study(unittest.TestCase):
                               "--forced-choice", "stifer")
         self.assert_bad_input("--rounds", WATER, "--operators", 1, "--rounds", 2,
                               "--forced-choice", "stiffer")
-        self.assert_bad_input("folder in which people's trials are kept", WATER)
+        self.assert_bad_input("folder with the trials of people", WATER)
         (self.tmp / "trials.csv").write_text("something else")
-        self.assert_bad_input("is no table of a study", WATER, "-o", self.tmp)
+        self.assert_bad_input("is not a table of a study", WATER, "-o", self.tmp)
         folder = self.tmp / "operators"
         self.study("--operators", 1, "--rounds", 1, "--modes", "4", "-o", folder)
-        self.assert_bad_input("nobody knows the settings", WATER, "--modes", "4", "-o", folder)
+        self.assert_bad_input("the settings of the trials beside it are unknown", WATER, "--modes", "4", "-o", folder)
         self.assert_bad_input("--repeats", WATER, "--operators", 1, "--repeats", 2)
 
 

@@ -69,7 +69,7 @@ class Journey(unittest.TestCase):
     def test_a_rigid_scene_is_refused(self):
         result = journey(ROOT / "scenes" / "water")
         self.assertEqual(result.returncode, 2)
-        self.assertIn("nothing moves by itself here", result.stderr)
+        self.assertIn("no molecule of this scene moves by itself", result.stderr)
         self.assertEqual(result.stdout, "")
 
     def test_what_is_wrong_is_told_before_anything_is_played_or_printed(self):

@@ -247,7 +247,7 @@ TEST_CASE("a snap is marked at its atom for a second and a half", "[view][signs]
     REQUIRE(places.size() >= 10);
     const glm::vec3 atom = as_float(world.resource<AtomTable>().positions[4]);
     for (const glm::vec3& place : places) CHECK(glm::distance(place, atom) < 1.5F);
-    CHECK(labels.back().text == "snap, 12 kcal/mol set free");
+    CHECK(labels.back().text == "snap, 12 kcal/mol released");
     CHECK(marks_after(1.6).empty());
 }
 

@@ -271,7 +271,7 @@ void bench_way(const std::string& name, const Way& way, const TorsionState& rest
     BenchRow row{fmt::format("{}/{}", name, way.name), {1e3 * seconds}, "ms"};
     add_way_errors(own, row);
     row.reference =
-        fmt::format("{} renewals, {} with more than 1 kcal/mol set free", renewals, snaps);
+        fmt::format("{} renewals, {} of them released more than 1 kcal/mol", renewals, snaps);
     say(fmt::format("{}: {}, {:.2f} s, {}", row.name, describe(own), seconds, row.reference));
     rows.push_back(std::move(row));
     all.add(own);

@@ -34,7 +34,8 @@ System load_named(const std::string& name, const SceneDescription& scene) {
             return molecule.topology.empty();
         })) {
         throw LoadError({scene.file.string()},
-                        "no molecule names a topology file; expected one, as scenes/hiv has");
+                        "no molecule of this scene names a topology file; expected a scene with "
+                        "one, such as scenes/hiv");
     }
     SceneSystem system = load_system(scene);
     return {name, std::move(system.topology), std::move(system.positions)};
@@ -256,7 +257,7 @@ void bench_lists(const System& system, std::vector<BenchRow>& rows) {
                             : update_cluster_list(positions, atoms.left_out, list);
             };
             add_row(fmt::format("{:.0f}%-moved{}", 100 * share, tells_moved ? "/told" : ""), update,
-                    tells_moved ? "no other atom is looked at" : "every atom is looked at");
+                    tells_moved ? "only tiles of moved atoms" : "all tiles");
         }
     }
 }

@@ -96,8 +96,8 @@ std::string bench_best_joints(const std::string& scene_name, const SceneDescript
     constexpr Eigen::Index most = 2000;
     if (model_of(world).coordinates > most) {
         throw LoadError({scene.file.string()},
-                        fmt::format("{} degrees of freedom; expected at most {}, of which second "
-                                    "derivatives are had in minutes",
+                        fmt::format("{} degrees of freedom; expected at most {}, because second "
+                                    "derivatives of more take too long",
                                     model_of(world).coordinates, most));
     }
     const double left = relax(start, RelaxMethod::LimitedMemory, 300, world);

@@ -36,8 +36,9 @@ std::uint32_t find_centre(const SceneDescription& scene, const Connectivity& con
             if (name.segment == held->segment && name.number == words.front()) return i;
         }
     }
-    throw LoadError(scene.place_of("grab.atom"),
-                    "expected a residue in the hand, to cut spheres around");
+    throw LoadError(
+        scene.place_of("grab.atom"),
+        "names no residue; expected a residue in the hand, around which spheres are cut");
 }
 
 // A sphere with its middle residue on the hand's spring.

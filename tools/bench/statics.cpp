@@ -63,8 +63,7 @@ void bench_method(const std::string& scene_name, World world, RelaxMethod method
          "ms",
          {},
          "",
-         fmt::format("not further than rms={:.3g} in {} steps, {} evaluations, {:.2f} "
-                     "kcal/mol",
+         fmt::format("stopped at rms={:.3g} after {} steps, {} evaluations, {:.2f} kcal/mol",
                      report.rms_force, report.steps, report.evaluations, report.energy_after)});
 }
 
@@ -108,8 +107,8 @@ void bench_statics(const std::string& scene_name, const SceneDescription& scene,
     const World start = load_world(scene);
     if (!has_mobile(start)) {
         throw LoadError({scene.file.string()},
-                        "nothing moves by itself here; expected a flexible scene, as "
-                        "scenes/hiv/flexible.toml");
+                        "no molecule of this scene moves by itself; expected a flexible scene such "
+                        "as scenes/hiv/flexible.toml");
     }
     bench_second_derivatives(scene_name, start, rows);
     bench_steppers(scene_name, start, rows);

@@ -60,8 +60,8 @@ BenchStart load_start(const SceneDescription& scene, const Connectivity& connect
     World world = load_world(scene);
     if (!has_mobile(world)) {
         throw LoadError({scene.file.string()},
-                        "nothing moves by itself here; expected a flexible scene, as "
-                        "scenes/hiv/flexible.toml");
+                        "no molecule of this scene moves by itself; expected a flexible scene such "
+                        "as scenes/hiv/flexible.toml");
     }
     return {scene, connectivity, std::move(world)};
 }

@@ -83,8 +83,8 @@ RestStart restore_rest(const std::filesystem::path& path, const RestPose& pose, 
     if (!(std::abs(energy_off) < same_energy && force_off < same_force_pN)) {
         throw LoadError(
             {path.string(), pose.line},
-            fmt::format("energy and force here are {:.3g} kcal/mol and {:.3g} pN from those of the "
-                        "pose; expected poses of this scene, found with --save-poses",
+            fmt::format("energy and force differ by {:.3g} kcal/mol and {:.3g} pN from those of "
+                        "the saved pose; expected poses of this scene, made with --save-poses",
                         energy_off, force_off));
     }
     return {std::move(state), truth.linear(), pose.moves};
@@ -114,7 +114,7 @@ Vec3 Truth::evaluate(TorsionState& state) {
 
 Vec3 Truth::renew(const SecondOrderSettings& settings, TorsionState& state) {
     const Renewal renewal = make_renewal(model_, settings, {state, 0, 0, {}, {}, {}, {}}, memory_);
-    if (!renewal.linear) throw LoadError({}, "a pose is not finite");
+    if (!renewal.linear) throw LoadError({}, "a pose has coordinates that are not finite");
     rms_ = renewal.relaxed.rms_force;
     state = renewal.linear->at;
     return force_of(hand(), *renewal.linear);
@@ -197,7 +197,7 @@ std::vector<AnswerPose> read_poses(const std::filesystem::path& path, Truths& tr
     const RestPoses file = read_rest_poses(path, posed_model(truths, rest));
     const std::size_t count = most ? static_cast<std::size_t>(*most) : file.poses.size();
     if (count > file.poses.size()) {
-        throw LoadError({path.string()}, fmt::format("holds {} poses; expected --poses {} at most",
+        throw LoadError({path.string()}, fmt::format("has {} poses; expected --poses {} or less",
                                                      file.poses.size(), file.poses.size()));
     }
     std::vector<AnswerPose> poses;

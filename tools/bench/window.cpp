@@ -52,7 +52,7 @@ fs::path prepare(WindowShell& shell, const fs::path& structure, const fs::path& 
                    [&](const StageFunction& on_stage) { made = make_scene(request, on_stage); });
     if (!is_done) throw LoadError({structure.string()}, "was cancelled");
     if (made.scene.files.empty())
-        throw LoadError({structure.string()}, "no scene could be made of it");
+        throw LoadError({structure.string()}, "no scene could be made from this structure");
     write_prepared(made.system, folder, made.title, made.scene.files);
     return folder / "scene.toml";
 }

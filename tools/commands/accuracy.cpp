@@ -31,7 +31,7 @@ std::array<double, 2> range_called(const std::string& text) {
     const auto hi = find_real(colon == std::string::npos ? "" : text.substr(colon + 1));
     if (!lo || !hi) {
         throw LoadError({"--ranges"},
-                        fmt::format("'{}' is no range; expected WEAKEST:STRONGEST in pN", text));
+                        fmt::format("'{}' is not a range; expected WEAKEST:STRONGEST in pN", text));
     }
     return {*lo, *hi};
 }
@@ -121,7 +121,7 @@ int run_accuracy(const AccuracyCommand& command) {
 void add_accuracy(CLI::App& program, ProgramCommand& chosen) {
     CLI::App& accuracy = *program.add_subcommand(
         "accuracy",
-        "Compares the force sent to the hand with a reference, by force range and tolerance");
+        "Compare the force sent to the hand with a reference, by force range and tolerance");
     AccuracyCommand& command = own_options<AccuracyCommand>(accuracy, chosen, run_accuracy);
     AccuracyOptions& options = command.accuracy;
     describe(accuracy, "Experiments",

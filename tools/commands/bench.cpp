@@ -12,9 +12,9 @@ namespace {
 void add_adaptive_options(CLI::App& bench, BenchOptions& options) {
     CLI::Option* const adaptive =
         bench
-            .add_flag("--adaptive", options.adaptive,
-                      "time steps of flexible scenes with few active joints, and say how wrong "
-                      "they are, instead")
+            .add_flag(
+                "--adaptive", options.adaptive,
+                "instead: time steps of flexible scenes with few active joints, and their errors")
             ->excludes("--render")
             ->excludes("--kernel")
             ->excludes("--tree")
@@ -22,65 +22,67 @@ void add_adaptive_options(CLI::App& bench, BenchOptions& options) {
             ->needs("scenes");
     bench
         .add_flag("--spheres", options.spheres,
-                  "only time them, in spheres around the residue in hand")
+                  "only time steps, in spheres around the residue in hand")
         ->needs(adaptive);
     bench
-        .add_flag(
-            "--best", options.best,
-            "only say how wrong forces are with the best active joints, chosen without time limit")
+        .add_flag("--best", options.best,
+                  "only print the errors of forces with the best active joints, chosen without a "
+                  "time limit")
         ->excludes("--spheres")
         ->needs(adaptive);
-    CLI::Option* const answer =
-        bench
-            .add_flag("--answer", options.answer,
-                      "error of the force at the hand against the time spent on it, of each way to "
-                      "move flexible scenes, instead")
-            ->excludes("--render")
-            ->excludes("--kernel")
-            ->excludes("--tree")
-            ->excludes("--statics")
-            ->excludes(adaptive)
-            ->needs("scenes");
+    CLI::Option* const answer = bench
+                                    .add_flag("--answer", options.answer,
+                                              "instead: error of the force at the hand against "
+                                              "computing time, for each method of flexible scenes")
+                                    ->excludes("--render")
+                                    ->excludes("--kernel")
+                                    ->excludes("--tree")
+                                    ->excludes("--statics")
+                                    ->excludes(adaptive)
+                                    ->needs("scenes");
     bench
-        .add_option(
-            "--poses", options.poses,
-            "along the stroke: 3 unless given, 10 with --answer (all of --poses-file), whose 0 is "
-            "only the ways")
+        .add_option("--poses", options.poses,
+                    "number of poses along the stroke: default 3, with --answer 10 (all of "
+                    "--poses-file); with --answer 0 only the paths are measured")
         ->check(in_range(0, 1000));
-    bench.add_flag("--no-ways", options.answer_settings.no_ways, "only the poses")->needs(answer);
+    bench
+        .add_flag("--no-ways", options.answer_settings.no_ways,
+                  "measure at the poses only, not along paths")
+        ->needs(answer);
     AnswerPoseSettings& poses = options.answer_settings.poses;
     CLI::Option* const poses_file =
         bench
             .add_option("--poses-file", poses.file,
-                        "take the poses of --answer from this file, all or the first --poses")
+                        "read the poses of --answer from this file, all or the first --poses")
             ->needs(answer);
     bench
         .add_option("--save-poses", poses.save_to,
-                    "write the poses that --answer finds, for --poses-file")
+                    "write the poses that --answer finds to this file, for --poses-file")
         ->excludes(poses_file)
         ->needs(answer);
-    bench.add_option("--plot", options.plot, "draw what --answer measures into this SVG file")
+    bench.add_option("--plot", options.plot, "plot the results of --answer into this SVG file")
         ->needs(answer);
     add_overwrite_flag(bench, options.overwrites);
     bench
         .add_option("--stroke-steps", options.adaptive_settings.stroke_moves,
-                    "of the hand by 0.005 Å, half of them back; 200 unless given")
+                    "number of hand moves by 0.005 Å, half of them back (default 200)")
         ->check(in_range(20, 1'000'000))
         ->needs(adaptive);
     bench
         .add_option("--only", options.adaptive_settings.only,
-                    "all joints and what has this in its name, as active=40/cutoff=12/near-hand")
+                    "measure only all joints and variants with this text in their name, such as "
+                    "active=40/cutoff=12/near-hand")
         ->excludes("--spheres")
         ->excludes("--best")
         ->needs(adaptive);
     bench.add_flag("--table", options.table,
-                   "print a table in Markdown, of --adaptive or --answer");
+                   "print the results of --adaptive or --answer as a Markdown table");
 }
 
 }  // namespace
 
 void add_bench(CLI::App& program, ProgramCommand& chosen) {
-    CLI::App& bench = *program.add_subcommand("bench", "Speed against error on this machine");
+    CLI::App& bench = *program.add_subcommand("bench", "Measure speed and error on this machine");
     const auto owned = std::make_shared<BenchOptions>();
     BenchOptions& options = *owned;
     bench.final_callback([owned, &chosen] {
@@ -110,44 +112,44 @@ void add_bench(CLI::App& program, ProgramCommand& chosen) {
               "scenes/hiv/flexible-poses.txt --plot answer.svg"});
     bench.add_option("scenes", options.scenes, "scene folders or files");
     bench.add_option("--load", options.structures,
-                     "structure files (.pdb, .cif, .crd, .psf): time the reading of each");
+                     "time reading each of these structure files (.pdb, .cif, .crd, .psf)");
     bench.add_option("--toppar", options.toppar,
-                     "CHARMM topology and parameter files: time the reading of all together");
-    bench.add_flag("--render", options.render, "time pictures instead of steps");
+                     "time reading these CHARMM topology and parameter files together");
+    bench.add_flag("--render", options.render, "instead: time drawing");
     bench
         .add_option("--atoms", options.atoms,
-                    "with --render: repeat each scene until it has so many, 500000 say")
+                    "with --render: repeat each scene until it has this many atoms, such as 500000")
         ->check(in_range(1, 2'000'000))
         ->needs("--render");
     bench
         .add_flag("--kernel", options.kernel,
-                  "time the kernels of pairs alone, of all atoms of a scene's topology file; of a "
-                  "made-up gas without a scene")
+                  "time only the pair kernels, for all atoms of a scene's topology file; without a "
+                  "scene, for an artificial gas")
         ->excludes("--render");
     bench
         .add_flag("--tree", options.tree,
-                  "time joint accelerations of the scenes' molecules and of polymers, instead")
+                  "instead: time joint accelerations of the scenes' molecules and of polymers")
         ->excludes("--render")
         ->excludes("--kernel");
     bench
-        .add_flag(
-            "--statics", options.statics,
-            "time ways to rest of flexible scenes, and steps with joints in a region, instead")
+        .add_flag("--statics", options.statics,
+                  "instead: time relaxation methods of flexible scenes, and steps with joints in a "
+                  "region")
         ->excludes("--render")
         ->excludes("--kernel")
         ->excludes("--tree")
         ->needs("scenes");
     bench
-        .add_flag(
-            "--servo", options.servo,
-            "time ticks of guarded coupling, of made-up molecules and of the scenes', instead")
+        .add_flag("--servo", options.servo,
+                  "instead: time servo ticks of guarded coupling, for artificial molecules and "
+                  "those of the scenes")
         ->excludes("--render")
         ->excludes("--kernel")
         ->excludes("--tree");
     bench
         .add_flag("--window", options.window,
-                  "time from opening a window to the first force, of scenes, and of structures, "
-                  "which are prepared there; needs a display, instead")
+                  "instead: time from opening a window to the first force, for scenes and for "
+                  "structures, which are prepared there; needs a display")
         ->excludes("--render")
         ->excludes("--kernel")
         ->excludes("--tree")
@@ -155,7 +157,7 @@ void add_bench(CLI::App& program, ProgramCommand& chosen) {
         ->needs("scenes");
     bench
         .add_flag("--engine", options.engine,
-                  "time what a frame of a remote engine costs its client")
+                  "time the cost of a frame of a remote engine for its client")
         ->excludes("scenes");
     add_adaptive_options(bench, options);
     bench.add_flag("--json", options.json, "print JSON");

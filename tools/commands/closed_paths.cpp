@@ -29,7 +29,8 @@ void warn_of_cost(const ClosedPathOptions& options) {
     const double all_s = one.seconds * static_cast<double>(options.count);
     if (all_s < most_s) return;
     fmt::print(stderr,
-               "warning: {:.0f} pairs of atoms: one path takes about {:.2g} s, all {:.2g} h\n",
+               "warning: the scene has {:.0f} pairs of atoms: one path takes about {:.2g} s, all "
+               "take {:.2g} h\n",
                one.pairs, one.seconds, all_s / 3600);
 }
 
@@ -108,7 +109,7 @@ void print_table(const std::vector<ClosedPathResult>& all, bool turned) {
          [](const ClosedPathResult& r) { return r.ripple_N; }},
         {"stiffest felt, of the cap", 1, fmt::format("{}", most_felt_share), any,
          [](const ClosedPathResult& r) { return r.felt_share; }},
-        {"largest force felt, N", 1, "", any,
+        {"largest force on the hand, N", 1, "", any,
          [](const ClosedPathResult& r) { return r.largest_N; }},
     });
     fmt::print(
@@ -134,11 +135,11 @@ int run_closed_paths(const ClosedPathCommand& command) {
             if (number % 20 == 0) count.show(fmt::format("{} of {}", number, last));
             if (meets_limits(r, options.turn) || command.json) return;
             fmt::print(
-                "path {}: {:+.5f} J of work, the law's {:+.5f}; drift {:.3f} Å, out to {:.2f} Å; "
-                "ripple {:.3f} N; felt {:.2f} of the cap{}\n  palpa run --headless {} --set "
-                "\"{}\"\n",
+                "path {}: net work {:+.5f} J (continuous law {:+.5f} J); drift {:.3f} Å, out to "
+                "{:.2f} Å; ripple {:.3f} N; stiffness {:.2f} of the cap{}\n  palpa run --headless "
+                "{} --set \"{}\"\n",
                 number, r.work_J, r.law_J, r.drift_angstrom, r.farthest_angstrom, r.ripple_N,
-                r.felt_share, r.was_held_back ? ", held back by the safety chain" : "",
+                r.felt_share, r.was_held_back ? ", limited by the safety chain" : "",
                 options.scene.string(), fmt::join(r.settings, "\" --set \""));
         });
     count.wipe();
@@ -162,7 +163,7 @@ int run_closed_paths(const ClosedPathCommand& command) {
 void add_closed_paths(CLI::App& program, ProgramCommand& chosen) {
     CLI::App& closed_paths = *program.add_subcommand(
         "closed-paths",
-        "Random closed paths of the hand in space: does the coupling generate energy?");
+        "Test passivity: does the coupling generate energy on random closed paths in space?");
     ClosedPathCommand& command =
         own_options<ClosedPathCommand>(closed_paths, chosen, run_closed_paths);
     ClosedPathOptions& options = command.paths;

@@ -14,14 +14,14 @@ void add_set_option(CLI::App& command, std::vector<std::string>& settings) {
     command
         .add_option_function<std::string>(
             "--set", [&settings](const std::string& value) { settings.push_back(value); },
-            "any key of the scene file, in full or by its last part; 'palpa run --keys' lists "
-            "them")
+            "set a key of the scene file, by its full name or its last part ('palpa run --keys' "
+            "lists all)")
         ->type_name("KEY=VALUE")
         ->trigger_on_parse()
         ->take_last();
     command.add_flag_callback(
         std::string(allow_outside), [&settings] { settings.emplace_back(allow_outside); },
-        "let the scene name files outside of its folder");
+        "allow the scene to name files outside of its folder");
 }
 
 void add_negation(CLI::App& command, const std::string& flag, bool& value,
@@ -69,8 +69,8 @@ void add_size_option(CLI::App& command, const std::string& option, std::uint32_t
                 const auto high = find_integer(by == std::string::npos ? "" : text.substr(by + 1));
                 if (!wide || !high || *wide < 1 || *high < 1 || *wide > 1'000'000 ||
                     *high > 1'000'000) {
-                    throw CLI::ValidationError(option,
-                                               "'" + text + "' is no size; expected WIDTHxHEIGHT");
+                    throw CLI::ValidationError(
+                        option, "'" + text + "' is not a size; expected WIDTHxHEIGHT");
                 }
                 if (*wide * *high > most_pixels) {
                     throw CLI::ValidationError(
@@ -100,7 +100,7 @@ void refuse_remote_engine(const SceneDescription& scene) {
     if (!scene.engine) return;
     throw LoadError(scene.place_of("engine"),
                     "a remote engine moves all atoms here, and this command needs Palpa's own "
-                    "mechanics; expected a scene without [engine], or palpa run");
+                    "needs Palpa's own mechanics; expected a scene without [engine], or palpa run");
 }
 
 }  // namespace palpa

@@ -39,14 +39,11 @@ constexpr std::array renamed_commands = std::to_array<RenamedCommand>(
     {{"feel", "accuracy"}, {"loops", "closed-paths"}, {"journey", "unbind"}});
 
 constexpr const char* exit_codes =
-    "Exit codes\n"
-    "  0      done\n"
-    "  1      done, and what was checked does not hold (report, replay --verify, devices, ...),\n"
-    "         no film came out (render --film), or a command was refused (run --commands)\n"
-    "  2      wrong arguments or input, or something missing; nothing was changed\n"
-    "  3      an error in Palpa itself\n"
-    "  4      no remote engine answered, or it was lost for good (connect, run)\n"
-    "  128+N  ended by signal N; a recording that had begun is complete up to there\n";
+    "Exit codes\n  0      done\n  1      a check failed (report, replay --verify, devices, ...), "
+    "no film could be made\n         (render --film), or a command was refused (run --commands)\n  "
+    "2      wrong arguments or input, or something is missing; nothing was changed\n  3      an "
+    "internal error of Palpa\n  4      no remote engine answered, or its connection was lost "
+    "(connect, run)\n  128+N  ended by signal N; a recording is complete up to that moment\n";
 
 // Words of `text` in lines from `column` on; the first line continues one of `used` letters.
 std::string wrap(std::string_view text, std::size_t used, std::size_t column) {
@@ -223,7 +220,7 @@ std::string explain_conversion(const std::string& what) {
     const std::size_t colon = what.find(": "), equals = what.find(" = ");
     if (colon == std::string::npos || equals == std::string::npos || equals < colon) return what;
     const std::string value = what.substr(equals + 3);
-    return fmt::format("{}: '{}' is no {}number", what.substr(colon + 2, equals - colon - 2),
+    return fmt::format("{}: '{}' is not a {}number", what.substr(colon + 2, equals - colon - 2),
                        printable(value), find_real(value) ? "whole " : "");
 }
 
@@ -232,9 +229,9 @@ std::string explain_extras(const CLI::App& program, const CLI::App& command) {
     const std::string extra =
         extras.empty() ? std::string() : extras.front().substr(0, extras.front().find('='));
     if (!extra.starts_with("-")) {
-        return fmt::format("'{}' is one argument too many", printable(extra));
+        return fmt::format("unexpected argument '{}'", printable(extra));
     }
-    return fmt::format("no option '{}'{}", printable(extra),
+    return fmt::format("unknown option '{}'{}", printable(extra),
                        hint_of(extra, names_of_options(command)));
 }
 
@@ -304,32 +301,33 @@ std::optional<std::string> explain_command(const CLI::App& program, const std::s
         return std::nullopt;
     }
     for (const auto& [before, now] : renamed_commands) {
-        if (command == before) return fmt::format("palpa {} is now palpa {}", before, now);
+        if (command == before)
+            return fmt::format("'palpa {}' has a new name: 'palpa {}'", before, now);
     }
     const std::string near = hint_of(command, names);
-    return fmt::format("palpa: no command '{}'{}; see palpa --help", printable(command),
+    return fmt::format("palpa: unknown command '{}'{}; see palpa --help", printable(command),
                        near.empty() ? scene_hint(command) : near);
 }
 
 std::string explain(const CLI::ParseError& error, const CLI::App& program,
                     const std::string& command) {
     if (command.starts_with("-")) {
-        return fmt::format("palpa: no option '{}' without a command{}; see palpa --help",
+        return fmt::format("palpa: unknown option '{}' without a command{}; see palpa --help",
                            printable(command), hint_of(command, names_of_options(program)));
     }
     std::string what = error.what();
     if (const std::size_t colon = what.find(": ");
         what.ends_with(" missing") && dynamic_cast<const CLI::ArgumentMismatch*>(&error)) {
-        what = fmt::format("no value for {}", what.substr(0, colon));
+        what = fmt::format("the option {} needs a value", what.substr(0, colon));
     }
     if (dynamic_cast<const CLI::ConversionError*>(&error)) what = explain_conversion(what);
     if (dynamic_cast<const CLI::ExtrasError*>(&error)) {
         what = explain_extras(program, *program.get_subcommand(command));
     }
-    if (what == "structure is required") {
-        what += "; it stands before options that take several values (--without, --as)";
+    if (what == "a structure file is required") {
+        what += "; write it before options with several values (--without, --as)";
     }
-    if (what == "scene is required") what += "; 'palpa' alone lists those that there are";
+    if (what == "a scene is required") what += "; 'palpa' alone lists the scenes";
     return fmt::format("palpa {}: {}; see palpa help {}", command, what, command);
 }
 

@@ -67,8 +67,9 @@ void print_sum(const std::vector<LigandComparison>& rows) {
         return n == 0 ? 0 : sum / static_cast<double>(n);
     };
     fmt::print(
-        "types right: {} of {} ({:.1f} %), of heavy atoms {} of {} ({:.1f} %); charges: rms error "
-        "{:.3f} e; a water at {} places: rms error {:.2f} kcal/mol of {:.2f} in the mean\n",
+        "correct types: {} of {} ({:.1f} %), for heavy atoms {} of {} ({:.1f} %); charges: rms "
+        "error {:.3f} e; energy with a water at {} places: rms error {:.2f} kcal/mol, mean size "
+        "{:.2f} kcal/mol\n",
         right, atoms, 100 * mean(static_cast<double>(right), atoms), right_heavy, heavy,
         100 * mean(static_cast<double>(right_heavy), heavy), std::sqrt(mean(charges, atoms)), poses,
         std::sqrt(mean(energies, poses)), mean(own, poses));
@@ -99,9 +100,9 @@ int run_compare_ligands(const CompareLigandsCommand& command) {
 }  // namespace
 
 void add_compare_ligands(CLI::App& program, ProgramCommand& chosen) {
-    CLI::App& compare = *program.add_subcommand(
-        "compare-ligands",
-        "Compares approximate ligands with the force field's own residues, which are withheld");
+    CLI::App& compare = *program.add_subcommand("compare-ligands",
+                                                "Compare approximate ligands with residues of the "
+                                                "force field, which are hidden for the test");
     CompareLigandsCommand& command =
         own_options<CompareLigandsCommand>(compare, chosen, run_compare_ligands);
     describe(compare, "Experiments",
@@ -109,8 +110,10 @@ void add_compare_ligands(CLI::App& program, ProgramCommand& chosen) {
               "toppar_water_ions.str"});
     add_toppar_option(compare, command.toppar);
     compare.add_option("--residues", command.residues,
-                       "of the force field; unset: --count of them");
-    compare.add_option("--count", command.count, "model compounds, evenly over their names")
+                       "residues of the force field to test (default: --count of them)");
+    compare
+        .add_option("--count", command.count,
+                    "number of model compounds, evenly spread over their names")
         ->check(in_range(1, 1000))
         ->capture_default_str();
     compare.add_flag("--json", command.json, "print the results as JSON");

@@ -63,8 +63,9 @@ void check_topology_name(const fs::path& path) {
     const bool is_packed = upper_case(path.extension().string()) == ".GZ";
     const std::string ending = (is_packed ? path.stem() : path).extension().string();
     if (std::ranges::find(endings, upper_case(ending)) != endings.end()) return;
-    throw LoadError({path.string()},
-                    fmt::format("is no structure or topology by its ending; {}", expected));
+    throw LoadError(
+        {path.string()},
+        fmt::format("does not have the ending of a structure or topology file; {}", expected));
 }
 
 std::vector<AtomName> read_names(const fs::path& path) {
@@ -123,8 +124,8 @@ Hold hold_atom(const std::vector<Part>& parts, std::size_t atom) {
     for (const Part& part : parts) names.push_back(part.segment);
     throw LoadError(
         {"--hold"},
-        fmt::format("\"{}\" {}; expected an atom's number in the file (\"17\"), its name "
-                    "and residue number (\"CA 25\", \"SEGMENT CA 25\"), or a segment: {}",
+        fmt::format("\"{}\" {}; expected the number of an atom in the file (\"17\"), its name and "
+                    "residue number (\"CA 25\", \"SEGMENT CA 25\"), or a segment: {}",
                     hold, why, fmt::join(names, ", ")));
 }
 
@@ -167,7 +168,7 @@ Hold find_hold(const std::string& hold, const std::vector<AtomName>& names,
     if (part != parts.end()) return {part->segment, ""};
     if (const auto number = find_integer(hold)) {
         if (*number < 1 || static_cast<std::size_t>(*number) > names.size())
-            refuse_hold(hold, fmt::format("is none of {} atoms", names.size()), parts);
+            refuse_hold(hold, fmt::format("is not one of {} atoms", names.size()), parts);
         return hold_atom(parts, static_cast<std::size_t>(*number - 1));
     }
     return hold_named(hold, names, parts);
@@ -217,8 +218,8 @@ SceneDescription build_scene(const ConnectOptions& options) {
 int connect_command(const ConnectOptions& options) {
     if (!is_engine_address(options.address)) {
         throw LoadError({options.address},
-                        "is no address of an engine; expected HOST:PORT with the host in numbers "
-                        "and a port from 1 to 65535, as 127.0.0.1:8888");
+                        "is not the address of an engine; expected HOST:PORT with a numeric host "
+                        "and a port from 1 to 65535, such as 127.0.0.1:8888");
     }
     if (options.run.record) check_record_folder(*options.run.record, options.run.overwrites);
     SceneDescription description = build_scene(options);
@@ -244,68 +245,69 @@ int connect_command(const ConnectOptions& options) {
 
 void add_connect(CLI::App& program, ProgramCommand& chosen) {
     CLI::App& connect = *program.add_subcommand(
-        "connect", "A running engine (GROMACS, LAMMPS, NAMD) under the hand, over IMD");
+        "connect", "Feel a running engine (GROMACS, LAMMPS, NAMD) over IMD");
     ConnectOptions& options = own_options<ConnectOptions>(connect, chosen, connect_command);
     describe(connect, "Feel",
              {"palpa connect 127.0.0.1:8888 --topology system.psf",
               "palpa connect 127.0.0.1:8888 --topology run.gro --program gromacs --hold \"CA 25\"",
               "palpa connect 127.0.0.1:8888 --topology system.psf --headless --seconds 10 --lead "
               "5,0,0 --record recordings/pull"},
-             "Exit code 4: no engine answered, or it was lost for good.");
-    connect.add_option("address", options.address, "HOST:PORT of the engine, the host in numbers")
+             "Exit code 4: no engine answered, or its connection was lost.");
+    connect.add_option("address", options.address, "HOST:PORT of the engine, with a numeric host")
         ->required();
     connect
         .add_option("--topology", options.topology,
                     "the engine's atoms in its order: .psf, .gro, .pdb, .cif or .crd")
         ->required();
     connect.add_option("--coordinates", options.coordinates,
-                       "where they are before its first frame, for a .psf");
-    connect.add_option("--hold", options.hold,
-                       "what the hand holds: an atom's number in that file, its name and residue "
-                       "number (\"CA 25\"), or a segment; unset: the smallest segment that is "
-                       "neither water nor ions");
+                       "coordinates before its first frame, needed with a .psf");
+    connect.add_option(
+        "--hold", options.hold,
+        "what the hand holds: the number of an atom in that file, its name and residue number "
+        "(\"CA 25\"), or a segment (default: the smallest segment that is neither water nor ions)");
     connect
         .add_option("--spring", options.spring,
-                    "stiffness of the spring that holds it, kcal/mol/Å², 5 unless given")
+                    "stiffness of the spring between hand and atoms, kcal/mol/Å² (default 5)")
         ->check(in_range(1e-3, 1e4));
     connect
         .add_option("--program", options.program,
-                    "gromacs, lammps or namd: decides the unit of energies")
+                    "gromacs, lammps or namd; decides the unit of energies")
         ->check(CLI::IsMember({"unknown", "gromacs", "lammps", "namd"}));
-    connect.add_option("--protocol", options.protocol, "version of IMD that it must speak: 2 or 3")
+    connect.add_option("--protocol", options.protocol, "required IMD version: 2 or 3")
         ->check(CLI::IsMember({"any", "2", "3"}));
     connect
         .add_option("--rate", options.engine.rate,
-                    "steps of the engine between two frames; as the engine has it unless given")
+                    "steps of the engine between two frames (default: the engine's setting)")
         ->check(in_range(1, 1e6));
     connect
         .add_option("--wait", options.engine.wait_s,
-                    "seconds to wait for its first frame, 10 unless given")
+                    "seconds to wait for its first frame (default 10)")
         ->check(in_range(0.0, 1e5));
-    connect.add_option("--write-scene", options.scene, "also write the scene that this makes");
+    connect.add_option("--write-scene", options.scene,
+                       "also write this connection as a scene file");
     connect.option_defaults()->group("Without a window");
     connect.add_flag("--headless", options.run.headless,
-                     "as fast as frames come; the emulated hand holds still, or leads");
+                     "run without a window, as fast as frames arrive; the emulated hand holds "
+                     "still, or leads (--lead)");
     connect
         .add_option("--seconds", options.seconds,
-                    "length of the run in periods of --period-ms, neither the engine's time nor "
-                    "the wall clock's; 60 unless given")
+                    "length of the run in seconds, counted in periods of --period-ms, not in "
+                    "engine time or wall time (default 60)")
         ->check(in_range(1e-3, 1e5));
     connect
         .add_option("--lead", options.lead,
-                    "X,Y,Z, Å: the emulated hand leads what it holds there by the end")
+                    "X,Y,Z in Å: displacement to which the emulated hand leads what it holds")
         ->delimiter(',')
         ->check(in_range(-1e5, 1e5))
         ->type_name("");
     connect.add_flag("--json", options.run.json, "print the summary as JSON");
     connect.option_defaults()->group("With and without a window");
-    connect
-        .add_option("--period-ms", options.period_ms, "time between two steps, ms, 10 unless given")
+    connect.add_option("--period-ms", options.period_ms, "time between two steps, ms (default 10)")
         ->check(in_range(1.0, 1e4));
     connect.add_option("--record", options.run.record, "record into this folder")
         ->type_name("FOLDER");
     add_overwrite_flag(connect, options.run.overwrites);
-    connect.add_option("--device", options.run.device, "mouse unless given");
+    connect.add_option("--device", options.run.device, "haptic device (default mouse)");
     add_set_option(connect, options.run.settings);
 }
 

@@ -68,15 +68,15 @@ DeviceCheck check_readings(Device& device) {
     }
     const std::string status(device.status());
     return {"readings", CheckOutcome::Failed,
-            fmt::format("{} valid ones in {} s", valid, longest_ticks / 1000),
+            fmt::format("only {} valid readings in {} s", valid, longest_ticks / 1000),
             status.empty() ? "plug the device in again, and switch it off and on" : status};
 }
 
 constexpr const char* force_warning =
-    "Force test: the handle is pushed to the right with 0.6 N for a twentieth of a second, up to "
-    "five\ntimes if it does not move; it moves by a few centimetres at most. Hold it loosely in "
-    "the "
-    "middle\nof its workspace, and keep clear of it. Enter begins; anything else leaves it out: ";
+    "Force test: the device pushes the handle to the right with 0.6 N for 0.05 s, up to five times "
+    "if\nit does not move. The handle moves by a few centimetres at most. Hold it loosely in the "
+    "middle\nof its workspace and keep clear of it. Press Enter to begin, anything else to skip "
+    "the test: ";
 
 // Asks on standard error, so that JSON stays alone on the other.
 bool is_agreed() {
@@ -89,7 +89,7 @@ bool is_agreed() {
 
 // Through the safety chain, as everything that a hand feels.
 DeviceCheck check_force(Device& device) {
-    if (!is_agreed()) return {"force", CheckOutcome::Unknown, "not tried", ""};
+    if (!is_agreed()) return {"force", CheckOutcome::Unknown, "skipped", ""};
     note_interrupts();
     constexpr double push_newton = 0.6;
     // The chain lets a force through when the handle has been quiet; a system that was too busy
@@ -244,22 +244,23 @@ void print_device_list() {
                    opened.device ? "found: " + opened.device->spec().name
                                  : fmt::format("not found: {}: {}", last.layer, last.found));
     }
-    fmt::print("'palpa devices' says more\n");
+    fmt::print("'palpa devices' shows all checks\n");
 }
 
 void add_devices(CLI::App& program, ProgramCommand& chosen) {
     CLI::App& devices = *program.add_subcommand(
-        "devices", "What is plugged in, what works, what is wrong and how to mend it");
+        "devices", "Check devices: what is connected, what works, and how to fix what does not");
     DevicesOptions& options = own_options<DevicesOptions>(devices, chosen, devices_command);
     describe(devices, "Feel", {"palpa devices", "palpa devices omni --force-test"},
-             "Exit code 0 if there is a device that can be used, emulated ones beside, else 1.");
+             "Exit code 0 if a device other than the emulated ones can be used, else 1.");
     devices.add_option("device", options.name,
-                       "as --device of palpa run takes it; all unless given");
-    devices.add_flag("--force-test", options.tests_force, "push the handle a little, after asking");
+                       "device to check, a name as for --device of palpa run (default: all)");
+    devices.add_flag("--force-test", options.tests_force,
+                     "push the handle with a small force, after a question");
     CLI::Option* const json = devices.add_flag("--json", options.json, "print the result as JSON");
     devices
         .add_flag("--latency", options.times_latency,
-                  "time emulated devices instead, from their report to the force")
+                  "instead: measure the latency of emulated devices, from report to force")
         ->excludes(json);
 }
 

@@ -58,8 +58,7 @@ SolvationEnd find_end(const EnergyOptions& options) {
         options.structural_water) {
         throw LoadError({"--solvent " + options.solvent},
                         "--solvent-end, --solvent-exp, --solvent-table, --per-atom and "
-                        "--structural-water are of a solvent; expected --solvent eef1-sb with "
-                        "them");
+                        "--structural-water need a solvent; expected --solvent eef1-sb with them");
     }
     return SolvationEnd::None;
 }
@@ -70,7 +69,7 @@ void choose_cutoff(const EnergyOptions& options, NonbondedSettings& settings) {
     if (choice_called("--method", options.method, method_names) == 1) {
         if (settings.solvation == SolvationEnd::Smooth) {
             throw LoadError({"--method " + options.method},
-                            "--solvent-end smooth has ends of its own at 9 Å; expected "
+                            "--solvent-end smooth has its own cutoff at 9 Å; expected "
                             "--solvent-end sharp with a cutoff");
         }
         settings.cutoff = options.cutoff.value_or(settings.cutoff);
@@ -83,7 +82,7 @@ void choose_cutoff(const EnergyOptions& options, NonbondedSettings& settings) {
                               van_der_waals_names));
     } else if (is_chosen) {
         throw LoadError({"--method " + options.method},
-                        "--cutoff, --switch-from, --electrostatics and --van-der-waals are of a "
+                        "--cutoff, --switch-from, --electrostatics and --van-der-waals need a "
                         "cutoff; expected --method cutoff with them");
     }
 }
@@ -169,7 +168,7 @@ void warn_of_charges(const Connectivity& connectivity, bool is_solvated) {
     if (is_solvated) {
         for (const std::string& sentence :
              find_charged(connectivity.names, types, connectivity.charge))
-            fmt::print(stderr, "warning: {}, which EEF1-SB's implicit water is not made for\n",
+            fmt::print(stderr, "warning: {}, but EEF1-SB's implicit water needs neutral charges\n",
                        sentence);
         return;
     }
@@ -177,8 +176,8 @@ void warn_of_charges(const Connectivity& connectivity, bool is_solvated) {
     if (const auto neutral = std::ranges::find_if(groups, &IonicGroup::has_neutral_charges);
         neutral != groups.end()) {
         fmt::print(stderr,
-                   "warning: {} has EEF1-SB's neutral charges, and this is in vacuum; expected "
-                   "--solvent eef1-sb with them\n",
+                   "warning: {} has EEF1-SB's neutral charges, but the energy is computed in "
+                   "vacuum; expected --solvent eef1-sb\n",
                    to_string(connectivity.names[neutral->atoms.front()]));
     }
 }
@@ -216,7 +215,8 @@ Topology build_solvated_topology(const EnergyOptions& options, const Connectivit
     if (options.structural_water) {
         is_structural = find_water_atoms(connectivity.names, connectivity.mass);
         if (std::ranges::find(is_structural, 1) == is_structural.end()) {
-            throw LoadError({"--structural-water"}, "there is no water in this system");
+            throw LoadError({"--structural-water"},
+                            "this system has no water; expected a system with waters");
         }
     }
     topology.solvation = assign_solvation(connectivity, force_field, table, is_structural);
@@ -235,7 +235,7 @@ int energy_command(const EnergyOptions& options) {
     const bool is_psf = options.system.extension() == ".psf";
     if (is_psf && !options.coordinates) {
         throw LoadError({options.system.string()},
-                        "a PSF holds no coordinates; expected --coordinates FILE with it");
+                        "a PSF has no coordinates; expected --coordinates FILE with it");
     }
     const Existing forces = check_written(options.forces, force_columns, options.overwrites);
     const Existing atoms = check_written(options.per_atom, atom_columns, options.overwrites);
@@ -286,61 +286,71 @@ int energy_command(const EnergyOptions& options) {
 }
 
 void add_energy(CLI::App& program, ProgramCommand& chosen) {
-    CLI::App& energy = *program.add_subcommand("energy", "Energies term by term, and forces");
+    CLI::App& energy = *program.add_subcommand("energy", "Print energies term by term, and forces");
     EnergyOptions& options = own_options<EnergyOptions>(energy, chosen, energy_command);
     describe(energy, "Look and measure",
              {"palpa energy system.psf --coordinates system.crd --toppar top_all36_prot.rtf "
               "par_all36m_prot.prm",
               "palpa energy solvent.psf --coordinates solvent.crd --toppar system.prm solvent.prm "
               "--solvent eef1-sb --per-atom atoms.csv"});
-    energy.add_option("system", options.system, "PSF, or a structure that has all its atoms")
+    energy.add_option("system", options.system, "PSF file, or a structure file with all atoms")
         ->required();
-    energy.add_option("--coordinates", options.coordinates, "of a PSF: .crd, .pdb or .cif")
+    energy
+        .add_option("--coordinates", options.coordinates,
+                    "coordinates for a PSF: .crd, .pdb or .cif")
         ->type_name("FILE");
     add_toppar_option(energy, options.toppar);
-    energy.add_option("--method", options.method, "all-pairs, or cutoff (all-pairs unless given)")
+    energy.add_option("--method", options.method, "all-pairs or cutoff (default all-pairs)")
         ->type_name("NAME");
     energy
         .add_option("--solvent", options.solvent,
-                    "none, or eef1-sb: implicit water, of neutral ionic groups, with a dielectric "
-                    "of 1.5 times the distance (none unless given)")
+                    "none, or eef1-sb: implicit water with neutral ionic groups and a dielectric "
+                    "of 1.5 times the distance in Å (default none)")
         ->type_name("NAME");
     energy
         .add_option("--solvent-end", options.solvent_end,
-                    "smooth: all ends as in scenes; sharp: solvation ends at 9 Å as in CHARMM, and "
-                    "other pairs as --method says (smooth unless given)")
+                    "smooth: cutoffs as in scenes; sharp: solvation is cut at 9 Å as in CHARMM, "
+                    "other pairs as --method says (default smooth)")
         ->type_name("NAME");
     energy
         .add_option("--solvent-exp", options.solvent_exp,
-                    "exact, or table: solvation, not its forces, by the table of CHARMM until 2013 "
-                    "(exact unless given)")
+                    "exact, or table: solvation energy (not forces) from the table that CHARMM "
+                    "used until 2013 (default exact)")
         ->type_name("NAME");
     energy
-        .add_option("--solvent-table", options.solvent_table,
-                    "CSV file of solvation by atom type, instead of the program's")
+        .add_option(
+            "--solvent-table", options.solvent_table,
+            "CSV file with solvation parameters by atom type, in place of the built-in ones")
         ->type_name("FILE");
     energy.add_flag("--structural-water", options.structural_water,
-                    "waters are part of the structure, without volume or solvation energy");
-    energy.add_option("--per-atom", options.per_atom, "CSV file for the solvation of every atom")
+                    "count waters as part of the structure, without volume or solvation energy");
+    energy
+        .add_option("--per-atom", options.per_atom,
+                    "write the solvation energy of every atom to this CSV file")
         ->type_name("FILE");
     energy
         .add_option("--coulomb-constant", options.coulomb_constant,
-                    "kcal Å/mol/e^2, CHARMM's 332.0716 unless given")
+                    "Coulomb's constant, kcal Å/mol/e^2 (default 332.0716, CHARMM's)")
         ->check(in_range(0.0, 1e6));
     energy
-        .add_option("--dielectric", options.dielectric, "1 unless given, 1.5 with implicit water")
+        .add_option("--dielectric", options.dielectric,
+                    "relative dielectric constant (default 1, with implicit water 1.5)")
         ->check(in_range(1e-6, 1e6));
     energy.add_flag("--distance-dielectric", options.distance_dielectric,
-                    "a dielectric of that times the distance in Å");
-    energy.add_option("--cutoff", options.cutoff, "Å, 12 unless given")->check(in_range(0.0, 1e6));
-    energy.add_option("--switch-from", options.switch_from, "Å, 10 unless given")
+                    "multiply the dielectric by the distance in Å");
+    energy.add_option("--cutoff", options.cutoff, "cutoff distance, Å (default 12)")
+        ->check(in_range(0.0, 1e6));
+    energy
+        .add_option("--switch-from", options.switch_from,
+                    "distance where switching begins, Å (default 10)")
         ->check(in_range(0.0, 1e6));
     energy.add_option("--electrostatics", options.electrostatics,
-                      "with cutoff: shift, switch, fshift or fswitch (fshift unless given)");
+                      "with a cutoff: shift, switch, fshift or fswitch (default fshift)");
     energy.add_option("--van-der-waals", options.van_der_waals,
-                      "with cutoff: switch or fswitch (switch unless given)");
+                      "with a cutoff: switch or fswitch (default switch)");
     energy
-        .add_option("--forces", options.forces, "CSV file for the force on every atom, kcal/mol/Å")
+        .add_option("--forces", options.forces,
+                    "write the force on every atom, kcal/mol/Å, to this CSV file")
         ->type_name("FILE");
     add_overwrite_flag(energy, options.overwrites);
     energy.add_flag("--json", options.json, "print JSON");

@@ -59,8 +59,9 @@ std::optional<Vec3> read_box(const std::string& text) {
                               ? std::nullopt
                               : find_real(std::string_view(text).substr(begin, end - begin));
         if (!edge || *edge <= 0 || *edge > 1e5) {
-            throw LoadError({"--box " + text},
-                            "expected three edges in Å with commas, as in 18.6,18.6,18.6");
+            throw LoadError(
+                {"--box " + text},
+                "expected three edges in Å separated by commas, such as 18.6,18.6,18.6");
         }
         box[axis] = *edge;
         begin = end + 1;
@@ -114,8 +115,8 @@ std::vector<std::uint32_t> find_sent(const EngineOptions& options, const RunSyst
     }
     for (const std::string& asked : options.send) {
         if (std::ranges::find(segments, asked) != segments.end()) continue;
-        throw LoadError({"--send " + asked},
-                        fmt::format("there is no such segment{}", near_name_hint(asked, segments)));
+        throw LoadError({"--send " + asked}, fmt::format("there is no segment of this name{}",
+                                                         near_name_hint(asked, segments)));
     }
     return sent;
 }
@@ -149,7 +150,8 @@ void write_folder(const EngineOptions& options, std::vector<TextFile> files) {
     std::error_code error;
     std::filesystem::create_directories(options.folder, error);
     if (error) {
-        throw LoadError({options.folder.string()}, fmt::format("no folder: {}", error.message()));
+        throw LoadError({options.folder.string()},
+                        fmt::format("the folder cannot be made: {}", error.message()));
     }
     for (TextFile& file : files) {
         file.path = options.folder / file.path;
@@ -173,14 +175,14 @@ int write_input(const EngineOptions& options) {
     if (system.box && is_gromacs) {
         if (const Cutoff cutoff = gromacs_cutoff(system); cutoff.to < 12) {
             fmt::print(stderr,
-                       "warning: the box has no room for CHARMM36's cutoff of 12 Å; {:.1f} Å "
-                       "instead\n",
+                       "warning: the box is too small for CHARMM36's cutoff of 12 Å; {:.1f} Å is "
+                       "used instead\n",
                        cutoff.to);
         }
     }
     const std::string folder = options.folder.string();
     fmt::print(
-        "{} atoms, {}: {}\nstart it:  sh {}\njoin it:   palpa connect 127.0.0.1:{} "
+        "{} atoms, {}: {}\nstart it:      sh {}\nconnect to it: palpa connect 127.0.0.1:{} "
         "--topology {}\n",
         system.positions.size(), system.box ? "in a box" : "in vacuum", folder,
         shell_word(folder + "/run.sh"), run.port,
@@ -194,13 +196,13 @@ std::size_t cells_per_edge(const EngineOptions& options) {
         static_cast<std::size_t>(std::lround(std::cbrt(static_cast<double>(options.waters) / 8)));
     if (cells >= 1 && 8 * cells * cells * cells == options.waters) return cells;
     throw LoadError({fmt::format("--waters {}", options.waters)},
-                    "expected eight times a cube: 64, 216, 512, 1000, 1728 and on");
+                    "expected 8 times a cube number: 64, 216, 512, 1000, 1728, ...");
 }
 
 int write_box(const EngineOptions& options) {
     if (!options.scene.empty() || !options.box.empty() || !options.send.empty()) {
         throw LoadError({"palpa engine box"},
-                        "makes a system of its own, of --waters and of --psf with --coordinates");
+                        "does not take a scene; expected --waters, or --psf with --coordinates");
     }
     if (options.toppar.empty() || options.psf.has_value() != options.coordinates.has_value()) {
         throw LoadError({"palpa engine box"},
@@ -230,12 +232,12 @@ int write_box(const EngineOptions& options) {
     fmt::print("{} waters, {} atoms: {}\n", box.waters, box.positions.size(), folder);
     if (box.edge < shortest_gromacs_edge) {
         fmt::print(
-            "its edge of {:.2f} Å is too short for a run: GROMACS needs {} Å; more --waters\n",
+            "its edge of {:.2f} Å is too short for a run: GROMACS needs {} Å; give more --waters\n",
             box.edge, shortest_gromacs_edge);
         return 0;
     }
     fmt::print(
-        "make the input of a run:  palpa engine gromacs -o {} --box {} --psf {} --coordinates {} "
+        "make the input of a run: palpa engine gromacs -o {} --box {} --psf {} --coordinates {} "
         "--toppar {}\n",
         shell_word(folder + "-run"), edges, shell_word(folder + "/system.psf"),
         shell_word(folder + "/system.crd"), shell_word(folder + "/system.prm"));
@@ -252,7 +254,7 @@ int engine_command(const EngineOptions& options) {
 
 void add_engine(CLI::App& program, ProgramCommand& chosen) {
     CLI::App& engine = *program.add_subcommand(
-        "engine", "Write the input of a run of GROMACS or LAMMPS, which you can join");
+        "engine", "Write the input of a GROMACS or LAMMPS run that Palpa can connect to");
     EngineOptions& options = own_options<EngineOptions>(engine, chosen, engine_command);
     describe(engine, "Other engines",
              {"palpa engine gromacs scenes/hairpin/vacuum.toml -o run",
@@ -262,38 +264,45 @@ void add_engine(CLI::App& program, ProgramCommand& chosen) {
               "system.prm tip3p.str"});
     engine
         .add_option("what", options.what,
-                    "gromacs, lammps, or box: a box of water around a system or nothing")
+                    "gromacs, lammps, or box (a box of water, with or without a system in it)")
         ->required()
         ->check(CLI::IsMember({"gromacs", "lammps", "box"}));
     engine.add_option("scene", options.scene, "scene folder or file");
-    engine.add_option("--psf", options.psf, "a system that is no scene")->type_name("FILE");
-    engine.add_option("--coordinates", options.coordinates, "of --psf: .crd, .pdb or .cif")
+    engine.add_option("--psf", options.psf, "PSF file of a system, in place of a scene")
         ->type_name("FILE");
-    engine.add_option("--toppar", options.toppar, "of --psf: topology and parameter files")
+    engine
+        .add_option("--coordinates", options.coordinates,
+                    "coordinates for --psf: .crd, .pdb or .cif")
+        ->type_name("FILE");
+    engine.add_option("--toppar", options.toppar, "topology and parameter files for --psf")
         ->type_name("FILE ...");
-    engine.add_option("--box", options.box, "edges of a periodic box, Å; vacuum unless given")
+    engine.add_option("--box", options.box, "edges of a periodic box, Å (default: vacuum)")
         ->type_name("A,B,C");
     engine
-        .add_option("--send", options.send,
-                    "segments that the engine sends and you may pull; all atoms unless given")
+        .add_option(
+            "--send", options.send,
+            "segments whose atoms the engine sends and the hand may pull (default: all atoms)")
         ->delimiter(',')
         ->type_name("SEGMENT,...");
-    engine.add_option("--port", options.run.port, "where it waits for you")
+    engine.add_option("--port", options.run.port, "port where the engine waits for Palpa")
         ->check(in_range(1, 65535))
         ->capture_default_str();
-    engine.add_option("--temperature", options.run.temperature, "K, 300 unless given")
+    engine.add_option("--temperature", options.run.temperature, "temperature, K (default 300)")
         ->check(in_range(0, 1e4));
-    engine.add_option("--timestep", options.run.timestep, "fs; 2 unless given, 1 with --flexible")
+    engine
+        .add_option("--timestep", options.run.timestep,
+                    "time step, fs (default 2, with --flexible 1)")
         ->check(in_range(0.001, 10));
     engine.add_flag("--flexible", options.run.flexible,
-                    "no bond is rigid; else those to hydrogens are, and waters");
-    engine.add_option("--steps", options.run.steps, "until you end it unless given")
+                    "flexible bonds and waters (default: bonds to hydrogens and waters are rigid)");
+    engine.add_option("--steps", options.run.steps, "number of steps (default: until you end it)")
         ->check(in_range(0, 1e12));
     engine
         .add_option("--waters", options.waters,
-                    "of a box, eight times a cube, before those on the system are left out")
+                    "number of waters of a box before those that overlap the system are removed; 8 "
+                    "times a cube number")
         ->capture_default_str();
-    engine.add_option("-o,--output", options.folder, "folder to write")->required();
+    engine.add_option("-o,--output", options.folder, "folder for the files")->required();
     add_overwrite_flag(engine, options.overwrites);
     add_set_option(engine, options.settings);
 }

@@ -57,7 +57,7 @@ int export_command(const ExportOptions& options) {
 
 void add_export(CLI::App& program, ProgramCommand& chosen) {
     CLI::App& command =
-        *program.add_subcommand("export", "Coordinates of a scene, for other programs");
+        *program.add_subcommand("export", "Write coordinates of a scene for other programs");
     ExportOptions& options = own_options<ExportOptions>(command, chosen, export_command);
     describe(command, "Look and measure",
              {"palpa export scenes/hiv -o hiv.pdb", "palpa export hiv -o hiv.psf --time 2",
@@ -65,17 +65,18 @@ void add_export(CLI::App& program, ProgramCommand& chosen) {
     command.add_option("scene", options.scene, "scene folder or file")->required();
     command
         .add_option("-o,--output", options.file,
-                    "by its ending: .pdb, .cif, .gro, .crd, or .psf, which comes with a .crd")
+                    "file to write, format by its ending: .pdb, .cif, .gro, .crd, or .psf with a "
+                    ".crd beside it")
         ->type_name("FILE")
         ->required();
     command
         .add_option_function<std::string>(
             "--of", [&options](const std::string& name) { options.molecules.push_back(name); },
-            "a molecule of the scene, once for each; unless given all that is shown")
+            "a molecule of the scene; repeat for several (default: all that is shown)")
         ->type_name("MOLECULE")
         ->trigger_on_parse()
         ->take_last();
-    command.add_option("--time", options.time_s, "seconds that the hand plays before")
+    command.add_option("--time", options.time_s, "simulated seconds to play before, s")
         ->check(in_range(0.0, 1e5));
     add_overwrite_flag(command, options.overwrites);
     add_set_option(command, options.settings);

@@ -68,7 +68,8 @@ int pack(const ForceFieldOptions& options) {
 
 int show(const ForceFieldOptions& options) {
     if (options.files.size() > 1) {
-        throw LoadError({options.files[1].string()}, "is one file too many to show");
+        throw LoadError({options.files[1].string()},
+                        "is a second file; expected one packed force field to show");
     }
     const std::filesystem::path file =
         options.files.empty() ? find_built_in_force_field() : options.files[0];
@@ -101,7 +102,7 @@ int force_field_command(const ForceFieldOptions& options) {
 
 void add_force_field(CLI::App& program, ProgramCommand& chosen) {
     CLI::App& command = *program.add_subcommand(
-        "force-field", "What the built-in force field is and whom to cite; packs another");
+        "force-field", "Show the built-in force field and whom to cite, or pack another");
     ForceFieldOptions& options =
         own_options<ForceFieldOptions>(command, chosen, force_field_command);
     describe(

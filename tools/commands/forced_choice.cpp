@@ -90,10 +90,10 @@ std::string format_fit_table(const std::vector<FitRow>& rows) {
                                     curve.slope(), curve.middle, row.fit.middle_error);
                 break;
             case PsychometricEnd::TooSteep:
-                text += "not found: less than between two ratios | | |\n";
+                text += "not found: below the smallest ratio | | |\n";
                 break;
             case PsychometricEnd::TooFlat:
-                text += "not found: the ratio hardly matters | | |\n";
+                text += "not found: the answers hardly depend on the ratio | | |\n";
                 break;
         }
     }

@@ -23,13 +23,13 @@ void print_latency_heading() {
 void print_latency(const std::string& device, std::size_t asked,
                    const std::vector<double>& samples_us, const std::string& what) {
     if (samples_us.empty()) {
-        fmt::print("{:<24} no answer came\n", device);
+        fmt::print("{:<24} no answer arrived\n", device);
         return;
     }
     const std::size_t lost = asked - samples_us.size();
     fmt::print("{:<24} {:>9.0f} {:>9.0f} {:>9.0f}  {}{}\n", device, quantile(samples_us, 0.5),
                quantile(samples_us, 0.99), quantile(samples_us, 1), what,
-               lost > 0 ? fmt::format("; {} of {} never came", lost, asked) : "");
+               lost > 0 ? fmt::format("; {} of {} never arrived", lost, asked) : "");
 }
 
 int latency_command() {
@@ -39,7 +39,7 @@ int latency_command() {
     std::this_thread::sleep_for(std::chrono::seconds(2));
     const std::vector<double> ticks_us = servo.stop();
     print_latency("emulated Omni", ticks_us.size(), ticks_us,
-                  "reading, to the force played: both lie in one tick");
+                  "reading to rendered force: both in one tick");
     std::fflush(stdout);
 
     std::error_code error;
@@ -48,8 +48,8 @@ int latency_command() {
     const bool is_built = std::filesystem::exists(program, error);
     if (!is_built || std::system(command.c_str()) != 0) {
         fmt::print(
-            "SpaceMouse, game pads and joysticks: not measured; that takes {}, which is\n"
-            "built with the tests, and the package umockdev\n",
+            "SpaceMouse, game pads and joysticks: not measured; this needs {} (built\nwith the "
+            "tests) and the package umockdev\n",
             program.string());
     }
     return 0;

@@ -54,9 +54,8 @@ int print_lessons(bool json) {
                    minutes, "", printable(scene.lesson_goal));
     }
     fmt::print(
-        "\n"
-        "  palpa lessons play water             opens one in a window\n"
-        "  palpa lessons play water --headless  an emulated operator does it\n");
+        "\n  palpa lessons play water             open a lesson in a window\n  palpa lessons play "
+        "water --headless  let an emulated operator do it\n");
     return 0;
 }
 
@@ -136,7 +135,7 @@ int lessons_command(const LessonsCommand& command) {
     if (command.action.empty()) return print_lessons(command.json);
     if (command.name.empty()) {
         throw LoadError({"palpa lessons play"},
-                        "says not which one; expected a name that 'palpa lessons' lists");
+                        "needs a lesson; expected a name that 'palpa lessons' lists");
     }
     const LessonEntry lesson = find_lesson(command.name);
     if (command.headless) return play_headless(command, lesson);
@@ -167,21 +166,21 @@ std::vector<LessonEntry> list_lessons() {
 
 void add_lessons(CLI::App& program, ProgramCommand& chosen) {
     CLI::App& lessons = *program.add_subcommand(
-        "lessons", "Guided lessons: what there is to feel, step by step, with checks");
+        "lessons", "List and open guided lessons, step by step with checks");
     LessonsCommand& command = own_options<LessonsCommand>(lessons, chosen, lessons_command);
     describe(lessons, "Feel",
              {"palpa lessons", "palpa lessons play water", "palpa lessons play water --headless"},
-             "Exit code of --headless: 0 where every step is done, else 1.");
-    lessons.add_option("action", command.action, "'play'; unless given, lessons are listed")
+             "Exit code of --headless: 0 if every step is done, else 1.");
+    lessons.add_option("action", command.action, "'play' (default: list the lessons)")
         ->check(CLI::IsMember({"play"}));
-    lessons.add_option("name", command.name, "the lesson, as the list names it");
+    lessons.add_option("name", command.name, "the lesson, by its name in the list");
     CLI::Option* const headless = lessons.add_flag(
-        "--headless", command.headless, "without a window: an emulated operator does the lesson");
+        "--headless", command.headless, "without a window; an emulated operator does the lesson");
     CLI::Option* const idle =
-        lessons
-            .add_flag("--idle", command.idle, "a hand that holds still, in place of the operator")
+        lessons.add_flag("--idle", command.idle, "replace the operator by a hand that holds still")
             ->needs(headless);
-    lessons.add_flag("--random", command.random, "a hand that wanders, in place of the operator")
+    lessons
+        .add_flag("--random", command.random, "replace the operator by a hand that moves at random")
         ->needs(headless)
         ->excludes(idle);
     add_seed_option(lessons, command.seed);

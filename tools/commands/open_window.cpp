@@ -87,14 +87,15 @@ std::string describe_saved(const fs::path& file) {
         (void)read_scene(file);
         return file.string();
     } catch (const LoadError&) {
-        return fmt::format("{}; it names files in other folders, so open it with 'palpa run {} {}'",
-                           file.string(), shell_word(file.string()), allow_outside);
+        return fmt::format(
+            "{}; the scene names files in other folders, so open it with 'palpa run {} {}'",
+            file.string(), shell_word(file.string()), allow_outside);
     }
 }
 
 void print_report(const SceneDescription& played, const WindowReport& report) {
     print_summary(played, report.summary);
-    fmt::print("  drawn       {} frames, {:.1f} ms median, scale {:.2f} at the end\n",
+    fmt::print("  drawing     {} frames, median {:.1f} ms, scale {:.2f} at the end\n",
                report.frames, report.median_frame_ms, report.render_scale);
     if (!played.lesson.empty()) {
         fmt::print("  lesson      {} of {} steps done\n", report.lesson_steps_done,
@@ -148,14 +149,14 @@ WindowDevice open_second_of(const SceneDescription& scene, const World& world,
 void check_window_options(const RunOptions& options) {
     if (options.record) check_record_folder(*options.record, options.overwrites);
     if (options.record && options.frames_per_second > 0) {
-        throw LoadError({"--fps"}, "is for runs without a window; expected --headless too");
+        throw LoadError({"--fps"}, "needs a run without a window; expected --headless with it");
     }
     if (options.play && options.device && *options.device != "emulated") {
-        throw LoadError({"--play"}, "is of the emulated hand; expected it without --device");
+        throw LoadError({"--play"}, "belongs to the emulated hand; expected it without --device");
     }
     if (options.serve.waits || options.serve.is_as_fast) {
         throw LoadError({options.serve.waits ? "--serve-wait" : "--serve-fast"},
-                        "is for runs without a window; expected --headless too");
+                        "needs a run without a window; expected --headless with it");
     }
     (void)check_shot(options);
 }

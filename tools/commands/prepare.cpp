@@ -86,8 +86,9 @@ PrepareSettings build_settings(const PrepareOptions& options) {
         settings.turned_over.push_back(read_choice(text, "--flip", "CHAIN:NUMBER, as in A:40"));
     }
     if (options.solvent == "none" && !options.structural_waters.empty()) {
-        throw LoadError({"--structural-water " + options.structural_waters.front()},
-                        "is of implicit water; expected --keep-waters with --solvent none");
+        throw LoadError(
+            {"--structural-water " + options.structural_waters.front()},
+            "belongs to implicit water; for explicit water use --keep-waters with --solvent none");
     }
     settings.solvent.reset();
     for (std::size_t i = 0; i < solvent_names.size(); ++i) {
@@ -114,7 +115,7 @@ void check_missing_folder(const std::filesystem::path& folder) {
     const std::filesystem::path parent = missing.parent_path();
     if (!parent.empty() && !std::filesystem::is_directory(parent, error)) {
         throw LoadError({folder.string()},
-                        fmt::format("cannot be made: {} is no folder", parent.string()));
+                        fmt::format("cannot be made: {} is not a folder", parent.string()));
     }
     (void)check_output(missing, prepared_mark, false);
 }
@@ -160,7 +161,8 @@ void print_unknown(const std::vector<UnknownResidue>& residues) {
                             one.where.begin() + static_cast<std::ptrdiff_t>(shown), " "));
         if (shown < one.where.size()) where += fmt::format(" +{}", one.where.size() - shown);
         fmt::print(stderr, "  {:<6} {:>3} atoms  {}{}\n{:9}{}\n", one.name, one.atoms, where,
-                   one.meaning.empty() ? "" : "  (" + one.meaning + ")", "", one.advice);
+                   one.meaning.empty() ? "" : "  (" + one.meaning + ")", "",
+                   advise(one, AdviceFor::CommandLine));
     }
 }
 
@@ -171,7 +173,7 @@ nlohmann::ordered_json json_of(const std::vector<UnknownResidue>& residues) {
                         {"meaning", one.meaning},
                         {"residues", one.where},
                         {"atoms", one.atoms},
-                        {"advice", one.advice}});
+                        {"advice", advise(one, AdviceFor::CommandLine)}});
     }
     return json;
 }
@@ -222,10 +224,11 @@ MadeScene make_or_list_unknown(const SceneRequest& request, const PrepareOptions
         if (options.json || !error.is_all()) throw;
         const std::size_t kinds = error.residues().size();
         throw LoadError({options.structure.string()},
-                        kinds == 1 ? "a residue is not in the force field, see above"
-                                   : fmt::format("{} kinds of residues are not in the force "
-                                                 "field, see above",
-                                                 kinds));
+                        kinds == 1
+                            ? "a residue is not in the force field; the list above says what to do"
+                            : fmt::format("{} kinds of residues are not in the force field; the "
+                                          "list above says what to do",
+                                          kinds));
     }
 }
 
@@ -265,112 +268,119 @@ void add_prepare_choices(CLI::App& prepare, PrepareOptions& options) {
     PrepareSettings& settings = options.settings;
     prepare
         .add_option("--without", settings.without,
-                    "residue names (MK1), chains (chain:B) or residues (A:101) to leave out")
+                    "leave out residue names (MK1), chains (chain:B) or residues (A:101)")
         ->type_name("WHAT");
     prepare
-        .add_option("--keep", settings.kept,
-                    "likewise, kept though only the crystal needed it (SO4, GOL, DUM ...)")
+        .add_option(
+            "--keep", settings.kept,
+            "keep molecules that only the crystal needed (SO4, GOL, DUM ...), named likewise")
         ->type_name("WHAT");
-    prepare.add_option("--as", options.as, "take a residue as another, CSO=CYS");
-    prepare.add_option("--protonation", options.protonation, "a residue (HSE) or a patch (ASPP)")
+    prepare.add_option("--as", options.as, "take a residue as another one, CSO=CYS");
+    prepare
+        .add_option("--protonation", options.protonation,
+                    "protonation of a residue: a residue name (HSE) or a patch (ASPP)")
         ->type_name("CHAIN:NUMBER=STATE");
-    prepare.add_option("--first", options.first, "at its first residue, or NONE")
+    prepare.add_option("--first", options.first, "patch for the first residue of a chain, or NONE")
         ->type_name("CHAIN=PATCH");
-    prepare.add_option("--last", options.last, "at its last residue, or NONE")
+    prepare.add_option("--last", options.last, "patch for the last residue of a chain, or NONE")
         ->type_name("CHAIN=PATCH");
     prepare
         .add_option("--disulphide", options.disulphides,
-                    "CHAIN:NUMBER-CHAIN:NUMBER: a bond beside those found")
+                    "CHAIN:NUMBER-CHAIN:NUMBER: a disulphide bond in addition to those found")
         ->type_name("PAIR");
-    add_negation(prepare, "--no-disulphides", settings.finds_disulphides, "look for none");
+    add_negation(prepare, "--no-disulphides", settings.finds_disulphides,
+                 "do not search for disulphide bonds");
     prepare.add_flag("--approximate-ligands", settings.approximates_ligands,
-                     "types, charges and parameters by likeness to CGenFF's residues for ligands "
-                     "without any; approximate.str has them");
+                     "for ligands without parameters: take types, charges and parameters from "
+                     "similar residues of CGenFF (written to approximate.str)");
     prepare
-        .add_option("--ligand", settings.ligand_files,
-                    "bonds and hydrogens of such a ligand: .sdf, .mol or .mol2; else they come "
-                    "from the entry, a monomer library (Debian's refmac-dictionary), or distances")
+        .add_option(
+            "--ligand", settings.ligand_files,
+            "file with bonds and hydrogens of such a ligand: .sdf, .mol or .mol2 (default: from "
+            "the structure file, a monomer library (Debian: refmac-dictionary), or distances)")
         ->type_name("FILE");
     prepare
         .add_option(
             "--parameters", options.parameters,
-            "stream files of ligands, as the CGenFF server writes them; read after --toppar")
+            "stream files of ligands, as the CGenFF server writes them (read after --toppar)")
         ->type_name("FILE");
-    prepare.add_flag("--keep-waters", settings.keeps_waters, "waters are left out otherwise");
+    prepare.add_flag("--keep-waters", settings.keeps_waters, "keep waters (default: left out)");
     prepare
         .add_option("--solvent", options.solvent,
-                    "eef1-sb: implicit water, neutral charges of ionic groups; none: vacuum; auto: "
-                    "eef1-sb where it covers every type of atoms, else none")
+                    "eef1-sb: implicit water with neutral ionic groups; none: vacuum; auto: "
+                    "eef1-sb if it covers every atom type, else none")
         ->check(CLI::IsMember({"none", "eef1-sb", "auto"}))
         ->capture_default_str();
     prepare.add_flag(
         "--full-phosphates", settings.keeps_phosphate_charges,
-        "in vacuum phosphates of nucleic acids have -0.32 e otherwise, and the scene a "
-        "dielectric of 4, for counterions and water that are missing");
+        "keep the full charge of phosphates in vacuum (default: -0.32 e for each phosphate of "
+        "nucleic acids and a dielectric of 4, to replace counterions and water)");
     prepare
         .add_option("--structural-water", options.structural_waters,
-                    "CHAIN:NUMBER: a water that stays, as a part of the structure")
+                    "CHAIN:NUMBER: keep this water as part of the structure")
         ->type_name("CHAIN:NUMBER");
-    add_negation(prepare, "--no-ions", settings.keeps_ions, "ions are kept otherwise");
-    prepare.add_option("--model", settings.model, "the first unless given");
+    add_negation(prepare, "--no-ions", settings.keeps_ions, "leave out ions (default: kept)");
+    prepare.add_option("--model", settings.model, "model number (default: the first)");
     prepare
-        .add_option("--assembly", settings.assembly,
-                    "build this biological assembly of the file, often 1, by its symmetry; "
-                    "unless given, what the file holds is taken as it is")
+        .add_option(
+            "--assembly", settings.assembly,
+            "build this biological assembly by symmetry, often 1 (default: the chains of the file)")
         ->check(in_range(1, 1e6));
     prepare
         .add_option("--altloc", options.alternates,
-                    "CHAIN:NUMBER=LETTER: the location to take, not the most occupied")
+                    "CHAIN:NUMBER=LETTER: use this alternate location, not the most occupied")
         ->type_name("CHAIN:NUMBER=LETTER");
-    add_negation(prepare, "--no-flips", settings.flips, "amides and imidazoles stay as they are");
+    add_negation(prepare, "--no-flips", settings.flips, "do not flip amides and imidazoles");
     prepare
         .add_option("--flip", options.flips,
-                    "CHAIN:NUMBER: this amide or imidazole is turned over, whatever is found best")
+                    "CHAIN:NUMBER: flip this amide or imidazole in any case")
         ->type_name("CHAIN:NUMBER");
-    add_negation(prepare, "--no-relax", settings.relaxes,
-                 "atoms stay where they are or were built");
+    add_negation(prepare, "--no-relax", settings.relaxes, "do not relax clashes");
 }
 
 // How the result stands, and what of it is in the hand.
 void add_prepare_scene(CLI::App& prepare, PrepareOptions& options) {
     CLI::Option* const x_along =
         prepare
-            .add_option("--x-along", options.x_along,
-                        "segment whose long axis becomes x, its middle the origin")
+            .add_option(
+                "--x-along", options.x_along,
+                "turn the system: the long axis of this segment becomes x, its middle the origin")
             ->type_name("SEGMENT");
     prepare
         .add_option("--y-towards", options.y_towards,
-                    "CHAIN:NUMBER-CHAIN:NUMBER: y from one residue to another; :NUMBER is the mean "
-                    "of all chains")
+                    "CHAIN:NUMBER-CHAIN:NUMBER: y points from one residue to the other; :NUMBER is "
+                    "the mean over all chains")
         ->type_name("PAIR")
         ->needs(x_along);
     prepare
         .add_option("--grab", options.grab,
-                    "what the hand holds in the scene: a SEGMENT, or SEGMENT:RESIDUE on a spring; "
-                    "unless given, a small molecule or an exposed residue")
+                    "what the hand holds in the scene: a SEGMENT, or SEGMENT:RESIDUE by a spring "
+                    "(default: a small molecule or an exposed residue)")
         ->type_name("WHAT");
-    add_negation(prepare, "--no-scene", options.makes_scene, "no scene is made; takes less time");
+    add_negation(prepare, "--no-scene", options.makes_scene, "do not make a scene (faster)");
 }
 
 }  // namespace
 
 void add_prepare(CLI::App& program, ProgramCommand& chosen) {
     CLI::App& prepare = *program.add_subcommand(
-        "prepare", "Complete and type a structure: hydrogens, patches, topology, a report");
+        "prepare", "Prepare a structure: add hydrogens, patches and topology, make a scene");
     PrepareOptions& options = own_options<PrepareOptions>(prepare, chosen, prepare_command);
     describe(prepare, "Make scenes",
              {"palpa prepare 1hsg.pdb --without MK1 -o my-protease",
               "palpa prepare complex.pdb -o complex --toppar ligand.str",
               "palpa prepare step1.crd --topology step1.psf -o mine"});
-    prepare.add_option("structure", options.structure, ".pdb, .ent, .cif or .crd, .gz too")
+    prepare
+        .add_option("structure", options.structure,
+                    "structure file: .pdb, .ent, .cif or .crd, also with .gz")
         ->required();
     prepare
         .add_option("--toppar", options.toppar,
-                    "CHARMM topology, parameter and stream files, in order, or a folder of them: "
-                    "added to CHARMM36, which comes with the program")
+                    "CHARMM topology, parameter and stream files, in order, or a folder of them; "
+                    "added to the built-in CHARMM36")
         ->type_name("FILE");
     prepare.add_flag("--only-toppar", options.only_toppar,
-                     "the files of --toppar alone, without what comes with the program");
+                     "use only the files of --toppar, without the built-in CHARMM36");
     prepare
         .add_option("-o,--output", options.folder,
                     "folder for system.psf, .pdb, .crd, .prm, report.txt and scene.toml")
@@ -382,8 +392,7 @@ void add_prepare(CLI::App& program, ProgramCommand& chosen) {
         ->type_name("FILE.psf");
     add_prepare_choices(prepare, options);
     add_prepare_scene(prepare, options);
-    prepare.add_option("--title", options.title, "what the files say of themselves")
-        ->type_name("TEXT");
+    prepare.add_option("--title", options.title, "title in the files")->type_name("TEXT");
     add_overwrite_flag(prepare, options.overwrites);
     prepare.add_flag("--json", options.json, "print counts and warnings as JSON");
 }

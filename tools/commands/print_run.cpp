@@ -25,8 +25,8 @@ constexpr double force_nN = units::newton_per_kcal_per_mol_angstrom * 1e9;  // o
 
 // Of ways to relax that do not bring all surroundings to rest in a step.
 constexpr const char* unrelaxed_note =
-    "not complete in a step: the force can be several times that of surroundings\n"
-    "              at rest; method = \"second-order\" relaxes it completely";
+    "incomplete in each step: the force can be several times that of relaxed surroundings;\n       "
+    "       statics.method = \"second-order\" relaxes them completely";
 
 int freedom_of_hands(const World& world) {
     int freedom = 0;
@@ -38,17 +38,16 @@ void print_relaxation(const RelaxationSummary& r) {
     if (r.renewals == 0) fmt::print("  relaxation  {}\n", unrelaxed_note);
     if (r.estimates > 0) {
         fmt::print(
-            "  error       {:.3g} pN in the median, {:.3g} pN in nine of ten steps, against "
-            "complete\n              relaxation, as estimated\n",
+            "  error       median {:.3g} pN, 90 % of steps below {:.3g} pN, estimated against "
+            "complete\n              relaxation\n",
             r.error_median_pN, r.error_90_pN);
     }
     if (r.renewals > 0) {
-        fmt::print("  model       {} renewals; {} snaps set {:.1f} kcal/mol free\n", r.renewals,
+        fmt::print("  model       {} renewals; {} snaps released {:.1f} kcal/mol\n", r.renewals,
                    r.snaps, r.released);
         fmt::print(
-            "  renewals    {:.1f} ms of a step in the median where they are made within it; "
-            "between them\n              a step takes {:.2f} ms, {:.2f} ms at most in nine of ten, "
-            "{:.2f} ms in 99 of 100\n",
+            "  renewals    median {:.1f} ms for a step with a renewal; other steps: median {:.2f} "
+            "ms,\n              90 % below {:.2f} ms, 99 % below {:.2f} ms\n",
             1e-3 * r.renewal_median_us, 1e-3 * r.between_median_us, 1e-3 * r.between_90_us,
             1e-3 * r.between_99_us);
     }
@@ -58,21 +57,21 @@ void print_relaxation(const RelaxationSummary& r) {
 void print_mobile(const World& world, const JointRelaxReport& r) {
     const StartReport& report = world.resource<StartReport>();
     const Eigen::Index coordinates = model_of(world).coordinates;
-    fmt::print("  freedom     {} degrees: {} joints, {} of bases; {} more of the hand\n",
+    fmt::print("  freedom     {} degrees of freedom: {} joints, {} of bases; {} more of the hand\n",
                coordinates, report.joints, coordinates - static_cast<Eigen::Index>(report.joints),
                freedom_of_hands(world));
     if (report.joints_held > 0) {
-        fmt::print("  region      {} joints further away are held\n", report.joints_held);
+        fmt::print("  region      {} joints outside of the region are fixed\n", report.joints_held);
     }
     if (const ModelAtoms& atoms = model_atoms_of(world); !atoms.in_table.empty()) {
-        fmt::print("  atoms       {} may move, {} fixed ones near them are felt, of {} in all\n",
+        fmt::print("  atoms       {} can move, {} fixed ones near them exert forces, {} in all\n",
                    model_of(world).mobile_atoms.size(),
                    atoms.in_table.size() - model_of(world).mobile_atoms.size(),
                    world.resource<AtomTable>().size());
     }
     fmt::print(
-        "  relaxed     {:.3f} to {:.3f} kcal/mol in {} steps, moved {:.3f} Å at most, rms "
-        "force {:.3g} kcal/mol left\n",
+        "  relaxed     {:.3f} to {:.3f} kcal/mol in {} steps, largest move {:.3f} Å, remaining rms "
+        "force {:.3g} kcal/mol per radian and Å\n",
         r.energy_before, r.energy_after, r.steps, r.largest_move, r.rms_force);
     const ContactModel start = local_contact_of(world).model;
     fmt::print("  start       {:.3f} kcal/mol, {:.3f} nN\n", start.potential_kcal_per_mol,
@@ -95,8 +94,8 @@ void print_gains(const SceneDescription& scene, const World& world, double dista
     const Eigen::SelfAdjointEigenSolver<Mat3> along(gain.tensor, Eigen::EigenvaluesOnly);
     const Vec3 cm = along.eigenvalues() / units::angstrom_per_metre * 100;
     fmt::print(
-        "  gain        {:.2f} cm of handle for an Å there; with coupling.gain_shape = \"tensor\" "
-        "{:.2f}, {:.2f} and {:.2f}\n",
+        "  gain        {:.2f} cm of handle per Å there; with coupling.gain_shape = \"tensor\" "
+        "{:.2f}, {:.2f} and {:.2f} cm\n",
         cm.z(), cm.x(), cm.y(), cm.z());
 }
 
@@ -105,7 +104,7 @@ void print_relaxed(const World& world, const RelaxReport& r) {
     const ContactModel start = local_contact_of(world).model;
     fmt::print(
         "  relaxed     {:.3f} to {:.3f} kcal/mol in {} evaluations, moved {:.3f} Å, turned "
-        "{:.2f}°, {:.3f} pN left\n",
+        "{:.2f}°, remaining force {:.3f} pN\n",
         r.energy_before, r.energy_after, r.evaluations, r.displacement,
         r.angle * 180 / std::numbers::pi, r.force * force_nN * 1e3);
     const Vec3 springs = units::newton_per_metre_per_kcal_per_mol_angstrom2 *
@@ -165,7 +164,7 @@ void print_line(const SceneDescription& scene, const World& world, ProgressLine&
     const char* const along = in_space ? "x = " : "";
     // A spring is pulled at; its molecule is not moved against others.
     const bool on_spring = !scene.grab.atom.empty();
-    tell(progress.stages(), "looking for where it repels");
+    tell(progress.stages(), "searching for the repulsive wall");
     const std::optional<double> wall =
         on_spring ? std::nullopt
                   : repulsion_distance(world, scene.hand.peak_nN / force_nN,
@@ -180,8 +179,10 @@ void print_line(const SceneDescription& scene, const World& world, ProgressLine&
     progress.wipe();
     const double calm =
         calm_stiffness(scene, hand_model(scene.hand.grip), world.resource<Clock>().period_s);
-    fmt::print("  stiffest    {:.3g} N/m felt at {}{:.3f} Å, this hand keeps {:.3g} N/m calm\n",
-               stiffest.newton_per_metre, along, stiffest.angstrom, calm);
+    fmt::print(
+        "  stiffest    {:.3g} N/m on the hand at {}{:.3f} Å; this hand is stable up to {:.3g} "
+        "N/m\n",
+        stiffest.newton_per_metre, along, stiffest.angstrom, calm);
     print_gains(scene, world, stiffest.angstrom);
 }
 
@@ -190,15 +191,14 @@ namespace {
 // What had to be felt, and which of these requirements were not met.
 void print_accuracy(const AccuracyReport& f) {
     if (const auto range = f.range_pN) {
-        fmt::print("  to feel     {:.6g} to {:.6g} pN, felt as {:.3f} to {:.3f} N\n", (*range)[0],
+        fmt::print("  range       {:.6g} to {:.6g} pN, felt as {:.3f} to {:.3f} N\n", (*range)[0],
                    (*range)[1], f.ends_newton[0], f.ends_newton[1]);
     }
-    fmt::print("  stiffness   {:.1f} % of the cap felt at most\n", 100 * f.stiffest_share);
+    fmt::print("  stiffness   at most {:.1f} % of the cap\n", 100 * f.stiffest_share);
     if (const auto within_pN = f.within_pN; within_pN && f.estimates > 0) {
         fmt::print(
-            "  {}   would have given a force within {:.3g} pN of this one half of the time, "
-            "within {:.3g} pN\n              nine tenths of it, within {:.6g} pN {:.1f} % of it "
-            "({} comparisons)\n",
+            "  {}   compared with the rendered force: median error {:.3g} pN, 90 % below {:.3g} "
+            "pN,\n              within {:.6g} pN for {:.1f} % of {} comparisons\n",
             f.steps > 0 ? "all joints" : "all pairs ", f.median_pN, f.ninety_pN, *within_pN,
             100 * f.within_share, f.estimates);
         if (f.steps > 0) {
@@ -207,7 +207,7 @@ void print_accuracy(const AccuracyReport& f) {
                 f.active, f.steps);
         }
     } else if (f.within_pN) {
-        fmt::print("  compared    with nothing: too short a run, or not guarded\n");
+        fmt::print("  compared    no comparison: the run is too short, or not guarded\n");
     }
     const std::vector<std::string> not_met = find_unmet(f).all();
     if (not_met.empty()) fmt::print("  not met     nothing\n");
@@ -223,15 +223,15 @@ void print_summary(const SceneDescription& scene, const Summary& s) {
                grip_names[static_cast<std::size_t>(scene.hand.grip)], scene.device.friction_N,
                stroke_names[static_cast<std::size_t>(scene.hand.stroke)]);
     if (s.is_on_axis) {
-        fmt::print("  felt        {:.3f} N of attraction and {:.3f} N of repulsion at most\n",
+        fmt::print("  felt        at most {:.3f} N of attraction and {:.3f} N of repulsion\n",
                    s.largest_attraction_N, s.largest_repulsion_N);
     } else {
-        fmt::print("  felt        {:.3f} N at most\n", s.largest_felt_N);
+        fmt::print("  felt        at most {:.3f} N\n", s.largest_felt_N);
     }
     if (!s.ripple) {
-        fmt::print("  ripple      too short a run to tell\n");
+        fmt::print("  ripple      not measured: the run is too short\n");
     } else {
-        fmt::print("  ripple      {:.3f} N rms above 3 Hz towards the end", s.ripple->rms);
+        fmt::print("  ripple      {:.3f} N rms above 3 Hz at the end", s.ripple->rms);
         // What is slower is the stroke, of which the measure keeps a part.
         if (s.ripple->rms > 0.02) {
             fmt::print("{}at {:.1f} Hz", s.ripple->hertz < 3 ? ", the stroke itself " : ", ",
@@ -242,7 +242,7 @@ void print_summary(const SceneDescription& scene, const Summary& s) {
     fmt::print("  net work    {:+.4f} J on the hand\n", s.net_work_J);
     for (std::size_t i = 0; i < s.other_hands.size(); ++i) {
         const Summary& other = s.other_hands[i];
-        fmt::print("  hand {}      {:.3f} N at most, {:+.4f} J of net work", i + 2,
+        fmt::print("  hand {}      at most {:.3f} N, net work {:+.4f} J", i + 2,
                    other.largest_felt_N, other.net_work_J);
         if (scene.engine) {
             fmt::print("\n");
@@ -252,7 +252,7 @@ void print_summary(const SceneDescription& scene, const Summary& s) {
     }
     // A spring to an engine's atoms is measured from no other molecule.
     if (!scene.engine) {
-        fmt::print("  molecule    {:.3f} Å at the closest, {:.3f} Å at the end\n",
+        fmt::print("  molecule    closest distance {:.3f} Å, at the end {:.3f} Å\n",
                    s.closest_angstrom, s.last_angstrom);
     }
     if (s.unbinding) {
@@ -261,32 +261,29 @@ void print_summary(const SceneDescription& scene, const Summary& s) {
         // What a spring holds is bonded to others.
         if (std::isfinite(j.closest) && scene.grab.atom.empty()) {
             fmt::print(
-                ", heavy atoms {:.2f} Å from all others there;\n              {:.2f} Å at the "
-                "closest",
+                "; its nearest heavy atom there is {:.2f} Å away\n              (closest on the "
+                "way {:.2f} Å)",
                 j.clearance, j.closest);
         }
-        fmt::print(
-            "; at the end {:.2f} Å rms from where they started, the backbone around it {:.2f} "
-            "Å\n",
-            j.last_rmsd, j.last_backbone);
+        fmt::print("; at the end rms displacement {:.2f} Å, of the backbone around it {:.2f} Å\n",
+                   j.last_rmsd, j.last_backbone);
     }
     if (s.activity) {
         const Activity& a = *s.activity;
         fmt::print(
-            "  active      {:.1f} degrees of freedom on average, chosen {} times; {:.1f} % of "
-            "steps "
-            "within the budget\n",
+            "  active      {:.1f} degrees of freedom on average, selected {} times; {:.1f} % of "
+            "steps within the time budget\n",
             a.active, a.choices, 100 * a.within_budget);
     }
     if (s.accuracy) print_accuracy(*s.accuracy);
     if (s.engine) {
         fmt::print(
-            "  engine      {} frames, {:.0f} a second at the end; the force is {:.0f} ms late; "
-            "{} interruptions\n",
+            "  engine      {} frames, {:.0f} per second at the end; force delayed by {:.0f} ms; {} "
+            "interruptions\n",
             s.engine->frames, s.engine->frames_per_s, s.engine->delay_ms, s.engine->interruptions);
     }
     if (s.relaxation) print_relaxation(*s.relaxation);
-    fmt::print("  clamped     {:.1f} % of the time\n", 100 * s.clamped_share);
+    fmt::print("  clipping    {:.1f} % of the time\n", 100 * s.clamped_share);
     fmt::print("  step        {:.2f} µs median, {:.2f} µs p99 of {} steps\n", s.step_median_us,
                s.step_p99_us, s.steps);
 }

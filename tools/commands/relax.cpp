@@ -23,8 +23,8 @@ namespace {
 
 // In the order of RelaxEnd.
 constexpr std::array<std::string_view, 4> end_names{
-    "at rest", "not at rest: more steps would go on", "nothing lowers the energy any more",
-    "not finite"};
+    "at rest", "not at rest: more steps are needed (statics.relax_steps)",
+    "the energy cannot be lowered further", "not finite"};
 
 std::string_view end_of(const JointRelaxReport& report) {
     return end_names[static_cast<std::size_t>(report.end)];
@@ -49,12 +49,12 @@ void print_report(const StartReport& start, const FromFiles& from) {
     const JointRelaxReport& r = start.joints_at_rest.value();
     fmt::print("{} joints: {:.4f} to {:.4f} kcal/mol, rms force {:.3g} kcal/mol per radian and Å\n",
                start.joints, r.energy_before, r.energy_after, r.rms_force);
-    fmt::print("{} steps, {} evaluations, moved {:.3f} Å at most; {}\n", r.steps, r.evaluations,
+    fmt::print("{} steps, {} evaluations, largest move {:.3f} Å; {}\n", r.steps, r.evaluations,
                r.largest_move, end_of(r));
     const PoseDistance& d = from.distance;
     fmt::print(
-        "rms from the files: what is held {:.3f} Å, backbone {:.3f} Å, side chains of the {} "
-        "residues around it {:.3f} Å\n",
+        "rms displacement from the files: what the hand holds {:.3f} Å, backbone {:.3f} Å, side "
+        "chains of the {} residues around it {:.3f} Å\n",
         d.held, d.backbone, from.pocket_residues, d.pocket);
 }
 
@@ -91,7 +91,7 @@ int relax_command(const RelaxOptions& options) {
     progress.wipe();
     if (!has_mobile(world)) {
         throw LoadError({scene.file.string()},
-                        "nothing moves by itself here; expected a molecule with shape = "
+                        "no molecule of this scene moves by itself; expected one with shape = "
                         "\"flexible\" or motion = \"free\"");
     }
     const StartReport& start = world.resource<StartReport>();
@@ -112,7 +112,7 @@ int relax_command(const RelaxOptions& options) {
     if (const auto closest =
             describe_coincident_atoms(world.resource<AtomTable>().names, reference_positions(world),
                                       nearest_single_precision)) {
-        fmt::print(stderr, "warning: atoms are on each other: {}\n", printable(*closest));
+        fmt::print(stderr, "warning: atoms overlap: {}\n", printable(*closest));
     }
     const FromFiles from = compare_with_files(scene, world);
     options.json ? print_json(start, from) : print_report(start, from);
@@ -120,13 +120,12 @@ int relax_command(const RelaxOptions& options) {
 }
 
 void add_relax(CLI::App& program, ProgramCommand& chosen) {
-    CLI::App& relax =
-        *program.add_subcommand("relax", "Bring the flexible molecules of a scene to rest");
+    CLI::App& relax = *program.add_subcommand("relax", "Relax the flexible molecules of a scene");
     RelaxOptions& options = own_options<RelaxOptions>(relax, chosen, relax_command);
     describe(relax, "Make scenes", {"palpa relax scenes/hiv/flexible.toml -o rest.crd"});
     relax.add_option("scene", options.scene, "scene folder or file")->required();
     relax.add_option("-o,--output", options.coordinates,
-                     "CHARMM coordinates (.crd) to write: where they rest");
+                     "write the relaxed coordinates to this CHARMM file (.crd)");
     add_overwrite_flag(relax, options.overwrites);
     relax.add_flag("--json", options.json, "print JSON");
     add_set_option(relax, options.settings);

@@ -64,9 +64,8 @@ void apply_looks(const std::vector<RenderOptions::Said>& said, ViewDescription& 
                 throw LoadError({"--of " + value}, "expected --representation NAME before it");
             if (!layer->of.empty())
                 throw LoadError({"--of " + value},
-                                "is a second one; expected another "
-                                "--representation before it, or 'or' between "
-                                "the two");
+                                "is a second selection for one representation; expected another "
+                                "--representation before it, or 'or' between the two");
             (void)parse_selection(value, "--of");
             layer->of = value;
         } else if (option == "--colour") {
@@ -78,7 +77,7 @@ void apply_looks(const std::vector<RenderOptions::Said>& said, ViewDescription& 
             if (!layer || layer->representation != Representation::Surface || !opacity ||
                 !(*opacity >= 0.05 && *opacity <= 1))
                 throw LoadError({"--opacity " + value},
-                                "expected 0.05 to 1, behind --representation surface");
+                                "expected 0.05 to 1, after --representation surface");
             layer->opacity = *opacity;
         }
     }
@@ -193,14 +192,13 @@ namespace {
 void check_render_options(const RenderOptions& options) {
     if (options.image.empty() == !options.film)
         throw LoadError({"palpa render"},
-                        "draws a picture or a film; expected -o FILE.png or "
-                        "--film FILE.mp4, one of them");
+                        "needs one output; expected -o FILE.png or --film FILE.mp4");
     if (!options.film && upper_case(options.image.extension().string()) != ".PNG")
         throw LoadError({"-o " + options.image.string()},
                         "pictures are PNG files; expected a name that ends in .png");
     if (options.film && options.coordinates)
         throw LoadError({"--coordinates"},
-                        "is of a picture; expected -o instead of --film, or palpa export");
+                        "belongs to a picture; expected -o in place of --film, or palpa export");
     if (options.film) check_film({*options.film, options.film_fps, options.overwrites});
 }
 
@@ -229,7 +227,7 @@ int render_command(const RenderOptions& options) {
     World world = load_world(scene, on_stage);
     apply_options(options, world, scene.view);
     for (const std::string& empty : find_empty_selections(scene.view, world))
-        fmt::print(stderr, "palpa render: {} selects no atoms\n", empty);
+        fmt::print(stderr, "palpa render: no atom matches {}\n", empty);
     ViewSettings view = first_settings(scene.view, world);
     view.force_arrow = options.arrow;
     if (options.film) return make_film(scene, world, view, options, progress);
@@ -270,7 +268,7 @@ int render_command(const RenderOptions& options) {
         structure.weights = world.resource<AtomTable>().b_factor;
         structure.positions = world.resource<AtomTable>().positions;
         write_text_file(*options.coordinates,
-                        format_crd(structure, fmt::format("{}{}\n{} s of it", coordinates_title,
+                        format_crd(structure, fmt::format("{}{}\n{} s simulated", coordinates_title,
                                                           scene.title, options.time_s)),
                         existing_coordinates);
         fmt::print("{}: {} atoms, hydrogen bonds in all: {}\n", options.coordinates->string(),
@@ -317,14 +315,15 @@ void add_look_options(CLI::App& render, RenderOptions& options) {
     };
     const std::array looks{
         add("--representation,--as", "NAME",
-            fmt::format("{}; of everything, or of what --of behind it selects, drawn besides; "
-                        "again and again",
+            fmt::format("{}; for everything, or for the selection of a following --of, drawn in "
+                        "addition; can be repeated",
                         fmt::join(representation_names, ", "))),
-        add("--of", "SELECTION", "which atoms, as palpa select takes them: \"within 5 of ligand\""),
+        add("--of", "SELECTION",
+            "selection for the representation before it: \"within 5 of ligand\""),
         add("--colour", "NAME",
-            fmt::format("{}; of the --representation before it, or of everything",
+            fmt::format("{}; for the --representation before it, or for everything",
                         fmt::join(colouring_names, ", "))),
-        add("--opacity", "SHARE", "of a surface, 0.05 to 1; what is behind shines through")};
+        add("--opacity", "SHARE", "opacity of a surface, 0.05 to 1")};
     render.parse_complete_callback([&render, &options, looks] {
         std::array<std::size_t, looks.size()> next{};
         for (const CLI::Option* const option : render.parse_order()) {
@@ -338,23 +337,24 @@ void add_look_options(CLI::App& render, RenderOptions& options) {
                  option->results().at(index++)});
         }
     });
-    add("--label", "SELECTION", "names its residues, or atoms where one is selected alone");
+    add("--label", "SELECTION", "label the residues of this selection, or a single atom");
     render.get_option("--label")->each(
         [&](const std::string& value) { options.labels.push_back(value); });
     render
         .add_option("--hydrogen-bonds", options.hydrogen_bonds,
-                    "none, in-hand (of the molecule in hand) or all; without a value all")
+                    "draw hydrogen bonds: none, in-hand (of the molecule in hand) or all (without "
+                    "a value: all)")
         ->expected(0, 1)
         ->default_str("all");
     render.add_option(
         "--hydrogens", options.hydrogens,
         fmt::format("{}; polar: bonded to N, O or S", fmt::join(shown_hydrogen_names, ", ")));
-    render.add_option("--shadows", options.shadows,
-                      fmt::format("{}; of things upon each other", fmt::join(shadow_names, ", ")));
+    render.add_option(
+        "--shadows", options.shadows,
+        fmt::format("{}; shadows of objects on each other", fmt::join(shadow_names, ", ")));
     render.add_flag_callback(
-        "--no-occlusion", [&options] { options.has_occlusion = false; },
-        "crevices are as light as the rest");
-    render.add_option("--outline", options.outline, "its width in pixels, 1 unless given")
+        "--no-occlusion", [&options] { options.has_occlusion = false; }, "do not darken crevices");
+    render.add_option("--outline", options.outline, "width of the outline in pixels (default 1)")
         ->check(in_range(0, 8));
     render.add_flag("--transparent", options.transparent, "the background");
 }
@@ -362,24 +362,24 @@ void add_look_options(CLI::App& render, RenderOptions& options) {
 void add_mark_options(CLI::App& render, MarkOptions& marks) {
     render
         .add_option("--measure",
-                    "\"SELECTION; SELECTION[; SELECTION[; SELECTION]]\": the distance, angle or "
-                    "dihedral of their atoms, or of the centres of their atoms; again and again")
+                    "\"SELECTION; SELECTION[; SELECTION[; SELECTION]]\": distance, angle or "
+                    "dihedral of their atoms or centres; can be repeated")
         ->type_name("SELECTIONS")
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->each([&](const std::string& value) { marks.measures.push_back(value); });
     render
         .add_option("--contacts", marks.contacts,
-                    "contacts, clashes and salt bridges: none, in-hand or all; without a value "
-                    "in-hand")
+                    "draw contacts, clashes and salt bridges: none, in-hand or all (without a "
+                    "value: in-hand)")
         ->expected(0, 1)
         ->default_str("in-hand");
     render
         .add_option("--forces", marks.forces,
-                    fmt::format("{}: what they do to what is in the hand, as arrows",
+                    fmt::format("{}: their forces on the molecule in hand, as arrows",
                                 fmt::join(shown_force_names, ", ")))
         ->type_name("NAME");
-    render.add_flag("--ghost", marks.ghost, "what is in the hand as it was at the start, pale");
-    render.add_option("--trail", marks.trail_s, "its way over so many seconds before")
+    render.add_flag("--ghost", marks.ghost, "draw the molecule in hand also at its start, pale");
+    render.add_option("--trail", marks.trail_s, "draw its path over this many seconds before")
         ->check(in_range(0.0, 1e4))
         ->type_name("SECONDS");
 }
@@ -387,7 +387,8 @@ void add_mark_options(CLI::App& render, MarkOptions& marks) {
 }  // namespace
 
 void add_render(CLI::App& program, ProgramCommand& chosen) {
-    CLI::App& render = *program.add_subcommand("render", "A picture of a scene; needs no display");
+    CLI::App& render =
+        *program.add_subcommand("render", "Draw a picture or a film of a scene, without a display");
     RenderOptions& options = own_options<RenderOptions>(render, chosen, render_command);
     describe(render, "Look and measure",
              {"palpa render scenes/hiv -o tunnel.png",
@@ -400,42 +401,46 @@ void add_render(CLI::App& program, ProgramCommand& chosen) {
     CLI::Option* const film =
         render
             .add_option("--film", options.film,
-                        "a film instead, by ffmpeg; where that makes none its pictures, in the "
-                        "folder FILE-frames, and exit code 1; a name without an ending is a folder "
+                        "make a film by ffmpeg; if ffmpeg fails, its pictures stay in the folder "
+                        "FILE-frames and the exit code is 1; a name without an ending is a folder "
                         "for numbered pictures")
             ->type_name("FILE.mp4");
-    render.add_option("--seconds", options.film_seconds, "simulated, of the film, 10 unless given")
+    render
+        .add_option("--seconds", options.film_seconds,
+                    "length of the film in simulated seconds (default 10)")
         ->check(in_range(0.001, 1e5))
         ->needs(film);
-    render.add_option("--fps", options.film_fps, "pictures in each of them, 25 unless given")
+    render.add_option("--fps", options.film_fps, "pictures per simulated second (default 25)")
         ->check(in_range(0.01, 1000.0))
         ->needs(film);
     render.add_option("--coordinates", options.coordinates,
-                      "CHARMM coordinates (.crd) to write too: where the atoms are in it");
+                      "also write the coordinates of the picture to this CHARMM file (.crd)");
     add_overwrite_flag(render, options.overwrites);
     add_size_option(render, "--size", options.width, options.height);
-    render.add_option("--time", options.time_s, "seconds that the hand plays before")
+    render.add_option("--time", options.time_s, "simulated seconds to play before, s")
         ->check(in_range(0.0, 1e5));
     add_look_options(render, options);
     add_mark_options(render, options.marks);
     render
         .add_option("--camera", options.camera,
-                    "degrees around what is framed and above it, and how many times nearer")
+                    "view direction: degrees around the centre and above it; zoom factor")
         ->type_name("AZIMUTH,ELEVATION[,ZOOM]");
-    render.add_option("--look-at", options.look_at, "a molecule of the scene to frame, not all");
+    render.add_option("--look-at", options.look_at,
+                      "frame this molecule of the scene (default: all)");
     render.add_option("--view", options.saved_view, "a saved view of the scene, by its name")
         ->type_name("NAME")
         ->excludes("--camera", "--look-at");
     render.add_flag_callback(
         "--clip", [&options] { options.clips = true; },
-        "leave out what stands in front of the molecule in hand");
+        "hide atoms in front of the molecule in hand");
     render.add_flag_callback(
-        "--no-clip", [&options] { options.clips = false; }, "show it, whatever the scene says");
-    render.add_option("--samples", options.samples, "averaged for a pixel: 1, 4, 9 or 16")
+        "--no-clip", [&options] { options.clips = false; },
+        "show atoms in front, whatever the scene says");
+    render.add_option("--samples", options.samples, "samples per pixel: 1, 4, 9 or 16")
         ->check(CLI::IsMember({1, 4, 9, 16}));
-    add_negation(render, "--no-arrow", options.arrow, "without the force on the molecule");
+    add_negation(render, "--no-arrow", options.arrow, "do not draw the force on the molecule");
     add_negation(render, "--no-words", options.words,
-                 "without labels, lengths, forces and the legend of colours");
+                 "do not draw labels, lengths, forces and the colour legend");
     add_set_option(render, options.settings);
 }
 

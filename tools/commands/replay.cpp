@@ -33,10 +33,9 @@ namespace {
 
 void check_repeats(const SceneDescription& scene) {
     if (!scene.statics.budget_us) return;
-    throw LoadError(
-        scene.place_of("statics.budget_us"),
-        "the session had a time budget, and how much moved hung on the machine's speed: "
-        "such runs do not repeat; expected one without statics.budget_us");
+    throw LoadError(scene.place_of("statics.budget_us"),
+                    "cannot be replayed exactly: with a time budget the result depends on the "
+                    "speed of the machine; expected a recording without statics.budget_us");
 }
 
 // The session's file brings back the emulated hand, and no other. A recording that was cut off has
@@ -52,8 +51,8 @@ void check_device(const std::filesystem::path& folder) {
             hand["device"].is_string() ? hand["device"].get<std::string>().substr(0, 80) : "";
         if (device == "emulated Omni") return;
         throw LoadError({(folder / "summary.json").string()},
-                        fmt::format("the device was '{}'; expected one of the emulated hand (palpa "
-                                    "run --device replay:{} plays what was read then)",
+                        fmt::format("the device was '{}'; expected a recording of the emulated "
+                                    "hand (to play these readings: palpa run --device replay:{})",
                                     device, folder.string()));
     };
     check(summary);
@@ -68,9 +67,9 @@ void check_no_client_pulled(const std::filesystem::path& folder) {
     const auto summary = nlohmann::json::parse(read_text_file(file), nullptr, false);
     if (!summary.is_object() || !summary.contains("client_pulls")) return;
     throw LoadError({file.string()},
-                    "clients pulled in this run (--serve), and the recording does not have their "
-                    "forces; expected a run that no client pulled, or one of a window, which has "
-                    "them in its journal");
+                    "cannot be replayed: clients pulled in this run (--serve) and the recording "
+                    "does not have their forces; expected a run without pulling clients, or one of "
+                    "a window (its journal has the forces)");
 }
 
 // How much of a session is there.
@@ -96,22 +95,21 @@ nlohmann::ordered_json as_json(const TraceCheck& check, const RecordedTime& time
 }
 
 void print_check(const TraceCheck& check, const RecordedTime& time) {
-    fmt::print("{} of {} rows played again: ", check.compared(), check.recorded());
+    fmt::print("replayed {} of {} rows: ", check.compared(), check.recorded());
     if (check.different() == 0 && check.not_finite() > 0) {
-        fmt::print("all the same, and not all finite\n");
+        fmt::print("all identical, but not all finite\n");
     } else if (const auto& difference = check.first(); !difference) {
-        fmt::print("all the same to the last digit\n");
+        fmt::print("all identical to the last digit\n");
     } else {
         const TraceDifference& first = *difference;
         fmt::print(
-            "{} differ\n  first       row {}, {} s: {} was {}, now {}\n  forces      {:.3g} N "
-            "apart "
-            "at most\n",
+            "{} differ\n  first       row {}, {} s: {} was {}, now {}\n  forces      differ by at "
+            "most {:.3g} N\n",
             check.different(), first.row, printable(first.time_s), first.column,
             printable(first.recorded), first.played, check.largest_newton());
         fmt::print(
-            "  The same bits come from the same program on the same kind of processor "
-            "(session.toml says which).\n");
+            "  Identical results need the same program and the same kind of processor "
+            "(session.toml names them).\n");
     }
     if (check.is_cut_off()) {
         fmt::print("  cut off     {:.7g} of {:.7g} s were recorded\n", time.recorded_s,
@@ -120,7 +118,7 @@ void print_check(const TraceCheck& check, const RecordedTime& time) {
     if (check.not_finite() > 0)
         fmt::print("  not finite  a number in each of {} rows\n", check.not_finite());
     if (check.surplus() > 0)
-        fmt::print("  too many    rows behind the session's end: {}\n", check.surplus());
+        fmt::print("  too many    rows after the end of the session: {}\n", check.surplus());
 }
 
 int report(const TraceCheck& check, const RecordedTime& time, bool json) {
@@ -136,7 +134,7 @@ int report(const TraceCheck& check, const RecordedTime& time, bool json) {
 void check_has_rows(const TraceCheck& check, const std::filesystem::path& folder) {
     if (check.recorded() > 0) return;
     throw LoadError({(folder / "trace.csv").string(), 2},
-                    "holds no row; expected a recording that had begun");
+                    "has no rows; expected a recording with at least one row");
 }
 
 // What people did in a window.
@@ -201,7 +199,7 @@ int replay_command(const ReplayOptions& options) {
 
 void add_replay(CLI::App& program, ProgramCommand& chosen) {
     CLI::App& replay = *program.add_subcommand(
-        "replay", "Plays a recorded session again; --verify demands the same to the last digit");
+        "replay", "Replay a recorded session; --verify checks that every digit is the same");
     ReplayOptions& options = own_options<ReplayOptions>(replay, chosen, replay_command);
     describe(
         replay, "Experiments",
@@ -211,8 +209,7 @@ void add_replay(CLI::App& program, ProgramCommand& chosen) {
                     "in a window, where a recorded session of a window can be stopped and looked "
                     "at; every row is compared there too");
     replay.add_flag("--verify", options.verify,
-                    "hold every row of the trace against what is found now; exit code 1 where one "
-                    "differs");
+                    "compare every row of the trace with the replay; exit code 1 if one differs");
     replay.add_flag("--json", options.json, "print the result as JSON");
 }
 

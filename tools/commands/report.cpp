@@ -7,19 +7,18 @@ namespace palpa {
 
 void add_report(CLI::App& program, ProgramCommand& chosen) {
     CLI::App& report = *program.add_subcommand(
-        "report", "The paper's figures, the acceptance limits and more, computed anew: one page");
+        "report", "Compute the paper's figures and the acceptance limits again, on one page");
     ReportOptions& options = own_options<ReportOptions>(report, chosen, report_command);
     describe(report, "Experiments", {"palpa report -o report.html"});
-    report.add_option("-o,--output", options.output, "page to write, report.html unless given");
+    report.add_option("-o,--output", options.output, "page to write (default report.html)");
     add_overwrite_flag(report, options.overwrites);
-    report.add_option("--scene", options.scene, "of one axis, scenes/water unless given");
+    report.add_option("--scene", options.scene, "scene of one axis (default scenes/water)");
     report
         .add_option(
             "--hiv", options.flexible,
-            "flexible scene, scenes/hiv/flexible.toml unless given; left out where that is not "
-            "there")
+            "flexible scene (default scenes/hiv/flexible.toml, left out if it does not exist)")
         ->check(CLI::ExistingPath);
-    report.add_flag("--quick", options.quick, "fewer and shorter runs: half a minute");
+    report.add_flag("--quick", options.quick, "fewer and shorter runs, about half a minute");
     add_seed_option(report, options.seed);
     add_set_option(report, options.settings);
 }

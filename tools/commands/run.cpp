@@ -46,7 +46,7 @@ void write_frame(std::unique_ptr<FrameWriter>& writer, World& world, ProgressLin
         writer->write(world);
     } catch (const std::runtime_error& error) {
         progress.wipe();
-        fmt::print(stderr, "warning: no more frames: {}\n", error.what());
+        fmt::print(stderr, "warning: no further frames are written: {}\n", error.what());
         writer.reset();
     }
 }
@@ -56,7 +56,7 @@ void check_headless(const char* option, const std::string& device) {
     const DeviceMaker& maker = device_maker_called(device);
     if (maker.is_emulated && !maker.needs_window) return;
     throw LoadError({fmt::format("{} {}", option, device)},
-                    "is held by a person and needs the window; this run has none (headless)");
+                    "needs a person and a window, but this run has no window (--headless)");
 }
 
 }  // namespace
@@ -94,27 +94,28 @@ void check_options(const RunOptions& options) {
     if (!options.trajectory && (options.trajectory_speed != 25 || options.trajectory_frame != 1)) {
         throw LoadError(
             {options.trajectory_speed != 25 ? "--trajectory-speed" : "--trajectory-frame"},
-            "is of a trajectory that is played; expected --trajectory FILE too");
+            "needs a trajectory; expected --trajectory FILE with it");
     }
     if (options.commands && !options.headless) {
-        throw LoadError({"--commands"}, "drives runs without a window; expected --headless too");
+        throw LoadError({"--commands"},
+                        "needs a run without a window; expected --headless with it");
     }
     if (options.commands && options.json) {
         throw LoadError({"--json"},
-                        "is a summary on standard output, which has the answers to --commands; "
-                        "expected one of them");
+                        "cannot be combined with --commands, because both write to standard "
+                        "output; expected one of them");
     }
     if (!options.headless) return check_window_options(options);
     if (options.record) check_record_folder(*options.record, options.overwrites);
     if (!options.record && (options.trajectory_fps || options.trajectory_xtc)) {
         throw LoadError({options.trajectory_fps ? "--trajectory-fps" : "--trajectory-xtc"},
-                        "is of a recording; expected --record FOLDER too");
+                        "needs a recording; expected --record FOLDER with it");
     }
     if (options.last_shot || options.play || options.sound) {
         throw LoadError({options.play    ? "--play"
                          : options.sound ? "--sound"
                                          : "--shot"},
-                        "needs the window, and this run has none (headless)");
+                        "needs a window, but this run has none (--headless)");
     }
     if (options.device) check_headless("--device", *options.device);
     if (options.second) check_headless("--second", *options.second);
@@ -123,16 +124,16 @@ void check_options(const RunOptions& options) {
 void check_second(const RunOptions& options, const SceneDescription& scene) {
     if (!options.second || scene.second) return;
     throw LoadError({fmt::format("--second {}", *options.second)},
-                    "is for a scene that says what a second hand holds ([second.grab]), such as "
-                    "water/two-hands or hiv/two-hands; this one does not");
+                    "needs a scene with a second hand ([second.grab]), such as water/two-hands or "
+                    "hiv/two-hands");
 }
 
 int print_check(const SceneDescription& scene, const World& world,
                 const std::vector<std::string>& warnings, ProgressLine& progress) {
     fmt::print("{}: {}\n", printable(scene.file.string()),
-               warnings.empty() ? "nothing wrong found"
-                                : fmt::format("can be run, with {} warning{}", warnings.size(),
-                                              warnings.size() == 1 ? "" : "s"));
+               warnings.empty() ? "no problems found"
+                                : fmt::format("the scene can run, with {} warning{}",
+                                              warnings.size(), warnings.size() == 1 ? "" : "s"));
     if (scene.engine) {
         fmt::print("  engine      {} moves {} atoms\n", printable(scene.engine->address),
                    world.resource<AtomTable>().size());
@@ -157,7 +158,7 @@ std::unique_ptr<FrameWriter> open_frames(const RunOptions& options, const ViewDe
         warnings.insert(warnings.end(), lacking.begin(), lacking.end());
         return writer;
     } catch (const GpuError& error) {
-        warnings.push_back(fmt::format("no frames are drawn: {}", error.what()));
+        warnings.push_back(fmt::format("frames cannot be drawn: {}", error.what()));
         return nullptr;
     }
 }
@@ -197,12 +198,12 @@ int run_without_window(SceneDescription scene, World& world,
     if (options.record && (options.second.value_or("emulated") != "emulated" ||
                            options.device.value_or("emulated") != "emulated")) {
         warnings.emplace_back(
-            "session.toml of this recording plays the scene's own hand; whoever runs it again has "
-            "to name --device and --second again");
+            "to run this recording's session.toml again, give --device and --second again; without "
+            "them it uses the scene's hand");
     }
     if (options.record && options.trajectory) {
         warnings.emplace_back(
-            "this recording does not have the trajectory's frames: it cannot be played again");
+            "this recording does not contain the trajectory's frames, so it cannot be replayed");
     }
     const std::unique_ptr<FrameServer> server =
         open_server(options.serve, world, !options.json && !options.commands);
@@ -279,7 +280,7 @@ int run_scene(const SceneDescription& read, const RunOptions& options) {
     await_first_frame(scene, world, options, progress);
     const std::optional<PlaybackChoice> playback = playback_choice(options);
     if (playback) start_playback(world, playback->file, playback->order);
-    tell(progress.stages(), "planning the hand's way");
+    tell(progress.stages(), "planning the path of the hand");
     const EmulatedOmniSettings settings = build_emulated_omni(scene, world);
     std::vector<std::string> warnings =
         list_warnings(scene, world, settings.script, progress.stages());
@@ -312,101 +313,103 @@ namespace {
 void add_window_options(CLI::App& run, RunOptions& options) {
     run.option_defaults()->group("In a window");
     run.add_flag("--play", options.play,
-                 "the emulated hand plays the scene's stroke, not the mouse");
+                 "the emulated hand plays the scene's stroke in place of the mouse");
     run.add_flag("--sound", options.sound,
-                 "play the felt force as a tone, the stronger the higher and louder");
+                 "play the force as a tone: stronger is higher and louder");
     add_size_option(run, "--size", options.width, options.height);
     run.get_option("--size")->each([&options](const std::string&) { options.has_size = true; });
     run.add_option("--screenshots", options.screenshots,
-                   "folder for screenshots, the present one "
-                   "unless given")
+                   "folder for screenshots (default: the current one)")
         ->type_name("FOLDER");
     CLI::Option* const shot =
-        run.add_option("--shot", options.last_shot, "a picture of the window, which then closes")
+        run.add_option("--shot", options.last_shot,
+                       "save a screenshot to this file, then close the window")
             ->type_name("FILE.png");
-    run.add_option("--after", options.last_shot_s, "seconds until --shot, 5 unless given")
+    run.add_option("--after", options.last_shot_s, "seconds until --shot (default 5)")
         ->check(in_range(0.0, 1e5))
         ->needs(shot);
     run.add_flag("--validation", options.validation,
-                 "let the Vulkan validation layer watch the drawing");
+                 "check the drawing by the Vulkan validation layer");
     run.add_option("--lose-device-at", options.lose_device_at)->group("");  // a test's
 }
 
 void add_serve_options(CLI::App& run, ServeChoice& serve) {
     run.option_defaults()->group("Other programs (IMD)");
-    CLI::Option* const port =
-        run.add_option("--serve", serve.port,
-                       "be an engine that VMD, imdclient and others watch and pull, on this port; "
-                       "0: one that is free")
-            ->check(in_range(0, 65535))
-            ->type_name("PORT");
-    run.add_option("--serve-version", serve.options.version, "of IMD, 2 unless given, or 3")
+    CLI::Option* const port = run.add_option("--serve", serve.port,
+                                             "serve frames to VMD, imdclient and others, which may "
+                                             "pull, on this port (0: a free one)")
+                                  ->check(in_range(0, 65535))
+                                  ->type_name("PORT");
+    run.add_option("--serve-version", serve.options.version, "IMD version, 2 or 3 (default 2)")
         ->check(CLI::IsMember({2, 3}))
         ->needs(port);
     run.add_option("--listen", serve.options.address,
-                   "address of this machine for clients on others, who need no password; 127.0.0.1 "
-                   "unless given: clients on this machine alone")
+                   "address of this machine on which to listen, without a password (default "
+                   "127.0.0.1: only clients on this machine)")
         ->type_name("ADDRESS")
         ->needs(port);
     run.add_option("--serve-rate", serve.options.rate,
-                   "steps between frames unless a client asks for others; unless given about 30 "
-                   "frames a second")
+                   "steps between frames, unless a client requests others (default: about 30 "
+                   "frames per second)")
         ->check(in_range(1, 1e9))
         ->type_name("N")
         ->needs(port);
-    run.add_flag("--serve-wait", serve.waits, "begin when the first client does (headless)")
+    run.add_flag("--serve-wait", serve.waits, "wait until the first client starts (headless)")
         ->needs(port);
     run.add_flag("--serve-fast", serve.is_as_fast,
-                 "as fast as it computes, not in real time (headless)")
+                 "run as fast as possible, not in real time (headless)")
         ->needs(port);
 }
 
 void add_headless_options(CLI::App& run, RunOptions& options) {
     run.option_defaults()->group("Without a window");
     run.add_flag("--headless", options.headless,
-                 "in lockstep on a virtual clock: the same command gives the same bytes");
+                 "run without a window, in lockstep on a virtual clock: the same command gives "
+                 "identical results");
     CLI::Option* const record =
         run.add_option("--record", options.record,
                        "record into this folder: trace.csv, summary.json, session.toml, "
-                       "trajectory.dcd with system.psf, frames; a window session also journal.txt")
+                       "trajectory.dcd with system.psf, frames; with a window also journal.txt")
             ->type_name("FOLDER")
             ->group("With and without a window");
     add_overwrite_flag(run, options.overwrites);
     run.get_option("--overwrite")->group("With and without a window");
-    run.add_option("--fps", options.frames_per_second,
-                   "frames/0000.png ... into the recording, this many a simulated second")
+    run.add_option(
+           "--fps", options.frames_per_second,
+           "add pictures frames/0000.png ... to the recording, this many per simulated second")
         ->check(in_range(0.01, 1000.0))
         ->needs(record);
     add_size_option(run, "--frame-size", options.frame_width, options.frame_height);
-    run.add_option("--trajectory", options.trajectory,
-                   "play this trajectory of the scene's atoms: .dcd, .xtc, .trr, or models of .pdb "
-                   "or .cif; molecules move in one piece, or as its frames have them")
+    run.add_option(
+           "--trajectory", options.trajectory,
+           "play this trajectory of the scene's atoms: .dcd, .xtc, .trr, or models of .pdb or .cif")
         ->type_name("FILE")
         ->group("With and without a window");
     run.add_option("--trajectory-speed", options.trajectory_speed,
-                   "its frames a second, 25 unless given; 0: it stands")
+                   "frames of the trajectory per second (default 25; 0: it stands still)")
         ->check(in_range(0.0, 1e5))
         ->group("With and without a window");
     run.add_option("--trajectory-frame", options.trajectory_frame,
-                   "the one it begins with, 1 the first")
+                   "first frame to show, counted from 1")
         ->check(in_range(1.0, 1e9))
         ->group("With and without a window");
     run.add_option("--trajectory-fps", options.trajectory_fps,
-                   "frames a simulated second of a recording's trajectory.dcd, 0 none; unless "
-                   "given 25, until there are 256 MiB")
+                   "frames of the recording's trajectory.dcd per simulated second, 0 for none "
+                   "(default 25, up to 256 MiB)")
         ->check(in_range(0.0, 1000.0))
         ->group("With and without a window");
-    run.add_flag("--trajectory-xtc", options.trajectory_xtc, "write trajectory.xtc too")
+    run.add_flag("--trajectory-xtc", options.trajectory_xtc, "also write trajectory.xtc")
         ->group("With and without a window");
-    run.add_flag("--commands", options.commands,
-                 "lines of standard input drive the run, and each is answered by a line of JSON");
+    run.add_flag(
+        "--commands", options.commands,
+        "read commands from standard input, one a line, and answer each with a line of JSON");
     run.add_flag("--json", options.json, "print the summary as JSON");
 }
 
 }  // namespace
 
 void add_run(CLI::App& program, ProgramCommand& chosen) {
-    CLI::App& run = *program.add_subcommand("run", "A scene in a window, or without one");
+    CLI::App& run = *program.add_subcommand("run", "Run a scene in a window, or without one");
     RunOptions& options = own_options<RunOptions>(run, chosen, run_command);
     describe(run, "Feel",
              {"palpa run hiv", "palpa run scenes/water --headless --record recordings/water",
@@ -415,18 +418,16 @@ void add_run(CLI::App& program, ProgramCommand& chosen) {
               "palpa run scenes/hiv --trajectory others.xtc",
               "palpa run scenes/hiv/flexible.toml --headless --serve 8888"});
     run.add_option("scene", options.scene,
-                   "scene folder or file, recorded session.toml, or the name of one of Palpa's own "
-                   "scenes")
+                   "scene folder or file, recorded session.toml, or name of one of Palpa's scenes")
         ->required();
-    run.add_flag("--check", options.check_only,
-                 "only read the scene and say what is wrong with it");
+    run.add_flag("--check", options.check_only, "only read the scene and print its problems");
     run.add_flag_callback(
         "--keys",
         [] {
             print_scene_keys();
             throw CLI::Success();
         },
-        "list the keys of scene files, and do nothing else");
+        "only list the keys of scene files");
     run.option_defaults()->group("Hand and device");
     run.add_option_function<std::string>(
         "--device",
@@ -437,20 +438,23 @@ void add_run(CLI::App& program, ProgramCommand& chosen) {
             }
             options.device = name;
         },
-        "mouse unless given, without a window emulated; 'list' lists them");
+        "haptic device (default: mouse; without a window: emulated); 'list' lists all");
     run.add_option("--second", options.second,
-                   "device of a scene's second hand; arrow keys in a window unless given");
+                   "device of the second hand of a scene (default: arrow keys in a window)");
     std::vector<std::string>& settings = options.settings;
-    add_setting(run, "--hand", "none, light, slack, medium, firm or firm-grip", settings);
+    add_setting(run, "--hand",
+                "grip of the emulated hand: none, light, slack, medium, firm or firm-grip",
+                settings);
     add_setting(run, "--friction", "Coulomb friction of the emulated device, N", settings);
     run.option_defaults()->group("Coupling and simulation");
-    add_setting(run, "--mode", "guarded, or 1 to 5 as in the paper", settings);
+    add_setting(run, "--mode", "coupling mode: guarded, or 1 to 5 as in the paper", settings);
     add_setting(run, "--period-ms", "time between two steps of the simulation, ms", settings);
-    add_setting(run, "--engage",
-                "at-once, or ramp: the force of guarded coupling comes after a pause, in 2 s",
-                settings);
-    add_setting(run, "--seconds", "length of the run", settings);
-    add_setting(run, "--seed", "random seed, 1 unless given", settings);
+    add_setting(
+        run, "--engage",
+        "when the force of guarded coupling begins: at-once, or ramp (after quiet ticks, over 2 s)",
+        settings);
+    add_setting(run, "--seconds", "length of the run, s", settings);
+    add_setting(run, "--seed", "random seed (default 1)", settings);
     add_setting(run, "--every", "write every Nth row of the trace", settings);
     add_set_option(run, settings);
     add_window_options(run, options);

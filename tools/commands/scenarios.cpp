@@ -42,12 +42,12 @@ int run_scenarios(const ScenarioCommand& command) {
             if (number % 50 == 0) count.show(fmt::format("{} of {}", number, last));
             if (result.is_calm() || command.json) return;
             fmt::print(
-                "scenario {}: {:+.5f} J generated, ripple {:.3f} N, {:.3f} Å at the "
-                "closest{}{}\n  palpa run --headless {} --set \"{}\"\n",
+                "scenario {}: {:+.5f} J generated, ripple {:.3f} N, closest distance {:.3f} "
+                "Å{}{}\n  palpa run --headless {} --set \"{}\"\n",
                 number, result.generated_J, result.ripple_N, result.closest_angstrom,
                 result.went_through ? ", went through" : "",
-                result.was_held_back ? ", held back by the safety chain" : "",
-                options.scene.string(), fmt::join(result.settings, "\" --set \""));
+                result.was_held_back ? ", limited by the safety chain" : "", options.scene.string(),
+                fmt::join(result.settings, "\" --set \""));
         });
     count.wipe();
     const auto failed = static_cast<std::size_t>(
@@ -70,9 +70,9 @@ int run_scenarios(const ScenarioCommand& command) {
         fmt::print("{}\n", report.dump(2));
     } else {
         fmt::print(
-            "{} scenarios, {} missed a limit\n  generated   {:+.5f} J at most (limit {})\n"
-            "  ripple      {:.4f} N at most (limit {})\n  molecule    {:.3f} Å at the closest\n"
-            "  clamped     in {}\n",
+            "{} scenarios, {} missed a limit\n  generated   at most {:+.5f} J (limit {} J)\n  "
+            "ripple      at most {:.4f} N (limit {} N)\n  molecule    closest distance {:.3f} Å\n  "
+            "clipping    in {} scenarios\n",
             results.size(), failed, generated, most_generated_J, ripple, most_ripple_N, closest,
             clamped);
     }
@@ -83,7 +83,8 @@ int run_scenarios(const ScenarioCommand& command) {
 
 void add_scenarios(CLI::App& program, ProgramCommand& chosen) {
     CLI::App& scenarios = *program.add_subcommand(
-        "scenarios", "Random hands and devices on a scene of one axis: does the force vibrate?");
+        "scenarios",
+        "Test stability: does the force vibrate with random hands and devices on one axis?");
     ScenarioCommand& command = own_options<ScenarioCommand>(scenarios, chosen, run_scenarios);
     ScenarioOptions& options = command.scenarios;
     describe(scenarios, "Experiments", {"palpa scenarios scenes/water --count 100"});

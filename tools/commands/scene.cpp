@@ -40,7 +40,7 @@ int explain_keys(const SceneOptions& options) {
         std::vector<std::string_view> known;
         for (const FieldNote& field : fields) known.push_back(field.key);
         throw LoadError({"palpa scene"},
-                        fmt::format("no key or table '{}'{}; 'palpa run --keys' lists all",
+                        fmt::format("unknown key or table '{}'{}; 'palpa run --keys' lists all",
                                     printable(key), near_name_hint(key, known)));
     }
     return 0;
@@ -49,13 +49,13 @@ int explain_keys(const SceneOptions& options) {
 }  // namespace
 
 void add_scene(CLI::App& program, ProgramCommand& chosen) {
-    CLI::App& scene = *program.add_subcommand("scene", "What the keys of scene files mean");
+    CLI::App& scene = *program.add_subcommand("scene", "Explain a key of scene files");
     describe(scene, "Make scenes",
              {"palpa scene coupling.mode", "palpa scene view", "palpa scene --help period_ms"});
     SceneOptions& options = own_options<SceneOptions>(scene, chosen, explain_keys);
     scene
         .add_option("key", options.keys,
-                    "key in full, its last part, or a table; 'palpa run --keys' lists all")
+                    "full key, its last part, or a table ('palpa run --keys' lists all)")
         ->required();
 }
 

@@ -57,14 +57,14 @@ void lead_hand(Device& device, const Vec3& place_m) {
     auto* const emulated = dynamic_cast<EmulatedOmni*>(&device);
     if (!emulated) {
         throw LoadError({"hand_mm"},
-                        fmt::format("leads the emulated hand, and this hand is on another device "
+                        fmt::format("moves the emulated hand, but this hand uses another device "
                                     "({}); expected a run without --device",
                                     device.spec().name));
     }
     if (!emulated->has_hand()) {
         throw LoadError({"hand_mm"},
-                        "nobody holds the handle; expected a grip other than \"none\", --hand "
-                        "medium");
+                        "has no effect, because nobody holds the handle; expected a grip other "
+                        "than \"none\", such as --hand medium");
     }
     emulated->lead_to(place_m);
 }

@@ -131,7 +131,7 @@ int select_command(const SelectOptions& options) {
 
 void add_select(CLI::App& program, ProgramCommand& chosen) {
     CLI::App& command =
-        *program.add_subcommand("select", "Which atoms of a scene an expression selects");
+        *program.add_subcommand("select", "List the atoms of a scene that an expression selects");
     SelectOptions& options = own_options<SelectOptions>(command, chosen, select_command);
     describe(command, "Look and measure",
              {"palpa select hiv \"protein and within 5 of molecule inhibitor\"",
@@ -143,7 +143,8 @@ void add_select(CLI::App& program, ProgramCommand& chosen) {
              "within N of ..., same residue as ..., byres ..., not, and, or, parentheses.\n"
              "tools/selections.md explains them.");
     command.add_option("scene", options.scene, "scene folder or file")->required();
-    command.add_option("expression", options.expression, "which atoms, in quotes")->required();
+    command.add_option("expression", options.expression, "selection expression, in quotes")
+        ->required();
     command.add_flag("--json", options.json,
                      "print JSON; indices count all atoms of the scene from 0");
     add_set_option(command, options.settings);

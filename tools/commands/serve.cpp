@@ -28,10 +28,10 @@ std::unique_ptr<FrameServer> open_server(const ServeChoice& choice, const World&
     ServeOptions options = choice.options;
     options.port = *choice.port;
     auto server = std::make_unique<FrameServer>(options, world);
-    fmt::print(on_standard_output ? stdout : stderr, "serves on {}\n", server->place());
+    fmt::print(on_standard_output ? stdout : stderr, "serving on {}\n", server->place());
     if (!is_of_this_machine(options.address)) {
         fmt::print(stderr,
-                   "warning: whoever reaches {} can watch and pull, for there is no password\n",
+                   "warning: everyone who can reach {} can watch and pull; there is no password\n",
                    server->place());
     }
     std::fflush(stdout);

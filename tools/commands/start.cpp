@@ -36,13 +36,11 @@ void print_scenes(const std::vector<std::string>& recent) {
         if (fs::exists(file, error)) fmt::print("  opened before    {}\n", printable(file));
     }
     fmt::print(
-        "\n"
-        "  palpa run water                opens one in a window\n"
-        "  palpa run water --headless     plays it without a display\n"
-        "  palpa prepare 1abc.pdb ...     makes one of your own molecule\n"
-        "  palpa 1abc.pdb                 prepares and opens it in a window\n"
-        "  palpa devices                  says which devices were found, and what is missing\n"
-        "  palpa --help                   lists all commands\n");
+        "\n  palpa run water                open a scene in a window\n  palpa run water --headless "
+        "    play it without a display\n  palpa prepare 1abc.pdb ...     make a scene of your own "
+        "molecule\n  palpa 1abc.pdb                 prepare it and open it in a window\n  palpa "
+        "devices                  check which devices are found, and what is missing\n  palpa "
+        "--help                   list all commands\n");
 }
 
 }  // namespace
@@ -67,13 +65,15 @@ int open_command(const std::vector<std::string>& files) {
     for (const std::string& file : files) {
         if (file.starts_with('-'))
             throw LoadError({file},
-                            "is an option; 'palpa run SCENE' takes options, 'palpa FILE' none");
-        if (!std::ifstream(file)) throw LoadError({file}, "cannot be read; is it there?");
+                            "is an option, which 'palpa FILE' does not take; use 'palpa run SCENE' "
+                            "with options");
+        if (!std::ifstream(file))
+            throw LoadError({file}, "cannot be read; check that the file exists");
     }
     if (!has_display()) {
         throw LoadError({files[0]},
-                        "needs a display to be opened; without one 'palpa prepare FILE -o FOLDER' "
-                        "makes a scene of a structure, and 'palpa run SCENE --headless' plays it");
+                        "needs a display; without one, make a scene with 'palpa prepare FILE -o "
+                        "FOLDER' and play it with 'palpa run SCENE --headless'");
     }
     return open_screens({files.begin(), files.end()});
 }

@@ -31,7 +31,7 @@ std::vector<CouplingMode> modes_called(const std::string& names) {
             static_cast<CouplingMode>(choice_called("--modes", name, coupling_mode_names));
         if (std::ranges::find(modes, mode) != modes.end()) {
             throw LoadError({"--modes " + names},
-                            fmt::format("names {} twice; expected every mode once", name));
+                            fmt::format("names {} twice; expected each mode once", name));
         }
         modes.push_back(mode);
         begin = end + 1;
@@ -102,7 +102,7 @@ int run_study(const StudyCommand& command) {
 
 void add_study(CLI::App& program, ProgramCommand& chosen) {
     CLI::App& study = *program.add_subcommand(
-        "study", "The paper's experiment: who finds the place without force in which mode?");
+        "study", "Repeat the paper's experiment: find the place without force in each mode");
     StudyCommand& command = own_options<StudyCommand>(study, chosen, run_study);
     ForcedChoiceOptions& choice = command.choice;
     StudyOptions& options = choice.study;
@@ -114,49 +114,54 @@ void add_study(CLI::App& program, ProgramCommand& chosen) {
     options.operators = 0;
     CLI::Option* const operators =
         study
-            .add_option("--operators", options.operators,
-                        "emulated ones, headless; without them a person takes part, in a window")
+            .add_option(
+                "--operators", options.operators,
+                "number of emulated operators, headless (default: a person takes part in a window)")
             ->check(in_range(1, 1e6));
     CLI::Option* const rounds =
-        study.add_option("--rounds", options.rounds, "each with every mode once, 3 unless given")
+        study
+            .add_option("--rounds", options.rounds,
+                        "number of rounds, each with every mode once (default 3)")
             ->check(in_range(1, 999));
     study.add_option_function<std::string>(
         "--modes", [&options](const std::string& names) { options.modes = modes_called(names); },
-        "1 to 5 and guarded, with commas between; all unless given");
+        "modes 1 to 5 and guarded, separated by commas (default: all)");
     CLI::Option* const manner = study.add_option_function<std::string>(
         "--operator", [&options](const std::string& name) { options.manner = manner_called(name); },
-        "naive: follows the force; careful: then takes the middle of the range without force "
-        "(naive unless given)");
+        "rule of the operators: naive follows the force; careful then takes the middle of the "
+        "range without force (default naive)");
     CLI::Option* const question = study.add_option_function<std::string>(
         "--forced-choice",
         [&command](const std::string& name) {
             command.choice.question = question_called(name);
             command.is_choice = true;
         },
-        "stiffer or attracts-more, instead: of two molecules, one with all forces larger, which "
-        "is it?");
+        "instead: a forced choice, stiffer or attracts-more, between two molecules of which one "
+        "has larger forces");
     question->excludes(rounds)->excludes(manner)->needs(operators);
     manner->needs(operators);
-    study.add_option("--repeats", choice.repeats, "of each pair, 10 unless given")
+    study.add_option("--repeats", choice.repeats, "repetitions of each pair (default 10)")
         ->check(in_range(1, 1e6))
         ->needs(question);
-    study.add_option("--limit", options.limit_s, "seconds for a trial, 90 unless given")
+    study.add_option("--limit", options.limit_s, "time limit of a trial, s (default 90)")
         ->check(in_range(1, 3600))
         ->needs(operators)
         ->excludes(question);
     add_seed_option(study, options.seed);
     study.add_option("-o,--output", command.folder,
-                     "new folder for trials.csv, summary.json and line.csv; of forced choices for "
-                     "choices.csv and summary.json; of people, each of whom adds to it, for "
+                     "new folder for the results: trials.csv, summary.json and line.csv; for "
+                     "forced choices choices.csv and summary.json; for people (each adds to it) "
                      "trials.csv, session.json and line.csv");
     study.add_flag("--json", command.json, "print the summary as JSON")->needs(operators);
     study
         .add_flag("--validation", command.validation,
-                  "let the Vulkan validation layer watch the window's drawing")
+                  "check the window's drawing by the Vulkan validation layer")
         ->excludes(operators);
-    add_setting(study, "--period-ms", "declared period of the simulation, 14 unless given",
+    add_setting(study, "--period-ms", "declared period of the simulation, ms (default 14)",
                 options.settings);
-    add_setting(study, "--hand", "light, slack, medium, firm or firm-grip", options.settings);
+    add_setting(study, "--hand",
+                "grip of the emulated hand: light, slack, medium, firm or firm-grip",
+                options.settings);
     add_setting(study, "--friction", "Coulomb friction of the device", options.settings);
     add_set_option(study, options.settings);
 }

@@ -30,7 +30,7 @@ std::unique_ptr<FolderLock> make_study_folder(const std::filesystem::path& folde
         if (!std::filesystem::exists(std::filesystem::symlink_status(folder / file, error)))
             continue;
         throw LoadError({(folder / file).string()},
-                        "is there, so the folder holds a study already; expected a new folder");
+                        "already exists, so the folder contains a study; expected a new folder");
     }
     std::filesystem::create_directories(folder, error);
     if (error) throw LoadError({folder.string()}, "cannot be made: " + error.message());

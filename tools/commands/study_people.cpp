@@ -31,7 +31,7 @@ namespace {
 std::string read_table(const std::filesystem::path& table) {
     std::string text = read_text_file(table);
     if (!text.starts_with(trial_names())) {
-        throw LoadError({table.string(), 1}, "is no table of a study; expected another folder");
+        throw LoadError({table.string(), 1}, "is not a table of a study; expected another folder");
     }
     return text;
 }
@@ -55,22 +55,22 @@ void check_same_study(const std::filesystem::path& file, const nlohmann::ordered
     std::error_code error;
     if (!std::filesystem::exists(file, error)) {
         throw LoadError({file.string()},
-                        "is missing, so nobody knows the settings of the trials beside it; "
-                        "expected another folder");
+                        "is missing, so the settings of the trials beside it are unknown; expected "
+                        "another folder");
     }
     const auto before = nlohmann::json::parse(read_text_file(file), nullptr, false);
     if (!before.is_object())
-        throw LoadError({file.string()}, "has no settings of a study; expected another folder");
+        throw LoadError({file.string()},
+                        "does not contain the settings of a study; expected another folder");
     const auto was = [&](const std::string& key) { return before.value(key, nlohmann::json()); };
     for (const auto& [key, value] : now.items()) {
         // Settings may be the scene's own.
         if (key == "settings" && was("scene_hash") == now["scene_hash"]) continue;
         if (was(key) == nlohmann::json(value)) continue;
-        throw LoadError(
-            {file.string()},
-            fmt::format("the trials here have {} = {}, and these would have {}; expected the same "
-                        "settings, or another folder",
-                        key, was(key).dump(), value.dump()));
+        throw LoadError({file.string()},
+                        fmt::format("the trials in this folder have {} = {}, but these would have "
+                                    "{}; expected the same settings, or another folder",
+                                    key, was(key).dump(), value.dump()));
     }
 }
 
@@ -85,8 +85,7 @@ std::size_t draw_participant() {
 int study_in_window(const StudyCommand& command) {
     const StudyOptions& options = command.choice.study;
     if (!command.folder) {
-        throw LoadError({"--output"},
-                        "is missing; expected the folder in which people's trials are kept");
+        throw LoadError({"--output"}, "is missing; expected the folder with the trials of people");
     }
     std::error_code error;
     std::filesystem::create_directories(*command.folder, error);

@@ -126,7 +126,8 @@ int run_unbind(const UnbindCommand& command) {
 
 void add_unbind(CLI::App& program, ProgramCommand& chosen) {
     CLI::App& unbinding = *program.add_subcommand(
-        "unbind", "Takes a molecule out of its pocket and back, by hand, period and mode");
+        "unbind",
+        "Take a molecule out of its pocket and back, for several hands, periods and modes");
     UnbindCommand& command = own_options<UnbindCommand>(unbinding, chosen, run_unbind);
     UnbindingOptions& options = command.unbinding;
     describe(unbinding, "Experiments",
@@ -156,8 +157,8 @@ void add_unbind(CLI::App& program, ProgramCommand& chosen) {
             ->check(in_range(0, 1e6));
     unbinding
         .add_option("--random", options.random,
-                    "run this many random hands, devices, periods, paths and numbers of active "
-                    "joints instead")
+                    "instead: run this many random hands, devices, periods, paths and numbers of "
+                    "active joints")
         ->check(in_range(1, 1e6))
         ->excludes(periods)
         ->excludes(fastest)

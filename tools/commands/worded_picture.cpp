@@ -13,7 +13,7 @@ std::optional<TextPainter> open_words(std::vector<std::string>& warnings) {
     try {
         return open_text_painter();
     } catch (const LoadError& error) {
-        warnings.push_back(fmt::format("pictures are made without words: {}", error.what()));
+        warnings.push_back(fmt::format("pictures are drawn without words: {}", error.what()));
         return std::nullopt;
     }
 }

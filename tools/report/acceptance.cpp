@@ -248,9 +248,8 @@ ReportSection report_acceptance(const ReportOptions& options) {
 
     ReportSection section{"acceptance", "Acceptance: limit and measured value"};
     section.shows =
-        "What guarded coupling is held to, and the worst that this run found: hands from none to "
-        "firm with a grip, with and without the device's friction of 0.26 N, periods of 1 to 83 "
-        "ms.";
+        "The limits for guarded coupling and the worst value of this run: hands from none to "
+        "firm-grip, with and without the device's friction of 0.26 N, periods from 1 to 83 ms.";
     std::vector<std::vector<std::string>> table{{"test", "limit", "measured", ""}};
     for (const Row& row : rows) {
         table.push_back({row.test, row.limit, row.measured,

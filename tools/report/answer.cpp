@@ -215,14 +215,13 @@ ReportSection report_answers(const ReportOptions& options) {
         "At {} completely relaxed pose{} the hand moves by 0.1 Å along x, y and z. The error is "
         "that of the change of the force on it, against complete relaxation on all pairs and "
         "relative to the change, or to 20 pN if it is less. {} moves were snaps and are left out. "
-        "Methods with a cutoff are also judged by complete relaxation with the same cutoff: what "
-        "is "
-        "left of their error is the cutoff's. mN are those at the handle, by the gain of weak "
-        "forces, {:.3g}.",
+        "Methods with a cutoff are also compared with complete relaxation with the same cutoff; "
+        "the difference is the error of the cutoff. mN are forces at the handle, with the gain for "
+        "weak forces, {:.3g} N/N.",
         answers.poses, answers.poses == 1 ? "" : "s", snaps, 1e12 * answers.newton_per_pN);
     section.body = draw_figure(plot_answers(answers),
-                               "Left the median over poses and axes, right nine of ten. A line "
-                               "begins where half of the moves have an answer.",
+                               "Left: median over poses and axes; right: 90 % of the moves. A line "
+                               "begins where half of the moves have a result.",
                                answer_picture_size) +
                    format_table(list_answers(answers));
     section.differs =

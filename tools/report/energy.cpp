@@ -45,8 +45,8 @@ ReportSection report_energy(const ReportOptions& options) {
     ReportSection section{"energy", "Energy by design and period"};
     section.shows =
         "Work on a medium hand over a stroke of 3 s to 3 nN and 3 s back, + given to it: modes 1 "
-        "and 2 as printed, and guarded coupling. Off the law: the force sent, but for the servo's "
-        "own damping, less what the law gives at rest where the molecule is.";
+        "and 2 as printed, and guarded coupling. Off the law: the rendered force without servo "
+        "damping, minus the force of the ideal law for the molecule at rest at the same place.";
     section.body = draw_figure(format_data("energy", bars) + R"(set style data histograms
 set style fill solid 0.85
 set xzeroaxis lt -1
@@ -60,8 +60,8 @@ plot $energy using 2 lc rgb '#c0392b' title 'mode 1', '' using 3 lc rgb '#1f5fa8
                                "Without friction.", {900, 340}) +
                    format_table(table);
     section.differs =
-        "The paper gives no energies. Where a molecule does not come back to 7 Å the way was not "
-        "closed, and the number holds what the field keeps as well.";
+        "The paper gives no energies. If the molecule does not return to 7 Å, the path is not "
+        "closed and the number includes potential energy of the field.";
     std::vector<std::string> settings = stroke;
     settings.insert(settings.end(), {"mode=2", "friction_N=0", "period_ms=14"});
     section.command = run_command_of(options, settings);

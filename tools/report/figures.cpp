@@ -122,8 +122,8 @@ unset multiplot
 )",
         "Left as in the paper, F_m over time. Right: F_m (red) and energy (grey) over distance.");
     section.differs =
-        "The paper's hand was a person's, this one is a script; the paper gives less than 0.35 nN "
-        "of attraction, for an orientation that it does not name. Here it is that of the strongest "
+        "In the paper a person moved the hand, here a script does. The paper reports an attraction "
+        "below 0.35 nN for an orientation that it does not state; here it is that of the strongest "
         "bond.";
     section.command = run_command_of(options, guarded_settings);
     return section;
@@ -164,9 +164,9 @@ set ylabel 'A_d (10^9)'
 plot $gain with lines lw 2 lc rgb '#1e8449'
 unset multiplot
 )",
-                    "Left: eq. 2 as in the paper. Right: eq. 3, which it does not draw.");
+                    "Left: eq. 2 as in the paper. Right: eq. 3, which the paper does not plot.");
     section.differs = fmt::format(
-        "The curve is the printed formula's: its slope is {:.3f}·10⁹ at 0, not A_fmax, and "
+        "The curve is the printed formula: its slope is {:.3f}·10⁹ at 0, not A_fmax, and "
         "{:.3f}·10⁹ at F_0, not A_fmin; at F_0 it gives {:.3f} N, not F_h1 + A_fmin F_0.",
         slope / 1e9, hand_force_slope(laws.force, F_0) / 1e9, hand_force(laws.force, F_0));
     section.command = "palpa report";

@@ -119,12 +119,11 @@ ReportSection report_figure_9(const ReportOptions& options) {
                                     describe("As the scene has it", all));
     }
     section.differs = fmt::format(
-        "In the paper 40 of 848 degrees of freedom are active, both gains vary, the inhibitor is "
-        "that of 2AZ8, and it comes out. The hand here leads the molecule by sight, the gains are "
-        "the scene's own, and the inhibitor is TL-3: with 40 active joints up to {:.1f} nN hold it "
-        "back, it goes {:.1f} Å within {:.0f} s, and there no heavy atom of the protein is nearer "
-        "than "
-        "{:.1f} Å.",
+        "In the paper 40 of 848 degrees of freedom are active, both gains vary, and the inhibitor "
+        "is that of 2AZ8, which leaves the protease. Here the hand leads the molecule by sight, "
+        "the gains are those of the scene, and the inhibitor is TL-3: with 40 active joints a "
+        "force of up to {:.1f} nN opposes it, it moves {:.1f} Å within {:.0f} s, and its nearest "
+        "protein heavy atom there is {:.1f} Å away.",
         largest_nN, unbinding.farthest, few.rows.empty() ? 0.0 : few.rows.back()[0],
         unbinding.clearance);
     section.command = fmt::format("palpa run {} --headless --set \"{}\"", options.flexible.string(),
@@ -165,8 +164,9 @@ ReportSection report_speed(const ReportOptions& options) {
     }
     ReportSection section{"speed", "Speed against error of few active joints"};
     section.shows = fmt::format(
-        "The hand goes {:.2f} Å along the tunnel and back in {} moves: time of a step, and how far "
-        "the forces on it are from those with all joints active and all pairs in double precision.",
+        "The hand moves {:.2f} Å along the tunnel and back in {} moves. The plot shows the time of "
+        "a step and the error of the force on the hand against all joints active and all pairs in "
+        "double precision.",
         0.005 * moves / 2, moves);
     section.body = draw_figure(points + R"(EOD
 set logscale xy

@@ -23,8 +23,8 @@ std::vector<HardCase> list_cases() {
         {"30 Å at the largest gain, 14 cm in 0.15 s, and back",
          {"stroke=path", "hand.start_angstrom=30",
           "path=[[0.3, 70], [0.45, -70], [0.6, -70], [0.75, 70]]"}},
-        {"let go in the middle of a push", {"stroke=in-out", "release_s=3"}},
-        {"nobody holds it, knocked by 5 mN s",
+        {"hand lets go in the middle of a push", {"stroke=in-out", "release_s=3"}},
+        {"nobody holds the handle, impulse of 5 mN s",
          {"stroke=hold", in_contact, "grip=none", "kick_N_s=0.005"}},
         {"force gains a hundredfold", {"stroke=in-out", "A_f_max=510e9", "A_f_min=64e9"}},
         {"T_s = 500 ms", {"stroke=in-out", "period_ms=500"}},
@@ -45,10 +45,9 @@ double largest_sent(const AxisRun& played) {
 ReportSection report_hard(const ReportOptions& options) {
     ReportSection section{"hard", "Hard cases"};
     section.shows =
-        "What is hard for any coupling, on two waters with guarded coupling, medium hand, 14 ms "
-        "and "
-        "no friction unless said: every number is finite, no force above the clamp of 3 N, and the "
-        "hand at rest in the end (ripple below 0.02 N).";
+        "Difficult cases for any coupling: two waters, guarded coupling, medium hand, 14 ms and no "
+        "friction unless stated. Required: every number is finite, no force exceeds the limit of 3 "
+        "N, and the hand is at rest in the end (ripple below 0.02 N).";
     std::vector<std::vector<std::string>> table{{"case", "largest force (N)", "closest (Å)",
                                                  "in the end (Å)", "energy (mJ)",
                                                  "ripple at the end (N)", ""}};
@@ -70,8 +69,8 @@ ReportSection report_hard(const ReportOptions& options) {
     }
     section.body = format_table(table);
     section.differs =
-        "The paper has no such cases. Energy that was in the field at the start is given to the "
-        "hand; tests labelled [hard] hold many more cases of every module.";
+        "The paper has no such cases. Potential energy of the start can be given to the hand. The "
+        "tests labelled [hard] have many more cases for every module.";
     return section;
 }
 

@@ -43,10 +43,10 @@ ReportSection report_kernels(const ReportOptions& options) {
     }
     ReportSection section{"kernels", "Kernels: speed against error, beside other programs"};
     section.shows =
-        "Energies and forces of all terms of the protease and its inhibitor, in single precision, "
-        "by kind of processor that this one can be; errors are against the same in double.";
+        "Energies and forces of all terms of the protease and its inhibitor in single precision, "
+        "for each instruction set of this processor; errors are against double precision.";
     section.body = format_table(table) + compare_peers(options);
-    section.differs = "The paper does not tell what its force field costs.";
+    section.differs = "The paper does not state the cost of its force field.";
     section.command = fmt::format("palpa bench {} --kernel; tools/scripts/compare_peers",
                                   options.flexible.string());
     return section;

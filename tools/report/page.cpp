@@ -32,9 +32,11 @@ std::string run_gnuplot(const std::string& script) {
     write_text_file(input, script);
     const ProgramRun run = read_program({"gnuplot", input.string()});
     if (run.end.problem != 0) {
-        throw LoadError({"gnuplot"}, fmt::format("cannot be started ({}), and draws all figures; "
-                                                 "expected it to be installed: package gnuplot-nox",
-                                                 std::strerror(run.end.problem)));
+        throw LoadError(
+            {"gnuplot"},
+            fmt::format(
+                "cannot be started ({}), but draws all figures; install it (Debian: gnuplot-nox)",
+                std::strerror(run.end.problem)));
     }
     if (run.end.status != 0) throw std::runtime_error("gnuplot: " + run.errors);
     return run.output;
@@ -100,7 +102,7 @@ std::string draw_svg(const std::string& script, PlotSize size) {
                                 size.width, size.height) +
                     script);
     const std::size_t begin = svg.find("<svg");
-    if (begin == std::string::npos) throw std::runtime_error("gnuplot drew nothing");
+    if (begin == std::string::npos) throw std::runtime_error("gnuplot produced no figure");
     return svg.substr(begin);
 }
 

@@ -66,21 +66,21 @@ Existing check(const ReportOptions& options) {
     const SceneDescription scene = read_scene(options.scene, options.settings);
     if (scene.coupling.mode != CouplingMode::Guarded) {
         throw LoadError(scene.place_of("coupling.mode"),
-                        "the limits of a report are guarded coupling's; expected coupling.mode = "
-                        "\"guarded\"");
+                        "the limits of the report apply to guarded coupling; expected "
+                        "coupling.mode = \"guarded\"");
     }
     const World world = load_world(scene);
     if (moves_in_space(world) || has_mobile(world) || !equilibrium_distance(world)) {
         throw LoadError(scene.place_of("grab.molecule"),
-                        "is not drawn to one place on a line, which a report needs; expected a "
-                        "scene of one axis such as scenes/water");
+                        "has no place without force on a line; expected a scene of one axis such "
+                        "as scenes/water");
     }
     if (std::filesystem::exists(options.flexible)) {
         const SceneDescription flexible = read_scene(options.flexible);
         if (!flexible.has_statics()) {
             throw LoadError({options.flexible.string()},
-                            "nothing moves by itself here; expected a flexible scene, as "
-                            "scenes/hiv/flexible.toml");
+                            "no molecule of this scene moves by itself; expected a flexible scene "
+                            "such as scenes/hiv/flexible.toml");
         }
     }
     if (const std::optional<ClosedPathOptions> paths = find_closed_paths(options))

@@ -70,10 +70,10 @@ ReportSection report_stability(const ReportOptions& options) {
 
     ReportSection section{"stability", "Stability: A_f/A_d against T_s"};
     section.shows = fmt::format(
-        "The largest A_f/A_d that stays calm, of two waters at rest (k_e = {:.1f} N/m), without "
-        "friction: equation 1 of the paper, the law of small damping, the eigenvalues of the "
-        "sampled loop, and where the emulated loop began to shake. The table has K = A_f k_e/A_d "
-        "in N/m.",
+        "The largest stable A_f/A_d for two waters at rest (k_e = {:.1f} N/m) without friction, "
+        "from equation 1 of the paper, from the law for small damping, from the eigenvalues of the "
+        "sampled loop, and measured where the emulated loop begins to vibrate. The table lists K = "
+        "A_f k_e/A_d in N/m.",
         k_e);
     section.body =
         draw_figure(format_data("curves", curves) + format_data("points", points) +
@@ -91,12 +91,13 @@ plot $curves using 1:2 with lines lw 2 dt 2 lc rgb '#c0392b' title 'eq. 1', \
      $curves using 1:7 with lines lw 2 lc rgb '#d68910' title 'firm', \
      $points with points pt 7 ps 0.8 lc rgb '#222222' title 'measured'
 )",
-                    "Lines of hands: eigenvalues. Above a line the loop shakes.", {900, 460}) +
+                    "Lines of hands: eigenvalues. Above a line the loop vibrates.", {900, 460}) +
         format_table(table);
     section.meets_limits = farthest <= 0.05;
     section.differs = fmt::format(
-        "Equation 1 names neither hand nor damping, and allows what shakes wherever its line is "
-        "above the others. Measured and eigenvalues are {:.1f} % apart at most (limit 5 %).",
+        "Equation 1 includes neither hand nor damping; where its line is above the others, it "
+        "allows loops that vibrate. Measured limits and eigenvalues differ by at most {:.1f} % "
+        "(limit 5 %).",
         100 * farthest);
     section.command = "ctest --preset release -R 'the emulated loop begins to shake'";
     return section;

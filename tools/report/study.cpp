@@ -148,7 +148,7 @@ ReportSection report_figures_7_and_8(const ReportOptions& options) {
     std::ranges::copy_if(rows, std::back_inserter(with_force),
                          [](const StudyRow& row) { return row.mode != CouplingMode::NoForce; });
 
-    ReportSection section{"figures-7-8", "Figures 7 and 8: who finds the place without force"};
+    ReportSection section{"figures-7-8", "Figures 7 and 8: finding the place without force"};
     section.shows = fmt::format(
         "{} emulated operators, {} times each mode: mean distance from the place where the force "
         "is 0, and mean time; deviations at half their size, their values in parentheses.",
@@ -174,10 +174,10 @@ ReportSection report_figures_7_and_8(const ReportOptions& options) {
         draw_figure_8(study, results, 1) + format_table(table) +
         hold_against_mode_4(rows, section.meets_limits);
     section.differs =
-        "The paper asked five people three times. Operators here follow a rule and a threshold of "
-        "force: compare ratios of modes, not distances; mode 5 is a guess of the size that "
-        "people's "
-        "had, not a prediction. Guarded coupling is no mode of the paper.";
+        "The paper asked five people three times. Here emulated operators follow a rule with a "
+        "force threshold: compare ratios between modes, not distances. In mode 5 the error of the "
+        "operator is not simulated but set to the spread that the paper reports; this row is an "
+        "input, not a result. Guarded coupling is not a mode of the paper.";
     section.command =
         fmt::format("palpa study {} --operators {} --rounds {} --seed {}", options.scene.string(),
                     study.operators, study.rounds, options.seed);

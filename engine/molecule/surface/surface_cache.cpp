@@ -45,8 +45,8 @@ SurfaceCache::SurfaceCache(std::vector<double> radii, const SurfaceSettings& set
     if (!(settings.spacing > 0) || !(settings.sharpness > 0) || !(settings.probe >= 0) ||
         !(settings.tolerance >= 0)) {
         throw std::invalid_argument(
-            "a surface needs a spacing and a sharpness above 0, a probe and a tolerance of 0 or "
-            "more");
+            "a surface needs a spacing (Å) and a sharpness above 0, and a probe radius and a "
+            "tolerance (Å) of 0 or more");
     }
     field_ = make_field(settings);
 }

@@ -49,8 +49,8 @@ std::size_t move_on(Playback& playback, double period_s) {
 // The atoms stay, and it is not tried again at each step.
 void stand_before(Playback& playback, std::size_t due, const std::string& what) {
     playback.damage =
-        fmt::format("the trajectory stands at frame {} of {}: {}", playback.shown.value_or(due) + 1,
-                    playback.trajectory->frame_count(), what);
+        fmt::format("the trajectory stopped at frame {} of {}: {}",
+                    playback.shown.value_or(due) + 1, playback.trajectory->frame_count(), what);
     playback.problem = playback.damage;
     playback.is_paused = true;
     playback.shown = due;
@@ -94,11 +94,14 @@ void show(World& world, Playback& playback, std::size_t frame) {
 std::string find_obstacle(const World& world, const Playback& playback) {
     const std::size_t atoms = world.resource<AtomTable>().size();
     if (atoms != playback.trajectory->atom_count()) {
-        return fmt::format("the trajectory stands: it has {} atoms, and since an edit there are {}",
-                           playback.trajectory->atom_count(), atoms);
+        return fmt::format(
+            "the trajectory is stopped: it has {} atoms, but since an edit the scene has {}; undo "
+            "the edit",
+            playback.trajectory->atom_count(), atoms);
     }
     if (has_mobile(world))
-        return "the trajectory stands while a spring holds an atom, or anything moves by itself";
+        return "the trajectory is stopped while a spring holds an atom or a molecule moves by "
+               "itself; let go first";
     return {};
 }
 
@@ -125,8 +128,8 @@ void play_trajectory(World& world, const StepInput& /*input*/) {
 SceneDescription as_played(SceneDescription scene) {
     if (scene.engine) {
         throw LoadError(scene.place_of("engine"),
-                        "a remote engine moves all atoms, and a trajectory would too; expected a "
-                        "scene without [engine]");
+                        "a trajectory cannot be played: a remote engine moves the atoms; expected "
+                        "a scene without [engine]");
     }
     for (MoleculeDescription& molecule : scene.molecules) {
         molecule = in_one_piece(std::move(molecule));
@@ -144,8 +147,8 @@ void start_playback(World& world, const std::filesystem::path& file, const Playb
     const std::size_t atoms = world.resource<AtomTable>().size();
     if (playback.trajectory->atom_count() != atoms) {
         throw LoadError({file.string()},
-                        fmt::format("has {} atoms in a frame, and the scene {}; expected a "
-                                    "trajectory of the scene's atoms, in its order",
+                        fmt::format("has {} atoms in a frame, but the scene has {}; expected a "
+                                    "trajectory of the scene's atoms in the same order",
                                     playback.trajectory->atom_count(), atoms));
     }
     const std::size_t frame = order.frame.value_or(0);
@@ -188,7 +191,7 @@ std::vector<std::string> list_playback_notes(const World& world) {
     const Playback* const playback = world.find_resource<Playback>();
     if (!playback) return notes;
     for (const std::string& note : playback->trajectory->notes())
-        notes.push_back(fmt::format("the trajectory has {} frames: the file {}",
+        notes.push_back(fmt::format("the trajectory has {} complete frames: the file {}",
                                     playback->trajectory->frame_count(), note));
     return notes;
 }
