@@ -174,6 +174,7 @@ void LiveSimulation::obey(const Pause& pause) {
 }
 
 void LiveSimulation::obey(const Reset& reset) {
+    ++readout_.resets;
     if (find_remote_engine(world_)) {
         readout_.problem = "a remote engine's atoms are where they are: nothing puts them back";
         return;
@@ -185,6 +186,7 @@ void LiveSimulation::obey(const Reset& reset) {
         World start = load_world(as_live(scene_));
         carry_playback(world_, start);
         lesson_ = LessonMeter(scene_, start);
+        readout_.lesson = lesson_.measures();
         world_ = std::move(start);
     } catch (const LoadError& error) {  // the files changed meanwhile: what runs, runs on
         readout_.problem = error.what();
