@@ -36,7 +36,7 @@ inline constexpr std::array ion_looks = std::to_array<ElementLook>({
     {"MG", 1.70F, {0.224F, 0.723F, 0.000F}},
     {"CA", 1.70F, {0.617F, 1.000F, 0.389F}},
     {"ZN", 1.70F, {0.129F, 0.155F, 0.295F}},
-    {"CL", 1.70F, {0.163F, 0.396F, 0.055F}},
+    {"CL", 1.70F, {0.172F, 0.394F, 0.060F}},
 });
 
 inline const ElementLook& look_of(std::string_view element) noexcept {
