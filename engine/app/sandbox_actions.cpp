@@ -134,6 +134,7 @@ void Sandbox::perform(Action action) {
     if (action == Action::Reset) rest_all();
     if (action == Action::Reset) wanted_.reset();
     if (action == Action::Reset) announced_.reset();
+    if (action == Action::Reset) lesson_step_.reset();  // its step has a view of its own
     std::vector<Command> commands;
     if (overlay_.perform(action, commands)) {
         for (const Command& command : commands) {

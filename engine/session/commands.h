@@ -69,6 +69,7 @@ struct Readout {
     WorkBudget work_budget;
     bool paused = false;
     bool holds_something = true;      // the hand
+    std::uint64_t resets = 0;         // so far, those that failed too
     std::uint64_t refused_edits = 0;  // so far, but for undo and redo
     std::string problem;              // why the last Reset or edit failed; else empty
     std::string engine;               // how a remote engine fares, a sentence; empty: there is none

@@ -45,10 +45,6 @@ std::vector<std::uint32_t> list_selected(const std::vector<bool>& chosen) {
     return atoms;
 }
 
-bool has_atom(const std::vector<std::uint32_t>& rising, std::uint32_t atom) {
-    return std::ranges::binary_search(rising, atom);
-}
-
 }  // namespace
 
 std::size_t map_cell(double phi_deg, double psi_deg) noexcept {
@@ -64,6 +60,7 @@ LessonMeter::LessonMeter(const SceneDescription& scene, const World& world)
     : scene_(scene), starts_(scene.lesson.size()) {
     measures_.values.assign(scene.lesson.size(), not_of_world);
     atoms_.resize(scene.lesson.size());
+    sites_.resize(scene.lesson.size());
     edition_ = world.resource<AtomEdition>();
     for (std::size_t i = 0; i < scene.lesson.size(); ++i) find_atoms(world, i);
     for (std::size_t i = 0; i < scene.lesson.size(); ++i) {
@@ -79,11 +76,14 @@ LessonMeter::LessonMeter(const SceneDescription& scene, const World& world)
 // Throws LoadError where the step is of nothing that is there.
 void LessonMeter::find_atoms(const World& world, std::size_t i) {
     atoms_[i].clear();
+    sites_[i].clear();
     const LessonStepDescription& step = scene_.lesson[i];
     const std::string key = fmt::format("lesson.{}.of", step.name);
     std::vector<Atoms> found;
+    std::vector<BondSites> sites;
     for (const std::string& text : step.of) {
-        const Atoms atoms = list_selected(select_in_world(world, parse_selection(text, key)));
+        const std::vector<bool> chosen = select_in_world(world, parse_selection(text, key));
+        const Atoms atoms = list_selected(chosen);
         const bool is_right =
             needs_single_atoms(step.quantity) ? atoms.size() == 1 : !atoms.empty();
         if (!is_right) {
@@ -93,6 +93,8 @@ void LessonMeter::find_atoms(const World& world, std::size_t i) {
                             needs_single_atoms(step.quantity) ? "one" : "some"));
         }
         found.push_back(atoms);
+        if (step.quantity == LessonQuantity::HydrogenBonds)
+            sites.push_back(find_bond_sites(world.resource<AtomTable>(), chosen));
     }
     if (step.quantity == LessonQuantity::Way && step.of.empty())
         found.push_back(held_atoms(world, first_hand(world)));
@@ -102,6 +104,7 @@ void LessonMeter::find_atoms(const World& world, std::size_t i) {
             fmt::format("'{}' is missing and the hand holds nothing; expected a selection", key));
     }
     atoms_[i] = std::move(found);
+    sites_[i] = std::move(sites);
 }
 
 void LessonMeter::measure(const World& world) {
@@ -116,7 +119,6 @@ void LessonMeter::measure(const World& world) {
             }
         }
     }
-    bonds_.reset();
     add_work(world);
     if (map_step_ && !atoms_[*map_step_].empty()) visit_map(world, atoms_[*map_step_]);
     for (std::size_t i = 0; i < scene_.lesson.size(); ++i) measures_.values[i] = value_of(world, i);
@@ -142,16 +144,7 @@ void LessonMeter::visit_map(const World& world, const std::vector<Atoms>& atoms)
     measures_.map[map_cell(measures_.phi_deg, measures_.psi_deg)] = 1;
 }
 
-double LessonMeter::count_bonds(const World& world, const std::vector<Atoms>& sides) {
-    if (!bonds_) bonds_ = find_hydrogen_bonds(world, ShownBonds::All);
-    const auto ties = [&](const HydrogenBond& bond) {
-        return (has_atom(sides[0], bond.donor) && has_atom(sides[1], bond.acceptor)) ||
-               (has_atom(sides[1], bond.donor) && has_atom(sides[0], bond.acceptor));
-    };
-    return static_cast<double>(std::ranges::count_if(*bonds_, ties));
-}
-
-double LessonMeter::value_of(const World& world, std::size_t step) {
+double LessonMeter::value_of(const World& world, std::size_t step) const {
     const std::vector<Atoms>& atoms = atoms_[step];
     const LessonStepDescription& asked = scene_.lesson[step];
     switch (asked.quantity) {
@@ -171,7 +164,10 @@ double LessonMeter::value_of(const World& world, std::size_t step) {
     if (asked.quantity == LessonQuantity::Between)
         return (centre_of(world, atoms[1]) - centre_of(world, atoms[0])).norm();
     if (asked.quantity == LessonQuantity::Dihedral) return dihedral_deg(world, atoms, 0);
-    if (asked.quantity == LessonQuantity::HydrogenBonds) return count_bonds(world, atoms);
+    if (asked.quantity == LessonQuantity::HydrogenBonds) {
+        return static_cast<double>(
+            count_hydrogen_bonds(world.resource<AtomTable>(), sites_[step][0], sites_[step][1]));
+    }
     return (centre_of(world, atoms[0]) - *starts_[step]).norm();
 }
 

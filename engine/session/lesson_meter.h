@@ -13,7 +13,8 @@
 
 namespace palpa {
 
-// Of all steps after the last step of the simulation.
+// After the last step of the simulation, of all steps of the lesson: which one is on screen is not
+// known here. Each looks at its own atoms alone.
 struct LessonMeasures {
     // Of each step of the lesson; NaN where its quantity is none of the world (session/lesson.h).
     std::vector<double> values;
@@ -48,22 +49,21 @@ private:
 
     void find_atoms(const World& world, std::size_t step);
     void add_work(const World& world);
-    double value_of(const World& world, std::size_t step);
-    double count_bonds(const World& world, const std::vector<Atoms>& sides);
+    double value_of(const World& world, std::size_t step) const;
     void visit_map(const World& world, const std::vector<Atoms>& atoms);
 
     SceneDescription scene_;
     AtomEdition edition_;
-    std::vector<std::vector<Atoms>> atoms_;    // of each step, of each selection
-    std::vector<std::optional<Vec3>> starts_;  // of steps that ask for a way
+    std::vector<std::vector<Atoms>> atoms_;      // of each step, of each selection
+    std::vector<std::vector<BondSites>> sites_;  // the same of steps that count hydrogen bonds
+    std::vector<std::optional<Vec3>> starts_;    // of steps that ask for a way
     std::optional<std::size_t> map_step_;
     struct Pull {
         Vec3 place, force;  // Å, kcal/mol/Å
         std::uint32_t start = 0;
     };
     std::optional<Pull> last_;
-    double work_ = 0;                                 // kcal/mol
-    std::optional<std::vector<HydrogenBond>> bonds_;  // of this step, where one is asked for
+    double work_ = 0;  // kcal/mol
     LessonMeasures measures_;
 };
 

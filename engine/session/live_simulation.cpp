@@ -175,6 +175,7 @@ void LiveSimulation::obey(const Pause& pause) {
 }
 
 void LiveSimulation::obey(const Reset& reset) {
+    ++readout_.resets;
     if (find_remote_engine(world_)) {
         readout_.problem = "reset is not possible: a remote engine moves the atoms";
         return;
@@ -186,6 +187,7 @@ void LiveSimulation::obey(const Reset& reset) {
         World start = load_world(as_live(scene_));
         carry_playback(world_, start);
         lesson_ = LessonMeter(scene_, start);
+        readout_.lesson = lesson_.measures();
         world_ = std::move(start);
     } catch (const LoadError& error) {  // the files changed meanwhile: what runs, runs on
         readout_.problem = error.what();

@@ -127,8 +127,8 @@ void Overlay::add_tick(const ServoTick& tick) {
     overtravel_m_ = tick.overtravel_m.norm();
     force_gain_ = tick.force_gain;
     history_.add(last_);
-    // Nothing that an empty hand could do.
-    if (tick.contact.is_still) return;
+    // Nothing that an empty hand could do, or that was before the beginning.
+    if (tick.contact.is_still || awaited_reset_) return;
     lesson_.update(last_, settings_.coupling.mode, measured_);
     if (!lesson_.steps().empty()) lesson_curve_.add(last_);
 }
@@ -255,6 +255,7 @@ ScreenArea Overlay::free_area(float width, float height) const {
 void Overlay::draw(const Readout& readout, const OverlayStatus& status,
                    std::vector<Command>& commands, std::vector<Action>& actions) {
     forget_refused(readout);
+    follow_restart(readout);
     measured_ = readout.lesson.values;
     selects_ = status.selects;
     is_replay_ = readout.replay.has_value();
@@ -276,7 +277,7 @@ void Overlay::draw(const Readout& readout, const OverlayStatus& status,
         const ImVec2 screen = ImGui::GetIO().DisplaySize;
         draw_playback_panel(*readout.playback, free_area(screen.x, screen.y), commands);
     } else if (shows_lesson_ && !lesson_.steps().empty()) {
-        draw_lesson(readout);
+        draw_lesson(readout, commands, actions);
     }
     if (shows_overlays_) draw_legend_panel(status.legend, legend_area());
     draw_warnings(readout, status);
@@ -303,7 +304,8 @@ bool Overlay::close_something() {
     return std::exchange(shows_help_, false);
 }
 
-void Overlay::draw_lesson(const Readout& readout) {
+void Overlay::draw_lesson(const Readout& readout, std::vector<Command>& commands,
+                          std::vector<Action>& actions) {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     const ScreenArea area = free_area(screen.x, screen.y);
     const float width =
@@ -320,11 +322,27 @@ void Overlay::draw_lesson(const Readout& readout) {
     } else {
         draw_lesson_step(readout, count);
     }
-    if (ImGui::SmallButton(labelled("from the start").c_str())) {
-        lesson_.restart();
-        lesson_curve_.clear();
-    }
+    if (ImGui::SmallButton(labelled("from the start").c_str()))
+        restart_lesson(readout, commands, actions);
     ImGui::End();
+}
+
+// Steps, what they measured, the world and the coupling's mode.
+void Overlay::restart_lesson(const Readout& readout, std::vector<Command>& commands,
+                             std::vector<Action>& actions) {
+    lesson_.restart();
+    lesson_curve_.clear();
+    if (settings_.coupling.mode != scene_.coupling.mode) set_mode(scene_.coupling.mode, commands);
+    actions.push_back(Action::Reset);
+    awaited_reset_ = readout.resets + 1;
+    saw_reset_ = false;
+}
+
+// Ticks from before the reset come until the frame after the one that shows it.
+void Overlay::follow_restart(const Readout& readout) {
+    if (!awaited_reset_) return;
+    if (saw_reset_) return awaited_reset_.reset();
+    saw_reset_ = readout.resets >= *awaited_reset_;
 }
 
 void Overlay::draw_lesson_step(const Readout& readout, std::size_t count) {

@@ -107,7 +107,11 @@ private:
     void draw_over_separation();
     void draw_traces(std::string_view x_label, PlotRange across);
     void fill_from_history(std::vector<double>& values, double (*value)(const Reading&));
-    void draw_lesson(const Readout& readout);
+    void draw_lesson(const Readout& readout, std::vector<Command>& commands,
+                     std::vector<Action>& actions);
+    void restart_lesson(const Readout& readout, std::vector<Command>& commands,
+                        std::vector<Action>& actions);
+    void follow_restart(const Readout& readout);
     void draw_lesson_step(const Readout& readout, std::size_t count);
     void draw_warnings(const Readout& readout, const OverlayStatus& status);
     ScreenArea legend_area() const;
@@ -143,6 +147,8 @@ private:
     Lesson lesson_;
     std::vector<double> measured_;  // of its steps, as the last readout has it
     LessonCurve lesson_curve_;
+    std::optional<std::uint64_t> awaited_reset_;  // its number, while a lesson waits for it
+    bool saw_reset_ = false;                      // in the last readout
     History history_;
     Reading last_;
     bool has_tick_ = false, clamped_ = false, stopped_ = false;

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <string_view>
 #include <tuple>
 
@@ -44,6 +45,17 @@ std::vector<Role> find_roles(const AtomTable& atoms, const std::vector<bool>& is
         roles[i].accepts = is_polar(element) && !(element == "N" && bonds[i] >= bonds_without_pair);
     }
     return roles;
+}
+
+// Their length (Å) where three atoms bond.
+std::optional<double> find_length(const AtomTable& atoms, std::uint32_t donor,
+                                  std::uint32_t hydrogen, std::uint32_t acceptor) {
+    const Vec3 to_acceptor = atoms.positions[acceptor] - atoms.positions[hydrogen];
+    const Vec3 to_donor = atoms.positions[donor] - atoms.positions[hydrogen];
+    const double length = to_acceptor.norm();
+    if (!(length < longest)) return {};
+    if (to_acceptor.dot(to_donor) > cosine_of_bend * length * to_donor.norm()) return {};
+    return length;
 }
 
 // What may take part in hydrogen bonds of what is held: that, and all that is near enough.
@@ -90,12 +102,9 @@ std::vector<HydrogenBond> find_hydrogen_bonds(const World& world, ShownBonds whi
     std::vector<HydrogenBond> found;
     const auto try_bond = [&](std::uint32_t hydrogen, std::uint32_t acceptor) {
         if (roles[hydrogen].donor == no_donor || !roles[acceptor].accepts) return;
-        const Vec3 to_acceptor = atoms.positions[acceptor] - atoms.positions[hydrogen];
-        const Vec3 to_donor = atoms.positions[roles[hydrogen].donor] - atoms.positions[hydrogen];
-        const double length = to_acceptor.norm();
-        if (!(length < longest)) return;
-        if (to_acceptor.dot(to_donor) > cosine_of_bend * length * to_donor.norm()) return;
-        found.push_back({hydrogen, acceptor, length, roles[hydrogen].donor});
+        const std::uint32_t donor = roles[hydrogen].donor;
+        const std::optional<double> length = find_length(atoms, donor, hydrogen, acceptor);
+        if (length) found.push_back({hydrogen, acceptor, *length, donor});
     };
     for (std::uint32_t i = 0; i < atoms.size(); ++i) {
         if (!is_sought_from(i)) continue;
@@ -109,6 +118,34 @@ std::vector<HydrogenBond> find_hydrogen_bonds(const World& world, ShownBonds whi
         return std::tuple(bond.length, bond.hydrogen, bond.acceptor);
     });
     return found;
+}
+
+BondSites find_bond_sites(const AtomTable& atoms, const std::vector<bool>& chosen) {
+    BondSites sites;
+    const std::vector<Role> roles = find_roles(atoms, std::vector<bool>(atoms.size(), true));
+    for (std::uint32_t i = 0; i < roles.size(); ++i) {
+        const std::uint32_t donor = roles[i].donor;
+        if (donor != no_donor && chosen[donor]) sites.hydrogens.emplace_back(i, donor);
+        if (roles[i].accepts && chosen[i]) sites.acceptors.push_back(i);
+    }
+    return sites;
+}
+
+std::size_t count_hydrogen_bonds(const AtomTable& atoms, const BondSites& one,
+                                 const BondSites& other) {
+    std::size_t count = 0;
+    for (const auto& [hydrogen, donor] : one.hydrogens) {
+        for (const std::uint32_t acceptor : other.acceptors)
+            if (find_length(atoms, donor, hydrogen, acceptor)) ++count;
+    }
+    for (const std::pair<std::uint32_t, std::uint32_t>& given : other.hydrogens) {
+        const bool both_give = std::ranges::binary_search(one.hydrogens, given);
+        for (const std::uint32_t acceptor : one.acceptors) {
+            if (both_give && std::ranges::binary_search(other.acceptors, acceptor)) continue;
+            if (find_length(atoms, given.second, given.first, acceptor)) ++count;
+        }
+    }
+    return count;
 }
 
 }  // namespace palpa

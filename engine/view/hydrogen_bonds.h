@@ -1,9 +1,12 @@
 // Hydrogen bonds, from where the atoms are.
 #pragma once
 #include "ecs/world.h"
+#include "molecule/atoms.h"
 #include "scene/choices.h"
 
+#include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace palpa {
@@ -19,5 +22,17 @@ struct HydrogenBond {
 // 44, 97 (1984). The shortest first.
 std::vector<HydrogenBond> find_hydrogen_bonds(const World& world,
                                               ShownBonds which = ShownBonds::InHand);
+
+// What some atoms can bond with, in the order of the table. It stays while their bonds stay.
+struct BondSites {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> hydrogens;  // each with its donor
+    std::vector<std::uint32_t> acceptors;
+};
+// Of `chosen` donors and acceptors; their hydrogens need not be chosen.
+BondSites find_bond_sites(const AtomTable& atoms, const std::vector<bool>& chosen);
+// Bonds from a donor of one to an acceptor of the other, in either direction, each once. Looks at
+// these atoms alone.
+std::size_t count_hydrogen_bonds(const AtomTable& atoms, const BondSites& one,
+                                 const BondSites& other);
 
 }  // namespace palpa

@@ -1,6 +1,6 @@
 // Colours that tell what something is. Any two that can be seen side by side are at least 15 apart
-// by CIEDE2000, also to people who lack one kind of cone; tests/view/palette_test.cpp holds them to
-// that.
+// by CIEDE2000, also to people who lack one kind of cone, but for ions; tests/view/palette_test.cpp
+// holds them to that.
 #pragma once
 #include <array>
 #include <glm/vec3.hpp>
@@ -25,8 +25,24 @@ inline constexpr std::array element_looks = std::to_array<ElementLook>({
 });
 inline constexpr ElementLook other_element{"", 1.70F, {0.104F, 0.009F, 0.009F}};
 
+// Common ions in Jmol's hues (https://jmol.sourceforge.net/jscolors: Na AB5CF2, K 8F40D4, Mg
+// 8AFF00, Ca 3DFF00, Zn 7D80B0, Cl 1FF01F): violet, green, slate. Their shades are those nearest to
+// Jmol's that are 15 from each other and from all others to most people. To those who lack one kind
+// of cone they are 5 apart: an ion is also told by having no bonds. As large as other elements,
+// since the size of an ion depends on what is around it.
+inline constexpr std::array ion_looks = std::to_array<ElementLook>({
+    {"NA", 1.70F, {0.502F, 0.149F, 1.000F}},
+    {"K", 1.70F, {0.284F, 0.055F, 0.626F}},
+    {"MG", 1.70F, {0.224F, 0.723F, 0.000F}},
+    {"CA", 1.70F, {0.617F, 1.000F, 0.389F}},
+    {"ZN", 1.70F, {0.129F, 0.155F, 0.295F}},
+    {"CL", 1.70F, {0.172F, 0.394F, 0.060F}},
+});
+
 inline const ElementLook& look_of(std::string_view element) noexcept {
     for (const ElementLook& look : element_looks)
+        if (look.element == element) return look;
+    for (const ElementLook& look : ion_looks)
         if (look.element == element) return look;
     return other_element;
 }

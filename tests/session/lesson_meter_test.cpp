@@ -11,9 +11,13 @@
 #include "simulation/step.h"
 #include "tests/support/paths.h"
 #include "tests/support/water_run.h"
+#include "view/hydrogen_bonds.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -65,6 +69,39 @@ TEST_CASE("a lesson measures distances between selections, and bonds from one to
     CHECK(values[4] == 0);
     CHECK(std::isnan(values[5]));  // ticks tell
     CHECK(meter.measures().map.empty());
+}
+
+TEST_CASE("bonds between two groups are those of all that go from one to the other",
+          "[session][lesson]") {
+    SceneDescription scene = read_scene(test::in_project("scenes/hairpin/scene.toml"));
+    const std::vector<std::string> sides{"resid 1:8 and name N O", "resid 10:17 and name N O"};
+    scene.lesson = {asking(LessonQuantity::HydrogenBonds, sides),
+                    asking(LessonQuantity::HydrogenBonds, {"all", "all"}),
+                    asking(LessonQuantity::HydrogenBonds, {"resid 1:12", "resid 6:17"})};
+    const World world = load_world(scene);
+    const std::vector<AtomName>& names = world.resource<AtomTable>().names;
+    const auto is_backbone = [&](std::uint32_t atom) {
+        return names[atom].atom == "N" || names[atom].atom == "O";
+    };
+    std::size_t strands = 0, halves = 0;
+    const std::vector<HydrogenBond> bonds = find_hydrogen_bonds(world, ShownBonds::All);
+    for (const HydrogenBond& bond : bonds) {
+        const int one = std::stoi(names[bond.donor].number),
+                  other = std::stoi(names[bond.acceptor].number);
+        const int low = std::min(one, other), high = std::max(one, other);
+        if (is_backbone(bond.donor) && is_backbone(bond.acceptor) && low <= 8 && high >= 10)
+            ++strands;
+        if ((one <= 12 && other >= 6) || (one >= 6 && other <= 12)) ++halves;
+    }
+    REQUIRE(strands == 7);
+    REQUIRE(halves > strands);
+
+    const LessonMeter meter(scene, world);
+
+    const std::vector<double>& values = meter.measures().values;
+    CHECK(values[0] == static_cast<double>(strands));
+    CHECK(values[1] == static_cast<double>(bonds.size()));
+    CHECK(values[2] == static_cast<double>(halves));
 }
 
 TEST_CASE("the hand's work is what the energy has risen by, and its way how far it went",

@@ -377,6 +377,49 @@ TEST_CASE("what nothing in hand does is no step of a lesson", "[ui][overlay]") {
     CHECK(screen.overlay.lesson().can_go_on());
 }
 
+TEST_CASE("a lesson from the beginning waits until the world is as at the start", "[ui][overlay]") {
+    Screen screen;
+    ServoTick tick;
+    tick.contact = screen.readout.contact;
+    tick.contact.is_still = false;
+    tick.contact.molecule.place_angstrom = Vec3(0, 0, 0);  // as near as the first step asks for
+    const auto add_ticks = [&](int ticks) {
+        for (int i = 0; i < ticks; ++i) {
+            tick.reading.time_s += 1e-3;
+            screen.overlay.add_tick(tick);
+        }
+    };
+    const Lesson& lesson = screen.overlay.lesson();
+    add_ticks(10);
+    REQUIRE(lesson.is_step_done());
+    (void)screen.overlay.perform(Action::Mode4, screen.commands);
+    screen.commands.clear();
+    screen.frame();
+    screen.frame();
+
+    const ImGuiWindow* const panel = ImGui::FindWindowByName("###Lesson");
+    REQUIRE(panel);
+    // The last row: "skip" or "Next", then the button; its right end stands last.
+    const float y = panel->Rect().Max.y - 14;
+    for (float x = panel->Rect().Max.x - 4; x > panel->Rect().Min.x && screen.actions.empty();
+         x -= 6)
+        screen.drag({x, y}, {x, y});
+
+    REQUIRE(screen.actions == std::vector{Action::Reset});
+    REQUIRE(screen.commands.size() == 1);
+    CHECK(std::get<LiveSettings>(screen.commands[0]).coupling.mode == CouplingMode::Guarded);
+    CHECK_FALSE(lesson.is_step_done());
+    add_ticks(10);  // of the world that goes
+    CHECK_FALSE(lesson.is_step_done());
+    screen.readout.resets = 1;
+    screen.frame();
+    add_ticks(10);  // some were under way
+    CHECK_FALSE(lesson.is_step_done());
+    screen.frame();
+    add_ticks(10);
+    CHECK(lesson.is_step_done());
+}
+
 TEST_CASE("both gain curves are 120 pixels high where a screen is 720", "[ui][overlay]") {
     const auto size = GENERATE(ImVec2(1280, 720), ImVec2(1366, 768));
     Screen screen;

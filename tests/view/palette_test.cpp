@@ -4,6 +4,7 @@
 
 #include <array>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -106,6 +107,46 @@ TEST_CASE("colours that mark different things differ for every kind of colour vi
             }
         }
     }
+}
+
+TEST_CASE("ions differ from each other and from all else, and keep the hue of Jmol's",
+          "[view][palette]") {
+    constexpr double usual = 15, to_the_deficient = 5;  // CIEDE2000
+    std::vector<Category> all;
+    for (const ElementLook& look : ion_looks)
+        all.push_back({std::string(look.element), as_doubles(look.colour)});
+    const std::size_t ions = all.size();
+    for (const Category& other : categories()) all.push_back(other);
+    for (const test::Vision& vision : test::visions) {
+        const bool is_normal = std::string(vision.name) == "normal";
+        for (std::size_t i = 0; i < ions; ++i) {
+            for (std::size_t j = i + 1; j < all.size(); ++j) {
+                INFO(vision.name << ": " << all[i].name << ", " << all[j].name << " " << j);
+                CHECK(test::colour_difference(vision, all[i].colour, all[j].colour) >=
+                      (is_normal ? usual : to_the_deficient));
+            }
+        }
+    }
+
+    // jmol.sourceforge.net/jscolors, 8 bits a channel of sRGB.
+    const std::vector<std::array<int, 3>> of_jmol{{171, 92, 242}, {143, 64, 212},  {138, 255, 0},
+                                                  {61, 255, 0},   {125, 128, 176}, {31, 240, 31}};
+    REQUIRE(of_jmol.size() == ions);
+    for (std::size_t i = 0; i < ions; ++i) {
+        test::Colour jmol{};
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double v = of_jmol[i][c] / 255.0;
+            jmol[c] = v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+        }
+        INFO(all[i].name);
+        CHECK(test::colour_difference(test::visions[0], all[i].colour, jmol) < 20);
+    }
+}
+
+TEST_CASE("elements are told by their symbols, whatever they are", "[view][palette]") {
+    CHECK(look_of("CL").colour == ion_looks.back().colour);
+    CHECK(look_of("C").colour == element_looks[1].colour);
+    CHECK(look_of("FE").colour == other_element.colour);
 }
 
 TEST_CASE("marks on request differ from each other and from signs for every kind of colour vision",
