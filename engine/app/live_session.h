@@ -117,6 +117,8 @@ public:
                          const std::optional<TrajectorySettings>& trajectory = {});
     // Throws LoadError where not all could be written.
     void end_recording();
+    // A row a second into this file (session/statistics_file.h). Throws LoadError.
+    void write_statistics(const std::filesystem::path& path, bool overwrites = false);
     // Seconds that are recorded so far; nothing where nothing is.
     std::optional<double> recorded_s();
     // What a user should know of the recording, a sentence each, since the last call.

@@ -82,6 +82,7 @@ Sandbox::Sandbox(WindowShell& shell, std::unique_ptr<LiveSession> session,
     frame_.hands.resize(hands_.size());  // until the first frame they are empty
     window_.set_title("Palpa - " + scene.title);
     if (options.sound.is_on) (void)switch_sound(true);
+    if (options.statistics) session_.write_statistics(*options.statistics, options.overwrites);
     if (options.record) {
         recorded_in_ = *options.record;
         session_.begin_recording(recorded_in_, options.overwrites, options.trajectory);

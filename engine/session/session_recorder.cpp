@@ -40,6 +40,7 @@ void SessionRecorder::add(const PlayedEvent& event) {
     if (const auto* const change = std::get_if<DeviceEvent>(&event.event))
         devices_[change->slot] = change->device;
     const auto* const step = std::get_if<StepEvent>(&event.event);
+    if (step && statistics_file_) statistics_file_->add_step(step->took_us.value_or(0));
     if (!step || !recording_) return;
     for (Statistics& hand : statistics_) hand.add_step(1e-6 * step->took_us.value_or(0), true);
 }
@@ -56,6 +57,14 @@ const std::string& SessionRecorder::keep(const std::filesystem::path& path,
 
 void SessionRecorder::add(std::span<const LiveTick> ticks) {
     writer_.add(ticks);
+    if (statistics_file_) {
+        try {
+            statistics_file_->add(ticks.front().tick, overruns_);
+        } catch (const LoadError& error) {  // a full disk
+            notes_.emplace_back(error.what());
+            statistics_file_.reset();
+        }
+    }
     if (recording_) {
         std::vector<ServoTick> rows;
         for (std::size_t i = 0; i < ticks.size(); ++i) {
@@ -119,6 +128,10 @@ void SessionRecorder::end() {
         throw;
     }
     recording_.reset();
+}
+
+void SessionRecorder::write_statistics(const std::filesystem::path& path, bool overwrites) {
+    statistics_file_.emplace(path, overwrites);
 }
 
 double SessionRecorder::recorded_s() const noexcept {

@@ -6,8 +6,10 @@
 #include "session/live_events.h"
 #include "session/recording.h"
 #include "session/statistics.h"
+#include "session/statistics_file.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -42,6 +44,12 @@ public:
     // written.
     void end();
 
+    // A row a second of how the session fares from now on, whether it is recorded or not. Throws
+    // LoadError where the file is there. What keeps it from being written later is a note.
+    void write_statistics(const std::filesystem::path& path, bool overwrites);
+    // Of the servo, so far.
+    void note_overruns(std::uint64_t overruns) noexcept { overruns_ = overruns; }
+
     bool is_recording() const noexcept { return recording_.has_value(); }
     double recorded_s() const noexcept;
 
@@ -65,6 +73,8 @@ private:
     std::optional<Recording> recording_;
     std::vector<std::string> notes_;      // of recordings that are over
     std::vector<Statistics> statistics_;  // of what is recorded, of each hand
+    std::optional<StatisticsFile> statistics_file_;
+    std::uint64_t overruns_ = 0;
 };
 
 }  // namespace palpa
