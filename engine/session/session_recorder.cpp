@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <string_view>
 #include <utility>
 #include <variant>
 
@@ -51,6 +52,9 @@ const std::string& SessionRecorder::keep(const std::filesystem::path& path,
         if (file.path == path && file.content == content) return file.name;
     }
     files_.push_back({path, names_.add(path), content});
+    std::size_t bytes = 0;
+    for (const KeptFile& file : files_) bytes += file.content.size();
+    kept_.set_beside(bytes);
     if (recording_) recording_->add_input(files_.back().name, content);
     return files_.back().name;
 }
@@ -90,7 +94,7 @@ std::vector<std::string> SessionRecorder::take_notes() {
 void SessionRecorder::begin(const std::filesystem::path& folder, bool overwrites,
                             const std::optional<TrajectorySettings>& trajectory) {
     flush();
-    if (!is_whole_) {
+    if (!is_whole_ || !kept_.is_whole()) {
         throw LoadError({folder.string()},
                         "cannot be recorded: the session is so long that its beginning is no "
                         "longer kept; open the scene anew, or record from the start (--record)");
@@ -103,7 +107,13 @@ void SessionRecorder::begin(const std::filesystem::path& folder, bool overwrites
         throw;
     }
     if (trajectory) recording_->begin_trajectory(*trajectory);
-    recording_->add_journal(kept_);
+    if (!kept_.hand_to(
+            [&](std::string_view text) { recording_->add_journal(std::string(text)); })) {
+        recording_.reset();
+        throw LoadError({folder.string()},
+                        "cannot be recorded: the session's beginning, in a temporary file, could "
+                        "not be read back");
+    }
     statistics_.assign(devices_.size(), Statistics(servo_tick_s));
     writer_.begin_recording();
     // It is this recording's alone.
@@ -141,11 +151,7 @@ double SessionRecorder::recorded_s() const noexcept {
 void SessionRecorder::flush() {
     const std::string text = writer_.take();
     if (recording_) recording_->add_journal(text);
-    if (!is_whole_) return;
-    std::size_t bytes = kept_.size() + text.size();
-    for (const KeptFile& file : files_) bytes += file.content.size();
-    is_whole_ = bytes <= most_kept;
-    is_whole_ ? void(kept_ += text) : kept_.clear();
+    if (is_whole_) kept_.add(text);
 }
 
 }  // namespace palpa

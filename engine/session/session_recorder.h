@@ -3,6 +3,7 @@
 #pragma once
 #include "scene/description.h"
 #include "session/journal.h"
+#include "session/kept_text.h"
 #include "session/live_events.h"
 #include "session/recording.h"
 #include "session/statistics.h"
@@ -20,7 +21,8 @@ namespace palpa {
 
 class SessionRecorder {
 public:
-    // Bytes of a journal that are kept for a recording that may come: an hour or more.
+    // Bytes of a journal that are kept, on disk, for a recording that may come: half an hour or
+    // more.
     static constexpr std::size_t most_kept = std::size_t{256} << 20;
 
     SessionRecorder(const SceneDescription& scene, std::span<const HandDevice> devices);
@@ -68,8 +70,8 @@ private:
     std::vector<KeptFile> files_;
     std::vector<HandDevice> devices_;
     JournalWriter writer_;
-    std::string kept_;
-    bool is_whole_ = true;
+    KeptText kept_{most_kept};
+    bool is_whole_ = true;  // but for what kept_ could not keep
     std::optional<Recording> recording_;
     std::vector<std::string> notes_;      // of recordings that are over
     std::vector<Statistics> statistics_;  // of what is recorded, of each hand

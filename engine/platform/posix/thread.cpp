@@ -21,6 +21,11 @@ bool ask_for_locked_memory() noexcept {
 #endif
 }
 
+std::string_view real_time_remedy() noexcept {
+    return "sudo cp devices/limits/70-palpa.conf /etc/security/limits.d/, be in the group plugdev, "
+           "and log in again (devices/real-time.md)";
+}
+
 void lower_priority() noexcept { (void)!nice(5); }
 
 }  // namespace palpa
