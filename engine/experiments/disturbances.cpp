@@ -51,7 +51,7 @@ std::vector<EditDescription> draw_edits(Draws& draws, double end_s) {
     const std::array<std::array<std::string, 2>, 4> kinds{
         {{coupling, "undo = true"},
          {"let_go = true", R"(take = "moved")"},
-         {R"(pin = ["fixed:1 OH2", "moved:2 OH2"])", coupling},
+         {R"(pin = ["fixed:1 OH2", "moved:1 OH2"])", coupling},
          {coupling, "reset = true"}}};
     const auto& [first, second] = kinds[draws.below(kinds.size())];
     std::vector<EditDescription> edits;

@@ -22,8 +22,8 @@ bool ask_for_locked_memory() noexcept {
 }
 
 std::string_view real_time_remedy() noexcept {
-    return "sudo cp devices/limits/70-palpa.conf /etc/security/limits.d/, be in the group plugdev, "
-           "and log in again (devices/real-time.md)";
+    return "as root write '@plugdev - rtprio 50' and '@plugdev - memlock unlimited' into "
+           "/etc/security/limits.d/70-palpa.conf, be in the group plugdev, and log in again";
 }
 
 void lower_priority() noexcept { (void)!nice(5); }
