@@ -72,9 +72,11 @@ public:
     void add(const ServoTick& tick, bool is_disturbed) {
         const bool is_whole = !is_disturbed && tick.stage <= SafetyStage::ThermalLimit &&
                               tick.reason == SafetyStage::None && !tick.contact.is_still;
+        ++ticks_;
         if (!is_whole) return close();
         place_ = tick.contact.molecule.place_angstrom.x();
         work_J_ = device_.work_J();
+        judged_ += is_open_ ? 1 : 0;
         if (is_open_) return;
         // A force that slews is not yet the law's, and overtravel is a spring that is still loaded.
         if (tick.stage == SafetyStage::Slewed || !tick.overtravel_m.isZero(1e-9)) return;
@@ -89,6 +91,8 @@ public:
         return most_J_;
     }
 
+    double share() const { return ticks_ > 0 ? judged_ / ticks_ : 0; }
+
 private:
     void close() {
         if (!std::exchange(is_open_, false)) return;
@@ -102,6 +106,7 @@ private:
     double first_place_ = 0, place_ = 0;  // Å
     double first_work_J_ = 0, work_J_ = 0;
     double most_J_ = 0;
+    double ticks_ = 0, judged_ = 0;
 };
 
 }  // namespace
@@ -163,10 +168,11 @@ ScenarioResult play_scenario(const ScenarioOptions& options, std::size_t number)
     const double start = grabbed_distance(world);
     const Summary summary = run_headless(scene, world, device, {}, nullptr, {}, {}, watch);
     result.net_work_J = watched.work_J();
-    result.generated_J =
-        options.is_disturbed
-            ? stretches.finish()
-            : result.net_work_J - find_static_work(world, start, grabbed_distance(world));
+    if (scene.edits.empty())
+        result.over_all_J =
+            result.net_work_J - find_static_work(world, start, grabbed_distance(world));
+    result.generated_J = options.is_disturbed ? stretches.finish() : result.over_all_J.value_or(0);
+    result.judged_share = stretches.share();
     result.most_newton = watched.most_newton();
     result.most_change_newton = watched.most_change_newton();
     result.clamp_newton = scene.coupling.clamp_N;

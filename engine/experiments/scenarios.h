@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,10 @@ struct ScenarioResult {
     double generated_J = 0;
     // All that the true motion of the handle and the force that was written did, faults included.
     double net_work_J = 0;
+    // The same beyond the static law from where the molecule began to where it ended: what faults
+    // gave. Nothing where edits changed the law on the way.
+    std::optional<double> over_all_J;
+    double judged_share = 0;  // of the time, that stretches had
     double most_newton = 0, most_change_newton = 0;  // written; in a tick, but for drops to zero
     double clamp_newton = 0;                         // of the scene
     std::size_t faults = 0, edits = 0;

@@ -24,6 +24,9 @@ nlohmann::ordered_json as_json(std::size_t number, const ScenarioResult& result)
     return {{"number", number},
             {"generated_J", result.generated_J},
             {"net_work_J", result.net_work_J},
+            {"over_all_J", result.over_all_J ? nlohmann::ordered_json(*result.over_all_J)
+                                             : nlohmann::ordered_json()},
+            {"judged_share", result.judged_share},
             {"most_N", result.most_newton},
             {"most_change_N", result.most_change_newton},
             {"faults", result.faults},
