@@ -1,18 +1,12 @@
 #include "app/live_clock.h"
 
-#include <thread>
+#include "platform/thread.h"
 
 namespace palpa {
 
 LiveClock::Moment LiveClock::now() noexcept { return std::chrono::steady_clock::now(); }
 
-// Asleep, and awake for the last bit, since the system wakes us late.
-void LiveClock::wait_for_tick(Moment moment) {
-    constexpr std::chrono::microseconds awake{80};
-    std::this_thread::sleep_until(moment - awake);
-    while (now() < moment) {
-    }
-}
+void LiveClock::wait_for_tick(Moment moment) { wait_awake_until(moment); }
 
 bool LiveClock::wait_for_period(Moment moment, std::unique_lock<std::mutex>& lock,
                                 std::condition_variable& called,

@@ -224,6 +224,11 @@ void LiveSession::end_recording() {
     throw LoadError({"recording"}, std::exchange(recording_problem_, {}));
 }
 
+void LiveSession::write_statistics(const std::filesystem::path& path, bool overwrites) {
+    const std::lock_guard lock(recorder_mutex_);
+    recorder_.write_statistics(path, overwrites);
+}
+
 std::optional<double> LiveSession::recorded_s() {
     const std::lock_guard lock(recorder_mutex_);
     if (!recorder_.is_recording()) return std::nullopt;
@@ -475,6 +480,7 @@ void LiveSession::record_what_happened() {
                 "servo ticks are missing: the machine was too busy to record them all, so a replay "
                 "will not be exact";
     }
+    recorder_.note_overruns(overruns_);
     try {
         journal_queue_.hand_to(recorder_);
         for (const TrajectoryShot& shot : trajectory_queue_.take()) recorder_.add(shot);

@@ -80,6 +80,8 @@ public:
     void begin_recording(const std::filesystem::path& folder, bool overwrites = false,
                          const std::optional<TrajectorySettings>& trajectory = {}) override;
     void end_recording() override;
+    // A row a second into this file (session/statistics_file.h). Throws LoadError.
+    void write_statistics(const std::filesystem::path& path, bool overwrites = false);
     std::optional<double> recorded_s() override;
     std::vector<std::string> take_recording_notes() override;
 

@@ -298,9 +298,11 @@ WindowReport run_window(WindowShell& shell, const SceneDescription& scene, Devic
             session =
                 std::make_unique<ReplaySession>(*options.replay, scene, options.view, on_stage);
         } else {
-            session =
+            auto live =
                 std::make_unique<LiveSession>(scene, options.view, list_devices(hands), nullptr,
                                               options.server, options.playback, on_stage);
+            if (options.statistics) live->write_statistics(*options.statistics, options.overwrites);
+            session = std::move(live);
         }
     };
     const bool is_loaded = shell.work(format_translated("Opening {}", scene.title), load);

@@ -71,9 +71,10 @@ struct WindowOptions {
     double mouse_reach_m = 0;                       // as of WindowDevice
     LedDevice second{};                             // in the scene's second hand, where it has one
     std::optional<std::filesystem::path> record{};  // folder, from the first moment on
-    bool overwrites = false;                        // a recording in it
-    TrajectorySettings trajectory{};                // of recordings
-    std::optional<PlaybackChoice> playback{};       // a trajectory to play
+    std::optional<std::filesystem::path> statistics{};  // file, a row a second
+    bool overwrites = false;                            // a recording, and statistics
+    TrajectorySettings trajectory{};                    // of recordings
+    std::optional<PlaybackChoice> playback{};           // a trajectory to play
     // The folder of a recorded session of this scene, which is played again: nobody takes part.
     std::optional<std::filesystem::path> replay{};
     PadLink* pads = nullptr;  // where game pads are posted

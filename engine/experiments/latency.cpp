@@ -3,8 +3,10 @@
 #include "haptics/exchange.h"
 #include "haptics/safety.h"
 #include "haptics/servo.h"
+#include "platform/thread.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 
 namespace palpa {
@@ -56,6 +58,44 @@ void AnsweringServo::run() {
         next = std::max(next + std::chrono::milliseconds(1), end);
         std::this_thread::sleep_until(next);
     }
+}
+
+WakeUps measure_wake_ups(int ticks, bool asks_for_real_time) {
+    using Clock = std::chrono::steady_clock;
+    constexpr std::chrono::milliseconds tick{1};
+    WakeUps found;
+    found.late_us.reserve(static_cast<std::size_t>(ticks));
+    // On a thread that ends, and its priority with it.
+    std::thread servo([&] {
+        if (asks_for_real_time) {
+            found.is_real_time = ask_for_real_time();
+            found.is_locked = ask_for_locked_memory();
+        }
+        Clock::time_point next = Clock::now() + tick;
+        for (int i = 0; i < ticks; ++i) {
+            wait_awake_until(next);
+            const Clock::time_point now = Clock::now();
+            found.late_us.push_back(std::chrono::duration<double, std::micro>(now - next).count());
+            next += tick;
+            if (now - next > tick) {  // as a session's servo does it
+                found.missed += static_cast<std::uint64_t>((now - next) / tick);
+                next = now;
+            }
+        }
+    });
+    servo.join();
+    return found;
+}
+
+std::vector<LatenessClass> sort_into_classes(const std::vector<double>& late_us) {
+    std::vector<LatenessClass> classes{{1, 0}};
+    for (const double late : late_us) {
+        std::size_t at = 0;
+        for (double below = 1; late >= below; below *= 2) ++at;
+        while (classes.size() <= at) classes.push_back({2 * classes.back().below_us, 0});
+        ++classes[at].ticks;
+    }
+    return classes;
 }
 
 }  // namespace palpa

@@ -1,9 +1,10 @@
-// How long it takes from what a device says to what it plays.
+// How long it takes from what a device says to what it plays, and how late a servo wakes.
 #pragma once
 #include "haptics/device.h"
 
 #include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <thread>
 #include <vector>
 
@@ -41,5 +42,22 @@ private:
     std::vector<double> ticks_us_;
     std::thread thread_;
 };
+
+// How late ticks begin on a thread that waits for them as a live session's servo does.
+struct WakeUps {
+    bool is_real_time = false, is_locked = false;  // as the system granted
+    std::vector<double> late_us;                   // of each tick
+    std::uint64_t missed = 0;                      // ticks that were skipped meanwhile, beside
+};
+
+// A tick a millisecond, for that many; with ordinary priority, or what a session asks for.
+WakeUps measure_wake_ups(int ticks, bool asks_for_real_time);
+
+// A histogram: classes of a factor of two, from below 1 us on, and how many ticks each has.
+struct LatenessClass {
+    double below_us = 0;
+    std::uint64_t ticks = 0;
+};
+std::vector<LatenessClass> sort_into_classes(const std::vector<double>& late_us);
 
 }  // namespace palpa

@@ -1,5 +1,8 @@
 // Priorities of threads, and memory that is never paged out.
 #pragma once
+#include <chrono>
+#include <string_view>
+#include <thread>
 
 namespace palpa {
 
@@ -11,7 +14,18 @@ bool ask_for_real_time() noexcept;
 // the system does not grant it.
 bool ask_for_locked_memory() noexcept;
 
+// What a user does for both to be granted; empty where nothing can be done.
+std::string_view real_time_remedy() noexcept;
+
 // The calling thread, and on POSIX those that it starts, after other threads.
 void lower_priority() noexcept;
+
+// Until that moment: asleep, and awake for the last 80 us, since a system wakes threads late.
+inline void wait_awake_until(std::chrono::steady_clock::time_point moment) {
+    constexpr std::chrono::microseconds awake{80};
+    std::this_thread::sleep_until(moment - awake);
+    while (std::chrono::steady_clock::now() < moment) {
+    }
+}
 
 }  // namespace palpa

@@ -79,8 +79,21 @@ void AccuracyLog::add_answer(const ContactModel& answer) {
 }
 
 void AccuracyLog::add_error(double error_pN) {
+    if (!is_asked_) return;
     found_.push_back({error_pN, steps_ - last_estimate_});
     last_estimate_ = steps_;
+    ++estimates_;
+    if (found_.size() == most_found) merge_neighbours();
+}
+
+void AccuracyLog::merge_neighbours() {
+    std::ranges::sort(found_, {}, &Found::error_pN);
+    for (std::size_t i = 0; i < found_.size() / 2; ++i) {
+        const Found& smaller = found_[2 * i];
+        const Found& larger = found_[2 * i + 1];
+        found_[i] = {larger.error_pN, smaller.steps + larger.steps};
+    }
+    found_.resize(found_.size() / 2);
 }
 
 std::optional<AccuracyReport> AccuracyLog::report(double step_median_us) const {
@@ -93,7 +106,7 @@ std::optional<AccuracyReport> AccuracyLog::report(double step_median_us) const {
         report.active /= static_cast<double>(steps_);
         report.steps /= static_cast<double>(steps_);
     }
-    report.estimates = found_.size();
+    report.estimates = estimates_;
     if (found_.empty()) return report;
     std::vector<Found> sorted = found_;
     std::ranges::sort(sorted, {}, &Found::error_pN);

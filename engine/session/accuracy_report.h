@@ -5,6 +5,7 @@
 #include "simulation/resources.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -40,7 +41,7 @@ struct UnmetRequirements {
 };
 UnmetRequirements find_unmet(const AccuracyReport& report);
 
-// Gathers it tick by tick and step by step.
+// Gathers it tick by tick and step by step, in as much memory however long the run is.
 class AccuracyLog {
 public:
     // Nothing to tell where the scene says neither range nor tolerance.
@@ -57,6 +58,7 @@ public:
 
 private:
     void add_error(double error_pN);
+    void merge_neighbours();
 
     AccuracyReport report_;
     bool is_asked_;
@@ -68,7 +70,10 @@ private:
         double error_pN;
         std::uint64_t steps;  // since the error estimate before
     };
+    // Exact up to so many; then every two neighbours by size become one, with the larger error.
+    static constexpr std::size_t most_found = 1 << 16;
     std::vector<Found> found_;
+    std::uint64_t estimates_ = 0;
     std::uint64_t last_estimate_ = 0;  // its step
 };
 

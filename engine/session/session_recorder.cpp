@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <string_view>
 #include <utility>
 #include <variant>
 
@@ -40,6 +41,7 @@ void SessionRecorder::add(const PlayedEvent& event) {
     if (const auto* const change = std::get_if<DeviceEvent>(&event.event))
         devices_[change->slot] = change->device;
     const auto* const step = std::get_if<StepEvent>(&event.event);
+    if (step && statistics_file_) statistics_file_->add_step(step->took_us.value_or(0));
     if (!step || !recording_) return;
     for (Statistics& hand : statistics_) hand.add_step(1e-6 * step->took_us.value_or(0), true);
 }
@@ -50,12 +52,23 @@ const std::string& SessionRecorder::keep(const std::filesystem::path& path,
         if (file.path == path && file.content == content) return file.name;
     }
     files_.push_back({path, names_.add(path), content});
+    std::size_t bytes = 0;
+    for (const KeptFile& file : files_) bytes += file.content.size();
+    kept_.set_beside(bytes);
     if (recording_) recording_->add_input(files_.back().name, content);
     return files_.back().name;
 }
 
 void SessionRecorder::add(std::span<const LiveTick> ticks) {
     writer_.add(ticks);
+    if (statistics_file_) {
+        try {
+            statistics_file_->add(ticks.front().tick, overruns_);
+        } catch (const LoadError& error) {  // a full disk
+            notes_.emplace_back(error.what());
+            statistics_file_.reset();
+        }
+    }
     if (recording_) {
         std::vector<ServoTick> rows;
         for (std::size_t i = 0; i < ticks.size(); ++i) {
@@ -81,7 +94,7 @@ std::vector<std::string> SessionRecorder::take_notes() {
 void SessionRecorder::begin(const std::filesystem::path& folder, bool overwrites,
                             const std::optional<TrajectorySettings>& trajectory) {
     flush();
-    if (!is_whole_) {
+    if (!is_whole_ || !kept_.is_whole()) {
         throw LoadError({folder.string()},
                         "cannot be recorded: the session is too long, so its beginning is no "
                         "longer in memory; open the scene again and record from the start");
@@ -94,7 +107,13 @@ void SessionRecorder::begin(const std::filesystem::path& folder, bool overwrites
         throw;
     }
     if (trajectory) recording_->begin_trajectory(*trajectory);
-    recording_->add_journal(kept_);
+    if (!kept_.hand_to(
+            [&](std::string_view text) { recording_->add_journal(std::string(text)); })) {
+        recording_.reset();
+        throw LoadError({folder.string()},
+                        "cannot be recorded: the session's beginning, in a temporary file, could "
+                        "not be read back");
+    }
     statistics_.assign(devices_.size(), Statistics(servo_tick_s));
     writer_.begin_recording();
     // It is this recording's alone.
@@ -121,6 +140,10 @@ void SessionRecorder::end() {
     recording_.reset();
 }
 
+void SessionRecorder::write_statistics(const std::filesystem::path& path, bool overwrites) {
+    statistics_file_.emplace(path, overwrites);
+}
+
 double SessionRecorder::recorded_s() const noexcept {
     return recording_ ? static_cast<double>(statistics_.front().ticks()) * servo_tick_s : 0;
 }
@@ -128,11 +151,7 @@ double SessionRecorder::recorded_s() const noexcept {
 void SessionRecorder::flush() {
     const std::string text = writer_.take();
     if (recording_) recording_->add_journal(text);
-    if (!is_whole_) return;
-    std::size_t bytes = kept_.size() + text.size();
-    for (const KeptFile& file : files_) bytes += file.content.size();
-    is_whole_ = bytes <= most_kept;
-    is_whole_ ? void(kept_ += text) : kept_.clear();
+    if (is_whole_) kept_.add(text);
 }
 
 }  // namespace palpa

@@ -3,11 +3,14 @@
 #pragma once
 #include "scene/description.h"
 #include "session/journal.h"
+#include "session/kept_text.h"
 #include "session/live_events.h"
 #include "session/recording.h"
 #include "session/statistics.h"
+#include "session/statistics_file.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -18,7 +21,8 @@ namespace palpa {
 
 class SessionRecorder {
 public:
-    // Bytes of a journal that are kept for a recording that may come: an hour or more.
+    // Bytes of a journal that are kept, on disk, for a recording that may come: half an hour or
+    // more.
     static constexpr std::size_t most_kept = std::size_t{256} << 20;
 
     SessionRecorder(const SceneDescription& scene, std::span<const HandDevice> devices);
@@ -42,6 +46,12 @@ public:
     // written.
     void end();
 
+    // A row a second of how the session fares from now on, whether it is recorded or not. Throws
+    // LoadError where the file is there. What keeps it from being written later is a note.
+    void write_statistics(const std::filesystem::path& path, bool overwrites);
+    // Of the servo, so far.
+    void note_overruns(std::uint64_t overruns) noexcept { overruns_ = overruns; }
+
     bool is_recording() const noexcept { return recording_.has_value(); }
     double recorded_s() const noexcept;
 
@@ -60,11 +70,13 @@ private:
     std::vector<KeptFile> files_;
     std::vector<HandDevice> devices_;
     JournalWriter writer_;
-    std::string kept_;
-    bool is_whole_ = true;
+    KeptText kept_{most_kept};
+    bool is_whole_ = true;  // but for what kept_ could not keep
     std::optional<Recording> recording_;
     std::vector<std::string> notes_;      // of recordings that are over
     std::vector<Statistics> statistics_;  // of what is recorded, of each hand
+    std::optional<StatisticsFile> statistics_file_;
+    std::uint64_t overruns_ = 0;
 };
 
 }  // namespace palpa

@@ -223,6 +223,31 @@ Vec3 place_of(const LiveFrame& frame, const std::string& molecule) {
     return Vec3::Constant(1e9);
 }
 
+// Lets the servo wait longer than asked after one of its ticks.
+class LateOmni final : public Device {
+public:
+    static constexpr int late_tick = 100;
+
+    LateOmni(test::VirtualClock& clock, std::chrono::microseconds late)
+        : omni_(EmulatedOmniSettings{}), clock_(clock), late_(late) {}
+
+    const DeviceSpec& spec() const noexcept override { return omni_.spec(); }
+    DeviceReading read() noexcept override { return omni_.read(); }
+    void write(const Vec3& force_newton) noexcept override {
+        omni_.write(force_newton);
+        ++ticks;
+        if (ticks == late_tick) clock_.delay_ticks(late_);
+        if (ticks == late_tick + 1) clock_.delay_ticks(std::chrono::microseconds(0));
+    }
+
+    std::atomic<int> ticks{0};
+
+private:
+    EmulatedOmni omni_;
+    test::VirtualClock& clock_;
+    std::chrono::microseconds late_;
+};
+
 }  // namespace
 
 TEST_CASE("a frame has the legend of the colours that it shows", "[app][threads]") {
@@ -547,4 +572,26 @@ TEST_CASE("what the force field lacks of something added is named in the readout
         (void)session.read_frame(frame);
     CHECK(frame.atoms->names.size() == 9);
     CHECK(frame.readout.problem.empty());
+}
+
+TEST_CASE("ticks that were missed are counted and left out, and a short delay is caught up",
+          "[app][threads]") {
+    // A tick that begins up to 2 ms late is followed by a shorter one.
+    const auto [late_us, missed] = GENERATE(
+        table<int, std::uint64_t>({{0, 0}, {1500, 0}, {1999, 0}, {5000, 4}, {19'000, 18}}));
+    test::VirtualClock clock;
+    LateOmni device(clock, std::chrono::microseconds(late_us));
+    LiveSession session(test::water_scene(), {}, device, nullptr, &clock);
+    const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    while (device.ticks < 2 * LateOmni::late_tick && std::chrono::steady_clock::now() < end)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+
+    REQUIRE(device.ticks >= 2 * LateOmni::late_tick);
+    CHECK(session.servo_health().overruns == missed);
+    SafetyStage gravest = SafetyStage::None;
+    for (ServoTick tick; session.pop_tick(tick);) {
+        if (tick.stage < SafetyStage::Stale) continue;
+        gravest = std::max(gravest, tick.stage);
+    }
+    CHECK(gravest == SafetyStage::None);  // below 20 ms the force goes on
 }

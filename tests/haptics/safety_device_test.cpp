@@ -2,7 +2,7 @@
 #include "haptics/safety.h"
 
 #include "devices/emulated_omni.h"
-#include "tests/support/faulty_device.h"
+#include "devices/faulty_device.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -11,8 +11,7 @@
 #include <vector>
 
 using namespace palpa;
-using test::Fault;
-using test::FaultyDevice;
+using Fault = DeviceFault;
 
 namespace {
 
@@ -25,7 +24,7 @@ struct WallRun {
         SafetyResult result;
     };
 
-    std::vector<test::FaultPeriod> faults;
+    std::vector<FaultPeriod> faults;
     int ending_tick = std::numeric_limits<int>::max();
     int simulation_dies_tick = std::numeric_limits<int>::max();
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <utility>
 
@@ -123,4 +124,20 @@ TEST_CASE("no requirement is unmet where everything holds", "[session][accuracy]
     REQUIRE(report);
     CHECK(report->within_share == 0.9);
     CHECK(find_unmet(*report).all().empty());
+}
+
+TEST_CASE("however many error estimates there are, their shares hold to one in ten thousand",
+          "[session][accuracy]") {
+    constexpr int estimates = 300'000, stride = 7919;  // prime, so that each comes once
+    AccuracyLog log = log_of({}, 0.25 * estimates);
+    for (int i = 0; i < estimates; ++i) {
+        const auto error = static_cast<double>(std::int64_t{i} * stride % estimates);
+        log.add_step(step_of(8, error));
+    }
+
+    const AccuracyReport report = log.report(0).value_or(AccuracyReport{});
+    CHECK(report.estimates == estimates);
+    CHECK(report.median_pN == Approx(0.5 * estimates).margin(1e-4 * estimates));
+    CHECK(report.ninety_pN == Approx(0.9 * estimates).margin(1e-4 * estimates));
+    CHECK(report.within_share == Approx(0.25).margin(1e-4));
 }

@@ -3,6 +3,7 @@
 #include "core/interrupt.h"
 #include "devices/open_device.h"
 #include "haptics/safety.h"
+#include "platform/thread.h"
 #include "tools/commands/command.h"
 #include "tools/commands/latency.h"
 
@@ -136,6 +137,23 @@ DeviceCheck check_force(Device& device) {
                                        : std::string(words(worst))};
 }
 
+// What the servo's thread is granted; asked for on one that ends.
+std::vector<DeviceCheck> check_machine() {
+    bool is_real_time = false, is_locked = false;
+    std::thread([&] {
+        is_real_time = ask_for_real_time();
+        is_locked = ask_for_locked_memory();
+    }).join();
+    const auto say = [&](const char* layer, bool is_granted, const char* without) {
+        return is_granted ? DeviceCheck{layer, CheckOutcome::Ok, "granted", ""}
+                          : DeviceCheck{layer, CheckOutcome::Failed,
+                                        fmt::format("not granted: {}", without),
+                                        std::string(real_time_remedy())};
+    };
+    return {say("real-time", is_real_time, "the servo misses ticks when the machine is busy"),
+            say("memory", is_locked, "the servo waits where a page was moved to disk")};
+}
+
 Examined examine(const DeviceMaker& maker, const DeviceRequest& request, bool tests_force) {
     Examined examined;
     examined.maker = &maker;
@@ -175,36 +193,49 @@ std::vector<std::string> list_next(const std::vector<Examined>& all, bool is_any
     return next;
 }
 
-void print_text(const std::vector<Examined>& all, const std::vector<std::string>& next) {
+void print_checks(const std::vector<DeviceCheck>& checks) {
+    for (const DeviceCheck& check : checks) {
+        fmt::print("  {:<12} {:<8} {}\n", check.layer, name_of(check.outcome), check.found);
+        if (!check.remedy.empty()) fmt::print("  {:<12} {:<8} -> {}\n", "", "", check.remedy);
+    }
+}
+
+void print_text(const std::vector<Examined>& all, const std::vector<DeviceCheck>& machine,
+                const std::vector<std::string>& next) {
     for (const Examined& examined : all) {
         fmt::print("{}: {}; {}\n", examined.maker->name, examined.maker->summary,
                    examined.is_usable ? "can be used" : "cannot be used");
-        for (const DeviceCheck& check : examined.checks) {
-            fmt::print("  {:<12} {:<8} {}\n", check.layer, name_of(check.outcome), check.found);
-            if (!check.remedy.empty()) fmt::print("  {:<12} {:<8} -> {}\n", "", "", check.remedy);
-        }
+        print_checks(examined.checks);
     }
+    fmt::print("this machine, for the servo of every device\n");
+    print_checks(machine);
     if (!next.empty()) fmt::print("\nnext:\n");
     for (const std::string& line : next) fmt::print("  {}\n", line);
 }
 
-void print_json(const std::vector<Examined>& all, const std::vector<std::string>& next) {
+Json as_json(const std::vector<DeviceCheck>& checks) {
+    Json list = Json::array();
+    for (const DeviceCheck& check : checks) {
+        list.push_back({{"layer", check.layer},
+                        {"outcome", name_of(check.outcome)},
+                        {"found", check.found},
+                        {"remedy", check.remedy}});
+    }
+    return list;
+}
+
+void print_json(const std::vector<Examined>& all, const std::vector<DeviceCheck>& machine,
+                const std::vector<std::string>& next) {
     Json json;
     json["devices"] = Json::array();
     for (const Examined& examined : all) {
-        Json checks = Json::array();
-        for (const DeviceCheck& check : examined.checks) {
-            checks.push_back({{"layer", check.layer},
-                              {"outcome", name_of(check.outcome)},
-                              {"found", check.found},
-                              {"remedy", check.remedy}});
-        }
         json["devices"].push_back({{"name", examined.maker->name},
                                    {"summary", examined.maker->summary},
                                    {"emulated", examined.maker->is_emulated},
                                    {"usable", examined.is_usable},
-                                   {"checks", checks}});
+                                   {"checks", as_json(examined.checks)}});
     }
+    json["machine"] = as_json(machine);
     json["next"] = next;
     fmt::print("{}\n", json.dump(2));
 }
@@ -213,6 +244,7 @@ void print_json(const std::vector<Examined>& all, const std::vector<std::string>
 
 int devices_command(const DevicesOptions& options) {
     if (options.times_latency) return latency_command();
+    if (options.wake_up_s > 0) return wake_up_command(options.wake_up_s, options.json);
     std::vector<Examined> all;
     const DeviceMaker* const only =
         options.name.empty() ? nullptr : &device_maker_called(options.name);
@@ -226,7 +258,8 @@ int devices_command(const DevicesOptions& options) {
         return examined.is_usable && (only || !examined.maker->is_emulated);
     });
     const std::vector<std::string> next = list_next(all, is_any_usable);
-    options.json ? print_json(all, next) : print_text(all, next);
+    const std::vector<DeviceCheck> machine = check_machine();
+    options.json ? print_json(all, machine, next) : print_text(all, machine, next);
     return exit_code_after(is_any_usable ? 0 : 1);
 }
 
@@ -258,6 +291,12 @@ void add_devices(CLI::App& program, ProgramCommand& chosen) {
     devices.add_flag("--force-test", options.tests_force,
                      "push the handle with a small force, after a question");
     CLI::Option* const json = devices.add_flag("--json", options.json, "print the result as JSON");
+    devices
+        .add_option("--wake-up", options.wake_up_s,
+                    "time instead how late the servo's thread wakes, for so long with real-time "
+                    "priority and as long without")
+        ->type_name("SECONDS")
+        ->check(in_range(0.01, 3600.0));
     devices
         .add_flag("--latency", options.times_latency,
                   "instead: measure the latency of emulated devices, from report to force")

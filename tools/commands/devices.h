@@ -9,6 +9,7 @@ struct DevicesOptions {
     bool json = false;
     bool tests_force = false;
     bool times_latency = false;
+    double wake_up_s = 0;  // time only how late the servo wakes, for so long
 };
 
 // Exit code 0 if there is a device that can be used, emulated ones beside, else 1.

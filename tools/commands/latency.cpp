@@ -7,9 +7,11 @@
 
 #include <fmt/format.h>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <system_error>
 #include <thread>
 
@@ -52,6 +54,51 @@ int latency_command() {
             "tests) and the package umockdev\n",
             program.string());
     }
+    return 0;
+}
+
+namespace {
+
+nlohmann::ordered_json as_json(const char* priority, const WakeUps& found) {
+    nlohmann::ordered_json classes = nlohmann::ordered_json::array();
+    for (const LatenessClass& each : sort_into_classes(found.late_us))
+        classes.push_back({{"below_us", each.below_us}, {"ticks", each.ticks}});
+    return {{"priority", priority},
+            {"granted", found.is_real_time},
+            {"locked", found.is_locked},
+            {"ticks", found.late_us.size()},
+            {"missed", found.missed},
+            {"median_us", quantile(found.late_us, 0.5)},
+            {"p99_us", quantile(found.late_us, 0.99)},
+            {"p999_us", quantile(found.late_us, 0.999)},
+            {"most_us", quantile(found.late_us, 1)},
+            {"classes", classes}};
+}
+
+void print_wake_ups(const char* priority, const WakeUps& found) {
+    fmt::print("{:<10} {:>9.1f} {:>9.1f} {:>9.1f} {:>9.1f} {:>8}\n", priority,
+               quantile(found.late_us, 0.5), quantile(found.late_us, 0.99),
+               quantile(found.late_us, 0.999), quantile(found.late_us, 1), found.missed);
+}
+
+}  // namespace
+
+int wake_up_command(double seconds, bool json) {
+    const int ticks = static_cast<int>(std::lround(seconds * servo_rate_hz));
+    const WakeUps real_time = measure_wake_ups(ticks, true),
+                  ordinary = measure_wake_ups(ticks, false);
+    if (json) {
+        const nlohmann::ordered_json rows = {as_json("real-time", real_time),
+                                             as_json("ordinary", ordinary)};
+        fmt::print("{}\n", nlohmann::ordered_json{{"wake_ups", rows}}.dump(2));
+        return 0;
+    }
+    fmt::print("{:<10} {:>9} {:>9} {:>9} {:>9} {:>8}  of {} ticks each\n", "priority", "median us",
+               "p99 us", "p99.9 us", "most us", "missed", ticks);
+    print_wake_ups("real-time", real_time);
+    print_wake_ups("ordinary", ordinary);
+    if (!real_time.is_real_time)
+        fmt::print("real-time priority was not granted: both rows are of ordinary priority\n");
     return 0;
 }
 

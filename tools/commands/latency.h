@@ -16,4 +16,7 @@ void print_latency(const std::string& device, std::size_t asked,
 // the tests, can show them to the real libhidapi. Exit code 0.
 int latency_command();
 
+// How late a servo's thread wakes, for so many seconds with real-time priority and as long without.
+int wake_up_command(double seconds, bool json);
+
 }  // namespace palpa

@@ -11,6 +11,7 @@
 #include "session/lesson_meter.h"
 #include "session/recording.h"
 #include "session/run_headless.h"
+#include "session/statistics_file.h"
 #include "session/trajectory_recorder.h"
 #include "simulation/held.h"
 #include "simulation/load.h"
@@ -211,12 +212,21 @@ int run_without_window(SceneDescription scene, World& world,
     if (server) served.emplace(*server, options.serve, progress);
     std::optional<ScriptedRun> scripted;
     if (options.commands) scripted.emplace(scene, standard_ends(devices));
+    std::optional<StatisticsFile> statistics;
+    if (options.statistics) statistics.emplace(*options.statistics, options.overwrites);
     const auto before_step = [&](World& next, const EditFunction& edit) {
+        const double last_us = next.resource<StepReport>().took_us;
+        if (statistics && last_us > 0) statistics->add_step(last_us);
         if (scripted) scripted->before_step(next, edit);
         if (served) served->before_step(next);
     };
     HandTicksFunction watch;
-    if (scripted) watch = [&](std::span<const ServoTick> ticks) { scripted->add(ticks); };
+    if (scripted || statistics) {
+        watch = [&](std::span<const ServoTick> ticks) {
+            if (scripted) scripted->add(ticks);
+            if (statistics) statistics->add(ticks.front());
+        };
+    }
     FrameClock frames;
     if (writer) {
         frames = {options.frames_per_second, [&] { write_frame(writer, world, progress); }};
@@ -374,6 +384,11 @@ void add_headless_options(CLI::App& run, RunOptions& options) {
             ->group("With and without a window");
     add_overwrite_flag(run, options.overwrites);
     run.get_option("--overwrite")->group("With and without a window");
+    run.add_option("--statistics", options.statistics,
+                   "CSV file: every second of the servo a row of step times, overruns, force and "
+                   "energy")
+        ->type_name("FILE")
+        ->group("With and without a window");
     run.add_option(
            "--fps", options.frames_per_second,
            "add pictures frames/0000.png ... to the recording, this many per simulated second")

@@ -17,7 +17,8 @@ struct RunOptions {
     std::filesystem::path scene;
     std::vector<std::string> settings;  // "key=value", over the scene file
     std::optional<std::filesystem::path> record;
-    bool overwrites = false;       // an earlier recording, or an earlier picture of --shot
+    std::optional<std::filesystem::path> statistics;  // file
+    bool overwrites = false;       // an earlier recording, statistics, or picture of --shot
     double frames_per_second = 0;  // 0: no frames in the recording
     std::uint32_t frame_width = 640, frame_height = 360;
     std::optional<double> trajectory_fps;  // frames a simulated second; nothing: as usual

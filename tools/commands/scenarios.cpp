@@ -23,6 +23,14 @@ struct ScenarioCommand {
 nlohmann::ordered_json as_json(std::size_t number, const ScenarioResult& result) {
     return {{"number", number},
             {"generated_J", result.generated_J},
+            {"net_work_J", result.net_work_J},
+            {"over_all_J", result.over_all_J ? nlohmann::ordered_json(*result.over_all_J)
+                                             : nlohmann::ordered_json()},
+            {"judged_share", result.judged_share},
+            {"most_N", result.most_newton},
+            {"most_change_N", result.most_change_newton},
+            {"faults", result.faults},
+            {"edits", result.edits},
             {"ripple_N", result.ripple_N},
             {"closest_angstrom", result.closest_angstrom},
             {"went_through", result.went_through},
@@ -95,6 +103,9 @@ void add_scenarios(CLI::App& program, ProgramCommand& chosen) {
         ->check(in_range(0, 1e12));
     add_seed_option(scenarios, options.seed);
     scenarios.add_flag("--json", command.json, "print every scenario as JSON");
+    scenarios.add_flag("--disturbed", options.is_disturbed,
+                       "also draw gains, laws and stop, faults of the device, and edits (for "
+                       "scenes/water)");
     add_set_option(scenarios, options.settings);
 }
 

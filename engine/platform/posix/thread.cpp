@@ -21,6 +21,11 @@ bool ask_for_locked_memory() noexcept {
 #endif
 }
 
+std::string_view real_time_remedy() noexcept {
+    return "as root write '@plugdev - rtprio 50' and '@plugdev - memlock unlimited' into "
+           "/etc/security/limits.d/70-palpa.conf, be in the group plugdev, and log in again";
+}
+
 void lower_priority() noexcept { (void)!nice(5); }
 
 }  // namespace palpa

@@ -15,6 +15,8 @@ bool ask_for_real_time() noexcept {
 // Windows locks single ranges, not what is to come.
 bool ask_for_locked_memory() noexcept { return false; }
 
+std::string_view real_time_remedy() noexcept { return {}; }
+
 void lower_priority() noexcept {
     (void)SetThreadPriority(GetCurrentThread(), THREAD_PRIORITY_BELOW_NORMAL);
 }

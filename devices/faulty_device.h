@@ -1,4 +1,4 @@
-// A device around another one that breaks when told to.
+// A device around another one that breaks when told to, for tests and scenarios.
 #pragma once
 #include "haptics/device.h"
 
@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-namespace palpa::test {
+namespace palpa {
 
-enum class Fault {
+enum class DeviceFault {
     NotANumber,  // position
     Frozen,      // position and time stamp as when it began
     Jump,        // position off by `size_m` along x
@@ -18,7 +18,7 @@ enum class Fault {
 
 // From one tick to before another; a tick ends with write().
 struct FaultPeriod {
-    Fault fault = Fault::Invalid;
+    DeviceFault fault = DeviceFault::Invalid;
     int begin = 0;
     int end = std::numeric_limits<int>::max();
     double size_m = 0.3;
@@ -32,6 +32,7 @@ public:
         : device_(device), periods_(std::move(periods)) {}
 
     const DeviceSpec& spec() const noexcept override { return device_.spec(); }
+    void show(const ContactModel& contact) noexcept override { device_.show(contact); }
 
     DeviceReading read() noexcept override {
         DeviceReading reading = device_.read();
@@ -39,20 +40,20 @@ public:
         for (const FaultPeriod& period : periods_) {
             if (!acts(period)) continue;
             switch (period.fault) {
-                case Fault::NotANumber:
+                case DeviceFault::NotANumber:
                     reading.position_m.y() = std::numeric_limits<double>::quiet_NaN();
                     break;
-                case Fault::Frozen:
+                case DeviceFault::Frozen:
                     reading = last_;
                     is_frozen = true;
                     break;
-                case Fault::Jump:
+                case DeviceFault::Jump:
                     reading.position_m.x() += period.size_m;
                     break;
-                case Fault::Invalid:
+                case DeviceFault::Invalid:
                     reading.valid = false;
                     break;
-                case Fault::Late:
+                case DeviceFault::Late:
                     break;
             }
         }
@@ -64,7 +65,7 @@ public:
         device_.write(force_newton);
         now_s_ += 1 / device_.spec().rate_hz;
         for (const FaultPeriod& period : periods_) {
-            if (period.fault == Fault::Late && acts(period)) now_s_ += period.late_s;
+            if (period.fault == DeviceFault::Late && acts(period)) now_s_ += period.late_s;
         }
         ++tick_;
     }
@@ -84,4 +85,4 @@ private:
     int tick_ = 0;
 };
 
-}  // namespace palpa::test
+}  // namespace palpa
