@@ -23,7 +23,7 @@ LoadError::LoadError(const TextPlace& place, const std::string& message,
       further_(std::make_shared<const std::vector<std::string>>(std::move(further))) {}
 
 LoadError join_problems(const TextPlace& place, const std::vector<std::string>& problems,
-                        std::span<const std::string> advice) {
+                        const std::vector<std::string>& advice) {
     const auto named = problems.begin() +
                        static_cast<std::ptrdiff_t>(std::min(problems.size(), most_named_problems));
     std::vector<std::string> parts(problems.begin(), named), further(named, problems.end());

@@ -2,7 +2,6 @@
 #pragma once
 #include <cstddef>
 #include <memory>
-#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -38,6 +37,6 @@ private:
 // holds; `advice` stands at its end. There must be a problem.
 constexpr std::size_t most_named_problems = 8;
 LoadError join_problems(const TextPlace& place, const std::vector<std::string>& problems,
-                        std::span<const std::string> advice = {});
+                        const std::vector<std::string>& advice = {});
 
 }  // namespace palpa
