@@ -140,6 +140,32 @@ TEST_CASE("a scene that is loaded anew forgets the long edit that was under way"
     CHECK(live.simulation.readout().edit_under_way.empty());
 }
 
+TEST_CASE("a scene that is loaded anew has a lesson that has measured nothing yet",
+          "[session][lesson]") {
+    SceneDescription scene = read_scene(test::in_project("scenes/water"));
+    LessonStepDescription way{"way", "text", "task", LessonQuantity::Way, 1.0, {}, 0};
+    LessonStepDescription work{"work", "text", "task", LessonQuantity::Work, 1.0, {}, 0};
+    scene.lesson = {way, work};
+    NoServo servo;
+    LiveSimulation simulation(scene, {HandDevice{omni_spec(), true}}, servo);
+    std::vector<HandPose> poses{1};
+    for (int i = 0; i < 20; ++i) {
+        poses[0].travel_m.x() -= 4e-3;  // towards the other water
+        simulation.play(PublishEvent{}, poses);
+        simulation.play(StepEvent{}, poses);
+    }
+    const std::vector<double> before = simulation.readout().lesson.values;
+    REQUIRE(before.size() == 2);
+    REQUIRE(before[0] > 1);
+    REQUIRE(before[1] != 0);
+    REQUIRE(simulation.readout().resets == 0);
+
+    simulation.play(CommandEvent{Reset{}}, poses);
+
+    CHECK(simulation.readout().resets == 1);
+    CHECK(simulation.readout().lesson.values == std::vector<double>{0, 0});
+}
+
 TEST_CASE("only what needs new mechanics of many atoms takes long", "[session][edits]") {
     const Live live(hiv), small("scenes/water"), rigid("scenes/hiv");
     CHECK(rigid.simulation.takes_long(edit_now(TakeEdit{"protease_a:25"})));
