@@ -45,11 +45,12 @@ std::vector<std::string> draw_scenario(Draws& draws) {
     return settings;
 }
 
-// Work (J) that the static law does on the hand while the molecule goes from one distance (Å) to
-// another: the integral of f(F) A_d.
+// Work (J) that the static law, cut at the clamp, does on the hand while the molecule goes from one
+// distance (Å) to another: the integral of f(F) A_d.
 double find_static_work(const World& world, double from, double to) {
     const SceneDescription& scene = world.resource<SceneFile>().scene;
     const ServoSettings servo = build_servo_settings(scene, world);
+    const double clamp_newton = servo.safety.clamp_newton;
     const auto steps = static_cast<int>(std::ceil(std::abs(to - from) / 1e-3)) + 1;
     const double width = (to - from) / steps;
     double sum = 0;
@@ -57,7 +58,8 @@ double find_static_work(const World& world, double from, double to) {
         const LineForce line = force_along_line_at(world, from + (i + 0.5) * width);
         const double F_m = line.force * units::newton_per_kcal_per_mol_angstrom;
         const double A_d = gain_where(servo, world, line);
-        sum += hand_force(world.resource<Coupling>().laws.force, F_m) * A_d;
+        const double F_h = hand_force(world.resource<Coupling>().laws.force, F_m);
+        sum += std::clamp(F_h, -clamp_newton, clamp_newton) * A_d;
     }
     return sum * width * units::metre_per_angstrom;
 }
