@@ -64,6 +64,9 @@ double find_static_work(const World& world, double from, double to) {
     return sum * width * units::metre_per_angstrom;
 }
 
+// What is taken anew may move in space, where the law of the axis is not its own.
+bool is_on_axis(const ServoTick& tick) noexcept { return tick.contact.active_freedom <= 1; }
+
 // Stretches of a run in which the whole force of the law came through, each against the static law
 // on its own: in between a fault or an edit may take force, and with it energy, from the hand, or
 // give it back.
@@ -73,7 +76,8 @@ public:
 
     void add(const ServoTick& tick, bool is_disturbed) {
         const bool is_whole = !is_disturbed && tick.stage <= SafetyStage::ThermalLimit &&
-                              tick.reason == SafetyStage::None && !tick.contact.is_still;
+                              tick.reason == SafetyStage::None && !tick.contact.is_still &&
+                              is_on_axis(tick);
         ++ticks_;
         if (!is_whole) return close();
         place_ = tick.contact.molecule.place_angstrom.x();
@@ -182,7 +186,7 @@ ScenarioResult play_scenario(const ScenarioOptions& options, std::size_t number)
     result.edits = disturbances.edits.size();
     result.ripple_N = summary.ripple ? summary.ripple->rms : 0;
     result.closest_angstrom = summary.closest_angstrom;
-    result.went_through = summary.went_through;
+    result.went_through = summary.went_through && summary.is_on_axis;
     result.was_held_back = disturbances.faults.empty() && disturbances.edits.empty() &&
                            summary.gravest > SafetyStage::ThermalLimit;
     result.clamped_share = summary.clamped_share;
