@@ -45,11 +45,12 @@ std::vector<std::string> draw_scenario(Draws& draws) {
     return settings;
 }
 
-// Work (J) that the static law does on the hand while the molecule goes from one distance (Å) to
-// another: the integral of f(F) A_d.
+// Work (J) that the static law, cut at the clamp, does on the hand while the molecule goes from one
+// distance (Å) to another: the integral of f(F) A_d.
 double find_static_work(const World& world, double from, double to) {
     const SceneDescription& scene = world.resource<SceneFile>().scene;
     const ServoSettings servo = build_servo_settings(scene, world);
+    const double clamp_newton = servo.safety.clamp_newton;
     const auto steps = static_cast<int>(std::ceil(std::abs(to - from) / 1e-3)) + 1;
     const double width = (to - from) / steps;
     double sum = 0;
@@ -57,10 +58,14 @@ double find_static_work(const World& world, double from, double to) {
         const LineForce line = force_along_line_at(world, from + (i + 0.5) * width);
         const double F_m = line.force * units::newton_per_kcal_per_mol_angstrom;
         const double A_d = gain_where(servo, world, line);
-        sum += hand_force(world.resource<Coupling>().laws.force, F_m) * A_d;
+        const double F_h = hand_force(world.resource<Coupling>().laws.force, F_m);
+        sum += std::clamp(F_h, -clamp_newton, clamp_newton) * A_d;
     }
     return sum * width * units::metre_per_angstrom;
 }
+
+// What is taken anew may move in space, where the law of the axis is not its own.
+bool is_on_axis(const ServoTick& tick) noexcept { return tick.contact.active_freedom <= 1; }
 
 // Stretches of a run in which the whole force of the law came through, each against the static law
 // on its own: in between a fault or an edit may take force, and with it energy, from the hand, or
@@ -71,7 +76,8 @@ public:
 
     void add(const ServoTick& tick, bool is_disturbed) {
         const bool is_whole = !is_disturbed && tick.stage <= SafetyStage::ThermalLimit &&
-                              tick.reason == SafetyStage::None && !tick.contact.is_still;
+                              tick.reason == SafetyStage::None && !tick.contact.is_still &&
+                              is_on_axis(tick);
         ++ticks_;
         if (!is_whole) return close();
         place_ = tick.contact.molecule.place_angstrom.x();
@@ -180,7 +186,7 @@ ScenarioResult play_scenario(const ScenarioOptions& options, std::size_t number)
     result.edits = disturbances.edits.size();
     result.ripple_N = summary.ripple ? summary.ripple->rms : 0;
     result.closest_angstrom = summary.closest_angstrom;
-    result.went_through = summary.went_through;
+    result.went_through = summary.went_through && summary.is_on_axis;
     result.was_held_back = disturbances.faults.empty() && disturbances.edits.empty() &&
                            summary.gravest > SafetyStage::ThermalLimit;
     result.clamped_share = summary.clamped_share;

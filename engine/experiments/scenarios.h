@@ -36,7 +36,7 @@ struct ScenarioResult {
     // The same beyond the static law from where the molecule began to where it ended: what faults
     // gave. Nothing where edits changed the law on the way.
     std::optional<double> over_all_J;
-    double judged_share = 0;  // of the time, that stretches had
+    double judged_share = 0;                         // of the time, that stretches had
     double most_newton = 0, most_change_newton = 0;  // written; in a tick, but for drops to zero
     double clamp_newton = 0;                         // of the scene
     std::size_t faults = 0, edits = 0;
