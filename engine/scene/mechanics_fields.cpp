@@ -114,8 +114,7 @@ void visit_statics(FieldVisitor& v, StaticsDescription& s) {
            {.key = "weights",
             .meaning = "what counts in that choice: accelerations of regions, as in the paper, or "
                        "with the inertia that they move; of joints one by one; of these the more "
-                       "the fewer atoms they move; and the nearer they are to the hand",
-            .renamed = renamed_joint_weights},
+                       "the fewer atoms they move; and the nearer they are to the hand"},
            joint_weight_names, s.weights);
     v.integer({.key = "choose_every",
                .meaning = "steps from one choice to the next",
