@@ -1,5 +1,6 @@
 #include "prepare/scene_of.h"
 
+#include "core/file_versions.h"
 #include "core/units.h"
 #include "prepare/residues.h"
 #include "scene/write_scene.h"
@@ -140,9 +141,11 @@ std::string format_scene(const Structure& structure, std::span<const SystemSegme
                          const HandChoice& hand, const Vec3& way, const SceneText& text,
                          const SceneTuning& tuning) {
     std::string scene = fmt::format(
-        "# Written by palpa prepare. Every key: palpa run --keys.\ntitle = {}\nabout = {}\n"
-        "made_by = {}\n\n[force_field]\nfiles = [\"system.prm\"]\n",
-        in_quotes(text.title), in_quotes(text.about), in_quotes(text.made_by));
+        "# Written by palpa prepare. Every key: palpa run --keys.\nformat = \"{}\"\ntitle = "
+        "{}\nabout "
+        "= {}\nmade_by = {}\n\n[force_field]\nfiles = [\"system.prm\"]\n",
+        to_string(scene_version), in_quotes(text.title), in_quotes(text.about),
+        in_quotes(text.made_by));
     const bool has_solvent = text.solvent != Solvent::None;
     if (has_solvent) {
         scene += fmt::format("solvent = \"{}\"\n",

@@ -32,20 +32,10 @@ inline constexpr std::array<std::string_view, 3> engine_protocol_names{"any", "2
 enum class PairPrecision { Double, Fast };
 inline constexpr std::array<std::string_view, 2> pair_precision_names{"double", "fast"};
 
-// What a choice was called before, which is refused with the name that it has now.
-struct RenamedChoice {
-    std::string_view before, now;
-};
-
 // What counts where active joints are chosen.
 enum class JointWeights { Acceleration, Inertia, PerJoint, InverseMovedAtoms, HandProximity };
 inline constexpr std::array<std::string_view, 5> joint_weight_names{
     "acceleration", "inertia", "per-joint", "inverse-moved-atoms", "hand-proximity"};
-inline constexpr std::array<RenamedChoice, 4> renamed_joint_weights{
-    {{"plain", "acceleration"},
-     {"single", "per-joint"},
-     {"light", "inverse-moved-atoms"},
-     {"near-hand", "hand-proximity"}}};
 
 enum class Stroke { Hold, InOut, Path, Lead };
 inline constexpr std::array<std::string_view, 4> stroke_names{"hold", "in-out", "path", "lead"};

@@ -256,6 +256,7 @@ struct ViewDescription {
 
 struct SceneDescription {
     std::filesystem::path file;
+    std::string format;  // version that the file states (core/file_versions.h); empty: none
     std::string title, about;
     SceneLevel level = SceneLevel::Unstated;
     double minutes = 0;   // that a person spends with it; 0: not stated
@@ -281,6 +282,9 @@ struct SceneDescription {
 
     // Where the file (or a setting over it) says a field, by its key in full.
     std::map<std::string, TextPlace, std::less<>> places;
+
+    // What a user should know of how it was read, a sentence each: old names, a newer format.
+    std::vector<std::string> notes;
 
     // The place of a field for messages: its own, or the file where the default holds.
     TextPlace place_of(std::string_view key) const;

@@ -27,7 +27,6 @@ struct Field {
     TextForm form = TextForm::Any;
     bool is_inline = false;      // a table in braces
     std::string_view like = {};  // a table with the keys of that one, which is documented
-    std::span<const RenamedChoice> renamed = {};  // of a choice
 };
 
 class FieldVisitor {

@@ -120,8 +120,7 @@ void visit_statics(FieldVisitor& v, StaticsDescription& s) {
             .meaning = "weight in the selection of active joints: acceleration of regions, as in "
                        "the paper; inertia: also the inertia that they move; per-joint: joints "
                        "individually; inverse-moved-atoms: favours joints that move few atoms; "
-                       "hand-proximity: favours joints near the hand",
-            .renamed = renamed_joint_weights},
+                       "hand-proximity: favours joints near the hand"},
            joint_weight_names, s.weights);
     v.integer({.key = "choose_every",
                .meaning = "steps from one selection to the next",

@@ -16,6 +16,10 @@ TextPlace Problems::place_of(std::string_view key) const {
     return place_of(key.substr(0, dot));
 }
 
+void Problems::add_note(const TextPlace& place, std::string_view what) {
+    notes_.push_back(fmt::format("{}: {}", to_string(place), what));
+}
+
 FieldPlaces Problems::finish() {
     if (problems_.empty()) return std::move(places_);
     std::stable_sort(problems_.begin(), problems_.end(), [](const Problem& a, const Problem& b) {

@@ -24,6 +24,10 @@ public:
     }
     bool any() const { return !problems_.empty(); }
 
+    // What is no problem, and worth a sentence: "file:line:column: what".
+    void add_note(const TextPlace& place, std::string_view what);
+    std::vector<std::string> take_notes() { return std::exchange(notes_, {}); }
+
     // Where a field was read, or the table where it should be, or the file.
     void set_place(const std::string& key, const TextPlace& place) { places_[key] = place; }
     TextPlace place_of(std::string_view key) const;
@@ -40,6 +44,7 @@ private:
 
     std::string file_;
     std::vector<Problem> problems_;
+    std::vector<std::string> notes_;
     FieldPlaces places_;
 };
 

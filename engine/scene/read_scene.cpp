@@ -1,5 +1,6 @@
 #include "scene/read_scene.h"
 
+#include "core/file_versions.h"
 #include "core/files.h"
 #include "core/load_error.h"
 #include "core/text.h"
@@ -8,6 +9,7 @@
 #include "scene/fields.h"
 #include "scene/find_scene.h"
 #include "scene/problems.h"
+#include "scene/renames.h"
 #include "scene/run_commands.h"
 
 #include <fmt/format.h>
@@ -123,22 +125,35 @@ bool is_below(const fs::path& path, const fs::path& folder) {
 
 // ---- reading ---------------------------------------------------------------------------------
 
+// What a file may have.
+struct ReadingRules {
+    bool allows_outside = false;      // files from anywhere
+    bool takes_old_names = false;     // of format 1
+    bool leaves_out_unknown = false;  // of a newer minor format
+};
+
+ReadingRules rules_of(FileVersion version) {
+    return {false, version.major<scene_version.major, version> scene_version};
+}
+
 // Fills a description from a table.
 class Reader final : public FieldVisitor {
 public:
-    Reader(const toml::table& root, const fs::path& file, bool allows_outside, Problems& problems)
-        : Reader(root, file, file.parent_path(), allows_outside, problems) {}
+    Reader(const toml::table& root, const fs::path& file, const ReadingRules& rules,
+           Problems& problems)
+        : Reader(root, file, file.parent_path(), rules, problems) {}
     // `folder`: from where file names are taken.
-    Reader(const toml::table& root, fs::path file, fs::path folder, bool allows_outside,
+    Reader(const toml::table& root, fs::path file, fs::path folder, const ReadingRules& rules,
            Problems& problems)
         : file_(std::move(file)),
           folder_(std::move(folder)),
+          rules_(rules),
           problems_(problems),
           is_made_(root.contains("made_by")) {
-        if (!allows_outside) {
+        if (!rules.allows_outside) {
             may_read_ = {real_path(folder_.empty() ? "." : folder_)};
-            for (const fs::path& folder : own_scene_folders()) {
-                may_read_.push_back(real_path(folder));
+            for (const fs::path& own : own_scene_folders()) {
+                may_read_.push_back(real_path(own));
             }
         }
         levels_.push_back({&root, "", place_or_start(root), {}, false});
@@ -352,14 +367,21 @@ public:
                 std::size_t& value) override {
         const toml::node* const node = find_value(field);
         if (!node) return;
-        const std::string read = node->is_string()    ? node->ref<std::string>()
-                                 : node->is_integer() ? fmt::format("{}", node->ref<std::int64_t>())
-                                                      : "";
+        std::string read = node->is_string()    ? node->ref<std::string>()
+                           : node->is_integer() ? fmt::format("{}", node->ref<std::int64_t>())
+                                                : "";
+        if (const std::string_view now = find_value_now(full_key(field.key), read); !now.empty()) {
+            renamed(place_of(node->source()),
+                    fmt::format("'{}': {} is now {}", full_key(field.key), read, now));
+            if (!rules_.takes_old_names) return;
+            read = now;
+        }
         const auto found = std::find(names.begin(), names.end(), read);
-        const auto renamed = std::ranges::find(field.renamed, read, &RenamedChoice::before);
-        if (renamed != field.renamed.end()) {
-            return problem(*node, fmt::format("'{}': {} is now {}", full_key(field.key),
-                                              renamed->before, renamed->now));
+        if (found == names.end() && rules_.leaves_out_unknown) {
+            return problems_.add_note(place_of(node->source()),
+                                      fmt::format("'{}' is {}, which this program does not know: "
+                                                  "left out",
+                                                  full_key(field.key), kind_of(*node)));
         }
         if (found == names.end()) {
             return problem(*node, expected(field, *node,
@@ -498,9 +520,27 @@ private:
         if (std::ranges::find(level.known, field.key) == level.known.end()) {
             level.known.emplace_back(field.key);
         }
-        const toml::node* const node = level.table ? level.table->get(field.key) : nullptr;
+        const toml::node* node = level.table ? level.table->get(field.key) : nullptr;
+        if (!node && level.table) node = find_by_old_name(level, field.key);
         if (node) problems_.set_place(full_key(field.key), place_of(node->source()));
         return node;
+    }
+
+    const toml::node* find_by_old_name(Level& level, std::string_view key) {
+        const std::string_view before = find_key_before(level.path, key);
+        const auto found = before.empty() ? level.table->end() : level.table->find(before);
+        if (found == level.table->end()) return nullptr;
+        if (std::ranges::find(level.known, before) == level.known.end()) {
+            level.known.emplace_back(before);
+            renamed(place_of(found->first.source()),
+                    fmt::format("'{}' is now '{}'", full_key(before), full_key(key)));
+        }
+        return rules_.takes_old_names ? &found->second : nullptr;
+    }
+
+    // A note where old names are read, else a problem.
+    void renamed(const TextPlace& place, std::string what) {
+        rules_.takes_old_names ? problems_.add_note(place, what) : problem(place, std::move(what));
     }
 
     // The node of a field that is no table; names a required one that is not there.
@@ -565,6 +605,11 @@ private:
         for (const toml::key& key : unknown) {
             const TextPlace place = place_of(key.source());
             const std::string name = level.path + std::string(key.str());
+            if (rules_.leaves_out_unknown) {
+                problems_.add_note(
+                    place, fmt::format("this program does not know the key '{}': left out", name));
+                continue;
+            }
             const std::string hint = near_name_hint(key.str(), known);
             problem(place, fmt::format("unknown key '{}'{}", name,
                                        hint.empty() ? fmt::format("; expected one of {}",
@@ -581,6 +626,7 @@ private:
     }
 
     fs::path file_, folder_;
+    ReadingRules rules_;
     Problems& problems_;
     std::vector<fs::path> may_read_;  // folders, links resolved; empty: everything
     bool is_made_;                    // the scene says how its files are made
@@ -719,6 +765,22 @@ toml::table parse_table(std::string_view text, const fs::path& file) {
     }
 }
 
+// What the key `format` states, or that of files without a number. Throws LoadError for a version
+// that cannot be read; one of a newer minor number is a note.
+FileVersion read_version(const toml::table& root, Problems& problems) {
+    const toml::node* const node = root.get("format");
+    if (!node || !node->is_string()) return unnumbered_version;
+    const TextPlace place = place_of(node->source());
+    const std::optional<FileVersion> version = find_version(node->ref<std::string>());
+    if (!version) {
+        throw LoadError(place, fmt::format("'format' is {}; expected a version, \"{}\"",
+                                           kind_of(*node), to_string(scene_version)));
+    }
+    if (const auto note = check_version("scene", *version, scene_version, place))
+        problems.add_note(place, *note);
+    return *version;
+}
+
 }  // namespace
 
 SceneDescription parse_scene(std::string_view text, const fs::path& file,
@@ -740,11 +802,14 @@ SceneDescription parse_scene(std::string_view text, const fs::path& file,
     SceneDescription scene;
     scene.file = file;
     Problems problems(file);
-    Reader reader(root, file, allows_outside, problems);
+    ReadingRules rules = rules_of(read_version(root, problems));
+    rules.allows_outside = allows_outside;
+    Reader reader(root, file, rules, problems);
     visit_scene(reader, scene);
     check_scene(scene, problems);
     reader.finish();
     scene.places = problems.finish();
+    scene.notes = problems.take_notes();
     return scene;
 }
 
@@ -762,7 +827,7 @@ CouplingDescription read_coupling(const CouplingDescription& coupling,
     }
     CouplingDescription result = coupling;
     Problems problems({});
-    Reader reader(root, {}, true, problems);
+    Reader reader(root, {}, {.allows_outside = true}, problems);
     reader.enter_table({.key = "coupling", .meaning = "from molecule to hand and back"});
     visit_coupling_keys(reader, result);
     reader.leave_table();
@@ -783,13 +848,13 @@ CouplingDescription parse_settings(std::span<const std::string> settings) {
     return read_coupling({}, settings, [](const auto&, const auto&) {});
 }
 
-EditDescription parse_edit(std::string_view text, const TextPlace& place) {
+EditDescription parse_edit(std::string_view text, const TextPlace& place, FileVersion version) {
     SceneDescription scene;
     scene.second.emplace();
     try {
         const toml::table root = parse_table(text, {});
         Problems problems({});
-        Reader reader(root, {}, fs::path(place.file).parent_path(), false, problems);
+        Reader reader(root, {}, fs::path(place.file).parent_path(), rules_of(version), problems);
         visit_edits(reader, scene.edits);
         check_edits(scene, problems);
         reader.finish();
@@ -842,7 +907,7 @@ RunCommand read_run_command(std::string_view line, const SceneDescription& scene
     if (!table) throw LoadError({}, "is not a list of KEY = VALUE separated by commas");
     RunCommand command;
     Problems problems({});
-    Reader reader(*table, {}, scene.file.parent_path(), false, problems);
+    Reader reader(*table, {}, scene.file.parent_path(), {}, problems);
     visit_run_command(reader, command);
     const auto* const edit = std::get_if<EditAction>(&command.action);
     if (!problems.any())

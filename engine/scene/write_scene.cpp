@@ -1,5 +1,6 @@
 #include "scene/write_scene.h"
 
+#include "core/file_versions.h"
 #include "core/text.h"
 #include "scene/edit_fields.h"
 #include "scene/fields.h"
@@ -195,6 +196,7 @@ std::string format_scene(
     const std::function<std::string(const std::filesystem::path&)>& file_name) {
     Writer writer(file_name);
     SceneDescription copy = scene;  // visitors may write; this one does not
+    copy.format = to_string(scene_version);
     visit_scene(writer, copy);
     return std::move(writer.text_so_far);
 }

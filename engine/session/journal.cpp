@@ -148,8 +148,7 @@ public:
     void add_line(std::string_view line) {
         ++place_.line;
         if (place_.line == 1) {
-            if (line != journal_mark) fail("is not a journal", std::string(journal_mark));
-            return;
+            return read_version(line);
         }
         const std::size_t blank = std::min(line.find(' '), line.size());
         const std::string_view kind = line.substr(0, blank);
@@ -167,7 +166,23 @@ public:
 
 private:
     [[noreturn]] void fail(const std::string& what, const std::string& expected) const {
-        throw LoadError(place_, fmt::format("{}; expected {}", what, expected));
+        const std::string version =
+            journal_.version > journal_version
+                ? fmt::format("; or a newer Palpa, since the journal has format {}",
+                              to_string(journal_.version))
+                : "";
+        throw LoadError(place_, fmt::format("{}; expected {}{}", what, expected, version));
+    }
+
+    void read_version(std::string_view line) {
+        const std::optional<FileVersion> version =
+            line.starts_with(journal_mark) ? find_version(line.substr(journal_mark.size()))
+                                           : std::nullopt;
+        if (!version)
+            fail("is not a journal", fmt::format("{}{}", journal_mark, to_string(journal_version)));
+        if (const auto note = check_version("journal", *version, journal_version, place_))
+            journal_.notes.push_back(fmt::format("{}: {}", to_string(place_), *note));
+        journal_.version = *version;
     }
 
     void add_device() {
@@ -325,7 +340,9 @@ private:
         } else if (json.contains("pull")) {
             event.command = read_pull(json);
         } else {
-            event.command = parse_edit(read<std::string>(json, "edit"), place_);
+            const FileVersion names =
+                journal_.version.major < journal_version.major ? unnumbered_version : scene_version;
+            event.command = parse_edit(read<std::string>(json, "edit"), place_, names);
         }
         return event;
     }
@@ -396,7 +413,8 @@ Journal parse_journal(std::string_view text, const std::string& file) {
 }
 
 JournalWriter::JournalWriter(std::span<const HandDevice> devices)
-    : text_(fmt::format("{}\n", journal_mark)), before_(devices.size()) {
+    : text_(fmt::format("{}{}\n", journal_mark, to_string(journal_version))),
+      before_(devices.size()) {
     for (const HandDevice& device : devices)
         text_ += fmt::format("hand {}\n", as_json(device).dump());
 }

@@ -1,7 +1,7 @@
 // A live session on disk, journal.txt: what its simulation and its servos were given, from its
 // first moment, so that it can be played again to the bit. Lines of words between blanks:
 //
-//   # Palpa journal 1
+//   # Palpa journal 2.0       the version of its format (core/file_versions.h)
 //   hand {JSON}             each hand's device, as the session began
 //   p POSES                 the simulation: what the last step found goes to the servos
 //   s POSES TOOK_US         a step, and its wall time
@@ -18,6 +18,7 @@
 // POSES: for each hand the number of the newest pose. CONTACT, ORDER: the numbers of the contact
 // model and the order in force. SI.
 #pragma once
+#include "core/file_versions.h"
 #include "core/load_error.h"
 #include "session/live_events.h"
 
@@ -31,7 +32,8 @@
 
 namespace palpa {
 
-inline constexpr std::string_view journal_mark = "# Palpa journal 1";
+// What a journal begins with; its version follows.
+inline constexpr std::string_view journal_mark = "# Palpa journal ";
 
 // What one tick gave the servo of one hand.
 struct JournalHand {
@@ -45,6 +47,8 @@ struct JournalTick {
 };
 
 struct Journal {
+    FileVersion version = journal_version;  // that it was read in
+    std::vector<std::string> notes;         // on reading it, a sentence each
     std::vector<HandDevice> devices;
     std::vector<PlayedEvent> events;
     std::vector<JournalTick> ticks;
@@ -56,7 +60,8 @@ struct Journal {
     }
 };
 
-// Throws LoadError with the line for whatever is not as above. What is behind the last whole line
+// Throws LoadError with the line for whatever is not as above, and for a newer major version. Of
+// version 1, edits have the names of scene format 1. What is behind the last whole line
 // of one that was cut off does not count.
 Journal parse_journal(std::string_view text, const std::string& file);
 

@@ -176,6 +176,9 @@ constexpr std::string_view trajectory_mark =
 
 constexpr std::string_view commands_mark = "# A recorded Palpa session, which commands drove";
 
+// A line of session.toml: the version of the recording follows.
+constexpr std::string_view version_mark = "# Recording format ";
+
 // What the head of a session says about running it again.
 std::string describe_return(const SceneDescription& scene, RecordedBy by) {
     if (scene.engine) {
@@ -297,6 +300,18 @@ bool has_journal(const fs::path& folder) {
     return fs::exists(folder / journal_name, error);
 }
 
+FileVersion read_recording_version(const fs::path& folder) {
+    const fs::path session = folder / "session.toml";
+    if (!is_there(session)) return unnumbered_version;
+    const std::string text = read_text_file(session);
+    for (const std::string_view line : split_lines(text)) {
+        if (!line.starts_with(version_mark)) continue;
+        if (const auto version = find_version(trimmed(line.substr(version_mark.size()))))
+            return *version;
+    }
+    return unnumbered_version;
+}
+
 SceneDescription read_recorded_scene(const fs::path& folder) {
     const fs::path session = folder / "session.toml";
     std::error_code error;
@@ -305,7 +320,10 @@ SceneDescription read_recorded_scene(const fs::path& folder) {
                         "has no session.toml; expected the folder of a recording (palpa run "
                         "--record)");
     }
+    const std::optional<std::string> note = check_version(
+        "recording", read_recording_version(folder), recording_version, {session.string()});
     SceneDescription scene = read_scene(session, {});
+    if (note) scene.notes.push_back(fmt::format("{}: {}", session.string(), *note));
     if (scene.engine) {
         throw LoadError(scene.place_of("engine"),
                         "cannot be replayed: a remote engine moved the atoms and the recording "
@@ -463,7 +481,9 @@ std::string format_summary(const SceneDescription& scene, const Summary& summary
                         {"commit", commit_name},
                         {"compiler", __VERSION__},
                         {"eigen", fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
-                                              EIGEN_MINOR_VERSION)}};
+                                              EIGEN_MINOR_VERSION)},
+                        {"scene_format", to_string(scene_version)},
+                        {"recording_format", to_string(recording_version)}};
     json["scene"] = scene.title;
     json["scene_hash"] = scene_hash(scene);
     json["device"] = summary.device;
@@ -556,11 +576,12 @@ Recording::Recording(const fs::path& folder, const SceneDescription& scene, bool
     std::error_code error;
     fs::create_directory(folder / "inputs", error);
     if (error) throw LoadError({folder.string()}, "cannot be written: " + error.message());
-    write_text_file(folder / "session.toml",
-                    fmt::format("{}# Recorded by Palpa {}, {}, on a processor of kind {}.\n",
-                                format_session(scene, by), version_name, commit_name,
-                                list_processor_kinds().front()),
-                    is_there(folder / "session.toml") ? Existing::Replace : Existing::Refuse);
+    write_text_file(
+        folder / "session.toml",
+        fmt::format("{}# Recorded by Palpa {}, {}, on a processor of kind {}.\n{}{}\n",
+                    format_session(scene, by), version_name, commit_name,
+                    list_processor_kinds().front(), version_mark, to_string(recording_version)),
+        is_there(folder / "session.toml") ? Existing::Replace : Existing::Refuse);
     for (std::size_t i = 0; i < files.size(); ++i) {
         write_text_file(folder / names.at(files[i]), contents[i]);
     }

@@ -2,6 +2,7 @@
 // one from a window has a journal.txt too (session/journal.h), and where asked there is a
 // trajectory (session/trajectory_recorder.h).
 #pragma once
+#include "core/file_versions.h"
 #include "core/files.h"
 #include "haptics/servo.h"
 #include "scene/description.h"
@@ -64,8 +65,13 @@ bool is_of_commands(const std::filesystem::path& folder);
 // Whether it is one of a window: with everything that devices, person and clients did.
 bool has_journal(const std::filesystem::path& folder);
 
-// The scene of a recording that can be played again. Throws LoadError where the folder holds none,
-// and where something that is not in it moved the atoms: a remote engine, a trajectory, commands.
+// The version of the recording in a folder, which its session.toml states; of one without a number
+// that of version 1.
+FileVersion read_recording_version(const std::filesystem::path& folder);
+
+// The scene of a recording that can be played again. Throws LoadError where the folder holds none
+// or one of a newer major version, and where something that is not in it moved the atoms: a remote
+// engine, a trajectory, commands.
 SceneDescription read_recorded_scene(const std::filesystem::path& folder);
 
 class Recording {

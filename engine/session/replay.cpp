@@ -5,9 +5,12 @@
 #include "core/text.h"
 #include "session/recording.h"
 
+#include <fmt/format.h>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 namespace palpa {
 namespace {
@@ -20,6 +23,24 @@ std::vector<std::string_view> split_row(std::string_view row) {
         begin = end + 1;
     }
     return values;
+}
+
+// Columns that recordings of version 1 may lack, by how their names begin.
+bool came_later(std::string_view column) {
+    constexpr std::array<std::string_view, 5> later{"torque_", "handle_turn_", "molecule_turn_",
+                                                    "force_error_estimate_", "model_age_"};
+    return std::ranges::any_of(
+        later, [&](std::string_view beginning) { return column.starts_with(beginning); });
+}
+
+// Some values of a row; all of one that has not as many values as the header has columns.
+std::string choose_values(std::string_view row, std::span<const std::size_t> numbers,
+                          std::size_t columns) {
+    const std::vector<std::string_view> values = split_row(row);
+    if (values.size() != columns) return std::string(row);
+    std::vector<std::string_view> chosen;
+    for (const std::size_t number : numbers) chosen.push_back(values[number]);
+    return fmt::format("{}", fmt::join(chosen, ","));
 }
 
 }  // namespace
@@ -40,21 +61,66 @@ TraceCheck::TraceCheck(const std::filesystem::path& folder, std::uint64_t ticks,
     };
     const std::optional<std::string_view> header = take_line();
     if (!header) throw LoadError({file, 1}, "has no complete line; expected a recorded trace");
-    relaxes_ = *header == trace_header(hands, true);
-    if (!relaxes_ && *header != trace_header(hands)) {
-        throw LoadError({file, 1},
-                        "has different columns than this program records; expected a recording of "
-                        "the same version (session.toml names its version)");
-    }
     columns_ = split_row(*header);
+    recorded_columns_ = columns_.size();
+    relaxes_ = *header == trace_header(hands, true);
+    if (!relaxes_ && *header != trace_header(hands)) choose_columns(folder, hands);
     while (const std::optional<std::string_view> line = take_line()) rows_.push_back(*line);
+}
+
+// Those that recording and program have.
+void TraceCheck::choose_columns(const std::filesystem::path& folder, std::size_t hands) {
+    const TextPlace place{(folder / "trace.csv").string(), 1};
+    const std::string header = trace_header(hands, true);
+    const std::vector<std::string_view> ours = split_row(header),
+                                        theirs = std::exchange(columns_, {});
+    std::vector<std::string_view> unknown, lacking;
+    for (std::size_t i = 0; i < theirs.size(); ++i) {
+        const auto found = std::ranges::find(ours, theirs[i]);
+        if (found == ours.end()) {
+            unknown.push_back(theirs[i]);
+            continue;
+        }
+        columns_.push_back(theirs[i]);
+        recorded_.push_back(i);
+        played_.push_back(static_cast<std::size_t>(found - ours.begin()));
+    }
+    const bool is_newer = read_recording_version(folder) > recording_version;
+    if (!unknown.empty() && !is_newer) {
+        throw LoadError(
+            place, fmt::format("has a column '{}', which no recording of format {} has; "
+                               "expected a trace as palpa run --record writes it",
+                               printable(unknown[0].substr(0, 80)), to_string(recording_version)));
+    }
+    for (const std::string_view column : ours) {
+        if (std::ranges::find(theirs, column) != theirs.end()) continue;
+        if (!came_later(column)) {
+            throw LoadError(place, fmt::format("lacks the column '{}'; expected a trace as palpa "
+                                               "run --record writes it",
+                                               column));
+        }
+        lacking.push_back(column);
+    }
+    relaxes_ = true;
+    if (!unknown.empty())
+        notes_.push_back(fmt::format("{}: not compared, since this program does not know them: {}",
+                                     place.file,
+                                     printable(fmt::format("{}", fmt::join(unknown, ", ")))));
+    if (!lacking.empty())
+        notes_.push_back(fmt::format("{}: not compared, since this older recording lacks them: {}",
+                                     place.file, fmt::join(lacking, ", ")));
 }
 
 void TraceCheck::add(std::span<const ServoTick> ticks) {
     if (tick_++ % static_cast<std::uint64_t>(every_) != 0 || compared_ >= rows_.size()) return;
-    const std::string_view recorded = rows_[compared_++];
+    std::string recorded(rows_[compared_++]);
     std::string played = trace_row(ticks, relaxes_);
     played.pop_back();  // its end of line
+    if (!played_.empty()) {
+        const auto columns = static_cast<std::size_t>(std::ranges::count(played, ',') + 1);
+        recorded = choose_values(recorded, recorded_, recorded_columns_);
+        played = choose_values(played, played_, columns);
+    }
     // "nan" and "inf" have a letter that no finite number has.
     // Of the error estimate they say that there is none, at the end of a row.
     const auto is_finite = [&](std::string_view row) {

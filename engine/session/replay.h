@@ -25,8 +25,10 @@ struct TraceDifference {
 class TraceCheck {
 public:
     // Reads trace.csv of a recording of so many ticks whose trace keeps one row of `every`. What is
-    // behind the last whole line of one that was cut off does not count. Throws LoadError if there
-    // is none, or if its columns are not those of this program.
+    // behind the last whole line of one that was cut off does not count. Columns are found by name:
+    // of version 1 those that came later may lack. Throws LoadError if there is no trace, if it
+    // lacks another column, or has one that this program does not know and the recording is not of
+    // a newer minor version.
     TraceCheck(const std::filesystem::path& folder, std::uint64_t ticks, std::int64_t every,
                std::size_t hands = 1);
 
@@ -42,15 +44,22 @@ public:
     std::uint64_t surplus() const noexcept { return is_cut_off() ? 0 : rows_.size() - whole_; }
     // Rows with a number that is none or endless, as recorded or as played.
     std::uint64_t not_finite() const noexcept { return not_finite_; }
+    // What a user should know of the columns, a sentence each.
+    const std::vector<std::string>& notes() const noexcept { return notes_; }
     const std::optional<TraceDifference>& first() const noexcept { return first_; }
     double largest_newton() const noexcept { return largest_newton_; }  // of device forces apart
 
 private:
+    void choose_columns(const std::filesystem::path& folder, std::size_t hands);
     void note(std::string_view recorded, std::string_view played);
 
     std::string text_;
-    std::vector<std::string_view> rows_, columns_;  // of `text_`
-    bool relaxes_ = false;                          // it has the columns of molecules that relax
+    std::vector<std::string_view> rows_, columns_;  // of `text_`; the columns that are compared
+    // Their numbers in rows as recorded and as played; empty where all are compared.
+    std::vector<std::size_t> recorded_, played_;
+    std::size_t recorded_columns_ = 0;
+    std::vector<std::string> notes_;
+    bool relaxes_ = false;  // it has the columns of molecules that relax
     std::int64_t every_;
     std::uint64_t whole_;  // rows of a recording that was not cut off
     std::uint64_t tick_ = 0, compared_ = 0, different_ = 0, not_finite_ = 0;

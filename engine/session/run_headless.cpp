@@ -259,7 +259,7 @@ void warn_of_stroke(const SceneDescription& scene, const World& world, const Han
 
 std::vector<std::string> list_warnings(const SceneDescription& scene, const World& world,
                                        const HandScript& script, const StageFunction& on_stage) {
-    std::vector<std::string> warnings;
+    std::vector<std::string> warnings = scene.notes;
     warn_of_stiffness(scene, world, script, 0, on_stage, warnings);
     warn_of_resolution(scene, world, warnings);
     if (const auto closest = describe_coincident_atoms(world.resource<AtomTable>().names,

@@ -136,7 +136,7 @@ class Replay(unittest.TestCase):
         self.trace.write_text("time_s,handle_x_m\n0,0\n")
         result = palpa("replay", self.folder, "--verify")
         self.assertEqual(result.returncode, 2)
-        self.assertIn("different columns", result.stderr)
+        self.assertIn("lacks the column", result.stderr)
         result = palpa("replay", ROOT / "scenes", "--verify")
         self.assertEqual(result.returncode, 2)
         self.assertIn("has no session.toml", result.stderr)

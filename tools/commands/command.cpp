@@ -10,6 +10,10 @@
 
 namespace palpa {
 
+void print_notes(const std::vector<std::string>& notes) {
+    for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", printable(note));
+}
+
 void add_set_option(CLI::App& command, std::vector<std::string>& settings) {
     command
         .add_option_function<std::string>(

@@ -55,6 +55,9 @@ Options& own_options(CLI::App& command, ProgramCommand& chosen, Function functio
 // Throws LoadError where a remote engine moves the scene's atoms.
 void refuse_remote_engine(const SceneDescription& scene);
 
+// What a user should know of files that were read, on stderr.
+void print_notes(const std::vector<std::string>& notes);
+
 // --set, and what lets a scene name files outside of its folder.
 void add_set_option(CLI::App& command, std::vector<std::string>& settings);
 

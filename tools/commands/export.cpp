@@ -29,6 +29,7 @@ struct ExportOptions {
 
 int export_command(const ExportOptions& options) {
     SceneDescription scene = read_scene(options.scene, options.settings);
+    print_notes(scene.notes);
     refuse_remote_engine(scene);
     std::vector<Existing> existing;
     for (const std::filesystem::path& file : list_coordinate_files(options.file))

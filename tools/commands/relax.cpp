@@ -82,6 +82,7 @@ constexpr std::string_view coordinates_mark = "* Written by palpa relax.\n";
 
 int relax_command(const RelaxOptions& options) {
     const SceneDescription scene = read_scene(options.scene, options.settings);
+    print_notes(scene.notes);
     const Existing existing =
         options.coordinates
             ? check_output(*options.coordinates, coordinates_mark, options.overwrites)

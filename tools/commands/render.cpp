@@ -206,6 +206,7 @@ void check_render_options(const RenderOptions& options) {
 
 int render_command(const RenderOptions& options) {
     SceneDescription scene = read_scene(options.scene, options.settings);
+    print_notes(scene.notes);
     refuse_remote_engine(scene);
     check_render_options(options);
     const Existing existing = options.film

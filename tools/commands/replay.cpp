@@ -145,6 +145,9 @@ int replay_journal(const ReplayOptions& options, const SceneDescription& scene) 
         journal.ticks.size() - journal.first_recorded.value_or(journal.ticks.size());
     TraceCheck check(options.recording, recorded, scene.every, journal.devices.size());
     check_has_rows(check, options.recording);
+    print_notes(scene.notes);
+    print_notes(journal.notes);
+    print_notes(check.notes());
     ProgressLine progress(!options.json);
     std::vector<ServoTick> played(journal.devices.size());
     play_journal(
@@ -178,6 +181,8 @@ int replay_command(const ReplayOptions& options) {
     const std::size_t hands = list_hands(scene).size();
     TraceCheck check(options.recording, count_ticks(scene), scene.every, hands);
     check_has_rows(check, options.recording);
+    print_notes(scene.notes);
+    print_notes(check.notes());
     // One that was cut off is played as far as it goes.
     const auto ticks = check.recorded() * static_cast<std::uint64_t>(scene.every);
     const double session_s = scene.seconds;

@@ -164,10 +164,6 @@ std::unique_ptr<FrameWriter> open_frames(const RunOptions& options, const ViewDe
     }
 }
 
-void print_notes(const std::vector<std::string>& notes) {
-    for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", printable(note));
-}
-
 // The scene's hands on their devices.
 std::vector<std::unique_ptr<Device>> open_hands(const SceneDescription& scene, const World& world,
                                                 const RunOptions& options) {

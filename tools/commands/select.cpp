@@ -117,6 +117,7 @@ void print_selected_json(const std::string& expression,
 int select_command(const SelectOptions& options) {
     (void)parse_selection(options.expression);  // before the scene is loaded
     const SceneDescription scene = read_scene(options.scene, options.settings);
+    print_notes(scene.notes);
     refuse_remote_engine(scene);
     ProgressLine progress;
     const World world = load_world(scene, progress.stages());

@@ -1,5 +1,6 @@
 #include "tools/commands/version.h"
 
+#include "core/file_versions.h"
 #include "core/machine.h"
 #include "core/version.h"
 #include "field/processor.h"
@@ -37,11 +38,12 @@ std::string name_vulkan_device() {
 std::string describe_version() {
     return fmt::format(
         "{} ({})\n"
+        "formats    {}\n"
         "compiler   {}\n"
         "processor  {} kernels, {}\n"
         "Vulkan     {}\n",
-        version_name, commit_name, name_compiler(), list_processor_kinds().front(), machine_name(),
-        name_vulkan_device());
+        version_name, commit_name, list_file_versions(), name_compiler(),
+        list_processor_kinds().front(), machine_name(), name_vulkan_device());
 }
 
 }  // namespace palpa

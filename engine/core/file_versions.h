@@ -1,0 +1,39 @@
+// Versions of the files that Palpa writes and reads again. A new major number: names or lines
+// changed their meaning, and older programs refuse the file. A new minor one: something was added,
+// which older programs leave out.
+#pragma once
+#include "core/load_error.h"
+
+#include <compare>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace palpa {
+
+struct FileVersion {
+    int major = 0, minor = 0;
+    friend auto operator<=>(const FileVersion&, const FileVersion&) = default;
+};
+
+// What this program writes. Files without a number are of version 1, which is read too.
+// Scene: scene.toml, its key `format`. Recording: columns of trace.csv and keys of summary.json,
+// the number is in session.toml. Journal: journal.txt.
+inline constexpr FileVersion scene_version{2, 0}, recording_version{2, 0}, journal_version{2, 0};
+inline constexpr FileVersion unnumbered_version{1, 0};
+
+// "2.0".
+std::string to_string(FileVersion version);
+
+// Of "2.0" or "2"; nothing else is one.
+std::optional<FileVersion> find_version(std::string_view text);
+
+// "scene 2.0, recording 2.0, journal 2.0".
+std::string list_file_versions();
+
+// Throws LoadError for a version that cannot be read: one of a newer major number, and 0.
+// Returns a note for one of a newer minor number, else nothing. `kind`: "scene", "journal".
+std::optional<std::string> check_version(std::string_view kind, FileVersion stated,
+                                         FileVersion ours, const TextPlace& place);
+
+}  // namespace palpa
