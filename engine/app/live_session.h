@@ -1,6 +1,6 @@
-// A scene that runs in real time: the servos of all hands at 1 kHz and the simulation at its
-// declared period, each on a thread of its own, a third that keeps the journal, and what a fourth
-// one, with the window, may ask of them and see of them.
+// Runs a scene in real time: a thread with the 1 kHz servos of all hands, a thread with the
+// simulation at its declared period, a thread that writes the journal, and the interface for the
+// window's thread.
 #pragma once
 #include "app/live_clock.h"
 #include "app/live_frame.h"
@@ -34,7 +34,7 @@
 
 namespace palpa {
 
-// A device in a hand. `orders`: of an emulated device's hand; null where it cannot stand still.
+// The device of one hand. `orders`: of an emulated device's hand; null if it cannot be stopped.
 struct LiveDevice {
     Device* device = nullptr;
     HandOrders* orders = nullptr;
@@ -43,11 +43,10 @@ struct LiveDevice {
 // The devices must outlive the session, and belong to its servo thread meanwhile.
 class LiveSession final : public WindowSession {
 public:
-    // Loads the scene and starts all threads. `devices` are of the hands of the scene, in their
-    // order; hands beyond these stand still. `clock`: null is the machine's. `server` serves the
-    // session and belongs to its simulation's thread meanwhile; null: nobody does. `on_stage` hears
-    // how far loading is. Throws
-    // LoadError, and where a device must not be run with the scene's period (check_period).
+    // Loads the scene and starts all threads. `devices`: in the order of the scene's hands; hands
+    // without one stand still. `clock`: null for the machine's clock. `server`: serves the session
+    // on the simulation's thread; may be null. `on_stage` receives the progress of loading. Throws
+    // LoadError, also if a device must not be run with the scene's period (check_period).
     LiveSession(const SceneDescription& scene, const ViewSettings& view,
                 std::span<const LiveDevice> devices, LiveClock* clock = nullptr,
                 FrameServer* server = nullptr, const std::optional<PlaybackChoice>& playback = {},
@@ -108,7 +107,7 @@ private:
     LiveClock machine_clock_;
     LiveClock& clock_;
     std::vector<LiveDevice> devices_;
-    std::vector<HandOrder> orders_;  // as posted last
+    std::vector<HandOrder> orders_;  // orders posted last
     ServoBank servos_;
     std::unique_ptr<Line> line_;
     LiveSimulation simulation_;
@@ -121,7 +120,7 @@ private:
     std::atomic<std::uint64_t> overruns_{0};
     std::atomic<bool> real_time_{false}, locked_{false};
 
-    std::mutex mutex_;  // of the commands
+    std::mutex mutex_;  // guards the commands
     std::condition_variable has_command_;
     std::vector<Command> commands_;
     std::vector<std::string> server_notes_;
@@ -129,12 +128,12 @@ private:
         DeviceEvent event;
         LiveDevice device;
     };
-    std::optional<DeviceChange> device_change_;  // until it is done
+    std::optional<DeviceChange> device_change_;  // pending change of a device
     std::condition_variable device_changed_;
     std::optional<World> copied_world_;
     bool world_wanted_ = false;
     std::condition_variable world_copied_;
-    const bool plays_;  // a trajectory
+    const bool plays_;  // whether it plays a trajectory
     std::atomic<bool> stopping_{false}, servo_stopping_{false}, recorder_stopping_{false};
 
     // The simulation's thread's own.

@@ -1,5 +1,5 @@
-// A structure file becomes a scene, in the window: prepared beside it, with questions where
-// something is missing, and the report of what was decided.
+// Makes a scene from a structure file in the window: prepares it, asks if something is missing, and
+// shows the report.
 #pragma once
 #include "app/window_shell.h"
 

@@ -1,4 +1,4 @@
-// What may be asked of a running scene, and what it says of itself.
+// Commands to a running scene, and its readout.
 #pragma once
 #include "haptics/exchange.h"
 #include "scene/description.h"
@@ -17,7 +17,7 @@
 
 namespace palpa {
 
-// What a person may change while a scene runs.
+// The settings that a person can change while a scene runs.
 struct LiveSettings {
     CouplingDescription coupling;
     double period_ms = 1;
@@ -27,12 +27,12 @@ struct LiveSettings {
 
 // Commands are taken between two steps, in the order in which they were sent.
 struct Pause {
-    bool paused = true;  // while it lasts nothing moves, and the hand feels nothing
+    bool paused = true;  // while paused nothing moves and the hand has no force
 };
-struct StepOnce {};  // and pause
+struct StepOnce {};  // one step, then pause
 // Load the scene again; the settings stay.
 struct Reset {
-    // On a line, Å: where it is to start from now on, if not where it did.
+    // On a line: new start distance, Å; unset: unchanged.
     std::optional<double> start_angstrom{};
 };
 // Of a replay: where to go, how fast; what is not said stays.
@@ -79,11 +79,11 @@ struct Readout {
     LessonMeasures lesson;                  // where the scene has one
 };
 
-// How the servo fares.
+// The health of the servo thread.
 struct ServoHealth {
     std::uint64_t overruns = 0;  // ticks that were skipped because one began too late
     bool real_time = false;      // the system granted real-time priority
-    bool locked = false;         // and lets memory stay where it is
+    bool locked = false;         // memory is locked in RAM
 };
 
 }  // namespace palpa

@@ -11,8 +11,8 @@ namespace palpa {
 
 inline constexpr const char* playback_panel = for_translation("Trajectory");  // its title
 
-// Describes it to the overlay library, in the middle of `area`: play and pause, which frame, how
-// fast. What the person asks for is appended.
+// Describes the panel to the overlay library, in the middle of `area`: play and pause, frame,
+// speed. Appends the person's requests.
 void draw_playback_panel(const PlaybackState& state, const ScreenArea& area,
                          std::vector<Command>& commands);
 
